@@ -1,0 +1,265 @@
+//! Vectors and matrices of the space a body lives in: `D` is 1, 2 or 3 and known at compile time.
+//!
+//! Global nodal arrays are flat `Vec<f64>`; seen per node they are `&[[f64; D]]` (`slice::as_chunks`). A [`Vector`] is one such
+//! node's copy with arithmetic.
+
+use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
+
+/// A vector of `D` components.
+///
+/// ```
+/// use carom_algebra::Vector;
+/// assert_eq!(Vector([3.0, 4.0]).norm(), 5.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vector<const D: usize>(pub [f64; D]);
+
+/// A `D × D` matrix, row by row.
+///
+/// ```
+/// use carom_algebra::Mat;
+/// assert_eq!(Mat([[2.0, 1.0], [4.0, 5.0]]).det(), 6.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mat<const D: usize>(pub [[f64; D]; D]);
+
+impl<const D: usize> Vector<D> {
+    /// The zero vector.
+    pub const ZERO: Self = Self([0.0; D]);
+
+    /// Scalar product.
+    #[inline]
+    pub fn dot(&self, other: &Self) -> f64 {
+        let mut sum = 0.0;
+        for i in 0..D {
+            sum += self.0[i] * other.0[i];
+        }
+        sum
+    }
+
+    /// Euclidean length.
+    #[inline]
+    pub fn norm(&self) -> f64 {
+        self.dot(self).sqrt()
+    }
+
+    /// Dyadic product `self ⊗ other`.
+    #[inline]
+    pub fn outer(&self, other: &Self) -> Mat<D> {
+        Mat(std::array::from_fn(|i| std::array::from_fn(|j| self.0[i] * other.0[j])))
+    }
+}
+
+impl Vector<2> {
+    /// The vector turned by −90°: the outward normal of a boundary that is walked with the body on its left.
+    #[inline]
+    pub fn turned_right(&self) -> Self {
+        Self([self.0[1], -self.0[0]])
+    }
+}
+
+impl<const D: usize> Mat<D> {
+    /// The zero matrix.
+    pub const ZERO: Self = Self([[0.0; D]; D]);
+
+    /// The identity.
+    #[inline]
+    pub fn identity() -> Self {
+        Self(std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j)))))
+    }
+
+    /// Transpose.
+    #[inline]
+    pub fn transposed(&self) -> Self {
+        Self(std::array::from_fn(|i| std::array::from_fn(|j| self.0[j][i])))
+    }
+
+    /// Matrix times vector.
+    #[inline]
+    pub fn apply(&self, v: &Vector<D>) -> Vector<D> {
+        Vector(std::array::from_fn(|i| (0..D).map(|j| self.0[i][j] * v.0[j]).sum()))
+    }
+
+    /// Sum of the diagonal.
+    #[inline]
+    pub fn trace(&self) -> f64 {
+        (0..D).map(|i| self.0[i][i]).sum()
+    }
+
+    /// Double contraction `A : B`.
+    #[inline]
+    pub fn double_dot(&self, other: &Self) -> f64 {
+        (0..D).map(|i| (0..D).map(|j| self.0[i][j] * other.0[i][j]).sum::<f64>()).sum()
+    }
+
+    /// Matrix of cofactors, `det(A) A⁻ᵀ`; defined for singular matrices too.
+    #[inline]
+    pub fn cofactor(&self) -> Self {
+        let a = &self.0;
+        let mut c = Self::ZERO;
+        match D {
+            1 => c.0[0][0] = 1.0,
+            2 => {
+                c.0[0][0] = a[1][1];
+                c.0[0][1] = -a[1][0];
+                c.0[1][0] = -a[0][1];
+                c.0[1][1] = a[0][0];
+            }
+            _ => {
+                for i in 0..D {
+                    for j in 0..D {
+                        let (i1, i2, j1, j2) = ((i + 1) % D, (i + 2) % D, (j + 1) % D, (j + 2) % D);
+                        c.0[i][j] = a[i1][j1] * a[i2][j2] - a[i1][j2] * a[i2][j1];
+                    }
+                }
+            }
+        }
+        c
+    }
+
+    /// Determinant.
+    #[inline]
+    pub fn det(&self) -> f64 {
+        let c = self.cofactor();
+        (0..D).map(|j| self.0[0][j] * c.0[0][j]).sum()
+    }
+
+    /// Inverse; entries are not finite where the determinant is zero.
+    #[inline]
+    pub fn inverse(&self) -> Self {
+        self.cofactor().transposed() * (1.0 / self.det())
+    }
+}
+
+impl<const D: usize> Index<usize> for Vector<D> {
+    type Output = f64;
+    #[inline]
+    fn index(&self, i: usize) -> &f64 {
+        &self.0[i]
+    }
+}
+
+impl<const D: usize> IndexMut<usize> for Vector<D> {
+    #[inline]
+    fn index_mut(&mut self, i: usize) -> &mut f64 {
+        &mut self.0[i]
+    }
+}
+
+impl<const D: usize> Add for Vector<D> {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+}
+
+impl<const D: usize> Sub for Vector<D> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] - other.0[i]))
+    }
+}
+
+impl<const D: usize> Neg for Vector<D> {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Self(self.0.map(|x| -x))
+    }
+}
+
+impl<const D: usize> Mul<f64> for Vector<D> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0.map(|x| x * factor))
+    }
+}
+
+impl<const D: usize> AddAssign for Vector<D> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<const D: usize> SubAssign for Vector<D> {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<const D: usize> Add for Mat<D> {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| std::array::from_fn(|j| self.0[i][j] + other.0[i][j])))
+    }
+}
+
+impl<const D: usize> Sub for Mat<D> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| std::array::from_fn(|j| self.0[i][j] - other.0[i][j])))
+    }
+}
+
+impl<const D: usize> Mul<f64> for Mat<D> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0.map(|row| row.map(|x| x * factor)))
+    }
+}
+
+impl<const D: usize> Mul for Mat<D> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| {
+            std::array::from_fn(|j| (0..D).map(|k| self.0[i][k] * other.0[k][j]).sum())
+        }))
+    }
+}
+
+impl<const D: usize> AddAssign for Mat<D> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverse_times_matrix_is_identity_in_every_dimension() {
+        let a = Mat([[2.0, -1.0, 0.5], [0.3, 4.0, 1.0], [1.0, 0.0, 3.0]]);
+        let e = a * a.inverse() - Mat::identity();
+        assert!(e.double_dot(&e) < 1e-28);
+        let b = Mat([[2.0, -1.0], [0.3, 4.0]]);
+        let e = b * b.inverse() - Mat::identity();
+        assert!(e.double_dot(&e) < 1e-28);
+        assert_eq!(Mat([[4.0]]).inverse(), Mat([[0.25]]));
+    }
+
+    #[test]
+    fn cofactor_is_the_derivative_of_the_determinant() {
+        let a = Mat([[2.0, -1.0, 0.5], [0.3, 4.0, 1.0], [1.0, 0.0, 3.0]]);
+        let h = 1e-6;
+        for i in 0..3 {
+            for j in 0..3 {
+                let (mut p, mut m) = (a, a);
+                p.0[i][j] += h;
+                m.0[i][j] -= h;
+                let slope = (p.det() - m.det()) / (2.0 * h);
+                assert!((slope - a.cofactor().0[i][j]).abs() < 1e-8);
+            }
+        }
+    }
+}

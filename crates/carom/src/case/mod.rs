@@ -1,0 +1,365 @@
+//! A case as resolved: every default filled in, every name still a name. What `manifest.json` records and `resume` reads back.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+/// One simulation, fully resolved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Case {
+    /// Title for figures and pages.
+    pub title: String,
+    /// Space dimension: 1 or 2.
+    pub dimension: usize,
+    /// Plane strain or plane stress; dimension 2.
+    pub plane: Plane,
+    /// Out-of-plane thickness; in dimension 1 the area of the cross-section.
+    pub thickness: f64,
+    /// Labels for figures and columns; nothing is converted.
+    pub units: Units,
+    /// Set of defaults the case was resolved with.
+    pub preset: Preset,
+    /// Materials by name.
+    pub materials: Vec<MaterialSpec>,
+    /// Deformable bodies.
+    pub bodies: Vec<BodySpec>,
+    /// Fixed sides.
+    pub supports: Vec<SupportSpec>,
+    /// Contact pairs of sides.
+    pub contacts: Vec<ContactSpec>,
+    /// Time interval, step and scheme.
+    pub time: TimeSpec,
+    /// Newton's method.
+    pub newton: NewtonSpec,
+    /// Points whose quantities become columns.
+    pub probes: Vec<ProbeSpec>,
+    /// What is written, and when.
+    pub output: OutputSpec,
+    /// Expected values that make the case a test.
+    pub expects: Vec<ExpectSpec>,
+}
+
+/// Plane state of a two-dimensional body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Plane {
+    /// No strain out of the plane.
+    Strain,
+}
+
+/// Labels of the units the case's numbers are in.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Units {
+    /// Length, `m` by default.
+    pub length: String,
+    /// Time, `s` by default.
+    pub time: String,
+    /// Mass, `kg` by default.
+    pub mass: String,
+}
+
+/// Which column of the table of defaults a case starts from (explicit keys win).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Preset {
+    /// Carom's defaults.
+    Default,
+    /// The paper as printed, where a switch exists for it.
+    Paper,
+}
+
+/// A hyperelastic material.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MaterialSpec {
+    /// Name bodies refer to.
+    pub name: String,
+    /// Law.
+    pub law: Law,
+    /// Mass per reference volume, ≥ 0.
+    pub density: f64,
+    /// First Lamé constant Λ.
+    pub lambda: f64,
+    /// Second Lamé constant μ.
+    pub mu: f64,
+}
+
+/// Constitutive law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Law {
+    /// Ψ = μ(tr E − ln J) + Λ/2 (ln J)².
+    NeoHookean,
+    /// Ψ = Λ/2 (tr E)² + μ E : E.
+    SaintVenantKirchhoff,
+    /// Small strain, Ψ = Λ/2 (tr ε)² + μ ε : ε.
+    LinearElastic,
+}
+
+/// A deformable body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BodySpec {
+    /// Name; sides are `name.side`.
+    pub name: String,
+    /// Name of its material.
+    pub material: String,
+    /// Cell type.
+    pub element: carom_solid::Element,
+    /// Where its mesh comes from.
+    pub mesh: MeshSpec,
+    /// Acceleration by gravity, one component per dimension.
+    pub gravity: Vec<f64>,
+    /// Initial velocity, uniform.
+    pub velocity: Vec<f64>,
+    /// Mass matrix.
+    pub mass: MassKind,
+}
+
+/// How inertia is distributed over the nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MassKind {
+    /// ∫ρ₀ NᵀN.
+    Consistent,
+    /// Diagonal scaling (HRZ).
+    Lumped,
+}
+
+/// Source of a mesh: a built-in shape.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "shape", rename_all = "kebab-case")]
+pub enum MeshSpec {
+    /// Dimension 1: `left`, `right`.
+    Interval {
+        /// Left end.
+        min: f64,
+        /// Right end.
+        max: f64,
+        /// Number of cells.
+        cells: usize,
+    },
+    /// `bottom right top left`.
+    Rectangle {
+        /// Lower left corner.
+        min: [f64; 2],
+        /// Upper right corner.
+        max: [f64; 2],
+        /// Squares along x and y, each cut into two triangles.
+        cells: [usize; 2],
+    },
+    /// Whole disc, side `arc`.
+    Disc {
+        /// Radius.
+        radius: f64,
+        /// Centre.
+        center: [f64; 2],
+        /// Length of a cell's edge.
+        size: f64,
+    },
+    /// The half x ≥ centre of a disc, sides `arc axis`.
+    HalfDisc {
+        /// Radius.
+        radius: f64,
+        /// Centre.
+        center: [f64; 2],
+        /// Length of a cell's edge.
+        size: f64,
+    },
+}
+
+/// Sides held in some directions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SupportSpec {
+    /// A named support records its reactions.
+    pub name: Option<String>,
+    /// Sides, `body.side`.
+    pub on: Vec<String>,
+    /// Directions held: 0 is x, 1 is y.
+    pub fix: Vec<usize>,
+}
+
+/// Two sides that may touch.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContactSpec {
+    /// Name in records and messages.
+    pub name: String,
+    /// Side whose nodes are kept out of the primary.
+    pub secondary: String,
+    /// What they are kept out of.
+    pub primary: PrimarySpec,
+    /// When during a step the contact force acts.
+    pub force: ForceTime,
+    /// What happens to velocities where contact begins.
+    pub persistency: Persistency,
+    /// When the active set may change.
+    pub active_set: ActiveSetRule,
+    /// Which gap decides activation.
+    pub detection: Detection,
+}
+
+/// Primary side of a contact.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PrimarySpec {
+    /// A side of a body, `body.side`.
+    Side(String),
+    /// A rigid half-space.
+    Plane {
+        /// A point of its boundary.
+        point: Vec<f64>,
+        /// Direction out of the half-space, of any length > 0.
+        normal: Vec<f64>,
+    },
+}
+
+/// When during a step the contact force acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ForceTime {
+    /// Averaged with α_f, eq. (15).
+    AlphaF,
+    /// At the end of the step.
+    End,
+}
+
+/// What happens to velocities and accelerations where contact begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Persistency {
+    /// v and a are projected on the active constraints.
+    Project,
+    /// Nothing, as in the paper.
+    None,
+}
+
+/// When the active set may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ActiveSetRule {
+    /// In every Newton iteration (primal–dual).
+    Within,
+    /// After Newton converged, as in the paper.
+    After,
+}
+
+/// Which gap decides activation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Detection {
+    /// The gap at the closest point; trajectories give candidates.
+    ClosestPoint,
+    /// The gap at the trajectory's ξ, eq. (8) as printed.
+    Trajectory,
+}
+
+/// Time interval, step and scheme.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TimeSpec {
+    /// End time.
+    pub end: f64,
+    /// Time step; the grid is n·step.
+    pub step: f64,
+    /// Time integrator as given.
+    pub scheme: SchemeSpec,
+    /// Fraction of the largest energy so far that may be created before the run stops; none: reported only.
+    pub energy_guard: Option<f64>,
+}
+
+/// A time integrator by its published name: `{ kind = "chung-hulbert", rho_inf = 0.1 }`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SchemeSpec {
+    /// The `kind` key.
+    pub kind: String,
+    /// Its parameters by key, as given.
+    #[serde(flatten)]
+    pub parameters: BTreeMap<String, f64>,
+    /// `average-forces` or `average-state`.
+    pub forces: carom_time::ForceRule,
+}
+
+/// Newton's method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NewtonSpec {
+    /// ‖Δy‖∞/L and ‖r‖/Σ‖f‖ at convergence.
+    pub tolerance: f64,
+    /// Iterations before a step is rejected.
+    pub max_iterations: usize,
+}
+
+/// A point whose quantities become columns.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProbeSpec {
+    /// Name; columns are `name.quantity`.
+    pub name: String,
+    /// Reference point.
+    pub at: Vec<f64>,
+    /// Body it belongs to.
+    pub body: String,
+    /// Quantities.
+    pub record: Vec<Quantity>,
+}
+
+/// What a probe may record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[allow(missing_docs)]
+pub enum Quantity {
+    Ux,
+    Uy,
+    Vx,
+    Vy,
+    Ax,
+    Ay,
+    SigmaXx,
+    SigmaYy,
+    SigmaXy,
+    VonMises,
+    DetF,
+}
+
+/// What is written, and when.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OutputSpec {
+    /// Field files every so many steps; 0: none.
+    pub fields_every: usize,
+    /// Field files at the steps nearest to these times, besides.
+    pub at_times: Vec<f64>,
+    /// History rows every so many steps.
+    pub history_every: usize,
+    /// Checkpoints every so many steps.
+    pub checkpoint_every: usize,
+}
+
+/// An expected value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ExpectSpec {
+    /// `min A.uy`, `max …`, `at T …`, `first …`, `last …`, or a metric.
+    pub what: String,
+    /// Bound on the value.
+    pub bound: Bound,
+    /// Where the expected value comes from.
+    pub source: Option<String>,
+}
+
+/// Bound an expectation sets.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Bound {
+    /// |got − value| ≤ tolerance.
+    Near {
+        /// Expected value.
+        value: f64,
+        /// Absolute tolerance.
+        tolerance: f64,
+    },
+    /// |got − value| ≤ relative·|value|.
+    Relative {
+        /// Expected value.
+        value: f64,
+        /// Relative tolerance.
+        relative: f64,
+    },
+    /// got ≤ value.
+    AtMost(f64),
+    /// got ≥ value.
+    AtLeast(f64),
+}
