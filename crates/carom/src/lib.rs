@@ -1,1 +1,3 @@
-//! Placeholder of the workspace skeleton.
+//! Impact and contact of deformable solids by the positional finite element method.
+
+pub mod case;

@@ -1,0 +1,58 @@
+//! What the rest of Carom sees of a body: forces, tangents, masses and stresses at positions, cell by cell.
+
+use crate::mesh::Mesh;
+
+/// A cell turned inside out (J ≤ 0) at some quadrature point.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("cell {cell} is inverted: J = {det_f:.3e}")]
+pub struct Inverted {
+    /// The cell.
+    pub cell: usize,
+    /// Determinant of the deformation gradient found there.
+    pub det_f: f64,
+}
+
+/// Kinematics and stress at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointState {
+    /// Determinant of the (three-dimensional) deformation gradient.
+    pub det_f: f64,
+    /// Cauchy stress, 3 × 3 with the out-of-plane component filled in.
+    pub cauchy: [[f64; 3]; 3],
+}
+
+/// A deformable body: a mesh of `D`-dimensional positions with one material. Node numbers are the body's own.
+///
+/// Units follow the case: forces per unit thickness × thickness. `y` always holds all nodes of the body.
+pub trait Body<const D: usize>: Send + Sync {
+    /// Mesh with reference positions.
+    fn mesh(&self) -> &Mesh<D>;
+
+    /// Strain energy of a cell; adds nothing, overwrites `force` (`N·D`, node-major) with ∂U/∂y.
+    fn cell_force(&self, cell: usize, y: &[[f64; D]], force: &mut [f64]) -> Result<f64, Inverted>;
+
+    /// As [`Self::cell_force`], and overwrites `tangent` (`(N·D)²`, row-major, symmetric, both halves) with ∂²U/∂y².
+    fn cell_tangent(&self, cell: usize, y: &[[f64; D]], force: &mut [f64], tangent: &mut [f64]) -> Result<f64, Inverted>;
+
+    /// Consistent mass of a cell between its nodes (`N²`, row-major): ∫ρ₀ φᵃφᵇ dΩ₀.
+    fn cell_mass(&self, cell: usize, mass: &mut [f64]);
+
+    /// Nodal volumes of a cell (`N`): ∫φᵃ dΩ₀, what a unit body force per volume gives.
+    fn cell_volumes(&self, cell: usize, volumes: &mut [f64]);
+
+    /// Smallest J over the quadrature points of a cell.
+    fn cell_min_det_f(&self, cell: usize, y: &[[f64; D]]) -> f64;
+
+    /// Stress at a point of a cell given in reference coordinates.
+    fn point(&self, cell: usize, xi: &[f64], y: &[[f64; D]]) -> Result<PointState, Inverted>;
+
+    /// Shape functions of a cell at reference coordinates (`N`).
+    fn shape(&self, xi: &[f64], values: &mut [f64]);
+
+    /// Cells and reference coordinates at a reference point: one inside a cell, all cells that share it where it is a node or lies on an edge;
+    /// empty outside the body.
+    fn locate(&self, point: &[f64; D]) -> Vec<(usize, Vec<f64>)>;
+
+    /// Density ρ₀.
+    fn density(&self) -> f64;
+}
