@@ -1,8 +1,8 @@
-//! A step of the α family as one stage with the unknown y_{s+1}: eq. (13), (14) solved for a and v, and the weights of eq. (15).
+//! A step of the α family as one stage with the unknown d = y_{s+1} − y_s: eq. (13), (14) solved for a and v, and the weights of eq. (15).
 //!
 //! ```text
-//! a = (y − p)/(βΔt²),      p = y_s + Δt v_s + (½ − β)Δt² a_s
-//! v = v_s + Δt (1 − γ) a_s + γΔt a
+//! a = [d − Δt v_s − (½ − β)Δt² a_s] / (βΔt²)
+//! v = v_s + Δt [(1 − γ) a_s + γ a]
 //! ```
 use crate::scheme::{ForceRule, Scheme};
 use crate::stage::{Kernel, Memory, Stage, Weights};
@@ -14,26 +14,22 @@ impl Kernel for Scheme {
     }
 
     fn stage_into(&self, _k: usize, dt: f64, memory: &Memory, stage: &mut Stage) {
-        let (y, v, a) = memory.states[0];
-        let slope = 1.0 / (self.beta * dt * dt);
+        let (_, v, a) = memory.states[0];
         stage.end = 1.0;
-        stage.acceleration.slope = slope;
+        stage.acceleration.slope = 1.0 / (self.beta * dt * dt);
         stage.velocity.slope = self.gamma / (self.beta * dt);
 
-        // Every product below is formed once and differences are scaled last: what is lost is the last digit of y, not of y/Δt².
-        let of_a = (0.5 - self.beta) * dt * dt;
-        let predicted = |i: usize| y[i] + (dt * v[i] + of_a * a[i]);
-        stage.acceleration.offset.clear();
-        stage.acceleration.offset.extend((0..y.len()).map(|i| -slope * predicted(i)));
-        let of_old = dt * (1.0 - self.gamma);
-        let of_new = dt * self.gamma;
-        stage.velocity.offset.clear();
-        let offsets = &stage.acceleration.offset;
-        stage.velocity.offset.extend((0..y.len()).map(|i| of_new * offsets[i] + (v[i] + of_old * a[i])));
+        let (a_of_v, a_of_a) = (-1.0 / (self.beta * dt), 1.0 - 0.5 / self.beta);
+        let (v_of_v, v_of_a) = (1.0 - self.gamma / self.beta, dt * (1.0 - 0.5 * self.gamma / self.beta));
+        let combined = |of_v: f64, of_a: f64| v.iter().zip(a).map(move |(v, a)| of_v * v + of_a * a);
+        stage.acceleration.at_start.clear();
+        stage.acceleration.at_start.extend(combined(a_of_v, a_of_a));
+        stage.velocity.at_start.clear();
+        stage.velocity.at_start.extend(combined(v_of_v, v_of_a));
 
-        let (new, old) = (1.0 - self.alpha_f, self.alpha_f);
         let (mass, old_mass) = (1.0 - self.alpha_m, self.alpha_m);
-        // Contact is averaged as forces in both rules: its constraint holds at the step's end.
+        let (new, old) = (1.0 - self.alpha_f, self.alpha_f);
+        // Contact is averaged as forces under both rules: its constraint holds at the step's end.
         (stage.weights, stage.before, stage.average) = match self.forces {
             ForceRule::AverageForces => (
                 Weights { mass, internal: new, external: new, contact: new },

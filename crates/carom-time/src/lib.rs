@@ -3,10 +3,12 @@
 mod alpha;
 mod error;
 mod family;
+mod oscillator;
 mod scheme;
 mod stage;
 
 pub use error::SchemeError;
 pub use family::{KINDS, KindInfo, scheme};
+pub use oscillator::{Motion, Oscillator};
 pub use scheme::{ForceRule, Scheme};
 pub use stage::{Affine, Kernel, Memory, Stage, Weights};
