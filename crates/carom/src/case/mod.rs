@@ -1,8 +1,25 @@
 //! A case as resolved: every default filled in, every name still a name. What `manifest.json` records and `resume` reads back.
 
+mod check;
+mod conform;
+mod document;
+pub mod keys;
+mod overrides;
+mod problem;
+mod read;
+mod suggest;
+mod tree;
+#[cfg(test)]
+mod tests;
+mod view;
+
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+
+pub use document::Document;
+pub use problem::{CaseError, Diagnostic, Problem};
+pub use read::read;
 
 /// One simulation, fully resolved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,0 +1,315 @@
+//! Every key and value of a document against the tables of keys: unknown, missing, of the wrong type, out of range.
+
+use super::document::{Document, joined};
+use super::keys::{self, Default, Key, Kind, Range, Variants};
+use super::problem::Problem;
+use super::suggest;
+use super::tree::{Node, Table, Value};
+
+/// All that is wrong with the keys and values taken one by one.
+pub(super) fn problems(document: &Document) -> Vec<Problem> {
+    let dimension = document.root().get("dimension").and_then(Node::count).filter(|d| (1..=2).contains(d));
+    let mut check = Check { dimension, problems: Vec::new() };
+    check.keys(
+        document.root(),
+        &Spec {
+            name: keys::CASE.name,
+            tag: None,
+            keys: keys::CASE.keys.iter().collect(),
+            later: keys::CASE.later.to_vec(),
+        },
+        "",
+    );
+    check.problems
+}
+
+struct Check {
+    dimension: Option<usize>,
+    problems: Vec<Problem>,
+}
+
+/// The keys a table may have.
+struct Spec<'a> {
+    name: &'a str,
+    tag: Option<&'a str>,
+    keys: Vec<&'a Key>,
+    later: Vec<&'a str>,
+}
+
+impl Check {
+    fn add(&mut self, path: &str, what: String, why: String, help: String) {
+        self.problems.push(Problem::new(path, what, why, help));
+    }
+
+    fn keys(&mut self, table: &Table, spec: &Spec, path: &str) {
+        let mut meant = Vec::new();
+        for entry in &table.0 {
+            let here = joined(path, &entry.key);
+            if let Some(key) = spec.keys.iter().find(|k| k.name == entry.key) {
+                self.value(&entry.node, key, &here);
+            } else if spec.later.contains(&entry.key.as_str()) {
+                let what = format!("this version does not have `{}` yet", entry.key);
+                let why = format!("`{}` of {} belongs to a later version of Carom", entry.key, spec.name);
+                self.problems.push(Problem::new(here, what, why, "leave it out").at_key());
+            } else if spec.tag != Some(entry.key.as_str()) {
+                let (problem, near) = unknown(&entry.key, table, spec, here);
+                self.problems.push(problem);
+                meant.extend(near);
+            }
+        }
+        let required = spec.keys.iter().filter(|k| matches!(k.default, Default::Required));
+        for key in required.filter(|k| table.get(k.name).is_none() && !meant.contains(&k.name)) {
+            self.missing(key.name, key, spec.name, path);
+        }
+    }
+
+    fn missing(&mut self, name: &str, key: &Key, table: &str, path: &str) {
+        let help = match key.kind {
+            Kind::Tables(table) => format!("add a table {}", table.name),
+            Kind::Table(table) if path.is_empty() => format!("add a table {}", table.name),
+            _ => format!("add `{name} = {}`", key.example),
+        };
+        let help = if key.example.is_empty() { help } else { format!("{help}, for example") };
+        let what = format!("{table} has no `{name}`");
+        self.problems.push(Problem::new(path, what, meaning(key), help.trim_end_matches(", for example")).at_key());
+    }
+
+    fn value(&mut self, node: &Node, key: &Key, path: &str) {
+        match (&key.kind, &node.value) {
+            (Kind::Text, Value::Text(_)) => {}
+            (Kind::Name, Value::Text(name)) => self.name(name, key, path),
+            (Kind::Choice(now, later), Value::Text(word)) => {
+                self.choice(word, key.name, now, later, &meaning(key), path)
+            }
+            (Kind::Choices(words), Value::List(list)) if !list.is_empty() => {
+                for (i, node) in list.iter().enumerate() {
+                    let path = format!("{path}[{i}]");
+                    match node.text() {
+                        Some(word) => self.choice(word, key.name, words, &[], &meaning(key), &path),
+                        None => self.wrong(node, key, &path),
+                    }
+                }
+            }
+            (Kind::Number(range), Value::Integer(_) | Value::Float(_)) => self.number(node, range, key, path),
+            (Kind::NumberOrFalse(range), Value::Integer(_) | Value::Float(_)) => self.number(node, range, key, path),
+            (Kind::NumberOrFalse(_), Value::Flag(false)) => {}
+            (Kind::Count(least), Value::Integer(n)) => self.count(*n, *least, node, key, path),
+            (Kind::Counts(least), Value::Integer(n)) if self.dimension == Some(1) => {
+                self.count(*n, *least, node, key, path)
+            }
+            (Kind::Counts(least), Value::List(list)) if list.len() == 2 => {
+                for (i, node) in list.iter().enumerate() {
+                    let path = format!("{path}[{i}]");
+                    match node.value {
+                        Value::Integer(n) => self.count(n, *least, node, key, &path),
+                        _ => self.wrong(node, key, &path),
+                    }
+                }
+            }
+            (Kind::Vector, Value::List(list)) if self.dimension.is_none_or(|d| d == list.len()) => {
+                self.numbers(list, key, path)
+            }
+            (Kind::Numbers, Value::List(list)) => self.numbers(list, key, path),
+            (Kind::Side | Kind::SideOr(_), Value::Text(_)) => {}
+            (Kind::Sides, Value::List(list)) if !list.is_empty() => {
+                for (i, node) in list.iter().enumerate().filter(|(_, n)| n.text().is_none()) {
+                    self.wrong(node, key, &format!("{path}[{i}]"));
+                }
+            }
+            (Kind::Table(spec) | Kind::SideOr(spec), Value::Table(table)) => self.table(table, spec, path),
+            (Kind::Tables(spec), Value::List(list)) if !list.is_empty() => {
+                for (i, node) in list.iter().enumerate() {
+                    let path = format!("{path}[{i}]");
+                    match node.table() {
+                        Some(table) => self.table(table, spec, &path),
+                        None => self.wrong(node, key, &path),
+                    }
+                }
+            }
+            (Kind::Variant(variants), Value::Table(table)) => self.variant(table, variants, path),
+            _ => self.wrong(node, key, path),
+        }
+    }
+
+    fn table(&mut self, table: &Table, spec: &keys::Table, path: &str) {
+        let spec = Spec { name: spec.name, tag: None, keys: spec.keys.iter().collect(), later: spec.later.to_vec() };
+        self.keys(table, &spec, path);
+    }
+
+    fn variant(&mut self, table: &Table, variants: &Variants, path: &str) {
+        let tag = variants.tag;
+        let later = variants.later_keys.to_vec();
+        if let Some(entry) = table.0.iter().find(|e| later.contains(&e.key.as_str())) {
+            let what = format!("this version does not have `{}` of {} yet", entry.key, variants.name);
+            let here = joined(path, &entry.key);
+            let why = format!("it belongs to a later version of Carom; {} is one of {}", tag, words(variants));
+            return self.problems.push(Problem::new(here, what, why, "leave it out").at_key());
+        }
+        let named = table.get(tag).map(|node| node.text().ok_or(node));
+        if let Some(Ok(word)) = named
+            && let Some(spec) = variants.table(word)
+        {
+            let spec = Spec { name: spec.name, tag: Some(tag), keys: spec.keys.iter().collect(), later };
+            return self.keys(table, &spec, path);
+        }
+        // The tag is missing or wrong: any key of any variant is known, none is required.
+        let before = self.problems.len();
+        let mut spec = Spec { name: variants.name, tag: Some(tag), keys: Vec::new(), later };
+        spec.keys.extend(variants.tables.iter().flat_map(|(_, t)| t.keys));
+        for entry in table.0.iter().filter(|e| e.key != tag && !spec.keys.iter().any(|k| k.name == e.key)) {
+            let (problem, _) = unknown(&entry.key, table, &spec, joined(path, &entry.key));
+            self.problems.push(problem);
+        }
+        let here = joined(path, tag);
+        match named {
+            Some(Ok(word)) => {
+                let now: Vec<_> = variants.tables.iter().map(|(word, _)| *word).collect();
+                self.choice(word, tag, &now, variants.later, variants.doc, &here);
+            }
+            Some(Err(node)) => {
+                let what = format!("`{tag}` must be a text in quotes, not {}", node.described());
+                self.add(&here, what, variants.doc.to_owned(), format!("use one of: {}", words(variants)));
+            }
+            None if self.problems[before..].iter().any(|p| p.help.contains(&format!("`{tag}`"))) => {}
+            None => {
+                let what = format!("{} has no `{tag}`", variants.name);
+                self.problems.push(Problem::new(path, what, variants.doc, format!("use one of: {}", words(variants))));
+            }
+        }
+    }
+
+    fn choice(&mut self, word: &str, key: &str, now: &[&str], later: &[&str], meaning: &str, path: &str) {
+        if now.contains(&word) {
+            return;
+        }
+        if later.contains(&word) {
+            let what = format!("this version does not have `{key} = \"{word}\"` yet");
+            let why = format!("\"{word}\" belongs to a later version of Carom");
+            return self.add(path, what, why, format!("use one of: {}", suggest::list(now.iter().copied())));
+        }
+        let what = format!("`{key}` cannot be \"{word}\"");
+        let why = format!("{meaning} It is one of: {}", suggest::list(now.iter().copied()));
+        self.add(path, what, why, suggest::help(word, now.iter().copied()));
+    }
+
+    fn name(&mut self, name: &str, key: &Key, path: &str) {
+        let bad = |c: char| c.is_whitespace() || c.is_control() || "./\\,\"'[]".contains(c);
+        if name.is_empty() || name.contains(bad) {
+            let what = format!("{name:?} cannot be a name");
+            let why = "names make columns and sides (`name.side`), so they have no dots, blanks, slashes, commas, quotes or brackets";
+            let good: String = name.chars().map(|c| if bad(c) { '_' } else { c }).collect();
+            let good = if good.is_empty() { key.example.to_owned() } else { format!("\"{good}\"") };
+            self.add(path, what, why.to_owned(), format!("write `{} = {good}`", key.name));
+        }
+    }
+
+    fn number(&mut self, node: &Node, range: &Range, key: &Key, path: &str) {
+        let Some(x) = node.number() else { return };
+        if !x.is_finite() {
+            let what = format!("`{}` is {x}", key.name);
+            let why = format!("every number of a case is finite. {}", meaning(key));
+            self.add(path, what, why, format!("write {}", key.kind.described(self.dimension)));
+        } else if !range.contains(x) {
+            let what = format!("`{}` must be {}, not {x}", key.name, range.described());
+            let help = if range.contains(-x) {
+                format!("did you mean `{} = {}`?", key.name, -x)
+            } else {
+                format!("write for example `{} = {}`", key.name, key.example)
+            };
+            self.add(path, what, meaning(key), help);
+        }
+    }
+
+    fn numbers(&mut self, list: &[Node], key: &Key, path: &str) {
+        for (i, node) in list.iter().enumerate() {
+            let path = format!("{path}[{i}]");
+            if node.number().is_some() {
+                self.number(node, &keys::ANY, key, &path);
+            } else {
+                self.wrong(node, key, &path);
+            }
+        }
+    }
+
+    fn count(&mut self, n: i64, least: usize, node: &Node, key: &Key, path: &str) {
+        if usize::try_from(n).is_ok_and(|n| n >= least) {
+            return;
+        }
+        let what = format!("`{}` must be a whole number ≥ {least}, not {}", key.name, node.described());
+        self.add(path, what, meaning(key), format!("write for example `{} = {}`", key.name, key.example));
+    }
+
+    fn wrong(&mut self, node: &Node, key: &Key, path: &str) {
+        let wanted = key.kind.described(self.dimension);
+        let later = !key.later.is_empty() && matches!(node.value, Value::Table(_) | Value::Text(_) | Value::List(_));
+        let mut what = format!("`{}` must be {wanted}, not {}", key.name, node.described());
+        let mut why = meaning(key);
+        if later {
+            why = format!("{why} A later version of Carom will also take {}", key.later);
+        }
+        if matches!(key.kind, Kind::Tables(_)) && matches!(node.value, Value::Table(_)) {
+            what = format!("`{}` is one table, but there may be several", key.name);
+        }
+        let help = match key.kind {
+            Kind::Tables(table) => format!("write its header in double brackets: {}", table.name),
+            Kind::Vector if self.dimension == Some(1) => {
+                format!("write one number in brackets, for example `{} = [0.0]`", key.name)
+            }
+            _ => format!("write for example `{} = {}`", key.name, key.example),
+        };
+        self.add(path, what, why, help);
+    }
+}
+
+/// What a key means, with its unit.
+fn meaning(key: &Key) -> String {
+    if key.unit.is_empty() { key.doc.to_owned() } else { format!("{} Unit: {}.", key.doc, key.unit) }
+}
+
+fn words(variants: &Variants) -> String {
+    suggest::list(variants.tables.iter().map(|(word, _)| *word))
+}
+
+/// An unknown key, and the key of this table that was probably meant.
+fn unknown<'a>(word: &str, table: &Table, spec: &Spec<'a>, path: String) -> (Problem, Option<&'a str>) {
+    let all = || spec.tag.into_iter().chain(spec.keys.iter().map(|k| k.name));
+    let near = suggest::nearest(word, all().filter(|k| table.get(k).is_none()))
+        .or_else(|| suggest::nearest(word, spec.later.iter().copied()));
+    let mut homes = homes(word);
+    homes.dedup();
+    let elsewhere = format!("`{word}` is a key of {}", homes.join(", "));
+    let help = match (near, homes.is_empty()) {
+        (Some(near), true) => format!("did you mean `{near}`?"),
+        (Some(near), false) => format!("did you mean `{near}`? ({elsewhere})"),
+        (None, false) => elsewhere,
+        (None, true) => "leave it out, or see `carom schema` for every key".to_owned(),
+    };
+    let mut keys: Vec<_> = all().collect();
+    let mut seen = std::collections::HashSet::new();
+    keys.retain(|k| seen.insert(*k));
+    let why = format!("the keys of {} are: {}", spec.name, keys.join(", "));
+    (Problem::new(path, format!("unknown key `{word}` in {}", spec.name), why, help).at_key(), near)
+}
+
+/// The tables that do have a key.
+fn homes(word: &str) -> Vec<&'static str> {
+    fn visit(table: &'static keys::Table, word: &str, found: &mut Vec<&'static str>) {
+        if table.key(word).is_some() {
+            found.push(table.name);
+        }
+        for key in table.keys {
+            match key.kind {
+                Kind::Table(table) | Kind::Tables(table) | Kind::SideOr(table) => visit(table, word, found),
+                Kind::Variant(variants)
+                    if variants.tag == word || variants.tables.iter().any(|(_, t)| t.key(word).is_some()) =>
+                {
+                    found.push(variants.name);
+                }
+                _ => {}
+            }
+        }
+    }
+    let mut found = Vec::new();
+    visit(&keys::CASE, word, &mut found);
+    found
+}

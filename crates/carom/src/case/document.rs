@@ -1,0 +1,169 @@
+//! A case file as text: parsed, overridden by `--set`, and able to say where any key path was written.
+
+use std::path::Path;
+
+use super::overrides;
+use super::problem::{CaseError, Diagnostic, Problem};
+use super::tree::{self, Node, Origin, Table, Value};
+
+/// Larger files are no case files.
+const LARGEST: u64 = 10_000_000;
+
+/// A parsed case file with its overrides applied.
+#[derive(Clone, Debug)]
+pub struct Document {
+    /// Name and text: the file first, then the overrides.
+    sources: Vec<(String, String)>,
+    root: Node,
+}
+
+impl Document {
+    /// Reads a file and applies overrides `key=value`, in their order.
+    pub fn open(path: &Path, sets: &[String]) -> Result<Self, CaseError> {
+        let name = path.display().to_string();
+        let wrong =
+            |what: &str, why: &str, help: &str| CaseError::Wrong(vec![Diagnostic::of_file(&name, what, why, help)]);
+        let refused = |source: std::io::Error| match source.kind() {
+            std::io::ErrorKind::NotFound => {
+                wrong("there is no such file", "a case is one TOML file", "check the path and the working directory")
+            }
+            _ => CaseError::Refused { path: name.clone(), source },
+        };
+        let facts = std::fs::metadata(path).map_err(refused)?;
+        if facts.is_dir() {
+            return Err(wrong("this is a directory", "a case is one TOML file", "name the .toml file inside it"));
+        }
+        if facts.len() > LARGEST {
+            let why = format!("it has {} bytes; a case file has at most {LARGEST}", facts.len());
+            return Err(wrong("the file is too large to be a case", &why, "name the .toml file of the case"));
+        }
+        let bytes = std::fs::read(path).map_err(refused)?;
+        let text = String::from_utf8(bytes).map_err(|e| {
+            let at = e.utf8_error().valid_up_to();
+            let why = format!("byte {} is not UTF-8, and TOML is UTF-8 text", at + 1);
+            wrong("the file is not text", &why, "name the .toml file of the case, or save it as UTF-8")
+        })?;
+        Self::parse(&name, &text, sets)
+    }
+
+    /// Parses a text (`name` stands for the file in messages) and applies overrides `key=value`, in their order.
+    pub fn parse(name: &str, text: &str, sets: &[String]) -> Result<Self, CaseError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let wrong = |diagnostic| CaseError::Wrong(vec![diagnostic]);
+        let parsed = toml_edit::Document::parse(text).map_err(|e| wrong(syntax(name, text, 0, &e)))?;
+        if parsed.as_table().is_empty() && sets.is_empty() {
+            let (what, why) =
+                ("the case is empty", "a case names at least its dimension, a material, a body and [time]");
+            return Err(wrong(Diagnostic::of_file(name, what, why, "start from cases/impact/impact.toml")));
+        }
+        let root = tree::node(parsed.as_item(), 0, 0, &(0..0));
+        let mut document = Self { sources: vec![(name.to_owned(), text.to_owned())], root };
+        for set in sets {
+            document.sources.push(("--set".to_owned(), set.clone()));
+            let source = document.sources.len() - 1;
+            overrides::apply(&mut document.root, set, source).map_err(wrong)?;
+        }
+        Ok(document)
+    }
+
+    /// The file's name as it was given.
+    pub fn name(&self) -> &str {
+        &self.sources[0].0
+    }
+
+    /// The file's text.
+    pub fn text(&self) -> &str {
+        &self.sources[0].1
+    }
+
+    pub(super) fn root(&self) -> &Table {
+        const EMPTY: &Table = &Table(Vec::new());
+        self.root.table().unwrap_or(EMPTY)
+    }
+
+    /// Finds the line a problem is about; a key that was not written is shown at its nearest parent.
+    pub fn diagnose(&self, problem: &Problem) -> Diagnostic {
+        let message = [problem.what.clone(), problem.why.clone(), problem.help.clone()];
+        match self.origin(&problem.path, problem.at_key) {
+            Some(origin) => {
+                let (name, text) = &self.sources[origin.source];
+                Diagnostic::at(name, text, origin.span, message)
+            }
+            None => Diagnostic::of_file(self.name(), &problem.what, &problem.why, &problem.help),
+        }
+    }
+
+    /// All of them, in the order of the file.
+    pub fn diagnose_all(&self, problems: &[Problem]) -> CaseError {
+        let mut found: Vec<_> = problems.iter().map(|p| self.diagnose(p)).collect();
+        found.sort_by_key(|d| (d.file != self.name(), d.line, d.column));
+        found.dedup();
+        CaseError::Wrong(found)
+    }
+
+    fn origin(&self, path: &str, at_key: bool) -> Option<Origin> {
+        let mut node = &self.root;
+        let mut found = None;
+        for segment in segments(path) {
+            let (next, place) = match (&node.value, segment) {
+                (Value::Table(table), Segment::Key(key)) => {
+                    let Some(entry) = table.entry(&key) else { break };
+                    // The span of a table of its own is its header.
+                    (&entry.node, if at_key { &entry.origin } else { &entry.node.origin })
+                }
+                (Value::List(list), Segment::Index(i)) => {
+                    let Some(node) = list.get(i) else { break };
+                    (node, &node.origin)
+                }
+                _ => break,
+            };
+            node = next;
+            found = Some(place.clone());
+        }
+        found
+    }
+}
+
+/// A diagnostic for text that is not TOML.
+pub(super) fn syntax(name: &str, text: &str, shift: usize, error: &toml_edit::TomlError) -> Diagnostic {
+    let span = error.span().unwrap_or(0..0);
+    let span = span.start.saturating_sub(shift)..span.end.saturating_sub(shift);
+    let cause = error.message().trim().replace('\n', "; ");
+    let help = "see https://toml.io for how TOML is written: text in quotes, lists in [ ], tables in { } on one line";
+    Diagnostic::at(name, text, span, ["this is not TOML".to_owned(), cause, help.to_owned()])
+}
+
+enum Segment {
+    Key(String),
+    Index(usize),
+}
+
+/// `body[0].mesh."odd key"` in pieces.
+fn segments(path: &str) -> Vec<Segment> {
+    let mut found = Vec::new();
+    let mut rest = path;
+    while !rest.is_empty() {
+        if let Some(after) = rest.strip_prefix('[') {
+            let (index, after) = after.split_once(']').unwrap_or((after, ""));
+            found.extend(index.parse().map(Segment::Index));
+            rest = after;
+        } else if let Some(after) = rest.strip_prefix('"') {
+            let (key, after) = after.split_once('"').unwrap_or((after, ""));
+            found.push(Segment::Key(key.to_owned()));
+            rest = after;
+        } else {
+            let end = rest.find(['.', '[']).unwrap_or(rest.len());
+            found.push(Segment::Key(rest[..end].to_owned()));
+            rest = &rest[end..];
+        }
+        rest = rest.strip_prefix('.').unwrap_or(rest);
+    }
+    found
+}
+
+/// The path of a key inside the table at `path`.
+pub(super) fn joined(path: &str, key: &str) -> String {
+    let bare = !key.is_empty() && key.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-');
+    let key = if bare { key.to_owned() } else { format!("\"{key}\"") };
+    if path.is_empty() { key } else { format!("{path}.{key}") }
+}

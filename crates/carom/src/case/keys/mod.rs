@@ -1,0 +1,217 @@
+//! The keys of a case file, once: what the reader accepts, what the schema and the documentation say.
+
+mod tables;
+
+pub use tables::{CASE, SCHEMES, SHAPES};
+
+/// A table of the case file: its keys, and those of later versions.
+#[derive(Debug)]
+pub struct Table {
+    /// How messages call it: `[[body]]`.
+    pub name: &'static str,
+    /// What it is.
+    pub doc: &'static str,
+    /// Its keys, in the order of the documentation.
+    pub keys: &'static [Key],
+    /// Keys a later version will have.
+    pub later: &'static [&'static str],
+}
+
+/// One key.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// As written.
+    pub name: &'static str,
+    /// What values it takes.
+    pub kind: Kind,
+    /// Physical unit, in the case's own labels; empty if none.
+    pub unit: &'static str,
+    /// Whether and how it may be left out.
+    pub default: Default,
+    /// Default under `preset = "paper"`, as TOML, where it differs.
+    pub paper: Option<&'static str>,
+    /// What it means.
+    pub doc: &'static str,
+    /// A value, as TOML.
+    pub example: &'static str,
+    /// Other kinds of value a later version will take: a table, a text.
+    pub later: &'static str,
+}
+
+/// What happens when a key is left out.
+#[derive(Clone, Copy, Debug)]
+pub enum Default {
+    /// It must be given.
+    Required,
+    /// Nothing takes its place, or something computed (the documentation says what).
+    Absent,
+    /// This TOML value takes its place.
+    Is(&'static str),
+}
+
+/// Values a key takes.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// Any text.
+    Text,
+    /// A name: no dots, blanks, slashes, commas or quotes, since columns and sides are made from it.
+    Name,
+    /// One of these words; a later version also takes the second list.
+    Choice(&'static [&'static str], &'static [&'static str]),
+    /// A finite number in a range.
+    Number(Range),
+    /// A finite number in a range, or `false`.
+    NumberOrFalse(Range),
+    /// A whole number of at least this.
+    Count(usize),
+    /// A whole number in dimension 1, a pair in dimension 2.
+    Counts(usize),
+    /// One finite number per dimension.
+    Vector,
+    /// Any number of finite numbers.
+    Numbers,
+    /// A list of words out of these, at least one.
+    Choices(&'static [&'static str]),
+    /// A side `body.side`.
+    Side,
+    /// A list of sides, at least one.
+    Sides,
+    /// A side, or this table.
+    SideOr(&'static Table),
+    /// A table.
+    Table(&'static Table),
+    /// Any number of tables, `[[name]]`.
+    Tables(&'static Table),
+    /// A table whose keys depend on the value of one of them.
+    Variant(&'static Variants),
+}
+
+/// Tables told apart by the value of the key `tag`.
+#[derive(Debug)]
+pub struct Variants {
+    /// How messages call it.
+    pub name: &'static str,
+    /// The key that tells.
+    pub tag: &'static str,
+    /// Its meaning.
+    pub doc: &'static str,
+    /// Values of the key with the keys that go with it.
+    pub tables: &'static [(&'static str, Table)],
+    /// Values a later version will take.
+    pub later: &'static [&'static str],
+    /// Keys a later version will have, whatever the value.
+    pub later_keys: &'static [&'static str],
+}
+
+/// An interval of numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Range {
+    /// Lower end and whether it belongs to it.
+    pub low: Option<(f64, bool)>,
+    /// Upper end and whether it belongs to it.
+    pub high: Option<(f64, bool)>,
+}
+
+/// All finite numbers.
+pub const ANY: Range = Range { low: None, high: None };
+/// x > 0.
+pub const POSITIVE: Range = Range { low: Some((0.0, false)), high: None };
+/// x ≥ 0.
+pub const NOT_NEGATIVE: Range = Range { low: Some((0.0, true)), high: None };
+
+impl Range {
+    /// Whether a number lies inside.
+    pub fn contains(&self, x: f64) -> bool {
+        self.low.is_none_or(|(low, closed)| x > low || closed && x == low)
+            && self.high.is_none_or(|(high, closed)| x < high || closed && x == high)
+    }
+
+    /// `a number > 0`, `a number in [0, 1]`.
+    pub fn described(&self) -> String {
+        match (self.low, self.high) {
+            (None, None) => "a finite number".to_owned(),
+            (Some((low, closed)), None) => format!("a number {} {low}", if closed { "≥" } else { ">" }),
+            (None, Some((high, closed))) => format!("a number {} {high}", if closed { "≤" } else { "<" }),
+            (Some((low, left)), Some((high, right))) => {
+                let (left, right) = (if left { '[' } else { '(' }, if right { ']' } else { ')' });
+                format!("a number in {left}{low}, {high}{right}")
+            }
+        }
+    }
+}
+
+impl Table {
+    /// A key by name.
+    pub fn key(&self, name: &str) -> Option<&Key> {
+        self.keys.iter().find(|k| k.name == name)
+    }
+}
+
+impl Variants {
+    /// The keys that go with a value of the tag.
+    pub fn table(&self, tag: &str) -> Option<&Table> {
+        self.tables.iter().find(|(value, _)| *value == tag).map(|(_, table)| table)
+    }
+}
+
+impl Kind {
+    /// What a message asks for.
+    pub fn described(&self, dimension: Option<usize>) -> String {
+        let several = |n: Option<usize>| {
+            n.map_or_else(
+                || "one number per dimension".into(),
+                |n| format!("a list of {n} number{}", if n == 1 { "" } else { "s" }),
+            )
+        };
+        let words = |words: &[&str]| words.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(", ");
+        match self {
+            Self::Text => "a text in quotes".into(),
+            Self::Name => "a name in quotes".into(),
+            Self::Choice(choices, _) => format!("one of {}", words(choices)),
+            Self::Number(range) => range.described(),
+            Self::NumberOrFalse(range) => format!("{}, or false", range.described()),
+            Self::Count(least) => format!("a whole number ≥ {least}"),
+            Self::Counts(least) if dimension == Some(1) => format!("a whole number ≥ {least}"),
+            Self::Counts(least) => format!("a list of 2 whole numbers ≥ {least}"),
+            Self::Vector => several(dimension),
+            Self::Numbers => "a list of numbers".into(),
+            Self::Choices(choices) => format!("a list out of {}", words(choices)),
+            Self::Side => "a side \"body.side\"".into(),
+            Self::Sides => "a list of sides [\"body.side\"]".into(),
+            Self::SideOr(_) => "a side \"body.side\", or a rigid { plane = { point, normal } }".into(),
+            Self::Table(_) => "a table { key = value }".into(),
+            Self::Tables(table) => format!("tables written {}", table.name),
+            Self::Variant(variants) => format!("a table {{ {} = \"…\", … }}", variants.tag),
+        }
+    }
+}
+
+const fn key(name: &'static str, kind: Kind, doc: &'static str) -> Key {
+    Key { name, kind, unit: "", default: Default::Required, paper: None, doc, example: "", later: "" }
+}
+
+impl Key {
+    const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    const fn optional(self) -> Self {
+        Self { default: Default::Absent, ..self }
+    }
+
+    const fn default(self, toml: &'static str) -> Self {
+        Self { default: Default::Is(toml), example: toml, ..self }
+    }
+
+    const fn paper(self, toml: &'static str) -> Self {
+        Self { paper: Some(toml), ..self }
+    }
+
+    const fn example(self, toml: &'static str) -> Self {
+        Self { example: toml, ..self }
+    }
+
+    const fn later(self, what: &'static str) -> Self {
+        Self { later: what, ..self }
+    }
+}

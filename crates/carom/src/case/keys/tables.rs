@@ -1,0 +1,421 @@
+//! Every key of every table: name, values, unit, default, meaning, example.
+
+use super::Kind::{
+    Choice, Choices, Count, Counts, Name, Number, NumberOrFalse, Numbers, Side, SideOr, Sides, Tables, Text, Variant,
+    Vector,
+};
+use super::{ANY, Key, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, Variants, key};
+
+/// The whole file.
+pub const CASE: Table = Table {
+    name: "the case",
+    doc: "One simulation of impact or contact of deformable bodies.",
+    keys: &[
+        key("title", Text, "Title for figures and pages; the file's name if left out.")
+            .optional()
+            .example("\"Two bars\""),
+        key("dimension", Kind::Count(1), "Space dimension: 1 (bars) or 2.").example("2"),
+        key("plane", Choice(&["strain"], &["stress", "axisymmetric"]), "Plane state in dimension 2.")
+            .default("\"strain\""),
+        key("thickness", Number(POSITIVE), "Out-of-plane thickness; in dimension 1 the area of the cross-section.")
+            .unit("length, or length² in dimension 1")
+            .default("1.0"),
+        key("units", Kind::Table(&UNITS), "Labels for figures and columns; nothing is converted.")
+            .optional()
+            .example("{ length = \"m\", time = \"s\", mass = \"kg\" }"),
+        key("preset", Choice(&["default", "paper"], &[]), "Set of defaults; keys that are given still win.")
+            .default("\"default\""),
+        key("material", Tables(&MATERIAL), "A material bodies refer to by name."),
+        key("body", Tables(&BODY), "A deformable body."),
+        key("support", Tables(&SUPPORT), "Sides held in some directions.").optional(),
+        key("contact", Tables(&CONTACT), "Two sides that may touch.").optional(),
+        key("time", Kind::Table(&TIME), "Time interval, step and scheme."),
+        key("newton", Kind::Table(&NEWTON), "Newton's method.").optional(),
+        key("probe", Tables(&PROBE), "A point whose quantities become columns of history.csv.").optional(),
+        key("output", Kind::Table(&OUTPUT), "What is written, and when.").optional(),
+        key("expect", Tables(&EXPECT), "An expected value: makes the case a test.").optional(),
+    ],
+    later: &["load", "initial", "exact", "manufactured"],
+};
+
+const UNITS: Table = Table {
+    name: "units",
+    doc: "Labels for figures and columns; nothing is converted.",
+    keys: &[
+        key("length", Text, "Label of lengths.").default("\"m\""),
+        key("time", Text, "Label of times.").default("\"s\""),
+        key("mass", Text, "Label of masses.").default("\"kg\""),
+    ],
+    later: &[],
+};
+
+const MATERIAL: Table = Table {
+    name: "[[material]]",
+    doc: "A hyperelastic material: lambda and mu, or young and poisson.",
+    keys: &[
+        key("name", Name, "Name bodies refer to.").example("\"rubber\""),
+        key("law", Choice(&["neo-hookean", "saint-venant-kirchhoff", "linear-elastic"], &[]), "Constitutive law.")
+            .example("\"neo-hookean\""),
+        key("density", Number(NOT_NEGATIVE), "Mass per reference volume; 0: massless.")
+            .unit("mass/length³")
+            .example("0.25"),
+        key("lambda", Number(ANY), "First Lamé constant Λ; 3Λ + 2μ > 0.")
+            .unit("mass/(length·time²)")
+            .optional()
+            .example("200.0"),
+        key("mu", Number(POSITIVE), "Second Lamé constant (shear modulus) μ.")
+            .unit("mass/(length·time²)")
+            .optional()
+            .example("15.0"),
+        key("young", Number(POSITIVE), "Young's modulus, with poisson instead of lambda and mu.")
+            .unit("mass/(length·time²)")
+            .optional()
+            .example("43.95"),
+        key(
+            "poisson",
+            Number(Range { low: Some((-1.0, false)), high: Some((0.5, false)) }),
+            "Poisson's ratio, with young.",
+        )
+        .optional()
+        .example("0.465"),
+    ],
+    later: &[],
+};
+
+const BODY: Table = Table {
+    name: "[[body]]",
+    doc: "A deformable body; its sides are called name.side.",
+    keys: &[
+        key("name", Name, "Name; sides are called name.side.").example("\"cylinder\""),
+        key("material", Name, "Name of its material.").example("\"rubber\""),
+        key(
+            "element",
+            Choice(&["L2", "L3", "L4", "T3", "T6", "T10"], &[]),
+            "Cell type: L2 L3 L4 in dimension 1, T3 T6 T10 in dimension 2.",
+        )
+        .example("\"T6\""),
+        key("mesh", Variant(&SHAPES), "Shape and fineness.")
+            .example("{ shape = \"rectangle\", min = [0.0, 0.0], max = [1.0, 1.0], cells = [8, 8] }"),
+        key("gravity", Vector, "Acceleration by gravity; zero if left out.")
+            .unit("length/time²")
+            .optional()
+            .example("[0.0, -9.81]"),
+        key("velocity", Vector, "Uniform initial velocity; zero if left out.")
+            .unit("length/time")
+            .optional()
+            .example("[0.0, -1.0]")
+            .later("a table { linear, angular, about } or formulas"),
+        key(
+            "mass",
+            Choice(&["consistent", "lumped"], &["redistributed"]),
+            "Mass matrix: consistent, or diagonal by scaling (HRZ).",
+        )
+        .default("\"consistent\""),
+    ],
+    later: &[],
+};
+
+/// Built-in shapes.
+pub const SHAPES: Variants = Variants {
+    name: "mesh",
+    tag: "shape",
+    doc: "Built-in shape.",
+    tables: &[
+        (
+            "interval",
+            Table {
+                name: "mesh of shape \"interval\"",
+                doc: "Dimension 1; sides left, right.",
+                keys: &[
+                    key("min", Number(ANY), "Left end.").unit("length").example("0.0"),
+                    key("max", Number(ANY), "Right end.").unit("length").example("1.0"),
+                    key("cells", Count(1), "Number of cells.").example("20"),
+                ],
+                later: &[],
+            },
+        ),
+        (
+            "rectangle",
+            Table {
+                name: "mesh of shape \"rectangle\"",
+                doc: "Sides bottom, right, top, left.",
+                keys: &[
+                    key("min", Vector, "Lower left corner.").unit("length").example("[0.0, 0.0]"),
+                    key("max", Vector, "Upper right corner.").unit("length").example("[1.0, 1.0]"),
+                    key("cells", Counts(1), "Squares along x and y, each cut into two triangles; or size.")
+                        .optional()
+                        .example("[8, 4]"),
+                    key("size", Number(POSITIVE), "Largest side of the squares; or cells.")
+                        .unit("length")
+                        .optional()
+                        .example("0.1"),
+                ],
+                later: &[],
+            },
+        ),
+        ("disc", Table { name: "mesh of shape \"disc\"", doc: "A whole disc; side arc.", keys: ROUND, later: &[] }),
+        (
+            "half-disc",
+            Table {
+                name: "mesh of shape \"half-disc\"",
+                doc: "The half of a disc right of its centre; sides arc, axis.",
+                keys: ROUND,
+                later: &[],
+            },
+        ),
+    ],
+    later: &["ring", "polygon"],
+    later_keys: &["file", "surface", "refine"],
+};
+
+const ROUND: &[Key] = &[
+    key("radius", Number(POSITIVE), "Radius.").unit("length").example("0.5"),
+    key("center", Vector, "Centre.").unit("length").example("[0.0, 1.0]"),
+    key("size", Number(POSITIVE), "Length of a cell's edge.").unit("length").example("0.1"),
+];
+
+const SUPPORT: Table = Table {
+    name: "[[support]]",
+    doc: "Sides held in some directions.",
+    keys: &[
+        key("name", Name, "A named support records its reactions.").optional().example("\"floor\""),
+        key("on", Sides, "Sides that are held.").example("[\"prism.bottom\"]"),
+        key("fix", Choices(&["x", "y"]), "Directions that are held.").example("[\"x\", \"y\"]"),
+    ],
+    later: &["move"],
+};
+
+const CONTACT: Table = Table {
+    name: "[[contact]]",
+    doc: "Two sides that may touch.",
+    keys: &[
+        key("name", Name, "Name in records and messages.").example("\"strike\""),
+        key("secondary", Side, "Side whose nodes are kept out of the primary.").example("\"cylinder.arc\""),
+        key("primary", SideOr(&RIGID), "Side, or rigid plane, they are kept out of.").example("\"prism.top\""),
+        key("method", Choice(&["node-to-segment"], &["mortar"]), "Discretisation of the contact.")
+            .default("\"node-to-segment\""),
+        key("enforcement", Choice(&["multiplier"], &["augmented", "penalty"]), "How the constraint is kept.")
+            .default("\"multiplier\""),
+        key(
+            "force",
+            Choice(&["alpha_f", "end"], &[]),
+            "When in a step the contact force acts: averaged with α_f (eq. 15), or at its end.",
+        )
+        .default("\"alpha_f\""),
+        key(
+            "persistency",
+            Choice(&["project", "none"], &[]),
+            "Velocities and accelerations where contact begins: projected on the constraints, or left.",
+        )
+        .default("\"project\"")
+        .paper("\"none\""),
+        key(
+            "active_set",
+            Choice(&["within", "after"], &[]),
+            "The active set may change within Newton's method, or after it converged.",
+        )
+        .default("\"within\"")
+        .paper("\"after\""),
+        key(
+            "detection",
+            Choice(&["closest-point", "trajectory"], &[]),
+            "Which gap decides: at the closest point, or at the trajectory's ξ (eq. 8 as printed).",
+        )
+        .default("\"closest-point\"")
+        .paper("\"trajectory\""),
+    ],
+    later: &["law", "restitution", "passes", "normals", "overlap", "stiffness", "between", "friction"],
+};
+
+const RIGID: Table = Table {
+    name: "a rigid primary",
+    doc: "A primary that does not deform.",
+    keys: &[
+        key("plane", Kind::Table(&PLANE), "A rigid half-space.").example("{ point = [0.0, 0.0], normal = [0.0, 1.0] }")
+    ],
+    later: &["circle", "motion"],
+};
+
+const PLANE: Table = Table {
+    name: "plane",
+    doc: "A rigid half-space.",
+    keys: &[
+        key("point", Vector, "A point of its boundary.").unit("length").example("[0.0, 0.0]"),
+        key("normal", Vector, "Direction out of it, of any length > 0.").example("[0.0, 1.0]"),
+    ],
+    later: &[],
+};
+
+const TIME: Table = Table {
+    name: "[time]",
+    doc: "Time interval, step and scheme.",
+    keys: &[
+        key("end", Number(POSITIVE), "End time, a multiple of the step.").unit("time").example("0.75"),
+        key("step", Number(POSITIVE), "Time step.")
+            .unit("time")
+            .example("1.875e-3")
+            .later("a table { initial, min, max, … }"),
+        key("scheme", Variant(&SCHEMES), "Time integrator.").example("{ kind = \"chung-hulbert\", rho_inf = 0.1 }"),
+        key(
+            "energy_guard",
+            NumberOrFalse(POSITIVE),
+            "Fraction of the largest energy so far that may be created before the run stops; false: never.",
+        )
+        .default("0.02")
+        .paper("false"),
+    ],
+    later: &[],
+};
+
+const RHO_INF: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };
+const BELOW_ONE: Range = Range { low: None, high: Some((1.0, false)) };
+const ALPHA: Range = Range { low: Some((0.0, true)), high: Some((1.0, false)) };
+const FORCES: Key = key(
+    "forces",
+    Choice(&["average-forces", "average-state"], &[]),
+    "What is averaged over the step with α_f: the forces (eq. 15), or the state they are evaluated at.",
+)
+.default("\"average-forces\"");
+const SPECTRAL: &[Key] =
+    &[key("rho_inf", Number(RHO_INF), "Spectral radius at infinite frequency.").example("0.8"), FORCES];
+
+/// Time integrators.
+pub const SCHEMES: Variants = Variants {
+    name: "scheme",
+    tag: "kind",
+    doc: "Published name of the integrator.",
+    tables: &[
+        (
+            "newmark",
+            Table {
+                name: "scheme \"newmark\"",
+                doc: "Newmark: beta and gamma, or rho_inf.",
+                keys: &[
+                    key("beta", Number(POSITIVE), "Newmark's β.").optional().example("0.25"),
+                    key("gamma", Number(POSITIVE), "Newmark's γ.").optional().example("0.5"),
+                    key(
+                        "rho_inf",
+                        Number(RHO_INF),
+                        "Spectral radius at infinite frequency, instead of beta and gamma.",
+                    )
+                    .optional()
+                    .example("1.0"),
+                    FORCES,
+                ],
+                later: &[],
+            },
+        ),
+        ("hu", Table { name: "scheme \"hu\"", doc: "Hu: β = 1, γ = 3/2, first order.", keys: &[FORCES], later: &[] }),
+        (
+            "hht",
+            Table {
+                name: "scheme \"hht\"",
+                doc: "Hilber–Hughes–Taylor.",
+                keys: &[
+                    key("alpha", Number(ALPHA), "α = α_f ≥ 0: the share of the old forces.").example("0.1"),
+                    FORCES,
+                ],
+                later: &[],
+            },
+        ),
+        ("wbz", Table { name: "scheme \"wbz\"", doc: "Wood–Bossak–Zienkiewicz.", keys: SPECTRAL, later: &[] }),
+        (
+            "chung-hulbert",
+            Table {
+                name: "scheme \"chung-hulbert\"", doc: "Chung–Hulbert generalised α.", keys: SPECTRAL, later: &[]
+            },
+        ),
+        (
+            "generalized-alpha",
+            Table {
+                name: "scheme \"generalized-alpha\"",
+                doc: "The four parameters as they are.",
+                keys: &[
+                    key("alpha_m", Number(BELOW_ONE), "Share of the old inertia force.").example("0.0"),
+                    key("alpha_f", Number(BELOW_ONE), "Share of the old other forces.").example("0.0"),
+                    key("beta", Number(POSITIVE), "Newmark's β.").example("0.25"),
+                    key("gamma", Number(POSITIVE), "Newmark's γ.").example("0.5"),
+                    FORCES,
+                ],
+                later: &[],
+            },
+        ),
+    ],
+    later: &[
+        "backward-euler",
+        "bdf2",
+        "tr-bdf2",
+        "bathe",
+        "energy-momentum",
+        "central-difference",
+        "moreau-jean",
+        "nonsmooth-generalized-alpha",
+        "paoli-schatzman",
+        "static",
+    ],
+    later_keys: &[],
+};
+
+const NEWTON: Table = Table {
+    name: "[newton]",
+    doc: "Newton's method.",
+    keys: &[
+        key(
+            "tolerance",
+            Number(Range { low: Some((0.0, false)), high: Some((1.0, false)) }),
+            "‖Δy‖∞/L and ‖r‖/Σ‖f‖ at convergence.",
+        )
+        .default("1e-9"),
+        key("max_iterations", Count(1), "Iterations before a step is rejected.").default("20"),
+    ],
+    later: &[],
+};
+
+const PROBE: Table = Table {
+    name: "[[probe]]",
+    doc: "A point whose quantities become columns name.quantity.",
+    keys: &[
+        key("name", Name, "Name; columns are name.quantity.").example("\"A\""),
+        key("at", Vector, "Reference point of the body.").unit("length").example("[0.0, 1.5]"),
+        key("body", Name, "Body it belongs to.").example("\"cylinder\""),
+        key("record", Choices(QUANTITIES), "Displacement, velocity, acceleration, Cauchy stress, volume ratio.")
+            .example("[\"uy\", \"sigma_yy\"]"),
+    ],
+    later: &[],
+};
+
+const QUANTITIES: &[&str] =
+    &["ux", "uy", "vx", "vy", "ax", "ay", "sigma_xx", "sigma_yy", "sigma_xy", "von_mises", "det_f"];
+
+const OUTPUT: Table = Table {
+    name: "[output]",
+    doc: "What is written, and when.",
+    keys: &[
+        key(
+            "fields_every",
+            Count(0),
+            "Field files every so many steps, 0: none; 20 if left out, or 0 if at_times is given.",
+        )
+        .optional()
+        .example("20"),
+        key("at_times", Numbers, "Field files at the steps nearest to these times.").unit("time").default("[]"),
+        key("history_every", Count(1), "Rows of history.csv every so many steps.").default("1"),
+        key("checkpoint_every", Count(1), "Checkpoints every so many steps.").default("50"),
+    ],
+    later: &[],
+};
+
+const EXPECT: Table = Table {
+    name: "[[expect]]",
+    doc: "An expected value with value and tolerance, value and relative, at_most, or at_least.",
+    keys: &[
+        key("what", Text, "min | max | at T | first | last of a column, or a named metric.").example("\"min A.uy\""),
+        key("value", Number(ANY), "Expected value.").optional().example("-0.7827"),
+        key("tolerance", Number(NOT_NEGATIVE), "Absolute tolerance.").optional().example("4e-3"),
+        key("relative", Number(NOT_NEGATIVE), "Relative tolerance.").optional().example("0.01"),
+        key("at_most", Number(ANY), "Upper bound.").optional().example("0.0"),
+        key("at_least", Number(ANY), "Lower bound.").optional().example("0.0"),
+        key("source", Text, "Where the expected value comes from.").optional().example("\"exact solution\""),
+    ],
+    later: &["formula", "of", "against", "slow"],
+};

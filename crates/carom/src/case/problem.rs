@@ -1,0 +1,130 @@
+//! What is wrong with a case: found by key path, shown with the line it stands on.
+
+use std::fmt;
+
+/// Something wrong, named by the path of the key it concerns: `body[0].mesh.size`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// Key path; tables of a list by their number. Empty: the whole case.
+    pub path: String,
+    /// Whether the key itself is meant rather than its value.
+    pub at_key: bool,
+    /// What is wrong.
+    pub what: String,
+    /// Why it is wrong.
+    pub why: String,
+    /// What to try.
+    pub help: String,
+}
+
+impl Problem {
+    /// A problem with the value at `path`.
+    pub fn new(
+        path: impl Into<String>,
+        what: impl Into<String>,
+        why: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Self {
+        Self { path: path.into(), at_key: false, what: what.into(), why: why.into(), help: help.into() }
+    }
+
+    /// The same problem, pointing at the key instead of its value.
+    #[must_use]
+    pub fn at_key(self) -> Self {
+        Self { at_key: true, ..self }
+    }
+}
+
+/// A problem with its place in a source.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// The case file as it was named, or `--set`.
+    pub file: String,
+    /// Line from 1; 0 if the file has no such place.
+    pub line: usize,
+    /// Column from 1, in characters.
+    pub column: usize,
+    /// The line as written.
+    pub quoted: String,
+    /// Characters of the line that are meant, ≥ 1.
+    pub length: usize,
+    /// What is wrong.
+    pub what: String,
+    /// Why it is wrong.
+    pub why: String,
+    /// What to try.
+    pub help: String,
+}
+
+impl Diagnostic {
+    /// A diagnostic about a file as a whole.
+    pub fn of_file(file: &str, what: impl Into<String>, why: impl Into<String>, help: impl Into<String>) -> Self {
+        let (what, why, help) = (what.into(), why.into(), help.into());
+        Self { file: file.to_owned(), line: 0, column: 0, quoted: String::new(), length: 1, what, why, help }
+    }
+
+    /// Places a message at a byte span of a text; only the first line of the span is quoted.
+    pub(super) fn at(file: &str, text: &str, span: std::ops::Range<usize>, message: [String; 3]) -> Self {
+        let start = floor(text, span.start);
+        let first = text[..start].rfind('\n').map_or(0, |i| i + 1);
+        let last = text[start..].find('\n').map_or(text.len(), |i| start + i);
+        let end = floor(text, span.end).clamp(start, last);
+        let [what, why, help] = message;
+        Self {
+            file: file.to_owned(),
+            line: text[..start].matches('\n').count() + 1,
+            column: text[first..start].chars().count() + 1,
+            quoted: text[first..last].trim_end().to_owned(),
+            length: text[start..end].trim_end().chars().count().max(1),
+            what,
+            why,
+            help,
+        }
+    }
+}
+
+/// The character boundary at or before a byte offset.
+fn floor(text: &str, at: usize) -> usize {
+    (0..=at.min(text.len())).rev().find(|i| text.is_char_boundary(*i)).unwrap_or(0)
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.line == 0 {
+            write!(f, "{}: {}", self.file, self.what)?;
+        } else {
+            // Tabs keep their width under the caret.
+            let pad: String =
+                self.quoted.chars().take(self.column - 1).map(|c| if c == '\t' { '\t' } else { ' ' }).collect();
+            writeln!(f, "{}:{}:{}: {}", self.file, self.line, self.column, self.what)?;
+            writeln!(f, "  {}", self.quoted)?;
+            write!(f, "  {pad}{}", "^".repeat(self.length))?;
+        }
+        for (label, text) in [("why", &self.why), ("try", &self.help)] {
+            if !text.is_empty() {
+                write!(f, "\n{label}: {text}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Why no case came out of a file.
+#[derive(Debug, thiserror::Error)]
+pub enum CaseError {
+    /// The case is wrong: every problem that could be found.
+    #[error("{}", joined(.0))]
+    Wrong(Vec<Diagnostic>),
+    /// The machine did not let the file be read.
+    #[error("{path}: cannot be read: {source}")]
+    Refused {
+        /// The file as it was named.
+        path: String,
+        /// The machine's reason.
+        source: std::io::Error,
+    },
+}
+
+fn joined(diagnostics: &[Diagnostic]) -> String {
+    diagnostics.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n")
+}

@@ -1,0 +1,341 @@
+//! Document → case: every table read with its defaults; what concerns one table alone is checked here, the rest in `check`.
+
+use super::BodySpec;
+use super::check;
+use super::conform;
+use super::document::Document;
+use super::keys::{self, Kind};
+use super::problem::Problem;
+use super::tree::{Node, Table};
+use super::view::{View, word};
+use super::{
+    Bound, Case, ContactSpec, ExpectSpec, MaterialSpec, MeshSpec, NewtonSpec, OutputSpec, Preset, PrimarySpec,
+    ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
+};
+
+/// Tables read so far: `None` where one of them could not be.
+pub(super) struct Draft {
+    pub(super) dimension: Option<usize>,
+    pub(super) materials: Vec<Option<MaterialSpec>>,
+    pub(super) bodies: Vec<Option<BodySpec>>,
+    pub(super) supports: Vec<Option<SupportSpec>>,
+    pub(super) contacts: Vec<Option<ContactSpec>>,
+    pub(super) probes: Vec<Option<ProbeSpec>>,
+    pub(super) expects: Vec<Option<ExpectSpec>>,
+    pub(super) time: Option<TimeSpec>,
+}
+
+/// Reads a case; on failure all problems that can be found in one pass.
+pub fn read(document: &Document) -> Result<Case, Vec<Problem>> {
+    let reader = Reader::of(document);
+    let mut problems = conform::problems(document);
+    let mut draft = Draft {
+        dimension: reader.dimension,
+        materials: reader.each("material", |v, path| material(v, path, &mut problems)),
+        bodies: Vec::new(),
+        supports: reader.each("support", |v, _| support(v)),
+        contacts: reader.each("contact", |v, _| contact(v)),
+        probes: reader.each("probe", |v, _| probe(v)),
+        expects: Vec::new(),
+        time: reader.one("time").and_then(|v| time(v, &mut problems)),
+    };
+    draft.bodies = reader.each("body", |v, path| body(v, reader.dimension?, path, &mut problems));
+    draft.expects = reader.each("expect", |v, path| expect(v, path, &mut problems));
+    check::problems(document, &draft, &mut problems);
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    reader.case(document, draft).ok_or_else(|| {
+        let why = "its keys passed every check, but one of them could not be taken over";
+        vec![Problem::new("", "the case cannot be read", why, "please report this file as a bug of Carom")]
+    })
+}
+
+struct Reader<'a> {
+    root: View<'a>,
+    dimension: Option<usize>,
+}
+
+impl<'a> Reader<'a> {
+    fn of(document: &'a Document) -> Self {
+        let root = View { table: document.root(), keys: keys::CASE.keys, preset: Preset::Default };
+        let preset = root.choice("preset").unwrap_or(Preset::Default);
+        Self { root: View { preset, ..root }, dimension: root.count("dimension").filter(|d| (1..=2).contains(d)) }
+    }
+
+    fn spec(name: &str) -> &'static [keys::Key] {
+        match keys::CASE.key(name).map(|k| k.kind) {
+            Some(Kind::Table(table) | Kind::Tables(table)) => table.keys,
+            _ => &[],
+        }
+    }
+
+    /// A table; empty if it was not given, so that its defaults are read.
+    fn one(&self, name: &str) -> Option<View<'a>> {
+        const EMPTY: &Table = &Table(Vec::new());
+        let table = self.root.table.get(name).map_or(Some(EMPTY), Node::table)?;
+        Some(View { table, keys: Self::spec(name), preset: self.root.preset })
+    }
+
+    fn each<T>(&self, name: &str, mut read: impl FnMut(View<'a>, &str) -> Option<T>) -> Vec<Option<T>> {
+        let list = self.root.table.get(name).and_then(Node::list).unwrap_or(&[]);
+        let view =
+            |node: &'a Node| Some(View { table: node.table()?, keys: Self::spec(name), preset: self.root.preset });
+        list.iter().enumerate().map(|(i, node)| read(view(node)?, &format!("{name}[{i}]"))).collect()
+    }
+
+    fn case(&self, document: &Document, draft: Draft) -> Option<Case> {
+        let dimension = draft.dimension?;
+        let stem = std::path::Path::new(document.name()).file_stem().map(|s| s.to_string_lossy().into_owned());
+        let units = self.one("units")?;
+        let mut bodies: Vec<BodySpec> = all(draft.bodies)?;
+        for body in &mut bodies {
+            body.gravity.resize(dimension, 0.0);
+            body.velocity.resize(dimension, 0.0);
+        }
+        Some(Case {
+            title: self.root.text("title").or(stem).unwrap_or_default(),
+            dimension,
+            plane: self.root.choice("plane")?,
+            thickness: self.root.number("thickness")?,
+            units: Units { length: units.text("length")?, time: units.text("time")?, mass: units.text("mass")? },
+            preset: self.root.preset,
+            materials: all(draft.materials)?,
+            bodies,
+            supports: all(draft.supports)?,
+            contacts: all(draft.contacts)?,
+            time: draft.time?,
+            newton: newton(self.one("newton")?)?,
+            probes: all(draft.probes)?,
+            output: output(self.one("output")?)?,
+            expects: all(draft.expects)?,
+        })
+    }
+}
+
+fn all<T>(list: Vec<Option<T>>) -> Option<Vec<T>> {
+    list.into_iter().collect()
+}
+
+fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<MaterialSpec> {
+    let (name, law, density) = (v.text("name"), v.choice("law"), v.number("density"));
+    let given: Vec<_> = ["lambda", "mu", "young", "poisson"].into_iter().filter(|k| v.has(k)).collect();
+    let (lambda, mu) = match given.as_slice() {
+        ["lambda", "mu"] => (v.number("lambda")?, v.number("mu")?),
+        ["young", "poisson"] => {
+            let (young, poisson) = (v.number("young")?, v.number("poisson")?);
+            (young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson)))
+        }
+        given => {
+            // A misspelt key is reported as such, not as a missing one as well.
+            let misspelt = v.table.0.iter().any(|e| !v.keys.iter().any(|k| k.name == e.key));
+            if !misspelt || given.len() > 2 {
+                let had = if given.is_empty() { "none of them".to_owned() } else { given.join(", ") };
+                let what = format!("the elastic constants are not one pair: {had}");
+                let help = "give `lambda` and `mu`, or `young` and `poisson`";
+                problems
+                    .push(Problem::new(path, what, "an isotropic material has two elastic constants", help).at_key());
+            }
+            return None;
+        }
+    };
+    if mu > 0.0 && 3.0 * lambda + 2.0 * mu <= 0.0 {
+        let what = format!("the elastic constants Λ = {lambda}, μ = {mu} are not positive definite");
+        let why = format!("the bulk modulus Λ + 2μ/3 = {} must be > 0", lambda + 2.0 * mu / 3.0);
+        let help = format!("lambda must be > {}", -2.0 * mu / 3.0);
+        problems.push(Problem::new(format!("{path}.lambda"), what, why, help));
+    }
+    Some(MaterialSpec { name: name?, law: law?, density: density?, lambda, mu })
+}
+
+fn body(v: View, dimension: usize, path: &str, problems: &mut Vec<Problem>) -> Option<BodySpec> {
+    let shape = v.value("mesh")?;
+    let mesh = mesh(shape.table()?, dimension, v.preset, &format!("{path}.mesh"), problems)?;
+    Some(BodySpec {
+        name: v.text("name")?,
+        material: v.text("material")?,
+        element: v.choice("element")?,
+        mesh,
+        gravity: if v.has("gravity") { v.numbers("gravity")? } else { Vec::new() },
+        velocity: if v.has("velocity") { v.numbers("velocity")? } else { Vec::new() },
+        mass: v.choice("mass")?,
+    })
+}
+
+fn mesh(table: &Table, dimension: usize, preset: Preset, path: &str, problems: &mut Vec<Problem>) -> Option<MeshSpec> {
+    let shape = table.get("shape")?.text()?;
+    let v = View { table, keys: keys::SHAPES.table(shape)?.keys, preset };
+    let wanted = if shape == "interval" { 1 } else { 2 };
+    if wanted != dimension {
+        let what = format!("the shape \"{shape}\" is of dimension {wanted}");
+        let why = format!("the case has dimension = {dimension}");
+        let help =
+            if dimension == 1 { "use shape = \"interval\"" } else { "use \"rectangle\", \"disc\" or \"half-disc\"" };
+        problems.push(Problem::new(format!("{path}.shape"), what, why, help));
+        return None;
+    }
+    let point = |name| v.numbers(name)?.try_into().ok();
+    match shape {
+        "interval" => {
+            let (min, max) = (v.number("min")?, v.number("max")?);
+            ordered(min, max, "", path, problems)?;
+            Some(MeshSpec::Interval { min, max, cells: v.count("cells")? })
+        }
+        "rectangle" => {
+            let (min, max): ([f64; 2], [f64; 2]) = (point("min")?, point("max")?);
+            ordered(min[0], max[0], "[0]", path, problems)?;
+            ordered(min[1], max[1], "[1]", path, problems)?;
+            Some(MeshSpec::Rectangle { min, max, cells: rectangle_cells(v, min, max, path, problems)? })
+        }
+        "disc" => {
+            Some(MeshSpec::Disc { radius: v.number("radius")?, center: point("center")?, size: v.number("size")? })
+        }
+        _ => {
+            Some(MeshSpec::HalfDisc { radius: v.number("radius")?, center: point("center")?, size: v.number("size")? })
+        }
+    }
+}
+
+fn rectangle_cells(
+    v: View,
+    min: [f64; 2],
+    max: [f64; 2],
+    path: &str,
+    problems: &mut Vec<Problem>,
+) -> Option<[usize; 2]> {
+    match (v.has("cells"), v.has("size")) {
+        (true, false) => v.value("cells")?.list()?.iter().map(Node::count).collect::<Option<Vec<_>>>()?.try_into().ok(),
+        (false, true) => {
+            let size = v.number("size").filter(|size| *size > 0.0)?;
+            Some([0, 1].map(|i| ((max[i] - min[i]) / size - 1e-9).ceil().max(1.0) as usize))
+        }
+        (both, _) => {
+            let misspelt = v.table.0.iter().any(|e| e.key != "shape" && !v.keys.iter().any(|k| k.name == e.key));
+            if both || !misspelt {
+                let what = if both {
+                    "a rectangle has `cells` or `size`, not both"
+                } else {
+                    "the rectangle has neither `cells` nor `size`"
+                };
+                problems.push(Problem::new(
+                    path,
+                    what,
+                    "they both say how fine the mesh is",
+                    "write for example `cells = [8, 4]`",
+                ));
+            }
+            None
+        }
+    }
+}
+
+fn ordered(min: f64, max: f64, index: &str, path: &str, problems: &mut Vec<Problem>) -> Option<()> {
+    if min < max {
+        return Some(());
+    }
+    if min.is_finite() && max.is_finite() {
+        let what = format!("`max` = {max} is not greater than `min` = {min}");
+        problems.push(Problem::new(
+            format!("{path}.max{index}"),
+            what,
+            "the shape would have no extent",
+            "give max > min",
+        ));
+    }
+    None
+}
+
+fn support(v: View) -> Option<SupportSpec> {
+    let fix = v.texts("fix")?.iter().map(|d| ["x", "y"].iter().position(|x| x == d)).collect::<Option<_>>()?;
+    Some(SupportSpec { name: v.text("name"), on: v.texts("on")?, fix })
+}
+
+fn contact(v: View) -> Option<ContactSpec> {
+    let primary = v.value("primary")?;
+    let primary = match primary.text() {
+        Some(side) => PrimarySpec::Side(side.to_owned()),
+        None => {
+            let plane = primary.table()?.get("plane")?.table()?;
+            let numbers = |key| plane.get(key)?.list()?.iter().map(Node::number).collect::<Option<Vec<_>>>();
+            PrimarySpec::Plane { point: numbers("point")?, normal: numbers("normal")? }
+        }
+    };
+    Some(ContactSpec {
+        name: v.text("name")?,
+        secondary: v.text("secondary")?,
+        primary,
+        force: v.choice("force")?,
+        persistency: v.choice("persistency")?,
+        active_set: v.choice("active_set")?,
+        detection: v.choice("detection")?,
+    })
+}
+
+fn probe(v: View) -> Option<ProbeSpec> {
+    let record = v.texts("record")?.iter().map(|q| word(q)).collect::<Option<_>>()?;
+    Some(ProbeSpec { name: v.text("name")?, at: v.numbers("at")?, body: v.text("body")?, record })
+}
+
+fn time(v: View, problems: &mut Vec<Problem>) -> Option<TimeSpec> {
+    let scheme = v.value("scheme").and_then(|node| scheme(node.table()?, v.preset, problems));
+    Some(TimeSpec {
+        end: v.number("end")?,
+        step: v.number("step")?,
+        scheme: scheme?,
+        energy_guard: v.value("energy_guard")?.number(),
+    })
+}
+
+fn scheme(table: &Table, preset: Preset, problems: &mut Vec<Problem>) -> Option<SchemeSpec> {
+    let kind = table.get("kind")?.text()?;
+    let v = View { table, keys: keys::SCHEMES.table(kind)?.keys, preset };
+    let numbers = v.keys.iter().filter(|k| matches!(k.kind, Kind::Number(_)));
+    let parameters = numbers.filter_map(|k| Some((k.name.to_owned(), v.number(k.name)?))).collect();
+    let given: Vec<_> = ["beta", "gamma", "rho_inf"].into_iter().filter(|k| v.has(k)).collect();
+    if kind == "newmark" && given != ["beta", "gamma"] && given != ["rho_inf"] {
+        let what = format!(
+            "newmark's parameters are not one set: {}",
+            if given.is_empty() { "none".into() } else { given.join(", ") }
+        );
+        let help = "give `beta` and `gamma`, or `rho_inf`; the trapezoidal rule is beta = 0.25, gamma = 0.5";
+        problems.push(Problem::new("time.scheme", what, "β and γ follow from ρ∞", help));
+        return None;
+    }
+    Some(SchemeSpec { kind: kind.to_owned(), parameters, forces: v.choice("forces")? })
+}
+
+fn newton(v: View) -> Option<NewtonSpec> {
+    Some(NewtonSpec { tolerance: v.number("tolerance")?, max_iterations: v.count("max_iterations")? })
+}
+
+fn output(v: View) -> Option<OutputSpec> {
+    let every = if v.has("at_times") { 0 } else { 20 };
+    Some(OutputSpec {
+        fields_every: if v.has("fields_every") { v.count("fields_every")? } else { every },
+        at_times: v.numbers("at_times")?,
+        history_every: v.count("history_every")?,
+        checkpoint_every: v.count("checkpoint_every")?,
+    })
+}
+
+fn expect(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<ExpectSpec> {
+    let given: Vec<_> =
+        ["value", "tolerance", "relative", "at_most", "at_least"].into_iter().filter(|k| v.has(k)).collect();
+    let bound = match given.as_slice() {
+        ["value", "tolerance"] => Bound::Near { value: v.number("value")?, tolerance: v.number("tolerance")? },
+        ["value", "relative"] => Bound::Relative { value: v.number("value")?, relative: v.number("relative")? },
+        ["at_most"] => Bound::AtMost(v.number("at_most")?),
+        ["at_least"] => Bound::AtLeast(v.number("at_least")?),
+        _ => {
+            let misspelt = v.table.0.iter().any(|e| !v.keys.iter().any(|k| k.name == e.key));
+            if !misspelt {
+                let what = "the expectation does not set one bound";
+                let why = format!("it has {}", if given.is_empty() { "none".into() } else { given.join(", ") });
+                let help = "give `value` and `tolerance`, or `value` and `relative`, or `at_most`, or `at_least`";
+                problems.push(Problem::new(path, what, why, help).at_key());
+            }
+            return None;
+        }
+    };
+    Some(ExpectSpec { what: v.text("what")?, bound, source: v.text("source") })
+}

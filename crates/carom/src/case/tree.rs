@@ -1,0 +1,155 @@
+//! A TOML value that knows where each of its parts was written: byte spans into one of the document's sources.
+
+use std::ops::Range;
+
+use toml_edit::{Item, TableLike};
+
+/// Where a part was written: in the case file (source 0) or in the n-th override (source n).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Origin {
+    pub(super) source: usize,
+    pub(super) span: Range<usize>,
+}
+
+/// A value and its place.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    pub(super) value: Value,
+    pub(super) origin: Origin,
+}
+
+/// TOML's values.
+#[derive(Clone, Debug)]
+pub(super) enum Value {
+    Text(String),
+    Integer(i64),
+    Float(f64),
+    Flag(bool),
+    Date(String),
+    List(Vec<Node>),
+    Table(Table),
+}
+
+/// Keys in the order in which they were written.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Table(pub(super) Vec<Entry>);
+
+/// A key with its value.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    pub(super) key: String,
+    pub(super) origin: Origin,
+    pub(super) node: Node,
+}
+
+impl Table {
+    pub(super) fn entry(&self, key: &str) -> Option<&Entry> {
+        self.0.iter().find(|e| e.key == key)
+    }
+
+    pub(super) fn get(&self, key: &str) -> Option<&Node> {
+        self.entry(key).map(|e| &e.node)
+    }
+
+    /// The value of a key, added as an empty table if it is not there.
+    pub(super) fn get_or_insert(&mut self, key: &str, origin: &Origin) -> &mut Node {
+        let found = self.0.iter().position(|e| e.key == key);
+        let at = found.unwrap_or_else(|| {
+            let node = Node { value: Value::Table(Self::default()), origin: origin.clone() };
+            self.0.push(Entry { key: key.to_owned(), origin: origin.clone(), node });
+            self.0.len() - 1
+        });
+        &mut self.0[at].node
+    }
+}
+
+impl Node {
+    pub(super) fn table(&self) -> Option<&Table> {
+        if let Value::Table(table) = &self.value { Some(table) } else { None }
+    }
+
+    pub(super) fn list(&self) -> Option<&[Node]> {
+        if let Value::List(list) = &self.value { Some(list) } else { None }
+    }
+
+    pub(super) fn text(&self) -> Option<&str> {
+        if let Value::Text(text) = &self.value { Some(text) } else { None }
+    }
+
+    /// A number, whole or not.
+    pub(super) fn number(&self) -> Option<f64> {
+        match self.value {
+            Value::Float(x) => Some(x),
+            Value::Integer(n) => Some(n as f64),
+            _ => None,
+        }
+    }
+
+    pub(super) fn count(&self) -> Option<usize> {
+        if let Value::Integer(n) = self.value { usize::try_from(n).ok() } else { None }
+    }
+
+    /// What a message calls it.
+    pub(super) fn described(&self) -> String {
+        match &self.value {
+            Value::Text(text) if text.chars().count() <= 40 => format!("the text {text:?}"),
+            Value::Text(_) => "a text".to_owned(),
+            Value::Integer(n) => format!("the whole number {n}"),
+            Value::Float(x) => format!("the number {x}"),
+            Value::Flag(flag) => format!("`{flag}`"),
+            Value::Date(date) => format!("the date {date}"),
+            Value::List(list) => format!("a list of {} values", list.len()),
+            Value::Table(_) => "a table".to_owned(),
+        }
+    }
+}
+
+/// Takes over what `toml_edit` parsed; `shift` is subtracted from its spans (text put in front of an override's value).
+pub(super) fn node(item: &Item, source: usize, shift: isize, fallback: &Range<usize>) -> Node {
+    let span = item.span().map_or_else(|| fallback.clone(), |span| shifted(&span, shift));
+    let value = match item {
+        Item::Value(value) => self::value(value, source, shift, &span),
+        Item::Table(table) => Value::Table(self::table(table, source, shift, &span)),
+        Item::ArrayOfTables(tables) => {
+            let one = |table: &toml_edit::Table| {
+                let span = table.span().map_or_else(|| span.clone(), |span| shifted(&span, shift));
+                Node { value: Value::Table(self::table(table, source, shift, &span)), origin: Origin { source, span } }
+            };
+            Value::List(tables.iter().map(one).collect())
+        }
+        Item::None => Value::Table(Table::default()),
+    };
+    Node { value, origin: Origin { source, span } }
+}
+
+fn value(value: &toml_edit::Value, source: usize, shift: isize, span: &Range<usize>) -> Value {
+    match value {
+        toml_edit::Value::String(text) => Value::Text(text.value().clone()),
+        toml_edit::Value::Integer(n) => Value::Integer(*n.value()),
+        toml_edit::Value::Float(x) => Value::Float(*x.value()),
+        toml_edit::Value::Boolean(flag) => Value::Flag(*flag.value()),
+        toml_edit::Value::Datetime(date) => Value::Date(date.value().to_string()),
+        toml_edit::Value::Array(list) => {
+            let one = |value: &toml_edit::Value| {
+                let span = value.span().map_or_else(|| span.clone(), |span| shifted(&span, shift));
+                Node { value: self::value(value, source, shift, &span), origin: Origin { source, span } }
+            };
+            Value::List(list.iter().map(one).collect())
+        }
+        toml_edit::Value::InlineTable(table) => Value::Table(self::table(table, source, shift, span)),
+    }
+}
+
+fn table(table: &dyn TableLike, source: usize, shift: isize, around: &Range<usize>) -> Table {
+    let entry = |(name, item): (&str, &Item)| {
+        let key = table.key(name).and_then(toml_edit::Key::span);
+        let key = key.map_or_else(|| around.clone(), |span| shifted(&span, shift));
+        let node = node(item, source, shift, &key);
+        Entry { key: name.to_owned(), origin: Origin { source, span: key }, node }
+    };
+    Table(table.iter().map(entry).collect())
+}
+
+fn shifted(span: &Range<usize>, shift: isize) -> Range<usize> {
+    span.start.saturating_add_signed(-shift)..span.end.saturating_add_signed(-shift)
+}
