@@ -1,12 +1,16 @@
 //! Time integration schemes as data, their analysis, and the stages a step is made of. Depends on none of Carom's crates.
 
 mod alpha;
+mod analysis;
+mod cubic;
 mod error;
 mod family;
 mod oscillator;
 mod scheme;
 mod stage;
 
+pub use analysis::Principal;
+pub use cubic::Root;
 pub use error::SchemeError;
 pub use family::{KINDS, KindInfo, scheme};
 pub use oscillator::{Motion, Oscillator};
