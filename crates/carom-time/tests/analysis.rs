@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 
-use carom_time::{ForceRule, Kernel, Memory, Oscillator, Root, Scheme, Stage};
+use carom_time::{ForceRule, Kernel, Memory, Oscillator, Root, Scheme, Stage, explain};
 
 fn ch(r: f64) -> Scheme {
     Scheme::chung_hulbert(r).unwrap()
@@ -174,6 +174,30 @@ fn a_held_dof_rings_as_theory_says() {
     }
     let [_, v, a] = after(&Scheme::hu(), 2);
     assert!(v.abs() < 1e-15 && a.abs() < 1e-12, "{v} {a}");
+}
+
+/// A mass that touches a wall at v₀: the contact force of eq. (15), λ = −(Σ other terms)/w.contact, by the kernel itself.
+#[test]
+fn the_ringing_told_is_the_kernel_s() {
+    let (dt, v0) = (1e-3, 2.0);
+    let free = Oscillator { mass: 1.0, stiffness: 0.0, force: 0.0 };
+    let told = |r: f64| explain(&ch(r)).held.steps.unwrap();
+    for r in [0.1, 0.3, 0.6, 0.8] {
+        let (mut motion, mut force, mut stage, mut last) = (free.start(0.0, v0), 0.0, Stage::default(), 0);
+        for n in 1..500 {
+            let next = free.held_step(&ch(r), dt, motion, &mut stage, 0.0);
+            let (w, b) = (stage.weights, stage.before);
+            force = -(w.mass * next[2] + b.mass * motion[2] + b.contact * force) / w.contact;
+            if next[2].abs().max(force.abs()) * dt / v0 >= 0.01 {
+                last = n;
+            }
+            motion = next;
+        }
+        assert_eq!(told(r), last + 1, "ρ∞ = {r}");
+    }
+    // theory.md §2, fact 2: a few steps at 0.1, 15 to 25 at 0.6.
+    assert!(told(0.1) <= 6 && (15..=25).contains(&told(0.6)));
+    assert_eq!(explain(&Scheme::hu()).held.steps, Some(2));
 }
 
 /// Errors of v and u against cos ωt over one period, halving the step.
