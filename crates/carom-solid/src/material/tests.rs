@@ -20,11 +20,11 @@ fn linear_elastic() -> LinearElastic {
 }
 
 fn energy<const D: usize, L: Material<D>>(law: &L, h: &Mat<D>) -> f64 {
-    law.energy(&law.at(h).unwrap_or_else(|e| panic!("{e}")))
+    law.energy(&law.at(h).unwrap())
 }
 
 fn stress<const D: usize, L: Material<D>>(law: &L, h: &Mat<D>) -> Mat<D> {
-    law.stress(&law.at(h).unwrap_or_else(|e| panic!("{e}")))
+    law.stress(&law.at(h).unwrap())
 }
 
 fn distance<const D: usize>(a: &Mat<D>, b: &Mat<D>) -> f64 {
@@ -39,7 +39,7 @@ fn slope(h: f64, f: impl Fn(f64) -> f64) -> f64 {
 }
 
 fn derivatives<const D: usize, L: Material<D>>(law: &L, h: &Mat<D>) {
-    let point = law.at(h).unwrap_or_else(|e| panic!("{e}"));
+    let point = law.at(h).unwrap();
     let p = law.stress(&point);
     let moved = |i: usize, j: usize, s: f64| {
         let mut m = *h;
@@ -75,7 +75,7 @@ fn objectivity<const D: usize, L: Material<D>>(law: &L, h: &Mat<D>, q: &Mat<D>) 
     let turned = *q * f - Mat::identity();
     assert!((energy(law, &turned) - energy(law, h)).abs() < 1e-13);
     assert!(distance(&stress(law, &turned), &(*q * stress(law, h))) < 1e-13);
-    let at = |h: &Mat<D>| law.at(h).unwrap_or_else(|e| panic!("{e}"));
+    let at = |h: &Mat<D>| law.at(h).unwrap();
     let expected = *q * law.cauchy(&at(h)) * q.transposed();
     assert!(distance(&law.cauchy(&at(&turned)), &expected) < 1e-13);
     assert!((law.lateral(&at(&turned)) - law.lateral(&at(h))).abs() < 1e-13);
@@ -159,11 +159,6 @@ proptest! {
         let size = MU * h.double_dot(&h);
         prop_assert!((energy(&neo_hookean(), &h) - energy_hooke).abs() < 1e-7 * size);
         prop_assert!((energy(&saint_venant_kirchhoff(), &h) - energy_hooke).abs() < 1e-7 * size);
-        // A rigid turn of 1e-9 has strains of 1e-18, not of round-off 1e-16.
-        let (s, c) = 1e-9_f64.sin_cos();
-        let turn = Mat([[-2.0 * (0.5e-9_f64).sin().powi(2), -s], [s, -2.0 * (0.5e-9_f64).sin().powi(2)]]);
-        prop_assert!(c <= 1.0);
-        prop_assert!(stress(&neo_hookean(), &turn).double_dot(&stress(&neo_hookean(), &turn)).sqrt() < 1e-24);
     }
 }
 
@@ -180,6 +175,15 @@ fn the_undeformed_state_has_no_stress_and_no_energy() {
     at_rest::<2, _>(&saint_venant_kirchhoff());
     at_rest::<3, _>(&saint_venant_kirchhoff());
     at_rest::<2, _>(&linear_elastic());
+}
+
+/// cos 1e-9 − 1 = −5e-19 is lost in F, not in H.
+#[test]
+fn a_small_rotation_is_no_strain() {
+    let (s, c) = (1e-9_f64.sin(), -2.0 * 0.5e-9_f64.sin().powi(2));
+    let h = Mat([[c, -s], [s, c]]);
+    assert!(distance(&stress(&neo_hookean(), &h), &Mat::ZERO) < 1e-33);
+    assert!(distance(&stress(&saint_venant_kirchhoff(), &h), &Mat::ZERO) < 1e-33);
 }
 
 #[test]
