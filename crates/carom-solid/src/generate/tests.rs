@@ -2,7 +2,12 @@
 
 use std::collections::HashSet;
 
+use carom_algebra::Vector;
+
 use super::*;
+use crate::quadrature::triangle;
+use crate::reference::gradient;
+use crate::shape::{Shape, Tri6, Tri10};
 
 const TRIANGLES: [Element; 3] = [Element::T3, Element::T6, Element::T10];
 
@@ -189,4 +194,25 @@ fn counts_saturate() {
     assert_eq!(disc_nodes(Element::T10, 1.0, 1e-300), usize::MAX);
     assert_eq!(rectangle_nodes(Element::T10, [usize::MAX, 2]), usize::MAX);
     assert!(half_disc_nodes(Element::T10, 1.0, 1e-9) > 1_000_000_000_000);
+}
+
+/// Smallest over largest Jacobian of a curved cell: 1 were it straight, ≤ 0 were it folded.
+#[test]
+fn curved_cells_are_nowhere_near_folding() {
+    fn least<const N: usize, S: Shape<2, N>>(mesh: &Mesh<2>) -> f64 {
+        let ratio = |cell: usize| {
+            let x: [Vector<2>; N] = std::array::from_fn(|a| Vector(mesh.nodes[mesh.cell(cell)[a]]));
+            let points = triangle(10).points.into_iter().chain(S::NODES);
+            let jacobians: Vec<f64> = points.map(|xi| gradient(&x, &S::gradients(&xi)).det()).collect();
+            let extreme = |f: fn(f64, f64) -> f64| jacobians.iter().copied().reduce(f).unwrap();
+            extreme(f64::min) / extreme(f64::max)
+        };
+        (0..mesh.cell_count()).map(ratio).fold(f64::INFINITY, f64::min)
+    }
+    // One ring, six arcs of 60°: the worst case; from four rings on, arcs of 15° and less.
+    for (size, bound) in [(1.0, 0.7), (0.25, 0.85), (0.1, 0.95)] {
+        let quadratic = least::<6, Tri6>(&disc(Element::T6, 1.0, [0.0, 0.0], size).unwrap());
+        let cubic = least::<10, Tri10>(&disc(Element::T10, 1.0, [0.0, 0.0], size).unwrap());
+        assert!(quadratic.min(cubic) > bound, "size {size}: {quadratic}, {cubic}");
+    }
 }
