@@ -1,6 +1,7 @@
 //! A case as resolved: every default filled in, every name still a name. What `manifest.json` records and `resume` reads back.
 
 mod check;
+mod columns;
 mod conform;
 mod document;
 pub mod keys;
@@ -8,9 +9,9 @@ mod overrides;
 mod problem;
 mod read;
 mod suggest;
-mod tree;
 #[cfg(test)]
 mod tests;
+mod tree;
 mod view;
 
 use std::collections::BTreeMap;

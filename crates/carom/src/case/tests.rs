@@ -36,7 +36,13 @@ fn misspelt_key() {
     println!("{}", shown(&text, &[]));
     println!("{}", shown(IMPACT, &["time.scheme.rho_inf=1.2", "body.cylindr.element=T6"]));
     println!("{}", shown(IMPACT, &["time.scheme.rho_inf=1.2", "time.step=nan", "body.cylinder.element=[1"]));
-    println!("{}", shown(IMPACT, &["time.scheme.rho_inf=1.2", "time.step=nan", "body.cylinder.element=\"T7\"", "material.rubber.density=-2"]));
+    println!(
+        "{}",
+        shown(
+            IMPACT,
+            &["time.scheme.rho_inf=1.2", "time.step=nan", "body.cylinder.element=\"T7\"", "material.rubber.density=-2"]
+        )
+    );
     println!("{}", shown(&IMPACT.replace("[[body]]", "[[bodyx]]"), &[]));
     println!("{:?}", resolved(IMPACT, &["preset=paper"]).unwrap().preset == Preset::Paper);
 }
