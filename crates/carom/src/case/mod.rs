@@ -8,6 +8,7 @@ pub mod keys;
 mod overrides;
 mod problem;
 mod read;
+mod schema;
 mod suggest;
 #[cfg(test)]
 mod tests;
@@ -21,6 +22,7 @@ use serde::{Deserialize, Serialize};
 pub use document::Document;
 pub use problem::{CaseError, Diagnostic, Problem};
 pub use read::read;
+pub use schema::schema;
 
 /// One simulation, fully resolved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
