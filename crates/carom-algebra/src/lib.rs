@@ -1,5 +1,13 @@
-//! The algebra under Carom: small tensors, sparse symmetric systems, Newton's method and the checks by differences.
+//! The algebra under Carom: small tensors, sparse symmetric systems and the checks by differences.
 
+mod difference;
+mod faer_engine;
+mod linear;
+mod pattern;
 mod small;
 
+pub use difference::jacobian_error;
+pub use faer_engine::FaerSolver;
+pub use linear::{Inertia, LinearError, LinearSolver, SolveReport};
+pub use pattern::Pattern;
 pub use small::{Mat, Vector};

@@ -1,1 +1,34 @@
-//! Placeholder of the workspace skeleton.
+//! The run directory of a Carom simulation, written and read, and metrics as pure functions of what was read.
+//!
+//! ```text
+//! runs/impact/manifest.json          what was run, with which result
+//!             history.csv            one row per recorded step
+//!             contact.csv            one row per active contact node of a recorded step
+//!             log.jsonl              one event per line
+//!             fields.pvd fields/     VTK files of the bodies
+//!             checkpoint/            two generations of what a run needs to go on
+//! ```
+//!
+//! This crate knows no model and no solver. A run that produces the same numbers produces the same bytes, and a run that is
+//! killed and reopened continues to the same bytes as one that was not.
+
+mod checkpoint;
+mod error;
+mod expectation;
+mod files;
+mod manifest;
+pub mod metrics;
+mod pvd;
+mod rows;
+mod run;
+mod vtu;
+mod writer;
+
+pub use error::RecordError;
+pub use expectation::evaluate;
+pub use manifest::{Column, Expectation, Machine, Manifest, Source, Status, now};
+pub use pvd::FieldEntry;
+pub use rows::{ContactRow, Event};
+pub use run::{History, Run};
+pub use vtu::{Block, Cell, FieldSet, PointArray};
+pub use writer::{Reopened, RunWriter};

@@ -1,13 +1,17 @@
-//! What a solver sees of a time integrator: one unknown y, velocity and acceleration affine in it, and the weights of the balance.
+//! What a solver sees of a time integrator: one unknown, velocity and acceleration affine in it, and the weights of the balance.
 //!
-//! A step is a list of stages. At the end of each, positions y solve
+//! A step is a list of stages. At the end of each, positions y = y_s + d solve
 //!
 //! ```text
 //! w.mass M a(y) + w.internal f_int + w.contact f_cont − w.external f_ext  +  (the same sum at the step's start with weights `before`) = 0
-//! v(y) = velocity.slope y + velocity.offset,   a(y) = acceleration.slope y + acceleration.offset
+//! v = velocity.slope d + velocity.at_start,   a = acceleration.slope d + acceleration.at_start,   d = y − y_s
 //! ```
 //!
 //! with f_int at (1 − average) y + average y_s and f_cont = Gᵀλ at y. Time knows neither space nor contact.
+//!
+//! The maps take the increment d since the step's start, and a solver should keep d as its unknown: as a function of y the
+//! acceleration carries the last digit of y divided by Δt². Free fall from y = 1.5 over 400 steps of 1.875e-3 errs by
+//! 2e-11 with maps of y, 2e-12 with d formed as a difference of rounded y, 1e-13 with d kept (`tests/free_fall.rs`).
 
 /// Weights of the four force families in the balance of a stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,13 +26,22 @@ pub struct Weights {
     pub contact: f64,
 }
 
-/// A nodal vector as an affine function of the unknown positions: slope·y + offset.
+/// A nodal vector as an affine function of the increment of positions since the step's start: slope·(y − y_s) + at_start.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Affine {
     /// Factor of the unknown.
     pub slope: f64,
-    /// Known part, one entry per dof.
-    pub offset: Vec<f64>,
+    /// Its value where nothing has moved, y = y_s; one entry per dof.
+    pub at_start: Vec<f64>,
+}
+
+impl Affine {
+    /// Overwrites `out` with the vector at `increment` = y − y_s; all three of one length.
+    pub fn value_into(&self, increment: &[f64], out: &mut [f64]) {
+        for ((out, d), at_start) in out.iter_mut().zip(increment).zip(&self.at_start) {
+            *out = self.slope * d + at_start;
+        }
+    }
 }
 
 /// One implicit solve.
@@ -36,9 +49,9 @@ pub struct Affine {
 pub struct Stage {
     /// Where in the step the unknown lives: 0 start, 1 end.
     pub end: f64,
-    /// v(y).
+    /// v(y − y_s).
     pub velocity: Affine,
-    /// a(y).
+    /// a(y − y_s).
     pub acceleration: Affine,
     /// Weights at the stage's end.
     pub weights: Weights,

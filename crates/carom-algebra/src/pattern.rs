@@ -1,0 +1,95 @@
+//! Lower triangle of a sparse symmetric matrix, column by column.
+
+/// Places of the stored entries: the lower triangle with its full diagonal, compressed by columns, rows ascending.
+///
+/// ```
+/// use carom_algebra::Pattern;
+/// let pattern = Pattern::from_entries(3, [(2, 0), (0, 2), (1, 1)]);
+/// assert_eq!(pattern.len(), 4); // three diagonal entries and (2, 0) once
+/// assert_eq!(pattern.slot(0, 2), pattern.slot(2, 0));
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Pattern {
+    /// Start of each column in [`Self::rows`]; one more than there are columns.
+    pub starts: Vec<usize>,
+    /// Row of each entry.
+    pub rows: Vec<usize>,
+}
+
+impl Pattern {
+    /// Builds the pattern of size `n` from entries in any order, either triangle, repeated or not. The diagonal is always there.
+    pub fn from_entries(n: usize, entries: impl IntoIterator<Item = (usize, usize)>) -> Self {
+        let mut columns: Vec<Vec<usize>> = (0..n).map(|i| vec![i]).collect();
+        for (i, j) in entries {
+            columns[i.min(j)].push(i.max(j));
+        }
+        let mut pattern = Self { starts: Vec::with_capacity(n + 1), rows: Vec::new() };
+        pattern.starts.push(0);
+        for column in &mut columns {
+            column.sort_unstable();
+            column.dedup();
+            pattern.rows.extend_from_slice(column);
+            pattern.starts.push(pattern.rows.len());
+        }
+        pattern
+    }
+
+    /// Unknowns.
+    pub fn size(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    /// Stored entries.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there is no entry.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Rows stored in a column, ascending; the first is the diagonal.
+    pub fn column(&self, j: usize) -> &[usize] {
+        &self.rows[self.starts[j]..self.starts[j + 1]]
+    }
+
+    /// Place of entry (i, j) or (j, i) among the values.
+    pub fn slot(&self, i: usize, j: usize) -> Option<usize> {
+        let (row, column) = (i.max(j), i.min(j));
+        self.column(column).binary_search(&row).ok().map(|k| self.starts[column] + k)
+    }
+
+    /// out += A x for the symmetric matrix with these values in its lower triangle.
+    pub fn multiply_add(&self, values: &[f64], x: &[f64], out: &mut [f64]) {
+        for j in 0..self.size() {
+            let (start, end) = (self.starts[j], self.starts[j + 1]);
+            out[j] += values[start] * x[j];
+            let mut sum = 0.0;
+            for k in start + 1..end {
+                let i = self.rows[k];
+                out[i] += values[k] * x[j];
+                sum += values[k] * x[i];
+            }
+            out[j] += sum;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn multiplies_with_both_triangles() {
+        // [2 1 0; 1 3 4; 0 4 5] * [1 2 3]
+        let pattern = Pattern::from_entries(3, [(1, 0), (2, 1)]);
+        let mut values = vec![0.0; pattern.len()];
+        for (i, j, v) in [(0, 0, 2.0), (1, 0, 1.0), (1, 1, 3.0), (1, 2, 4.0), (2, 2, 5.0)] {
+            values[pattern.slot(i, j).unwrap()] = v;
+        }
+        let mut out = vec![0.0; 3];
+        pattern.multiply_add(&values, &[1.0, 2.0, 3.0], &mut out);
+        assert_eq!(out, [4.0, 19.0, 23.0]);
+    }
+}

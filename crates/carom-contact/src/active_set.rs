@@ -1,0 +1,144 @@
+//! Which pairs hold their gap at zero: g ≥ 0, λ ≤ 0, λ g = 0 (eq. 12 as a complementarity).
+//!
+//! Primal–dual active set: a pair is active in the next iteration where λ + c g < 0. With λ = 0 on open pairs and g = 0 on closed ones this is
+//! "activate where g < 0, release where λ > 0", whatever c > 0. Sets that were visited before are remembered: when the iteration comes back to one, changes
+//! wait until Newton has converged, and when it comes back again, only the worst pair changes at a time.
+
+use std::collections::HashSet;
+
+/// A release needs λ above this fraction of the largest multiplier: ties stay closed.
+const RELEASE: f64 = 1e-10;
+
+/// Gap and multiplier of one pair, and whether it is active.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contender {
+    /// Whether its gap is held at zero now.
+    pub active: bool,
+    /// Gap.
+    pub gap: f64,
+    /// Multiplier.
+    pub lambda: f64,
+    /// Force that stands for one unit of gap (diagonal of the stage's tangent): makes gaps and multipliers comparable.
+    pub stiffness: f64,
+}
+
+/// How freely the set may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Caution {
+    EveryIteration,
+    AfterConvergence,
+    OneAtATime,
+}
+
+/// Memory of the sets visited in one step.
+#[derive(Clone, Debug)]
+pub struct ActiveSet {
+    visited: HashSet<Vec<usize>>,
+    caution: Caution,
+    gap_tolerance: f64,
+}
+
+/// The set keeps returning to one it has visited, whatever is tried.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the active set cycles: pairs {pairs:?} open and close in turn")]
+pub struct Cycle {
+    /// Places of the pairs that would change.
+    pub pairs: Vec<usize>,
+}
+
+impl ActiveSet {
+    /// `gap_tolerance`: penetration that still counts as touching. `within`: changes are allowed before Newton has converged.
+    pub fn new(gap_tolerance: f64, within: bool) -> Self {
+        let caution = if within { Caution::EveryIteration } else { Caution::AfterConvergence };
+        Self { visited: HashSet::new(), caution, gap_tolerance }
+    }
+
+    /// Whether cycling forced more caution than the step began with.
+    pub fn is_cautious(&self) -> bool {
+        self.caution == Caution::OneAtATime
+    }
+
+    /// Places of the pairs that are to change, given the state of an iteration. Empty where the set holds, or must not change yet.
+    pub fn changes(&mut self, pairs: &[Contender], converged: bool) -> Result<Vec<usize>, Cycle> {
+        if self.caution > Caution::EveryIteration && !converged {
+            return Ok(Vec::new());
+        }
+        let strongest = pairs.iter().map(|p| p.lambda.abs()).fold(0.0, f64::max);
+        // How wrong a pair is, as a force; 0 where it is right.
+        let violation = |p: &Contender| -> f64 {
+            if p.active {
+                if p.lambda > RELEASE * strongest { p.lambda } else { 0.0 }
+            } else if p.gap < -self.gap_tolerance {
+                -p.gap * p.stiffness
+            } else {
+                0.0
+            }
+        };
+        let mut wrong: Vec<usize> = (0..pairs.len()).filter(|&k| violation(&pairs[k]) > 0.0).collect();
+        if wrong.is_empty() {
+            return Ok(wrong);
+        }
+        let after = |wrong: &[usize]| -> Vec<usize> {
+            (0..pairs.len()).filter(|k| pairs[*k].active != wrong.contains(k)).collect()
+        };
+        self.visited.insert(after(&[]));
+        if self.visited.contains(&after(&wrong)) {
+            match self.caution {
+                Caution::EveryIteration => {
+                    self.caution = Caution::AfterConvergence;
+                    self.visited.clear();
+                    return self.changes(pairs, converged);
+                }
+                Caution::AfterConvergence => {
+                    self.caution = Caution::OneAtATime;
+                    self.visited.clear();
+                }
+                Caution::OneAtATime => {}
+            }
+        }
+        if self.caution == Caution::OneAtATime {
+            wrong.sort_by(|&a, &b| violation(&pairs[b]).total_cmp(&violation(&pairs[a])));
+            let untried = wrong.iter().copied().find(|&k| !self.visited.contains(&after(&[k])));
+            return untried.map(|k| vec![k]).ok_or(Cycle { pairs: wrong });
+        }
+        Ok(wrong)
+    }
+
+    /// Forgets the visited sets: the pairs themselves have changed.
+    pub fn restart(&mut self) {
+        self.visited.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pair(active: bool, gap: f64, lambda: f64) -> Contender {
+        Contender { active, gap, lambda, stiffness: 1.0 }
+    }
+
+    #[test]
+    fn penetration_closes_tension_opens_and_ties_stay() {
+        let mut set = ActiveSet::new(1e-12, true);
+        let state = [pair(false, -1e-3, 0.0), pair(true, 0.0, 0.5), pair(true, 0.0, -5.0), pair(true, 0.0, 1e-11), pair(false, -1e-13, 0.0)];
+        assert_eq!(set.changes(&state, false).unwrap(), [0, 1]);
+    }
+
+    #[test]
+    fn a_two_cycle_first_waits_for_convergence_then_goes_one_by_one_then_is_named() {
+        let mut set = ActiveSet::new(0.0, true);
+        let open = [pair(false, -1.0, 0.0)];
+        let closed = [pair(true, 0.0, 1.0)];
+        assert_eq!(set.changes(&open, false).unwrap(), [0]);
+        assert!(set.changes(&closed, false).unwrap().is_empty());
+        assert_eq!(set.changes(&closed, true).unwrap(), [0]);
+        let _ = set.changes(&open, true);
+        assert!(set.is_cautious());
+        let mut named = false;
+        for k in 0..4 {
+            named |= set.changes(if k % 2 == 0 { &closed } else { &open }, true).is_err();
+        }
+        assert!(named);
+    }
+}

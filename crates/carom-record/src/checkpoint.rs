@@ -1,0 +1,76 @@
+//! Two generations of a checkpoint, written in turn, so that one of them is whole whenever the machine stops.
+//!
+//! ```text
+//! "CAROMCKP" | version u32 | header length u32 | header (postcard) | payload | blake3 of all before (32 bytes)
+//! ```
+//!
+//! The header holds what the other files of the directory were when the payload was taken: their lengths, and the field files.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::{FieldEntry, RecordError, files};
+
+const MAGIC: &[u8; 8] = b"CAROMCKP";
+const VERSION: u32 = 1;
+const HASH: usize = blake3::OUT_LEN;
+
+/// The record at a checkpoint.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Header {
+    /// Which of two checkpoints is newer.
+    pub(crate) sequence: u64,
+    pub(crate) step: u64,
+    /// Rows in `history.csv`, the header not counted.
+    pub(crate) rows: u64,
+    /// Bytes in `history.csv`, `contact.csv`, `log.jsonl`.
+    pub(crate) lengths: [u64; 3],
+    pub(crate) fields: Vec<FieldEntry>,
+    pub(crate) payload: u64,
+}
+
+/// File of a generation, 0 or 1.
+pub(crate) fn path(directory: &Path, generation: usize) -> PathBuf {
+    directory.join("checkpoint").join(["a.bin", "b.bin"][generation % 2])
+}
+
+/// Replaces one generation.
+pub(crate) fn write(directory: &Path, generation: usize, header: &Header, payload: &[u8]) -> Result<(), RecordError> {
+    let path = path(directory, generation);
+    let header = postcard::to_stdvec(header).map_err(|e| RecordError::io("write", &path)(std::io::Error::other(e)))?;
+    let mut head = MAGIC.to_vec();
+    head.extend(VERSION.to_le_bytes());
+    head.extend((header.len() as u32).to_le_bytes());
+    head.extend(header);
+    let hash = blake3::Hasher::new().update(&head).update(payload).finalize();
+    files::write_atomically(&path, &[&head, payload, hash.as_bytes()])
+}
+
+/// Reads and verifies one generation.
+pub(crate) fn read(directory: &Path, generation: usize) -> Result<(Header, Vec<u8>), RecordError> {
+    let path = path(directory, generation);
+    let mut bytes = std::fs::read(&path).map_err(RecordError::io("read", &path))?;
+    let damaged = |what: &str| RecordError::corrupt(&path, None, what, "run the case again");
+    if !bytes.starts_with(MAGIC) {
+        return Err(damaged("it does not begin like a checkpoint"));
+    }
+    let body = bytes.len().checked_sub(HASH).ok_or_else(|| damaged("it is too short"))?;
+    if blake3::hash(&bytes[..body]).as_bytes()[..] != bytes[body..] {
+        return Err(damaged("its checksum is wrong"));
+    }
+    let word = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
+    if word(8) != Some(VERSION) {
+        let hint = "resume with the version of Carom that wrote it";
+        return Err(RecordError::corrupt(&path, None, "its format is of another version", hint));
+    }
+    let start = 16 + word(12).ok_or_else(|| damaged("it is too short"))? as usize;
+    let header: Header = bytes
+        .get(16..start)
+        .and_then(|b| postcard::from_bytes(b).ok())
+        .filter(|h: &Header| start as u64 + h.payload == body as u64)
+        .ok_or_else(|| damaged("its header does not fit its length"))?;
+    bytes.truncate(body);
+    bytes.drain(..start);
+    Ok((header, bytes))
+}

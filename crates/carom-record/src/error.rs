@@ -1,0 +1,79 @@
+//! What can go wrong with a run directory: the machine refused, the record is damaged, or the directory is not what it should be.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// An error of a run directory; `exit_code` says whose fault it is.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// The operating system refused.
+    #[error("cannot {action} {}: {source}", path.display())]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// On which path.
+        path: PathBuf,
+        /// Its answer.
+        source: io::Error,
+    },
+    /// A run directory is never overwritten.
+    #[error("{} exists already; a run directory is never overwritten: choose another --out, or `carom resume` it", path.display())]
+    Exists {
+        /// The directory.
+        path: PathBuf,
+    },
+    /// Another process writes this run.
+    #[error("{} is being written by another process; wait for it or stop it first", path.display())]
+    Busy {
+        /// The directory.
+        path: PathBuf,
+    },
+    /// No manifest where a run directory was expected.
+    #[error("{} is not a run directory: it has no manifest.json", path.display())]
+    NotARun {
+        /// The directory.
+        path: PathBuf,
+    },
+    /// A file of the record cannot be understood.
+    #[error("{}{} is damaged: {what}; {hint}", path.display(), line.map(|l| format!(":{l}")).unwrap_or_default())]
+    Corrupt {
+        /// The file.
+        path: PathBuf,
+        /// Line, counted from 1, where there are lines.
+        line: Option<u64>,
+        /// What is wrong.
+        what: String,
+        /// What to try.
+        hint: &'static str,
+    },
+    /// A row does not fit the columns the manifest names.
+    #[error("a history row has {got} values, but the manifest names {expected} columns")]
+    Width {
+        /// Values in the row.
+        got: usize,
+        /// Columns of the manifest.
+        expected: usize,
+    },
+    /// Lengths inside a field set contradict each other.
+    #[error("field set: {what}")]
+    Field {
+        /// Which, with numbers.
+        what: String,
+    },
+}
+
+impl RecordError {
+    /// Exit code of the command line: 4 when the machine refused, 2 otherwise.
+    pub fn exit_code(&self) -> u8 {
+        if matches!(self, Self::Io { .. }) { 4 } else { 2 }
+    }
+
+    pub(crate) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_path_buf();
+        move |source| Self::Io { action, path, source }
+    }
+
+    pub(crate) fn corrupt(path: &Path, line: Option<u64>, what: impl ToString, hint: &'static str) -> Self {
+        Self::Corrupt { path: path.to_path_buf(), line, what: what.to_string(), hint }
+    }
+}

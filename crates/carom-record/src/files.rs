@@ -1,0 +1,34 @@
+//! Files that are either the old ones or the new ones, never half of both: write beside, flush to the disk, rename.
+
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::Path;
+
+use crate::RecordError;
+
+/// Replaces `path` by the given parts, one after the other. After a crash the file is the old one or the new one.
+pub(crate) fn write_atomically(path: &Path, parts: &[&[u8]]) -> Result<(), RecordError> {
+    // A fixed name: what a kill leaves behind is overwritten by the next write instead of piling up.
+    let mut name = std::ffi::OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(".partial");
+    let partial = path.with_file_name(name);
+    let mut file = File::create(&partial).map_err(RecordError::io("create", &partial))?;
+    for part in parts {
+        file.write_all(part).map_err(RecordError::io("write", path))?;
+    }
+    file.sync_all().map_err(RecordError::io("write", path))?;
+    drop(file);
+    fs::rename(&partial, path).map_err(RecordError::io("replace", path))?;
+    sync_directory(path.parent().unwrap_or(Path::new(".")))
+}
+
+/// Makes renames inside a directory survive a power cut. Only Unix can and needs to.
+pub(crate) fn sync_directory(directory: &Path) -> Result<(), RecordError> {
+    // The parent of a bare name is the empty path.
+    let directory = if directory.as_os_str().is_empty() { Path::new(".") } else { directory };
+    if cfg!(unix) {
+        File::open(directory).and_then(|d| d.sync_all()).map_err(RecordError::io("write", directory))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,219 @@
+//! `manifest.json`: what was run, on what, and how it ended.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use serde::{Deserialize, Serialize};
+
+use crate::{RecordError, files};
+
+/// How far a run has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Status {
+    /// Being computed, or killed: resumable.
+    Running,
+    /// Reached its end time.
+    Finished,
+    /// Interrupted by the user: resumable.
+    Stopped,
+    /// Could not go on; the reason says why.
+    Failed,
+}
+
+/// A column of `history.csv`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Column {
+    /// Header in the file.
+    pub name: String,
+    /// Unit label; empty for counts and ratios.
+    pub unit: String,
+    /// What it is, in a few words.
+    pub description: String,
+    /// Written without a decimal point.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub integer: bool,
+}
+
+/// What the user gave, to reproduce the run.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Source {
+    /// Text of the case file.
+    pub text: String,
+    /// The `--set key=value` options, in order.
+    pub sets: Vec<String>,
+}
+
+impl Source {
+    /// blake3 of the case text and the options, in hexadecimal. Every part carries its length, so none runs into the next.
+    pub fn hash(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        for part in std::iter::once(&self.text).chain(&self.sets) {
+            hasher.update(&(part.len() as u64).to_le_bytes()).update(part.as_bytes());
+        }
+        hasher.finalize().to_hex().to_string()
+    }
+}
+
+/// The computer, as far as it matters to a result.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Machine {
+    /// Cores this process may use.
+    pub cpus: usize,
+    /// Operating system.
+    pub os: String,
+    /// Processor family.
+    pub arch: String,
+}
+
+impl Machine {
+    /// The one this runs on.
+    pub fn current() -> Self {
+        Self {
+            cpus: std::thread::available_parallelism().map_or(1, usize::from),
+            os: std::env::consts::OS.into(),
+            arch: std::env::consts::ARCH.into(),
+        }
+    }
+}
+
+/// Outcome of one `[[expect]]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Expectation {
+    /// As in the case file: `min A.uy`.
+    pub what: String,
+    /// What was asked for, in words: `-0.7827 ± 0.004`.
+    pub expected: String,
+    /// What the record gives; none when it cannot be evaluated.
+    pub got: Option<f64>,
+    /// Whether it holds.
+    pub pass: bool,
+    /// Where the expected value comes from.
+    pub source: Option<String>,
+}
+
+/// The whole manifest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// How far the run has come.
+    pub status: Status,
+    /// Why it stopped or failed.
+    pub reason: Option<String>,
+    /// Version of Carom that wrote it.
+    pub version: String,
+    /// Hash of `source`.
+    pub input_hash: String,
+    /// When the directory was made, UTC.
+    pub created: String,
+    /// When the process now (or last) writing it began, UTC.
+    pub started: String,
+    /// Where it ran.
+    pub machine: Machine,
+    /// Threads used.
+    pub threads: usize,
+    /// Columns of `history.csv`, in order.
+    pub columns: Vec<Column>,
+    /// Wall seconds per phase.
+    pub timings: BTreeMap<String, f64>,
+    /// Counts: steps, newton, factorisations, rejected, …
+    pub counters: BTreeMap<String, u64>,
+    /// Outcome of the expectations, once the run has finished.
+    pub expectations: Vec<Expectation>,
+    /// The case as resolved.
+    pub case: serde_json::Value,
+    /// The case as given.
+    pub source: Source,
+}
+
+impl Manifest {
+    /// A manifest of a run that starts now on this machine.
+    pub fn new(version: &str, case: serde_json::Value, source: Source, columns: Vec<Column>, threads: usize) -> Self {
+        let (input_hash, started) = (source.hash(), now());
+        Self {
+            status: Status::Running,
+            reason: None,
+            version: version.into(),
+            input_hash,
+            created: started.clone(),
+            started,
+            machine: Machine::current(),
+            threads,
+            columns,
+            timings: BTreeMap::new(),
+            counters: BTreeMap::new(),
+            expectations: Vec::new(),
+            case,
+            source,
+        }
+    }
+
+    /// Reads `manifest.json` of a run directory.
+    pub fn read(directory: &Path) -> Result<Self, RecordError> {
+        let path = directory.join("manifest.json");
+        let text = std::fs::read(&path).map_err(|error| match error.kind() {
+            std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => {
+                RecordError::NotARun { path: directory.to_path_buf() }
+            }
+            _ => RecordError::io("read", &path)(error),
+        })?;
+        serde_json::from_slice(&text).map_err(|error| {
+            let line = Some(error.line() as u64);
+            RecordError::corrupt(&path, line, error, "run the case again, or use the version of Carom that wrote it")
+        })
+    }
+
+    /// Replaces `manifest.json` of a run directory.
+    pub(crate) fn write(&self, directory: &Path) -> Result<(), RecordError> {
+        let path = directory.join("manifest.json");
+        let mut text =
+            serde_json::to_vec_pretty(self).map_err(|error| RecordError::io("write", &path)(error.into()))?;
+        text.push(b'\n');
+        files::write_atomically(&path, &[&text])
+    }
+}
+
+/// The time now, UTC, to the second: `2026-03-01T12:00:00Z`.
+pub fn now() -> String {
+    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs() as i64);
+    timestamp(seconds)
+}
+
+/// Civil date from days since 1970 (H. Hinnant, "chrono-compatible low-level date algorithms").
+fn timestamp(seconds: i64) -> String {
+    let (days, second) = (seconds.div_euclid(86400), seconds.rem_euclid(86400));
+    let z = days + 719_468;
+    let (era, doe) = (z.div_euclid(146_097), z.rem_euclid(146_097));
+    let yoe = (doe - doe / 1460 + doe / 36_524 - doe / 146_096) / 365;
+    let doy = doe - (365 * yoe + yoe / 4 - yoe / 100);
+    let mp = (5 * doy + 2) / 153;
+    let day = doy - (153 * mp + 2) / 5 + 1;
+    let month = if mp < 10 { mp + 3 } else { mp - 9 };
+    let year = yoe + era * 400 + i64::from(month <= 2);
+    let (h, m, s) = (second / 3600, second / 60 % 60, second % 60);
+    format!("{year:04}-{month:02}-{day:02}T{h:02}:{m:02}:{s:02}Z")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against `date -u -d @N`.
+    #[test]
+    fn timestamps() {
+        assert_eq!(timestamp(0), "1970-01-01T00:00:00Z");
+        assert_eq!(timestamp(951_782_400), "2000-02-29T00:00:00Z");
+        assert_eq!(timestamp(1_772_366_399), "2026-03-01T11:59:59Z");
+    }
+
+    #[test]
+    fn hash_sees_where_parts_end() {
+        let source = |text: &str, sets: &[&str]| Source {
+            text: text.into(),
+            sets: sets.iter().map(ToString::to_string).collect(),
+        };
+        assert_ne!(source("a", &["bc"]).hash(), source("ab", &["c"]).hash());
+        assert_ne!(source("a", &[]).hash(), source("a", &[""]).hash());
+        assert_eq!(source("a", &["b"]).hash(), source("a", &["b"]).hash());
+    }
+}

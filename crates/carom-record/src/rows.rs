@@ -1,0 +1,127 @@
+//! Rows of `history.csv` and `contact.csv` and lines of `log.jsonl`.
+//!
+//! Numbers are the shortest decimals that read back to the same bits, with an exponent when tiny or huge.
+
+use std::borrow::Cow;
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io;
+
+use serde::{Deserialize, Serialize};
+
+/// State of one active contact node at the end of a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactRow<'a> {
+    /// Step.
+    pub step: u64,
+    /// Time.
+    pub time: f64,
+    /// Name of the contact.
+    pub contact: Cow<'a, str>,
+    /// Node of the secondary side.
+    pub node: u64,
+    /// Where it is.
+    pub point: [f64; 2],
+    /// Facet of the primary side it is paired with.
+    pub facet: u64,
+    /// Coordinate of the closest point on that facet, −1 … 1.
+    pub xi: f64,
+    /// Gap, negative when penetrating.
+    pub gap: f64,
+    /// Multiplier, negative when pressing.
+    pub multiplier: f64,
+    /// −multiplier / consistent weight of the node.
+    pub pressure: f64,
+}
+
+/// Header of `contact.csv`.
+pub(crate) const CONTACT_COLUMNS: [&str; 11] =
+    ["step", "time", "contact", "node", "x", "y", "facet", "xi", "gap", "multiplier", "pressure"];
+
+/// Something worth knowing that happened in a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// Step being computed.
+    pub step: u64,
+    /// Time at its start.
+    pub time: f64,
+    /// Kind: `rejected`, `active-set`, `cycle`, `fallback`, …
+    pub kind: String,
+    /// One sentence.
+    pub message: String,
+    /// Names and numbers for programs.
+    #[serde(flatten)]
+    pub data: serde_json::Map<String, serde_json::Value>,
+}
+
+impl Event {
+    /// An event without data.
+    pub fn new(step: u64, time: f64, kind: &str, message: impl Into<String>) -> Self {
+        Self { step, time, kind: kind.into(), message: message.into(), data: serde_json::Map::new() }
+    }
+
+    /// Adds a named datum; a number that is not finite becomes null.
+    #[must_use]
+    pub fn with(mut self, key: &str, value: impl Into<serde_json::Value>) -> Self {
+        self.data.insert(key.into(), value.into());
+        self
+    }
+}
+
+/// A CSV file being written, with one buffer for all numbers.
+pub(crate) struct Table {
+    writer: csv::Writer<File>,
+    text: String,
+}
+
+impl Table {
+    pub(crate) fn new(file: File) -> Self {
+        Self { writer: csv::WriterBuilder::new().terminator(csv::Terminator::Any(b'\n')).from_writer(file), text: String::new() }
+    }
+
+    pub(crate) fn text(&mut self, field: &str) -> io::Result<()> {
+        Ok(self.writer.write_field(field)?)
+    }
+
+    pub(crate) fn integer(&mut self, value: u64) -> io::Result<()> {
+        self.display(format_args!("{value}"))
+    }
+
+    pub(crate) fn number(&mut self, value: f64) -> io::Result<()> {
+        self.display(format_args!("{value:?}"))
+    }
+
+    fn display(&mut self, arguments: std::fmt::Arguments) -> io::Result<()> {
+        self.text.clear();
+        self.text.write_fmt(arguments).map_err(io::Error::other)?;
+        Ok(self.writer.write_field(&self.text)?)
+    }
+
+    pub(crate) fn end_row(&mut self) -> io::Result<()> {
+        Ok(self.writer.write_record(None::<&[u8]>)?)
+    }
+
+    pub(crate) fn contact(&mut self, row: &ContactRow) -> io::Result<()> {
+        self.integer(row.step)?;
+        self.number(row.time)?;
+        self.text(&row.contact)?;
+        self.integer(row.node)?;
+        self.number(row.point[0])?;
+        self.number(row.point[1])?;
+        self.integer(row.facet)?;
+        for value in [row.xi, row.gap, row.multiplier, row.pressure] {
+            self.number(value)?;
+        }
+        self.end_row()
+    }
+
+    /// Hands everything to the operating system.
+    pub(crate) fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
+    }
+
+    /// The file below, for its length and for syncing.
+    pub(crate) fn file(&self) -> &File {
+        self.writer.get_ref()
+    }
+}

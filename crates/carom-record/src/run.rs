@@ -1,0 +1,175 @@
+//! Reading a run directory: finished, stopped, or still being written (a row or line that is not complete yet is left out).
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use crate::rows::CONTACT_COLUMNS;
+use crate::{Column, ContactRow, Event, FieldEntry, FieldSet, Manifest, RecordError, pvd};
+
+const HINT: &str = "`carom resume` goes back to the last checkpoint; or run the case again";
+
+/// `history.csv` as columns.
+#[derive(Clone, Debug, Default)]
+pub struct History {
+    /// Names and units, in order.
+    pub columns: Vec<Column>,
+    /// One vector per column, all of the same length.
+    pub values: Vec<Vec<f64>>,
+    index: HashMap<String, usize>,
+}
+
+impl History {
+    /// Columns with their values.
+    pub fn new(columns: Vec<Column>, values: Vec<Vec<f64>>) -> Self {
+        let index = columns.iter().enumerate().map(|(i, c)| (c.name.clone(), i)).collect();
+        Self { columns, values, index }
+    }
+
+    /// Values of a column.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        self.index.get(name).and_then(|&i| self.values.get(i)).map(Vec::as_slice)
+    }
+
+    /// Unit of a column; empty when it has none or does not exist.
+    pub fn unit(&self, name: &str) -> &str {
+        self.index.get(name).map_or("", |&i| &self.columns[i].unit)
+    }
+
+    /// Times of the rows.
+    pub fn times(&self) -> &[f64] {
+        self.column("time").unwrap_or_default()
+    }
+}
+
+/// A run directory, read.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Where it is.
+    pub directory: PathBuf,
+    /// What was run.
+    pub manifest: Manifest,
+    /// One row per recorded step.
+    pub history: History,
+    /// One row per active contact node of a recorded step.
+    pub contact: Vec<ContactRow<'static>>,
+    /// What happened.
+    pub log: Vec<Event>,
+    /// Field files, in the order of time.
+    pub fields: Vec<FieldEntry>,
+}
+
+impl Run {
+    /// Reads everything but the field files.
+    pub fn open(directory: &Path) -> Result<Self, RecordError> {
+        let manifest = Manifest::read(directory)?;
+        let history = history(&directory.join("history.csv"), &manifest.columns)?;
+        Ok(Self {
+            directory: directory.to_path_buf(),
+            history,
+            contact: contact(&directory.join("contact.csv"))?,
+            log: log(&directory.join("log.jsonl"))?,
+            fields: pvd::read(directory)?,
+            manifest,
+        })
+    }
+
+    /// Values of a history column.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        self.history.column(name)
+    }
+
+    /// Times of the history rows.
+    pub fn times(&self) -> &[f64] {
+        self.history.times()
+    }
+
+    /// Reads one field file.
+    pub fn field(&self, entry: &FieldEntry) -> Result<FieldSet, RecordError> {
+        let path = self.directory.join(entry.file());
+        let bytes = std::fs::read(&path).map_err(RecordError::io("read", &path))?;
+        FieldSet::from_vtu(&bytes).map_err(|what| RecordError::corrupt(&path, None, what, HINT))
+    }
+}
+
+/// The complete lines of a file.
+fn lines(path: &Path) -> Result<Vec<u8>, RecordError> {
+    let mut bytes = std::fs::read(path).map_err(RecordError::io("read", path))?;
+    let complete = bytes.iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
+    bytes.truncate(complete);
+    Ok(bytes)
+}
+
+/// Reads a CSV file whose header must be `names`, and hands over row after row with its line number.
+fn rows(
+    path: &Path,
+    names: &[&str],
+    mut each: impl FnMut(&csv::StringRecord) -> Result<(), String>,
+) -> Result<(), RecordError> {
+    let bytes = lines(path)?;
+    let mut reader = csv::Reader::from_reader(bytes.as_slice());
+    let damaged = |line, what| Err(RecordError::corrupt(path, line, what, HINT));
+    match reader.headers() {
+        Ok(header) if header == names => {}
+        Ok(_) => return damaged(Some(1), "the header is not the one of this version".to_string()),
+        Err(error) => return damaged(Some(1), error.to_string()),
+    }
+    let mut record = csv::StringRecord::new();
+    loop {
+        match reader.read_record(&mut record) {
+            Ok(false) => return Ok(()),
+            Ok(true) => {
+                if let Err(what) = each(&record) {
+                    return damaged(record.position().map(csv::Position::line), what);
+                }
+            }
+            Err(error) => return damaged(error.position().map(csv::Position::line), error.to_string()),
+        }
+    }
+}
+
+fn number<T: std::str::FromStr>(record: &csv::StringRecord, i: usize, name: &str) -> Result<T, String> {
+    let text = record.get(i).unwrap_or_default();
+    text.parse().map_err(|_| format!("`{text}` in column {name} is not a number"))
+}
+
+fn history(path: &Path, columns: &[Column]) -> Result<History, RecordError> {
+    let names: Vec<&str> = columns.iter().map(|c| c.name.as_str()).collect();
+    let mut values = vec![Vec::new(); columns.len()];
+    rows(path, &names, |record| {
+        for (i, column) in values.iter_mut().enumerate() {
+            column.push(number(record, i, names[i])?);
+        }
+        Ok(())
+    })?;
+    Ok(History::new(columns.to_vec(), values))
+}
+
+fn contact(path: &Path) -> Result<Vec<ContactRow<'static>>, RecordError> {
+    let mut list = Vec::new();
+    rows(path, &CONTACT_COLUMNS, |record| {
+        let real = |i| number::<f64>(record, i, CONTACT_COLUMNS[i]);
+        let count = |i| number::<u64>(record, i, CONTACT_COLUMNS[i]);
+        list.push(ContactRow {
+            step: count(0)?,
+            time: real(1)?,
+            contact: record.get(2).unwrap_or_default().to_string().into(),
+            node: count(3)?,
+            point: [real(4)?, real(5)?],
+            facet: count(6)?,
+            xi: real(7)?,
+            gap: real(8)?,
+            multiplier: real(9)?,
+            pressure: real(10)?,
+        });
+        Ok(())
+    })?;
+    Ok(list)
+}
+
+fn log(path: &Path) -> Result<Vec<Event>, RecordError> {
+    let bytes = lines(path)?;
+    let event = |(i, line)| {
+        serde_json::from_slice(line).map_err(|error| RecordError::corrupt(path, Some(i as u64 + 1), error, HINT))
+    };
+    bytes.split(|&b| b == b'\n').filter(|line| !line.is_empty()).enumerate().map(event).collect()
+}

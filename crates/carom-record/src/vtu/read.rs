@@ -1,0 +1,151 @@
+//! VTU → `FieldSet`, for the files this crate writes. It is no general VTU reader and says so.
+
+use std::collections::HashMap;
+
+use quick_xml::events::{BytesStart, Event};
+
+use super::{Block, Cell, FieldSet, PointArray};
+
+const APPENDED: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
+
+/// A `DataArray` of the XML head.
+struct Array {
+    section: String,
+    name: String,
+    unit: String,
+    components: usize,
+    offset: Option<usize>,
+    text: String,
+}
+
+fn attribute(tag: &BytesStart, name: &str) -> Option<String> {
+    let attribute = tag.try_get_attribute(name).ok()??;
+    attribute.normalized_value(quick_xml::XmlVersion::Implicit1_0).ok().map(std::borrow::Cow::into_owned)
+}
+
+/// Arrays of the head with the section they stand in, and the number of points.
+fn head(text: &str) -> Result<(Vec<Array>, usize), String> {
+    let mut reader = quick_xml::Reader::from_str(text);
+    reader.config_mut().check_end_names = false;
+    let (mut arrays, mut points, mut section, mut inside) = (Vec::<Array>::new(), 0, String::new(), "");
+    loop {
+        let event = reader.read_event().map_err(|e| e.to_string())?;
+        match &event {
+            Event::Eof => return Ok((arrays, points)),
+            Event::Start(tag) | Event::Empty(tag) => match tag.name().as_ref() {
+                "Piece" => {
+                    let count = attribute(tag, "NumberOfPoints").and_then(|n| n.parse().ok());
+                    points = count.ok_or("a Piece without NumberOfPoints")?;
+                }
+                "DataArray" => {
+                    arrays.push(Array {
+                        section: section.clone(),
+                        name: attribute(tag, "Name").ok_or("a DataArray without a name")?,
+                        unit: String::new(),
+                        components: attribute(tag, "NumberOfComponents").and_then(|n| n.parse().ok()).unwrap_or(1),
+                        offset: attribute(tag, "offset").and_then(|n| n.parse().ok()),
+                        text: String::new(),
+                    });
+                    inside = if matches!(event, Event::Start(_)) { "text" } else { "" };
+                }
+                "InformationKey" => inside = "unit",
+                name => section = name.into(),
+            },
+            Event::Text(text) => {
+                if let Some(array) = arrays.last_mut() {
+                    match inside {
+                        "text" => array.text.push_str(&text.xml10_content()),
+                        "unit" => array.unit.push_str(&text.xml10_content()),
+                        _ => {}
+                    }
+                }
+            }
+            Event::GeneralRef(name) => {
+                if let Some(array) = arrays.last_mut().filter(|_| inside == "unit") {
+                    array.unit.push_str(quick_xml::escape::resolve_predefined_entity(name).unwrap_or_default());
+                }
+            }
+            Event::End(_) => inside = "",
+            _ => {}
+        }
+    }
+}
+
+/// Values of an appended array, `B` bytes each.
+fn values<const B: usize>(data: &[u8], array: &Array) -> Result<Vec<[u8; B]>, String> {
+    let block = || {
+        let data = data.get(array.offset?..)?;
+        let (length, data) = data.split_first_chunk::<8>()?;
+        data.get(..usize::try_from(u64::from_le_bytes(*length)).ok()?)
+    };
+    let bytes = block().ok_or_else(|| format!("array `{}` reaches beyond the end of the file", array.name))?;
+    let (chunks, rest) = bytes.as_chunks::<B>();
+    if rest.is_empty() { Ok(chunks.to_vec()) } else { Err(format!("array `{}` has a torn value", array.name)) }
+}
+
+fn numbers(data: &[u8], array: &Array, expected: usize) -> Result<Vec<f64>, String> {
+    let values: Vec<f64> = values(data, array)?.into_iter().map(f64::from_le_bytes).collect();
+    if values.len() == expected {
+        return Ok(values);
+    }
+    Err(format!("array `{}` has {} values instead of {expected}", array.name, values.len()))
+}
+
+impl FieldSet {
+    /// Reads the bytes of a field file.
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub fn from_vtu(bytes: &[u8]) -> Result<Self, String> {
+        let cut = bytes.windows(APPENDED.len()).position(|w| w == APPENDED).ok_or("no appended raw data")?;
+        let (text, data) = (&bytes[..cut], &bytes[cut + APPENDED.len()..]);
+        let (arrays, n) = head(std::str::from_utf8(text).map_err(|e| e.to_string())?)?;
+        let by_name: HashMap<(&str, &str), &Array> =
+            arrays.iter().map(|a| ((a.section.as_str(), a.name.as_str()), a)).collect();
+        let find = |section, name| by_name.get(&(section, name)).copied().ok_or(format!("no {name} in {section}"));
+
+        let coordinates = n.checked_mul(3).ok_or("too many points")?;
+        let points = numbers(data, find("Points", "points")?, coordinates)?.as_chunks::<3>().0.to_vec();
+        let index = |bytes| usize::try_from(i64::from_le_bytes(bytes)).map_err(|e| e.to_string());
+        let read = |name| values::<8>(data, find("Cells", name)?)?.into_iter().map(index).collect::<Result<Vec<_>, _>>();
+        let (connectivity, ends) = (read("connectivity")?, read("offsets")?);
+        if let Some(node) = connectivity.iter().find(|&&node| node >= n) {
+            return Err(format!("a cell names node {node}, but there are {n} points"));
+        }
+        let types = values::<1>(data, find("Cells", "types")?)?;
+        let bodies = values::<4>(data, find("CellData", "body")?)?;
+        let codes = find("FieldData", "bodies")?.text.split_whitespace().map(str::parse).collect::<Result<Vec<u8>, _>>();
+        let codes = codes.map_err(|e| format!("body names: {e}"))?;
+        let names: Vec<String> = codes.split(|&c| c == 0).map(|n| String::from_utf8_lossy(n).into_owned()).collect();
+
+        let mut blocks: Vec<Block> = Vec::new();
+        let mut last = None;
+        let mut start = 0;
+        for ((&end, [kind]), body) in ends.iter().zip(types).zip(bodies) {
+            let cell = match kind {
+                68 => Cell::Curve,
+                69 => Cell::Triangle,
+                _ => return Err(format!("cells of VTK type {kind}")),
+            };
+            let nodes = connectivity.get(start..end).ok_or("cells reach beyond the connectivity")?;
+            let degree = (1..=3).find(|&d| cell.nodes(d) == nodes.len());
+            let degree = degree.ok_or_else(|| format!("cells of {} nodes", nodes.len()))?;
+            if last != Some((body, kind, degree)) {
+                let name = names.get(i32::from_le_bytes(body) as usize).cloned().ok_or("a cell of an unnamed body")?;
+                blocks.push(Block { body: name, cell, degree, connectivity: Vec::new() });
+                last = Some((body, kind, degree));
+            }
+            if let Some(block) = blocks.last_mut() {
+                block.connectivity.extend(nodes);
+            }
+            start = end;
+        }
+        let arrays = arrays.iter().filter(|a| a.section == "PointData").map(|a| {
+            let expected = n.checked_mul(a.components).ok_or("too many points")?;
+            let values = numbers(data, a, expected)?;
+            Ok(PointArray { name: a.name.clone(), unit: a.unit.clone(), components: a.components, values })
+        });
+        let arrays = arrays.collect::<Result<_, String>>()?;
+        Ok(Self { points, blocks, arrays })
+    }
+}

@@ -1,0 +1,283 @@
+//! Writing a run directory so that it can be killed at any moment and continued to the same bytes.
+//!
+//! A directory comes into being by one rename, with a checkpoint in it. A checkpoint first forces the row files to the disk, then
+//! records their lengths; reopening cuts them back to those lengths and drops later field files.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{BufWriter, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use crate::checkpoint::{self, Header};
+use crate::rows::{CONTACT_COLUMNS, Table};
+use crate::{ContactRow, Event, FieldEntry, FieldSet, Manifest, RecordError, files, pvd};
+
+const ROW_FILES: [&str; 3] = ["history.csv", "contact.csv", "log.jsonl"];
+
+/// A run directory being written. Dropping it without `finish` leaves a run that can be reopened.
+pub struct RunWriter {
+    directory: PathBuf,
+    /// Which history columns are integers.
+    integer: Vec<bool>,
+    history: Table,
+    contact: Table,
+    log: BufWriter<File>,
+    /// The record now; lengths are those of the last checkpoint.
+    header: Header,
+    /// Generation the next checkpoint replaces.
+    generation: usize,
+    /// Held as long as this writer lives.
+    _lock: File,
+}
+
+/// A run directory reopened at a checkpoint.
+pub struct Reopened {
+    /// Appends where the checkpoint was taken.
+    pub writer: RunWriter,
+    /// The manifest as it stands.
+    pub manifest: Manifest,
+    /// The checkpoint's payload.
+    pub payload: Vec<u8>,
+    /// Its step.
+    pub step: u64,
+    /// History rows kept; 0 when not even the initial state had been recorded.
+    pub rows: u64,
+    /// Set when the newest checkpoint was damaged and the one before was taken.
+    pub fallback: Option<RecordError>,
+}
+
+impl RunWriter {
+    /// Makes the directory, complete with a first checkpoint, and its parents. Refuses one that exists.
+    pub fn create(directory: &Path, manifest: &Manifest, first_checkpoint: &[u8]) -> Result<Self, RecordError> {
+        if directory.symlink_metadata().is_ok() {
+            return Err(RecordError::Exists { path: directory.to_path_buf() });
+        }
+        let parent = directory.parent().unwrap_or(Path::new("."));
+        fs::create_dir_all(parent).map_err(RecordError::io("create", parent))?;
+        let mut name = std::ffi::OsString::from(".");
+        name.push(directory.file_name().unwrap_or_default());
+        name.push(format!(".partial-{}", std::process::id()));
+        let partial = directory.with_file_name(name);
+        // Ours from an earlier life: a kill between here and the rename.
+        if partial.exists() {
+            fs::remove_dir_all(&partial).map_err(RecordError::io("clear", &partial))?;
+        }
+        let built = Self::build(&partial, manifest, first_checkpoint).and_then(|()| {
+            fs::rename(&partial, directory).map_err(|error| match error.kind() {
+                std::io::ErrorKind::DirectoryNotEmpty | std::io::ErrorKind::AlreadyExists => {
+                    RecordError::Exists { path: directory.to_path_buf() }
+                }
+                _ => RecordError::io("create", directory)(error),
+            })
+        });
+        if let Err(error) = built {
+            let _ = fs::remove_dir_all(&partial);
+            return Err(error);
+        }
+        files::sync_directory(parent)?;
+        Ok(Self::reopen(directory)?.writer)
+    }
+
+    fn build(partial: &Path, manifest: &Manifest, payload: &[u8]) -> Result<(), RecordError> {
+        let checkpoints = partial.join("checkpoint");
+        fs::create_dir_all(&checkpoints).map_err(RecordError::io("create", &checkpoints))?;
+        manifest.write(partial)?;
+        let mut header = Header { payload: payload.len() as u64, ..Header::default() };
+        let columns: Vec<&str> = manifest.columns.iter().map(|c| c.name.as_str()).collect();
+        for (i, names) in [&columns[..], &CONTACT_COLUMNS, &[]].into_iter().enumerate() {
+            let path = partial.join(ROW_FILES[i]);
+            let refused = |e| RecordError::io("create", &path)(e);
+            let mut table = Table::new(File::create(&path).map_err(refused)?);
+            for name in names {
+                table.text(name).map_err(refused)?;
+            }
+            if !names.is_empty() {
+                table.end_row().map_err(refused)?;
+            }
+            table.flush().and_then(|()| table.file().sync_all()).map_err(refused)?;
+            header.lengths[i] = table.file().metadata().map_err(refused)?.len();
+        }
+        checkpoint::write(partial, 0, &header, payload)
+    }
+
+    /// Goes on from the newest checkpoint that is whole.
+    pub fn reopen(directory: &Path) -> Result<Reopened, RecordError> {
+        let manifest = Manifest::read(directory)?;
+        let lock = lock(directory)?;
+        let [a, b] = [0, 1].map(|generation| verified(directory, generation));
+        let (generation, (header, payload), fallback) = match (a, b) {
+            (Ok(a), Ok(b)) if a.0.sequence > b.0.sequence => (0, a, None),
+            (Ok(_), Ok(b)) => (1, b, None),
+            (Ok(a), Err(error)) => (0, a, Some(error)),
+            (Err(error), Ok(b)) => (1, b, Some(error)),
+            (Err(error), Err(other)) => return Err(if missing(&error) { other } else { error }),
+        };
+        // One generation only is how every run begins.
+        let fallback = fallback.filter(|error| !missing(error));
+        Ok(Reopened { fallback, ..Self::open(directory, manifest, lock, generation, header, payload)? })
+    }
+
+    /// Goes on from the checkpoint of one generation, 0 or 1.
+    pub fn reopen_at(directory: &Path, generation: usize) -> Result<Reopened, RecordError> {
+        let manifest = Manifest::read(directory)?;
+        let lock = lock(directory)?;
+        let (header, payload) = verified(directory, generation)?;
+        Self::open(directory, manifest, lock, generation, header, payload)
+    }
+
+    fn open(
+        directory: &Path,
+        manifest: Manifest,
+        lock: File,
+        generation: usize,
+        header: Header,
+        payload: Vec<u8>,
+    ) -> Result<Reopened, RecordError> {
+        let mut rows = Vec::new();
+        for (name, length) in ROW_FILES.iter().zip(header.lengths) {
+            let path = directory.join(name);
+            let refused = |e| RecordError::io("write", &path)(e);
+            let mut file = OpenOptions::new().read(true).write(true).open(&path).map_err(refused)?;
+            file.set_len(length).and_then(|()| file.seek(SeekFrom::End(0))).map_err(refused)?;
+            rows.push(file);
+        }
+        let [history, contact, log] = rows.try_into().unwrap_or_else(|_| unreachable!("three row files"));
+        drop_fields(directory, &header.fields)?;
+        let writer = Self {
+            directory: directory.to_path_buf(),
+            integer: manifest.columns.iter().map(|c| c.integer).collect(),
+            history: Table::new(history),
+            contact: Table::new(contact),
+            log: BufWriter::new(log),
+            generation: 1 - generation % 2,
+            header,
+            _lock: lock,
+        };
+        let (step, rows) = (writer.header.step, writer.header.rows);
+        Ok(Reopened { writer, manifest, payload, step, rows, fallback: None })
+    }
+
+    /// Where it writes.
+    pub fn directory(&self) -> &Path {
+        &self.directory
+    }
+
+    /// Appends a row of `history.csv`, one value per column of the manifest.
+    pub fn history(&mut self, row: &[f64]) -> Result<(), RecordError> {
+        if row.len() != self.integer.len() {
+            return Err(RecordError::Width { got: row.len(), expected: self.integer.len() });
+        }
+        let table = &mut self.history;
+        let written = row
+            .iter()
+            .zip(&self.integer)
+            .try_for_each(|(&value, &integer)| {
+                // A count that is none is shown as it is rather than rounded.
+                if integer && value >= 0.0 && value.fract() == 0.0 { table.integer(value as u64) } else { table.number(value) }
+            })
+            .and_then(|()| table.end_row());
+        self.header.rows += 1;
+        written.map_err(RecordError::io("write", &self.directory.join(ROW_FILES[0])))
+    }
+
+    /// Appends a row of `contact.csv`.
+    pub fn contact(&mut self, row: &ContactRow) -> Result<(), RecordError> {
+        self.contact.contact(row).map_err(|e| RecordError::io("write", &self.directory.join(ROW_FILES[1]))(e))
+    }
+
+    /// Appends a line of `log.jsonl`.
+    pub fn log(&mut self, event: &Event) -> Result<(), RecordError> {
+        serde_json::to_writer(&mut self.log, event)
+            .map_err(Into::into)
+            .and_then(|()| self.log.write_all(b"\n"))
+            .map_err(|e| RecordError::io("write", &self.directory.join(ROW_FILES[2]))(e))
+    }
+
+    /// Writes a field file and lists it in `fields.pvd`.
+    pub fn fields(&mut self, step: u64, time: f64, fields: &FieldSet) -> Result<(), RecordError> {
+        let entry = FieldEntry { step, time };
+        let folder = self.directory.join("fields");
+        fs::create_dir_all(&folder).map_err(RecordError::io("create", &folder))?;
+        files::write_atomically(&self.directory.join(entry.file()), &[&fields.to_vtu(time)?])?;
+        self.header.fields.retain(|e| e.step != step);
+        self.header.fields.push(entry);
+        pvd::write(&self.directory, &self.header.fields)
+    }
+
+    /// Everything so far reaches the disk, then the older generation is replaced.
+    pub fn checkpoint(&mut self, step: u64, payload: &[u8]) -> Result<(), RecordError> {
+        self.sync()?;
+        self.header.step = step;
+        self.header.sequence += 1;
+        self.header.payload = payload.len() as u64;
+        checkpoint::write(&self.directory, self.generation, &self.header, payload)?;
+        self.generation = 1 - self.generation;
+        Ok(())
+    }
+
+    /// Replaces `manifest.json`.
+    pub fn manifest(&mut self, manifest: &Manifest) -> Result<(), RecordError> {
+        manifest.write(&self.directory)
+    }
+
+    /// Everything reaches the disk, and last of all the manifest that says how it ended.
+    pub fn finish(mut self, manifest: &Manifest) -> Result<(), RecordError> {
+        self.sync()?;
+        manifest.write(&self.directory)
+    }
+
+    fn sync(&mut self) -> Result<(), RecordError> {
+        let flushed = [self.history.flush(), self.contact.flush(), self.log.flush()];
+        let files = [self.history.file(), self.contact.file(), self.log.get_ref()];
+        for (i, (flushed, file)) in flushed.into_iter().zip(files).enumerate() {
+            self.header.lengths[i] = flushed
+                .and_then(|()| file.sync_all())
+                .and_then(|()| file.metadata())
+                .map_err(|e| RecordError::io("write", &self.directory.join(ROW_FILES[i]))(e))?
+                .len();
+        }
+        Ok(())
+    }
+}
+
+/// A checkpoint, if it is whole and the row files reach as far as it says.
+fn verified(directory: &Path, generation: usize) -> Result<(Header, Vec<u8>), RecordError> {
+    let (header, payload) = checkpoint::read(directory, generation)?;
+    for (name, length) in ROW_FILES.iter().zip(header.lengths) {
+        let path = directory.join(name);
+        let got = fs::metadata(&path).map_err(RecordError::io("read", &path))?.len();
+        if got < length {
+            let what = format!("it has {got} bytes, but had {length} when a checkpoint was taken");
+            return Err(RecordError::corrupt(&path, None, what, "run the case again"));
+        }
+    }
+    Ok((header, payload))
+}
+
+fn missing(error: &RecordError) -> bool {
+    matches!(error, RecordError::Io { source, .. } if source.kind() == std::io::ErrorKind::NotFound)
+}
+
+/// Two processes must not append to one record. The system releases the lock when the process ends, however it ends.
+fn lock(directory: &Path) -> Result<File, RecordError> {
+    let path = directory.join("checkpoint").join("lock");
+    let file = File::create(&path).map_err(RecordError::io("open", &path))?;
+    match file.try_lock() {
+        Err(fs::TryLockError::WouldBlock) => Err(RecordError::Busy { path: directory.to_path_buf() }),
+        // A file system without locks must not stop a run.
+        Ok(()) | Err(fs::TryLockError::Error(_)) => Ok(file),
+    }
+}
+
+/// Removes field files that are not in the list, and lists what stays.
+fn drop_fields(directory: &Path, keep: &[FieldEntry]) -> Result<(), RecordError> {
+    let folder = directory.join("fields");
+    let Ok(entries) = fs::read_dir(&folder) else { return Ok(()) };
+    let keep_names: Vec<PathBuf> = keep.iter().map(|e| directory.join(e.file())).collect();
+    for entry in entries {
+        let path = entry.map_err(RecordError::io("read", &folder))?.path();
+        if !keep_names.contains(&path) {
+            fs::remove_file(&path).map_err(RecordError::io("remove", &path))?;
+        }
+    }
+    pvd::write(directory, keep)
+}

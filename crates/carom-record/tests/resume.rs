@@ -1,0 +1,206 @@
+//! A run that is killed and reopened ends in the same bytes as one that was not.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use carom_record::{Block, Cell, Column, ContactRow, Event, FieldSet, Manifest, RecordError, Run, RunWriter, Source, Status};
+
+const STEPS: u64 = 40;
+
+fn manifest() -> Manifest {
+    let column = |name: &str, integer| Column { name: name.into(), unit: "s".into(), description: String::new(), integer };
+    let columns = vec![column("step", true), column("time", false), column("A.uy, \"odd\"", false)];
+    Manifest::new("0.1.0", serde_json::json!({"title": "t"}), Source::default(), columns, 1)
+}
+
+fn fields(step: u64) -> FieldSet {
+    FieldSet {
+        points: vec![[0.0, step as f64, 0.0], [1.0, 0.0, 0.0]],
+        blocks: vec![Block { body: "b".into(), cell: Cell::Curve, degree: 1, connectivity: vec![0, 1] }],
+        arrays: vec![],
+    }
+}
+
+/// What one step of a simulation records; the payload is the step.
+fn record(writer: &mut RunWriter, step: u64) -> Result<(), RecordError> {
+    let time = step as f64 * 0.1;
+    writer.history(&[step as f64, time, (time.sin() - 0.5) * 10f64.powi(step as i32 * 15 - 300)])?;
+    for node in 0..step % 3 {
+        let (xi, gap, multiplier) = (-0.3, 1e-17, -time);
+        let contact = "a,b".into();
+        let row = ContactRow { step, time, contact, node, point: [1.0, 2.0], facet: 7, xi, gap, multiplier, pressure: f64::NAN };
+        writer.contact(&row)?;
+    }
+    if step % 7 == 3 {
+        writer.log(&Event::new(step, time, "rejected", "too far").with("depth", 0.1 * time))?;
+    }
+    if step % 5 == 0 {
+        writer.fields(step, time, &fields(step))?;
+    }
+    if step % 6 == 0 {
+        writer.checkpoint(step, &step.to_le_bytes())?;
+    }
+    Ok(())
+}
+
+/// Steps until `end`; the first row only if it is not there yet.
+fn advance(mut writer: RunWriter, from: u64, rows: u64, end: u64) -> RunWriter {
+    let first = if rows == 0 { 0 } else { from + 1 };
+    (first..=end).for_each(|step| record(&mut writer, step).unwrap());
+    writer
+}
+
+fn all_bytes(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![directory.to_path_buf()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if !path.ends_with("manifest.json") {
+                found.insert(path.strip_prefix(directory).unwrap().to_path_buf(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+fn whole(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let writer = RunWriter::create(directory, &manifest(), &0u64.to_le_bytes()).unwrap();
+    advance(writer, 0, 0, STEPS).finish(&manifest()).unwrap();
+    all_bytes(directory)
+}
+
+#[test]
+fn killed_anywhere_ends_in_the_same_bytes() {
+    let scratch = tempfile::tempdir().unwrap();
+    let expected = whole(&scratch.path().join("whole"));
+    for kill in 0..STEPS {
+        for generation in [None, Some(0), Some(1)] {
+            let directory = scratch.path().join(format!("killed-{kill}-{generation:?}"));
+            let writer = RunWriter::create(&directory, &manifest(), &0u64.to_le_bytes()).unwrap();
+            drop(advance(writer, 0, 0, kill));
+            // A kill leaves torn lines and half-written files behind.
+            let path = directory.join("history.csv");
+            let torn = [fs::read(&path).unwrap(), b"17,0.3".to_vec()].concat();
+            fs::write(&path, torn).unwrap();
+            fs::create_dir_all(directory.join("fields")).unwrap();
+            fs::write(directory.join("fields/.00000099.vtu.partial"), "x").unwrap();
+            let reopened = match generation {
+                None => RunWriter::reopen(&directory).unwrap(),
+                Some(generation) => RunWriter::reopen_at(&directory, generation).unwrap(),
+            };
+            assert!(reopened.fallback.is_none());
+            assert_eq!(reopened.payload, reopened.step.to_le_bytes());
+            assert!(reopened.step <= kill && (generation.is_some() || reopened.step + 6 > kill));
+            let writer = advance(reopened.writer, reopened.step, reopened.rows, STEPS);
+            writer.finish(&manifest()).unwrap();
+            let mut got = all_bytes(&directory);
+            let mut expected = expected.clone();
+            if generation.is_some() {
+                // Which of the two files holds which step, and how often was counted, depends on where one went on.
+                got.retain(|path, _| !path.starts_with("checkpoint"));
+                expected.retain(|path, _| !path.starts_with("checkpoint"));
+            }
+            assert!(got == expected, "killed at {kill}, {generation:?}");
+        }
+    }
+}
+
+#[test]
+fn a_damaged_checkpoint_falls_back_to_the_one_before() {
+    let scratch = tempfile::tempdir().unwrap();
+    let directory = scratch.path().join("run");
+    let expected = whole(&directory);
+    // 36 is the newest step; find its file and bend one byte.
+    let newest = RunWriter::reopen(&directory).unwrap();
+    assert_eq!(newest.step, 36);
+    drop(newest);
+    let newest = ["a.bin", "b.bin"].map(|n| directory.join("checkpoint").join(n)).into_iter().find(|path| {
+        let bytes = fs::read(path).unwrap();
+        bytes[bytes.len() - 40..bytes.len() - 32] == 36u64.to_le_bytes()
+    });
+    let newest = newest.unwrap();
+    let good = fs::read(&newest).unwrap();
+    for at in 0..good.len() {
+        let mut bad = good.clone();
+        bad[at] ^= 1;
+        fs::write(&newest, bad).unwrap();
+        let reopened = RunWriter::reopen(&directory).unwrap();
+        assert_eq!((reopened.step, reopened.rows), (30, 31));
+        assert!(reopened.fallback.unwrap().to_string().contains("is damaged"));
+        if at == 0 {
+            advance(reopened.writer, 30, 31, STEPS).finish(&manifest()).unwrap();
+            assert!(all_bytes(&directory) == expected);
+        }
+    }
+}
+
+#[test]
+fn what_is_read_is_what_was_written() {
+    let scratch = tempfile::tempdir().unwrap();
+    let directory = scratch.path().join("deep/er/run");
+    let mut writer = RunWriter::create(&directory, &manifest(), b"").unwrap();
+    let awkward = [0.1 + 0.2, -0.0, f64::MIN_POSITIVE, 5e-324, f64::MAX, 1e16, 123456789.125, f64::INFINITY, 1.0];
+    for (i, &x) in awkward.iter().enumerate() {
+        writer.history(&[i as f64, x, -x]).unwrap();
+    }
+    let row = ContactRow {
+        step: 3,
+        time: 0.1,
+        contact: "a \"b\", c".into(),
+        node: 5,
+        point: [0.1, -2e-9],
+        facet: 1,
+        xi: -0.99,
+        gap: 1e-18,
+        multiplier: -7.5,
+        pressure: 75.0,
+    };
+    writer.contact(&row).unwrap();
+    let event = Event::new(3, 0.1, "cycle", "line\nbreak").with("nodes", vec![1, 2]);
+    writer.log(&event).unwrap();
+    writer.fields(2, 0.2, &fields(2)).unwrap();
+    let mut done = manifest();
+    done.status = Status::Finished;
+    writer.finish(&done).unwrap();
+
+    let run = Run::open(&directory).unwrap();
+    assert_eq!(run.manifest, done);
+    let bits = |x: &[f64]| x.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(run.times()), bits(&awkward));
+    assert_eq!(run.column("A.uy, \"odd\"").unwrap()[0], -(0.1 + 0.2));
+    assert_eq!(run.column("step").unwrap(), [0., 1., 2., 3., 4., 5., 6., 7., 8.]);
+    assert!(fs::read_to_string(directory.join("history.csv")).unwrap().contains("\n3,5e-324,-5e-324\n"));
+    assert_eq!(run.contact, [row]);
+    assert_eq!(run.log, [event]);
+    assert_eq!((run.fields[0].step, run.fields[0].time), (2, 0.2));
+    assert_eq!(run.field(&run.fields[0]).unwrap(), fields(2));
+}
+
+#[test]
+fn refusals_say_why() {
+    let scratch = tempfile::tempdir().unwrap();
+    let directory = scratch.path().join("run");
+    let mut writer = RunWriter::create(&directory, &manifest(), b"0").unwrap();
+    let refused = |error: RecordError| (error.exit_code(), error.to_string());
+    let create = |path: &Path| refused(RunWriter::create(path, &manifest(), b"0").err().unwrap());
+    assert_eq!(create(&directory).0, 2);
+    let empty = scratch.path().join("empty");
+    fs::create_dir(&empty).unwrap();
+    assert!(create(&empty).1.contains("exists already"));
+    let (code, text) = create(&scratch.path().join("run/history.csv/x"));
+    assert!(code == 4 && text.contains("cannot create"), "{text}");
+    assert!(refused(RunWriter::reopen(&directory).err().unwrap()).1.contains("another process"));
+    assert!(refused(RunWriter::reopen(&empty).err().unwrap()).1.contains("no manifest.json"));
+    assert!(matches!(writer.history(&[1.0]), Err(RecordError::Width { got: 1, expected: 3 })));
+    drop(writer);
+    fs::write(directory.join("history.csv"), "step,time,\"A.uy, \"\"odd\"\"\"\n0,0,0\n1,x,0\n2,tor").unwrap();
+    let (code, text) = refused(Run::open(&directory).unwrap_err());
+    assert!(code == 2 && text.contains("history.csv:3 is damaged: `x` in column time is not a number"), "{text}");
+    fs::write(directory.join("history.csv"), "step").unwrap();
+    let text = refused(RunWriter::reopen(&directory).err().unwrap()).1;
+    assert!(text.contains("history.csv") && text.contains("4 bytes"), "{text}");
+}

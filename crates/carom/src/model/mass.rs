@@ -1,0 +1,89 @@
+//! Mass matrix M = ∫ρ₀ NᵀN dΩ₀ between nodes; the same for every direction.
+
+use carom_solid::lumped;
+
+use super::Part;
+use crate::case::MassKind;
+
+/// Symmetric matrix between nodes, compressed by rows, both triangles.
+#[derive(Clone, Debug, Default)]
+pub struct Mass {
+    starts: Vec<usize>,
+    columns: Vec<usize>,
+    values: Vec<f64>,
+    directions: usize,
+}
+
+impl Mass {
+    /// Assembles the bodies' masses. `kinds` has one entry per body.
+    pub fn assemble<const D: usize>(parts: &[Part<D>], kinds: &[MassKind]) -> Self {
+        let count: usize = parts.iter().map(|p| p.body.mesh().nodes.len()).sum();
+        let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];
+        for (part, kind) in parts.iter().zip(kinds) {
+            let mesh = part.body.mesh();
+            let n = mesh.element.nodes();
+            let mut local = vec![0.0; n * n];
+            for cell in 0..mesh.cell_count() {
+                part.body.cell_mass(cell, &mut local);
+                if *kind == MassKind::Lumped {
+                    lumped(&mut local);
+                }
+                let nodes = mesh.cell(cell);
+                for p in 0..n {
+                    for q in 0..n {
+                        if local[p * n + q] != 0.0 {
+                            rows[part.first_node + nodes[p]].push((part.first_node + nodes[q], local[p * n + q]));
+                        }
+                    }
+                }
+            }
+        }
+        let mut mass = Self { starts: vec![0], directions: D, ..Self::default() };
+        for row in &mut rows {
+            row.sort_by_key(|e| e.0);
+            for &(column, value) in row.iter() {
+                if mass.columns.len() > mass.starts[mass.starts.len() - 1] && mass.columns.last() == Some(&column) {
+                    if let Some(last) = mass.values.last_mut() {
+                        *last += value;
+                    }
+                } else {
+                    mass.columns.push(column);
+                    mass.values.push(value);
+                }
+            }
+            mass.starts.push(mass.columns.len());
+        }
+        mass
+    }
+
+    /// Entries (row, column, value) of a node's row, columns ascending.
+    pub fn row(&self, node: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.starts[node]..self.starts[node + 1];
+        self.columns[range.clone()].iter().copied().zip(self.values[range].iter().copied())
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// out = M x over all dofs.
+    pub fn multiply_into(&self, x: &[f64], out: &mut [f64]) {
+        let d = self.directions;
+        for node in 0..self.nodes() {
+            let target = &mut out[node * d..(node + 1) * d];
+            target.fill(0.0);
+            for k in self.starts[node]..self.starts[node + 1] {
+                let (column, value) = (self.columns[k], self.values[k]);
+                for i in 0..d {
+                    target[i] += value * x[column * d + i];
+                }
+            }
+        }
+    }
+
+    /// Whether a node carries no mass at all.
+    pub fn is_massless(&self, node: usize) -> bool {
+        self.row(node).all(|(_, value)| value == 0.0)
+    }
+}

@@ -1,0 +1,160 @@
+//! A case made computable: bodies with their nodes numbered through, masses, loads, supports, contacts and probes. Never changes during a run.
+
+mod build;
+mod contacts;
+mod mass;
+mod probe;
+
+use carom_contact::ContactMethod;
+use carom_solid::{Body, Inverted};
+
+pub use build::{build, overlaps};
+pub use mass::Mass;
+pub use probe::Probe;
+
+use crate::case::{ForceTime, Persistency, Quantity};
+
+/// A body and its place among the global nodes.
+pub struct Part<const D: usize> {
+    /// Name in the case.
+    pub name: String,
+    /// Global number of its first node.
+    pub first_node: usize,
+    /// Forces, masses and stresses at positions.
+    pub body: Box<dyn Body<D>>,
+    /// Whether its density is zero: its balance holds at s + 1 without inertia.
+    pub massless: bool,
+    /// Total mass.
+    pub total_mass: f64,
+}
+
+impl<const D: usize> Part<D> {
+    /// Global numbers of its nodes.
+    pub fn nodes(&self) -> std::ops::Range<usize> {
+        self.first_node..self.first_node + self.body.mesh().nodes.len()
+    }
+}
+
+/// A contact and the rules of the case for it.
+pub struct Contact<const D: usize> {
+    /// Name in the case.
+    pub name: String,
+    /// Gaps at positions.
+    pub method: Box<dyn ContactMethod<D>>,
+    /// Facets of the secondary side in global nodes: for consistent weights.
+    pub secondary_facets: Vec<Vec<usize>>,
+    /// Averaged with α_f or taken at the end.
+    pub force: ForceTime,
+    /// What happens to velocities where contact begins.
+    pub persistency: Persistency,
+    /// Whether the active set may change before Newton has converged.
+    pub within: bool,
+}
+
+/// A named support: the dofs whose reaction is recorded.
+pub struct Support {
+    /// Name in the case.
+    pub name: String,
+    /// Global dofs it holds.
+    pub dofs: Vec<usize>,
+}
+
+/// Everything a step needs to know that does not change.
+pub struct Model<const D: usize> {
+    /// Bodies, nodes numbered through in this order.
+    pub parts: Vec<Part<D>>,
+    /// Reference positions X, flat.
+    pub reference: Vec<f64>,
+    /// Initial velocities, flat; zero where supported.
+    pub initial_velocity: Vec<f64>,
+    /// Whether a dof is held.
+    pub fixed: Vec<bool>,
+    /// Dofs that are not held, ascending.
+    pub free: Vec<usize>,
+    /// Place of a dof among the free ones; `usize::MAX` where held.
+    pub unknown: Vec<usize>,
+    /// Mass matrix.
+    pub mass: Mass,
+    /// Whether a dof has no mass.
+    pub massless: Vec<bool>,
+    /// Gravity as nodal forces; constant, with potential −f·y.
+    pub gravity: Vec<f64>,
+    /// Contacts.
+    pub contacts: Vec<Contact<D>>,
+    /// Named supports.
+    pub supports: Vec<Support>,
+    /// Probes.
+    pub probes: Vec<Probe>,
+    /// Length L that tolerances refer to: the largest body's diameter.
+    pub scale: f64,
+}
+
+impl<const D: usize> Model<D> {
+    /// Number of dofs, held ones included.
+    pub fn dofs(&self) -> usize {
+        self.reference.len()
+    }
+
+    /// Internal forces ∂U/∂y at positions `y`, overwriting `force`; the strain energy U is returned.
+    ///
+    /// # Errors
+    /// The body's name and the cell that is inverted.
+    pub fn internal_force(&self, y: &[f64], force: &mut [f64]) -> Result<f64, (String, Inverted)> {
+        force.fill(0.0);
+        let mut strain = 0.0;
+        for part in &self.parts {
+            let (body, first) = (&part.body, part.first_node);
+            let positions = &y.as_chunks::<D>().0[part.nodes()];
+            let n = body.mesh().element.nodes();
+            let mut local = [0.0; MAX_CELL_DOFS];
+            for cell in 0..body.mesh().cell_count() {
+                strain += body
+                    .cell_force(cell, positions, &mut local[..n * D])
+                    .map_err(|inverted| (part.name.clone(), inverted))?;
+                for (k, &node) in body.mesh().cell(cell).iter().enumerate() {
+                    for i in 0..D {
+                        force[(first + node) * D + i] += local[k * D + i];
+                    }
+                }
+            }
+        }
+        Ok(strain)
+    }
+
+    /// Kinetic energy ½ vᵀM v.
+    pub fn kinetic(&self, v: &[f64]) -> f64 {
+        let mut momentum = vec![0.0; v.len()];
+        self.mass.multiply_into(v, &mut momentum);
+        0.5 * dot(v, &momentum)
+    }
+
+    /// Potential of gravity, −f·(y − X): zero in the reference position.
+    pub fn potential(&self, y: &[f64]) -> f64 {
+        -(0..y.len()).map(|i| self.gravity[i] * (y[i] - self.reference[i])).sum::<f64>()
+    }
+
+    /// Smallest J over all quadrature points.
+    pub fn min_det_f(&self, y: &[f64]) -> f64 {
+        let mut least = f64::INFINITY;
+        for part in &self.parts {
+            let positions = &y.as_chunks::<D>().0[part.nodes()];
+            for cell in 0..part.body.mesh().cell_count() {
+                least = least.min(part.body.cell_min_det_f(cell, positions));
+            }
+        }
+        least
+    }
+}
+
+/// Dofs of the largest cell (T10 in the plane, Tet4 in space).
+pub const MAX_CELL_DOFS: usize = 20;
+
+/// Scalar product with one fixed order of summation.
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Whether a quantity exists in dimension `d`.
+pub(crate) fn exists_in(quantity: Quantity, d: usize) -> bool {
+    d > 1 || matches!(quantity, Quantity::Ux | Quantity::Vx | Quantity::Ax | Quantity::SigmaXx | Quantity::DetF)
+}
