@@ -23,6 +23,13 @@ pub(super) fn problems(document: &Document) -> Vec<Problem> {
     check.problems
 }
 
+/// The same for a table of variants alone.
+pub(super) fn variant(table: &Table, variants: &Variants) -> Vec<Problem> {
+    let mut check = Check { dimension: None, problems: Vec::new() };
+    check.variant(table, variants, "");
+    check.problems
+}
+
 struct Check {
     dimension: Option<usize>,
     problems: Vec<Problem>,

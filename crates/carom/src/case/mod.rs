@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 
 pub use document::Document;
 pub use problem::{CaseError, Diagnostic, Problem};
-pub use read::read;
+pub use read::{read, read_scheme};
 pub use schema::schema;
 
 /// One simulation, fully resolved.

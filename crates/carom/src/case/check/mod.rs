@@ -207,10 +207,11 @@ impl<'a> Check<'a> {
         for (i, expect) in draft.expects.iter().enumerate() {
             let Some(expect) = expect else { continue };
             let path = format!("expect[{i}].what");
-            let forms = "min | max | first | last COLUMN, at TIME COLUMN, or the name of a metric";
+            let forms =
+                "min | max | first | last COLUMN, at TIME COLUMN, time of min | max COLUMN, or the name of a metric";
             let words: Vec<_> = expect.what.split_whitespace().collect();
             let column = match words.as_slice() {
-                ["min" | "max" | "first" | "last", column] => column,
+                ["min" | "max" | "first" | "last", column] | ["time", "of", "min" | "max", column] => column,
                 ["at", time, column] => match time.parse::<f64>() {
                     Ok(t) if (0.0..=end).contains(&t) => column,
                     _ => {

@@ -409,7 +409,12 @@ const EXPECT: Table = Table {
     name: "[[expect]]",
     doc: "An expected value with value and tolerance, value and relative, at_most, or at_least.",
     keys: &[
-        key("what", Text, "min | max | at T | first | last of a column, or a named metric.").example("\"min A.uy\""),
+        key(
+            "what",
+            Text,
+            "min | max | first | last | at T | time of min | time of max of a column, or a metric by name.",
+        )
+        .example("\"min A.uy\""),
         key("value", Number(ANY), "Expected value.").optional().example("-0.7827"),
         key("tolerance", Number(NOT_NEGATIVE), "Absolute tolerance.").optional().example("4e-3"),
         key("relative", Number(NOT_NEGATIVE), "Relative tolerance.").optional().example("0.01"),
