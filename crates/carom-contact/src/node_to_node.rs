@@ -29,6 +29,10 @@ impl ContactMethod<1> for NodeToNode {
         &self.primary
     }
 
+    fn signed_distance(&self, _: usize, y: &[[f64; 1]]) -> Option<f64> {
+        Some(self.outward * (y[self.secondary[0]][0] - y[self.primary[0]][0]))
+    }
+
     fn detect(
         &self,
         _: &[[f64; 1]],

@@ -29,6 +29,10 @@ impl<const D: usize> ContactMethod<D> for NodeToPlane<D> {
         &[]
     }
 
+    fn signed_distance(&self, node: usize, y: &[[f64; D]]) -> Option<f64> {
+        Some((Vector(y[self.secondary[node]]) - self.point).dot(&self.normal))
+    }
+
     fn detect(
         &self,
         _: &[[f64; D]],

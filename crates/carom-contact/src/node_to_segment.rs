@@ -126,6 +126,13 @@ impl ContactMethod<2> for NodeToSegment {
         self.primary.facet(facet)
     }
 
+    fn signed_distance(&self, node: usize, y: &[[f64; 2]]) -> Option<f64> {
+        let node = self.secondary[node];
+        (0..self.primary.facets())
+            .filter_map(|f| closest_point(self.primary.facet(f), y, Vector(y[node]), 1.0 + 1e-9).map(|xi| self.gap(node, f, xi, y)))
+            .min_by(|a, b| a.abs().total_cmp(&b.abs()))
+    }
+
     fn detect(
         &self,
         before: &[[f64; 2]],

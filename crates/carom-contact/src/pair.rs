@@ -112,6 +112,9 @@ pub trait ContactMethod<const D: usize>: Send + Sync {
     /// Global numbers of the nodes of a primary facet; empty for a rigid primary.
     fn facet_nodes(&self, facet: usize) -> &[usize];
 
+    /// Signed distance of a secondary node (its place) to the nearest point of the primary side; `None` where no facet faces it.
+    fn signed_distance(&self, node: usize, y: &[[f64; D]]) -> Option<f64>;
+
     /// Brings the pairs worth watching between positions `before` (no penetration) and `now` up to date: adds those that came near, hands over
     /// those that slid off their facet, drops those that left. Ascending by node. Whether anything but an inactive pair changed is returned.
     fn detect(

@@ -32,7 +32,13 @@ pub trait Body<const D: usize>: Send + Sync {
     fn cell_force(&self, cell: usize, y: &[[f64; D]], force: &mut [f64]) -> Result<f64, Inverted>;
 
     /// As [`Self::cell_force`], and overwrites `tangent` (`(N·D)²`, row-major, symmetric, both halves) with ∂²U/∂y².
-    fn cell_tangent(&self, cell: usize, y: &[[f64; D]], force: &mut [f64], tangent: &mut [f64]) -> Result<f64, Inverted>;
+    fn cell_tangent(
+        &self,
+        cell: usize,
+        y: &[[f64; D]],
+        force: &mut [f64],
+        tangent: &mut [f64],
+    ) -> Result<f64, Inverted>;
 
     /// Consistent mass of a cell between its nodes (`N²`, row-major): ∫ρ₀ φᵃφᵇ dΩ₀.
     fn cell_mass(&self, cell: usize, mass: &mut [f64]);

@@ -1,7 +1,20 @@
 //! Bodies: meshes, shapes, quadrature, materials and cell forces of the positional finite element method.
 
 mod body;
+mod factory;
+pub mod generate;
+mod locate;
+mod lumping;
+pub mod material;
 mod mesh;
+pub mod quadrature;
+pub mod shape;
+mod solid;
 
 pub use body::{Body, Inverted, PointState};
+pub use factory::{Cells, body};
+pub use lumping::cell_lumped_mass;
+pub use material::Law;
 pub use mesh::{Element, Facet, Mesh};
+pub use shape::{LineShape, line_shape};
+pub use solid::{Solid, SolidError};

@@ -17,6 +17,9 @@ pub enum Element {
     T3,
     T6,
     T10,
+    /// Keeps the code beneath honest about the third dimension.
+    #[cfg(test)]
+    Tet4,
 }
 
 impl Element {
@@ -24,6 +27,8 @@ impl Element {
     pub fn degree(self) -> usize {
         match self {
             Self::L2 | Self::T3 => 1,
+            #[cfg(test)]
+            Self::Tet4 => 1,
             Self::L3 | Self::T6 => 2,
             Self::L4 | Self::T10 => 3,
         }
@@ -34,6 +39,8 @@ impl Element {
         match self {
             Self::L2 | Self::L3 | Self::L4 => 1,
             Self::T3 | Self::T6 | Self::T10 => 2,
+            #[cfg(test)]
+            Self::Tet4 => 3,
         }
     }
 
@@ -42,7 +49,8 @@ impl Element {
         let k = self.degree();
         match self.dimension() {
             1 => k + 1,
-            _ => (k + 1) * (k + 2) / 2,
+            2 => (k + 1) * (k + 2) / 2,
+            _ => (k + 1) * (k + 2) * (k + 3) / 6,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A case made computable: bodies with their nodes numbered through, masses, loads, supports, contacts and probes. Never changes during a run.
 
 mod build;
-mod contacts;
+mod dimension;
 mod mass;
 mod probe;
 
@@ -9,6 +9,7 @@ use carom_contact::ContactMethod;
 use carom_solid::{Body, Inverted};
 
 pub use build::{build, overlaps};
+pub use dimension::{Dimension, Space};
 pub use mass::Mass;
 pub use probe::Probe;
 
@@ -41,6 +42,8 @@ pub struct Contact<const D: usize> {
     pub name: String,
     /// Gaps at positions.
     pub method: Box<dyn ContactMethod<D>>,
+    /// Body of the primary side; `None` for a rigid primary.
+    pub primary_part: Option<usize>,
     /// Facets of the secondary side in global nodes: for consistent weights.
     pub secondary_facets: Vec<Vec<usize>>,
     /// Averaged with α_f or taken at the end.

@@ -1,0 +1,82 @@
+//! Built-in meshes: interval, rectangle, disc and half-disc. The geometric cells of a shape are the same for every order; see `elevate` for
+//! the nodes between corners. Node counts are known without building anything.
+
+mod disc;
+mod elevate;
+mod rectangle;
+
+use std::collections::BTreeMap;
+
+pub use disc::{disc, disc_nodes, half_disc, half_disc_nodes};
+pub use rectangle::{rectangle, rectangle_nodes};
+
+use crate::mesh::{Element, Facet, Mesh};
+
+/// Why a mesh cannot be built.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)]
+pub enum MeshError {
+    #[error("min {min:?} is not below max {max:?} by a finite amount")]
+    Extent { min: Vec<f64>, max: Vec<f64> },
+    #[error("a mesh needs at least one cell in each direction, not {cells:?}")]
+    Cells { cells: Vec<usize> },
+    #[error("radius {radius} and size {size} must be finite and > 0, the centre {center:?} finite")]
+    Disc { radius: f64, size: f64, center: [f64; 2] },
+    #[error("element {element:?} does not fill a shape of dimension {dimension}")]
+    Dimension { element: Element, dimension: usize },
+}
+
+/// The line from `min` to `max` in equal cells; sides `left` and `right`, one node each.
+///
+/// # Errors
+/// If `min` ≥ `max`, there are no cells, or the element is no line.
+///
+/// ```
+/// use carom_solid::{Element, generate};
+/// let bar = generate::interval(Element::L4, 0.0, 10.0, 20)?;
+/// assert_eq!(bar.nodes.len(), generate::interval_nodes(Element::L4, 20));
+/// # Ok::<(), carom_solid::generate::MeshError>(())
+/// ```
+pub fn interval(element: Element, min: f64, max: f64, cells: usize) -> Result<Mesh<1>, MeshError> {
+    check(element, &[min], &[max], &[cells])?;
+    let k = element.degree();
+    let at = |j: usize| [lerp(min, max, j as f64 / (k * cells) as f64)];
+    let mut nodes: Vec<_> = (0..=cells).map(|i| at(k * i)).collect();
+    let mut numbers = Vec::with_capacity(cells * (k + 1));
+    for i in 0..cells {
+        numbers.extend([i, i + 1]);
+        for j in 1..k {
+            numbers.push(nodes.len());
+            nodes.push(at(k * i + j));
+        }
+    }
+    let end = |cell, node| vec![Facet { cell, nodes: vec![node] }];
+    let sides = BTreeMap::from([("left".into(), end(0, 0)), ("right".into(), end(cells - 1, cells))]);
+    Ok(Mesh { element, nodes, cells: numbers, sides })
+}
+
+/// Number of nodes of an interval; saturates.
+pub fn interval_nodes(element: Element, cells: usize) -> usize {
+    cells.saturating_mul(element.degree()).saturating_add(1)
+}
+
+/// a + t(b − a), exact at both ends.
+fn lerp(a: f64, b: f64, t: f64) -> f64 {
+    a * (1.0 - t) + b * t
+}
+
+fn check(element: Element, min: &[f64], max: &[f64], cells: &[usize]) -> Result<(), MeshError> {
+    if element.dimension() != min.len() {
+        return Err(MeshError::Dimension { element, dimension: min.len() });
+    }
+    if !min.iter().zip(max).all(|(a, b)| b > a && (b - a).is_finite()) {
+        return Err(MeshError::Extent { min: min.to_vec(), max: max.to_vec() });
+    }
+    if cells.contains(&0) {
+        return Err(MeshError::Cells { cells: cells.to_vec() });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

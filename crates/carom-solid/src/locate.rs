@@ -1,0 +1,54 @@
+//! Which cell holds a reference point: bounding boxes, then Newton's method on the reference map X(ξ) = Σ φᵃ Xᵃ.
+
+use carom_algebra::Vector;
+
+use crate::shape::{Domain, Shape};
+use crate::solid::{gradient, interpolate};
+
+/// A point this far outside a cell, in reference coordinates, still belongs to it: places are typed with six digits.
+const TOLERANCE: f64 = 1e-6;
+
+/// Box around a cell.
+pub(crate) struct Bounds<const D: usize> {
+    low: [f64; D],
+    high: [f64; D],
+}
+
+impl<const D: usize> Bounds<D> {
+    /// Box around nodes, wider by a quarter: a curved edge bulges beyond its nodes.
+    pub(crate) fn around(x: &[Vector<D>]) -> Self {
+        let low: [f64; D] = std::array::from_fn(|i| x.iter().map(|x| x[i]).fold(f64::INFINITY, f64::min));
+        let high: [f64; D] = std::array::from_fn(|i| x.iter().map(|x| x[i]).fold(f64::NEG_INFINITY, f64::max));
+        let margin = 0.25 * (0..D).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+        Self { low: low.map(|c| c - margin), high: high.map(|c| c + margin) }
+    }
+
+    pub(crate) fn contains(&self, point: &[f64; D]) -> bool {
+        (0..D).all(|i| self.low[i] <= point[i] && point[i] <= self.high[i])
+    }
+}
+
+/// Whether the reference map is not affine.
+pub(crate) fn is_curved<const D: usize, const N: usize, S: Shape<D, N>>(x: &[Vector<D>; N]) -> bool {
+    let corners = gradient(x, &S::gradients(&S::Domain::CENTRE));
+    let affine = |a: usize| x[0] + corners.apply(&(S::NODES[a] - S::NODES[0]));
+    let size = (x[1] - x[0]).norm();
+    (0..N).any(|a| (x[a] - affine(a)).norm() > 1e-10 * size)
+}
+
+/// Reference coordinates of a point of the cell, `None` if it lies outside.
+pub(crate) fn invert<const D: usize, const N: usize, S: Shape<D, N>>(
+    x: &[Vector<D>; N],
+    point: &Vector<D>,
+) -> Option<Vector<D>> {
+    let mut xi = S::Domain::CENTRE;
+    for _ in 0..30 {
+        let step = gradient(x, &S::gradients(&xi)).inverse().apply(&(*point - interpolate(&S::values(&xi), x)));
+        xi += step;
+        if step.norm() < 1e-13 {
+            break;
+        }
+    }
+    let miss = (*point - interpolate(&S::values(&xi), x)).norm();
+    (miss <= 1e-10 * (x[1] - x[0]).norm() && S::Domain::excess(&xi) <= TOLERANCE).then_some(xi)
+}

@@ -1,0 +1,63 @@
+//! Functions of F = I + H that keep the digits of a small H: J − 1 = tr H + … + det H, cof F − I, x − ln(1 + x).
+
+use carom_algebra::Mat;
+
+/// det(I + H) − 1.
+#[inline]
+pub fn excess_det<const D: usize>(h: &Mat<D>) -> f64 {
+    match D {
+        1 => h.0[0][0],
+        2 => h.trace() + h.det(),
+        _ => h.trace() + h.cofactor().trace() + h.det(),
+    }
+}
+
+/// cof(I + H) − I.
+#[inline]
+pub fn excess_cofactor<const D: usize>(h: &Mat<D>) -> Mat<D> {
+    match D {
+        1 => Mat::ZERO,
+        2 => h.cofactor(),
+        _ => Mat::identity() * h.trace() - h.transposed() + h.cofactor(),
+    }
+}
+
+/// x − ln(1 + x), which is x²/2 for small x. With s = x/(2 + x): ln(1 + x) = 2 artanh s and x − 2s = x s.
+#[inline]
+pub(crate) fn minus_ln_1p(x: f64) -> f64 {
+    if x.abs() > 0.1 {
+        return x - x.ln_1p();
+    }
+    let s = x / (2.0 + x);
+    let t = s * s;
+    let series = 1.0 / 3.0 + t * (1.0 / 5.0 + t * (1.0 / 7.0 + t * (1.0 / 9.0 + t * (1.0 / 11.0 + t * (1.0 / 13.0)))));
+    x * s - 2.0 * s * t * series
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn excesses_are_the_plain_formulae() {
+        let h = Mat([[0.3, -0.2, 0.1], [0.05, -0.4, 0.2], [0.1, 0.15, 0.25]]);
+        let f = Mat::identity() + h;
+        assert!((excess_det(&h) - (f.det() - 1.0)).abs() < 1e-15);
+        let e = excess_cofactor(&h) - (f.cofactor() - Mat::identity());
+        assert!(e.double_dot(&e) < 1e-30);
+        let h = Mat([[0.3, -0.2], [0.05, -0.4]]);
+        let f = Mat::identity() + h;
+        assert!((excess_det(&h) - (f.det() - 1.0)).abs() < 1e-15);
+        let e = excess_cofactor(&h) - (f.cofactor() - Mat::identity());
+        assert!(e.double_dot(&e) < 1e-30);
+    }
+
+    #[test]
+    fn logarithm_keeps_its_digits() {
+        for x in [0.0999_f64, -0.0999] {
+            assert!((minus_ln_1p(x) / (x - x.ln_1p()) - 1.0).abs() < 1e-14);
+        }
+        let x = 1e-9;
+        assert!((minus_ln_1p(x) / (0.5 * x * x * (1.0 - 2.0 * x / 3.0)) - 1.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,63 @@
+//! Hyperelastic laws Ψ(H), H = F − I, with first Piola–Kirchhoff stress P = ∂Ψ/∂F and tangent ∂P/∂F.
+//!
+//! A law is written once for every dimension `D`: in the `3 − D` directions a body does not extend in there is no strain (H is padded with
+//! zeros). `D = 2` is plane strain; `D = 1` is uniaxial *strain*, so that a linear-elastic bar has the modulus Λ + 2μ, which is Young's
+//! modulus when Poisson's ratio is 0 (Λ = 0, μ = E/2).
+//!
+//! Laws take H rather than F, and no formula subtracts nearly equal numbers when H is small: a motion of 1e-9 keeps its digits.
+
+mod kinematics;
+mod linear_elastic;
+mod neo_hookean;
+mod saint_venant_kirchhoff;
+
+use carom_algebra::{Mat, Vector};
+
+pub use kinematics::{excess_cofactor, excess_det};
+pub use linear_elastic::LinearElastic;
+pub use neo_hookean::NeoHookean;
+pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
+
+/// A determinant J of the deformation gradient that is not positive.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("J = {0:.3e} is not positive")]
+pub struct NotPositive(pub f64);
+
+/// A hyperelastic law. What several answers need is computed once by [`Material::at`].
+pub trait Material<const D: usize>: Send + Sync + 'static {
+    /// Degree of Ψ as a polynomial in F that is to be integrated exactly; 0 if it is none.
+    const ENERGY_DEGREE: usize;
+
+    /// Kinematics at a point.
+    type Point;
+
+    /// Kinematics at H = F − I.
+    fn at(&self, h: &Mat<D>) -> Result<Self::Point, NotPositive>;
+
+    /// Strain energy Ψ per reference volume.
+    fn energy(&self, point: &Self::Point) -> f64;
+
+    /// First Piola–Kirchhoff stress P.
+    fn stress(&self, point: &Self::Point) -> Mat<D>;
+
+    /// The block Kᵢⱼ = Σ ∂Pᵢᴶ/∂Fⱼᴸ aᴶ bᴸ, bilinear in the reference gradients a and b.
+    fn tangent(&self, point: &Self::Point, a: &Vector<D>, b: &Vector<D>) -> Mat<D>;
+
+    /// Cauchy stress within the space of the body.
+    fn cauchy(&self, point: &Self::Point) -> Mat<D>;
+
+    /// Cauchy normal stress in the directions without strain.
+    fn lateral(&self, point: &Self::Point) -> f64;
+}
+
+/// Choice of a law with Lamé's constants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum Law {
+    NeoHookean { lambda: f64, mu: f64 },
+    SaintVenantKirchhoff { lambda: f64, mu: f64 },
+    LinearElastic { lambda: f64, mu: f64 },
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,88 @@
+//! Compressible neo-Hookean law Ψ = μ(tr E − ln J) + Λ/2 (ln J)², E = (FᵀF − I)/2 (Simo, Hughes, Computational Inelasticity, §9.2.1;
+//! the seed paper's eq. (3)):
+//!
+//!   P = μ(F − F⁻ᵀ) + Λ ln J F⁻ᵀ,   K(a, b) = μ (a·b) I + (μ − Λ ln J) b̃⊗ã + Λ ã⊗b̃,   ã = F⁻ᵀa.
+//!
+//! Without cancellation, with d = J − 1 and C = cof F − I: F⁻ᵀ = (I + C)/J, F − F⁻ᵀ = (H − C + d F)/J,
+//! tr E − ln J = (tr H − d) + H:H/2 + (d − ln(1 + d)), and tr H − d holds only terms of second and third order.
+
+use carom_algebra::{Mat, Vector};
+
+use super::kinematics::{excess_cofactor, excess_det, minus_ln_1p};
+use super::{Material, NotPositive};
+
+/// Compressible neo-Hookean law with Lamé's constants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NeoHookean {
+    /// Λ.
+    pub lambda: f64,
+    /// μ.
+    pub mu: f64,
+}
+
+/// F − I, F, F⁻ᵀ, F − F⁻ᵀ, J − 1, ln J.
+pub struct Point<const D: usize> {
+    h: Mat<D>,
+    f: Mat<D>,
+    inverse_transposed: Mat<D>,
+    difference: Mat<D>,
+    excess: f64,
+    ln_j: f64,
+}
+
+impl<const D: usize> Material<D> for NeoHookean {
+    const ENERGY_DEGREE: usize = 0;
+    type Point = Point<D>;
+
+    #[inline]
+    fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
+        let excess = excess_det(h);
+        if !(excess > -1.0) {
+            return Err(NotPositive(1.0 + excess));
+        }
+        let c = excess_cofactor(h);
+        let f = Mat::identity() + *h;
+        let inverse = 1.0 / (1.0 + excess);
+        Ok(Point {
+            h: *h,
+            f,
+            inverse_transposed: (Mat::identity() + c) * inverse,
+            difference: (*h - c + f * excess) * inverse,
+            excess,
+            ln_j: excess.ln_1p(),
+        })
+    }
+
+    #[inline]
+    fn energy(&self, p: &Point<D>) -> f64 {
+        // tr H − d without subtracting: only what d has beyond its trace.
+        let higher = match D {
+            1 => 0.0,
+            2 => p.h.det(),
+            _ => p.h.cofactor().trace() + p.h.det(),
+        };
+        let isochoric = 0.5 * p.h.double_dot(&p.h) - higher + minus_ln_1p(p.excess);
+        self.mu * isochoric + 0.5 * self.lambda * p.ln_j * p.ln_j
+    }
+
+    #[inline]
+    fn stress(&self, p: &Point<D>) -> Mat<D> {
+        p.difference * self.mu + p.inverse_transposed * (self.lambda * p.ln_j)
+    }
+
+    #[inline]
+    fn tangent(&self, p: &Point<D>, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
+        let (a_tilde, b_tilde) = (p.inverse_transposed.apply(a), p.inverse_transposed.apply(b));
+        Mat::identity() * (self.mu * a.dot(b))
+            + b_tilde.outer(&a_tilde) * (self.mu - self.lambda * p.ln_j)
+            + a_tilde.outer(&b_tilde) * self.lambda
+    }
+
+    fn cauchy(&self, p: &Point<D>) -> Mat<D> {
+        self.stress(p) * p.f.transposed() * (1.0 / (1.0 + p.excess))
+    }
+
+    fn lateral(&self, p: &Point<D>) -> f64 {
+        self.lambda * p.ln_j / (1.0 + p.excess)
+    }
+}

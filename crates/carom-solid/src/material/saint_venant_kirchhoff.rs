@@ -1,0 +1,71 @@
+//! St. Venant–Kirchhoff law Ψ = Λ/2 (tr E)² + μ E:E, E = (H + Hᵀ + HᵀH)/2 (Holzapfel, Nonlinear Solid Mechanics, §6.5):
+//!
+//!   S = Λ tr E I + 2μE,   P = F S,   K(a, b) = (a·S b) I + Λ Fa⊗Fb + μ [Fb⊗Fa + (a·b) F Fᵀ].
+//!
+//! The law itself is defined for J ≤ 0; such a point is refused all the same.
+
+use carom_algebra::{Mat, Vector};
+
+use super::kinematics::excess_det;
+use super::{Material, NotPositive};
+
+/// St. Venant–Kirchhoff law with Lamé's constants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SaintVenantKirchhoff {
+    /// Λ.
+    pub lambda: f64,
+    /// μ.
+    pub mu: f64,
+}
+
+/// F, F Fᵀ, E, second Piola–Kirchhoff stress, J.
+pub struct Point<const D: usize> {
+    f: Mat<D>,
+    left: Mat<D>,
+    e: Mat<D>,
+    second: Mat<D>,
+    det_f: f64,
+}
+
+impl<const D: usize> Material<D> for SaintVenantKirchhoff {
+    const ENERGY_DEGREE: usize = 4;
+    type Point = Point<D>;
+
+    #[inline]
+    fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
+        let det_f = 1.0 + excess_det(h);
+        if !(det_f > 0.0) {
+            return Err(NotPositive(det_f));
+        }
+        let f = Mat::identity() + *h;
+        let e = (*h + h.transposed() + h.transposed() * *h) * 0.5;
+        let second = Mat::identity() * (self.lambda * e.trace()) + e * (2.0 * self.mu);
+        Ok(Point { f, left: f * f.transposed(), e, second, det_f })
+    }
+
+    #[inline]
+    fn energy(&self, p: &Point<D>) -> f64 {
+        0.5 * p.second.double_dot(&p.e)
+    }
+
+    #[inline]
+    fn stress(&self, p: &Point<D>) -> Mat<D> {
+        p.f * p.second
+    }
+
+    #[inline]
+    fn tangent(&self, p: &Point<D>, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
+        let (fa, fb) = (p.f.apply(a), p.f.apply(b));
+        Mat::identity() * a.dot(&p.second.apply(b))
+            + fa.outer(&fb) * self.lambda
+            + (fb.outer(&fa) + p.left * a.dot(b)) * self.mu
+    }
+
+    fn cauchy(&self, p: &Point<D>) -> Mat<D> {
+        self.stress(p) * p.f.transposed() * (1.0 / p.det_f)
+    }
+
+    fn lateral(&self, p: &Point<D>) -> f64 {
+        self.lambda * p.e.trace() / p.det_f
+    }
+}

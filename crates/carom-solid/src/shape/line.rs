@@ -1,0 +1,130 @@
+//! Lines of 1 to 4 equally spaced nodes on −1..1: both ends, then the interior from start to end.
+//!
+//! ```text
+//! 0-----------1     0-----2-----1     0---2---3---1
+//! ```
+
+use carom_algebra::Vector;
+
+use super::{Domain, Shape};
+use crate::quadrature::{self, Rule};
+
+/// Shape functions of a line and their first and second derivatives; entries past its nodes are zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LineShape {
+    /// φᵃ.
+    pub values: [f64; 4],
+    /// φᵃ′.
+    pub first: [f64; 4],
+    /// φᵃ″.
+    pub second: [f64; 4],
+}
+
+/// Shape functions of the line with 1 (a point), 2, 3 or 4 nodes at `xi`, which may lie outside −1..1: the polynomials extrapolate.
+///
+/// # Panics
+/// For any other number of nodes.
+///
+/// ```
+/// let arc = carom_solid::shape::line_shape(3, 0.0);
+/// assert_eq!((arc.values, arc.second), ([0.0, 0.0, 1.0, 0.0], [1.0, 1.0, -2.0, 0.0]));
+/// ```
+#[inline]
+pub fn line_shape(nodes: usize, xi: f64) -> LineShape {
+    match nodes {
+        1 => LineShape { values: [1.0, 0.0, 0.0, 0.0], ..LineShape::default() },
+        2 => LineShape {
+            values: [0.5 * (1.0 - xi), 0.5 * (1.0 + xi), 0.0, 0.0],
+            first: [-0.5, 0.5, 0.0, 0.0],
+            second: [0.0; 4],
+        },
+        3 => LineShape {
+            values: [0.5 * xi * (xi - 1.0), 0.5 * xi * (xi + 1.0), (1.0 - xi) * (1.0 + xi), 0.0],
+            first: [xi - 0.5, xi + 0.5, -2.0 * xi, 0.0],
+            second: [1.0, 1.0, -2.0, 0.0],
+        },
+        4 => {
+            let (t, e, i) =
+                (3.0 * xi, (3.0 * xi - 1.0) * (3.0 * xi + 1.0) / 16.0, 9.0 / 16.0 * (1.0 - xi) * (1.0 + xi));
+            LineShape {
+                values: [(1.0 - xi) * e, (1.0 + xi) * e, (1.0 - t) * i, (1.0 + t) * i],
+                first: [
+                    (1.0 + xi * (18.0 - 27.0 * xi)) / 16.0,
+                    (-1.0 + xi * (18.0 + 27.0 * xi)) / 16.0,
+                    (-27.0 + xi * (-18.0 + 81.0 * xi)) / 16.0,
+                    (27.0 + xi * (-18.0 - 81.0 * xi)) / 16.0,
+                ],
+                second: [
+                    (9.0 - 27.0 * xi) / 8.0,
+                    (9.0 + 27.0 * xi) / 8.0,
+                    (-9.0 + 81.0 * xi) / 8.0,
+                    (-9.0 - 81.0 * xi) / 8.0,
+                ],
+            }
+        }
+        _ => panic!("a line has 1 to 4 nodes, not {nodes}"),
+    }
+}
+
+/// The interval −1..1.
+pub struct Interval;
+
+impl Domain<1> for Interval {
+    const CENTRE: Vector<1> = Vector([0.0]);
+
+    fn rule(degree: usize) -> Rule<1> {
+        quadrature::line(degree)
+    }
+
+    fn excess(xi: &Vector<1>) -> f64 {
+        xi[0].abs() - 1.0
+    }
+}
+
+macro_rules! line {
+    ($name:ident, $n:literal, $nodes:expr) => {
+        #[doc = concat!("Line of ", stringify!($n), " nodes.")]
+        pub struct $name;
+
+        impl Shape<1, $n> for $name {
+            type Domain = Interval;
+            const DEGREE: usize = $n - 1;
+            const NODES: [Vector<1>; $n] = $nodes;
+
+            fn values(xi: &Vector<1>) -> [f64; $n] {
+                let all = line_shape($n, xi[0]).values;
+                std::array::from_fn(|a| all[a])
+            }
+
+            fn gradients(xi: &Vector<1>) -> [Vector<1>; $n] {
+                let all = line_shape($n, xi[0]).first;
+                std::array::from_fn(|a| Vector([all[a]]))
+            }
+        }
+    };
+}
+
+line!(Line2, 2, [Vector([-1.0]), Vector([1.0])]);
+line!(Line3, 3, [Vector([-1.0]), Vector([1.0]), Vector([0.0])]);
+line!(Line4, 4, [Vector([-1.0]), Vector([1.0]), Vector([-1.0 / 3.0]), Vector([1.0 / 3.0])]);
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn second_derivatives_are_the_slope_of_the_first(xi in -1.5..1.5) {
+            let h = 1e-4;
+            for nodes in 1..=4 {
+                let (here, plus, minus) = (line_shape(nodes, xi), line_shape(nodes, xi + h), line_shape(nodes, xi - h));
+                for a in 0..4 {
+                    let slope = (plus.first[a] - minus.first[a]) / (2.0 * h);
+                    prop_assert!((slope - here.second[a]).abs() < 1e-9);
+                }
+            }
+        }
+    }
+}

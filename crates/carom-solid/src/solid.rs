@@ -1,0 +1,362 @@
+//! A body of one shape and one law: cell forces and tangents by quadrature,
+//!
+//!   H = Σ (yᵃ − Xᵃ) ⊗ ∇₀φᵃ,   U = Σ w Ψ,   fᵃ = Σ w P ∇₀φᵃ,   Kᵃᵇ = Σ w ∂P/∂F : ∇₀φᵃ ∇₀φᵇ,
+//!
+//! (Coda, Paccola, Latin Am. J. Solids Struct. 4 (2007), positions as unknowns; Holzapfel, Nonlinear Solid Mechanics, §8). The difference
+//! y − X is formed here, once, so that small motions keep their digits. ∇₀φ and w = weight · det(∂X/∂ξ) · thickness of every quadrature
+//! point are computed when the body is made.
+//!
+//! Degrees of the rules, shape functions of degree k: straight cells 2k for force and mass; cells with curved edges 2k (k ≤ 2) or 4(k − 1)
+//! for force, 4k − 2 for mass; a law whose energy is a polynomial of degree m in F at least m (k − 1).
+
+use std::marker::PhantomData;
+
+use carom_algebra::{Mat, Vector};
+
+use crate::body::{Body, Inverted, PointState};
+use crate::locate::{self, Bounds};
+use crate::material::{Material, NotPositive, excess_det};
+use crate::mesh::{Element, Mesh};
+use crate::quadrature::Rule;
+use crate::shape::{Domain, Shape};
+
+/// Why a body cannot be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)]
+pub enum SolidError {
+    #[error("element {element:?} has dimension {}, the space has {dimension}", .element.dimension())]
+    Dimension { element: Element, dimension: usize },
+    #[error("{length} node numbers do not make cells of {nodes} nodes")]
+    Ragged { length: usize, nodes: usize },
+    #[error("cell {cell} names node {node}, but there are {count} nodes")]
+    MissingNode { cell: usize, node: usize, count: usize },
+    #[error("node {node} is not at a finite place")]
+    NotFinite { node: usize },
+    #[error("cell {cell} is degenerate at {place:.4?}: the Jacobian of its reference shape is {jacobian:.3e}")]
+    Degenerate { cell: usize, place: Vec<f64>, jacobian: f64 },
+    #[error("density {0} is not a finite number ≥ 0")]
+    Density(f64),
+    #[error("thickness {0} is not a finite number > 0")]
+    Thickness(f64),
+}
+
+/// A body of cells of shape `S` (`D` reference coordinates, `N` nodes) and law `L`.
+pub struct Solid<const D: usize, const N: usize, S, L> {
+    mesh: Mesh<D>,
+    law: L,
+    density: f64,
+    thickness: f64,
+    /// First quadrature point of each cell, and one more.
+    start: Vec<usize>,
+    /// ∇₀φᵃ at the quadrature points for forces.
+    gradients: Vec<[Vector<D>; N]>,
+    /// Weight · det(∂X/∂ξ) · thickness at the same points.
+    weights: Vec<f64>,
+    curved: Vec<bool>,
+    /// Rules for masses of straight and of curved cells.
+    mass_rules: [Rule<D>; 2],
+    bounds: Vec<Bounds<D>>,
+    shape: PhantomData<S>,
+}
+
+impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N, S, L> {
+    /// Body of a mesh, a law, a density ≥ 0 and a thickness > 0 (dimension 1: the area of the cross-section).
+    ///
+    /// # Errors
+    /// If a number is out of its range or the reference shape of a cell is degenerate or turned over.
+    pub fn new(mesh: Mesh<D>, law: L, density: f64, thickness: f64) -> Result<Self, SolidError> {
+        check::<D, N>(&mesh, density, thickness)?;
+        let k = S::DEGREE;
+        let rule = |degree: usize| S::Domain::rule(degree.max(L::ENERGY_DEGREE * (k - 1)));
+        let force_rules = [rule(2 * k), rule((2 * k).max(4 * (k - 1)))];
+        let mass_rules = [S::Domain::rule(2 * k), S::Domain::rule(4 * k - 2)];
+        let cells = mesh.cell_count();
+        let mut solid = Self {
+            mesh,
+            law,
+            density,
+            thickness,
+            start: vec![0],
+            gradients: Vec::new(),
+            weights: Vec::new(),
+            curved: Vec::with_capacity(cells),
+            mass_rules,
+            bounds: Vec::with_capacity(cells),
+            shape: PhantomData,
+        };
+        for cell in 0..cells {
+            let x = solid.reference(cell);
+            let curved = locate::is_curved::<D, N, S>(&x);
+            for xi in S::NODES.iter().chain(&solid.mass_rules[usize::from(curved)].points) {
+                map::<D, N, S>(&x, xi).map_err(|jacobian| degenerate::<D, N, S>(cell, &x, xi, jacobian))?;
+            }
+            for (xi, weight) in force_rules[usize::from(curved)].iter() {
+                let (gradients, jacobian) =
+                    map::<D, N, S>(&x, xi).map_err(|jacobian| degenerate::<D, N, S>(cell, &x, xi, jacobian))?;
+                solid.gradients.push(gradients);
+                solid.weights.push(weight * jacobian * thickness);
+            }
+            solid.start.push(solid.weights.len());
+            solid.curved.push(curved);
+            solid.bounds.push(Bounds::around(&x));
+        }
+        Ok(solid)
+    }
+
+    /// Reference positions of a cell's nodes.
+    fn reference(&self, cell: usize) -> [Vector<D>; N] {
+        let nodes = self.nodes(cell);
+        std::array::from_fn(|a| Vector(self.mesh.nodes[nodes[a]]))
+    }
+
+    #[inline]
+    fn nodes(&self, cell: usize) -> &[usize; N] {
+        &self.mesh.cells.as_chunks().0[cell]
+    }
+
+    /// y − X at the nodes of a cell.
+    #[inline]
+    fn displacements(&self, cell: usize, y: &[[f64; D]]) -> [Vector<D>; N] {
+        let nodes = self.nodes(cell);
+        std::array::from_fn(|a| Vector(y[nodes[a]]) - Vector(self.mesh.nodes[nodes[a]]))
+    }
+
+    /// Strain energy, forces and, if asked for, the tangent of a cell.
+    #[inline]
+    fn integrate(
+        &self,
+        cell: usize,
+        y: &[[f64; D]],
+        force: &mut [f64],
+        mut blocks: Option<&mut [[Mat<D>; N]; N]>,
+    ) -> Result<f64, Inverted> {
+        let u = self.displacements(cell, y);
+        let mut f = [Vector::<D>::ZERO; N];
+        let mut energy = 0.0;
+        for q in self.start[cell]..self.start[cell + 1] {
+            let (g, w) = (&self.gradients[q], self.weights[q]);
+            let point = self.law.at(&gradient(&u, g)).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
+            energy += w * self.law.energy(&point);
+            let stress = self.law.stress(&point) * w;
+            for a in 0..N {
+                f[a] += stress.apply(&g[a]);
+            }
+            if let Some(blocks) = &mut blocks {
+                add_tangent(&self.law, &point, g, w, blocks);
+            }
+        }
+        force.as_chunks_mut().0.copy_from_slice(&f.map(|f| f.0));
+        Ok(energy)
+    }
+}
+
+/// The place of a bad Jacobian.
+fn degenerate<const D: usize, const N: usize, S: Shape<D, N>>(
+    cell: usize,
+    x: &[Vector<D>; N],
+    xi: &Vector<D>,
+    jacobian: f64,
+) -> SolidError {
+    SolidError::Degenerate { cell, place: interpolate(&S::values(xi), x).0.to_vec(), jacobian }
+}
+
+/// Numbers in range, cells whole, nodes there.
+fn check<const D: usize, const N: usize>(mesh: &Mesh<D>, density: f64, thickness: f64) -> Result<(), SolidError> {
+    if mesh.element.dimension() != D || mesh.element.nodes() != N {
+        return Err(SolidError::Dimension { element: mesh.element, dimension: D });
+    }
+    if !(density.is_finite() && density >= 0.0) {
+        return Err(SolidError::Density(density));
+    }
+    if !(thickness.is_finite() && thickness > 0.0) {
+        return Err(SolidError::Thickness(thickness));
+    }
+    if !mesh.cells.len().is_multiple_of(N) {
+        return Err(SolidError::Ragged { length: mesh.cells.len(), nodes: N });
+    }
+    let count = mesh.nodes.len();
+    if let Some(i) = mesh.cells.iter().position(|&node| node >= count) {
+        return Err(SolidError::MissingNode { cell: i / N, node: mesh.cells[i], count });
+    }
+    match mesh.nodes.iter().position(|x| x.iter().any(|c| !c.is_finite())) {
+        Some(node) => Err(SolidError::NotFinite { node }),
+        None => Ok(()),
+    }
+}
+
+/// Σ φᵃ xᵃ.
+pub(crate) fn interpolate<const D: usize, const N: usize>(values: &[f64; N], x: &[Vector<D>; N]) -> Vector<D> {
+    let mut sum = Vector::ZERO;
+    for a in 0..N {
+        sum += x[a] * values[a];
+    }
+    sum
+}
+
+/// Σ xᵃ ⊗ gᵃ.
+#[inline]
+pub(crate) fn gradient<const D: usize, const N: usize>(x: &[Vector<D>; N], g: &[Vector<D>; N]) -> Mat<D> {
+    let mut sum = Mat::ZERO;
+    for a in 0..N {
+        sum += x[a].outer(&g[a]);
+    }
+    sum
+}
+
+/// Reference gradients ∇₀φᵃ and the Jacobian det(∂X/∂ξ), which is the error where it is not positive.
+fn map<const D: usize, const N: usize, S: Shape<D, N>>(
+    x: &[Vector<D>; N],
+    xi: &Vector<D>,
+) -> Result<([Vector<D>; N], f64), f64> {
+    let local = S::gradients(xi);
+    let jacobian = gradient(x, &local);
+    let det = jacobian.det();
+    // A sliver's determinant is compared with the lengths of its columns.
+    let size: f64 = (0..D).map(|j| Vector(jacobian.transposed().0[j]).norm()).product();
+    if !(det > 1e-12 * size) {
+        return Err(det);
+    }
+    let inverse_transposed = jacobian.inverse().transposed();
+    Ok((local.map(|g| inverse_transposed.apply(&g)), det))
+}
+
+/// `blocks[b][a]` += w Kᵃᵇ for a ≤ b. K is bilinear in the gradients: the law is asked for unit vectors only.
+#[inline]
+fn add_tangent<const D: usize, const N: usize, L: Material<D>>(
+    law: &L,
+    point: &L::Point,
+    g: &[Vector<D>; N],
+    w: f64,
+    blocks: &mut [[Mat<D>; N]; N],
+) {
+    let unit = Mat::<D>::identity().0.map(Vector);
+    let moduli: [[Mat<D>; D]; D] =
+        std::array::from_fn(|j| std::array::from_fn(|l| law.tangent(point, &unit[j], &unit[l]) * w));
+    for b in 0..N {
+        let half: [Mat<D>; D] = std::array::from_fn(|j| {
+            let mut sum = Mat::ZERO;
+            for l in 0..D {
+                sum += moduli[j][l] * g[b][l];
+            }
+            sum
+        });
+        for a in 0..=b {
+            for j in 0..D {
+                blocks[b][a] += half[j] * g[a][j];
+            }
+        }
+    }
+}
+
+impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for Solid<D, N, S, L> {
+    fn mesh(&self) -> &Mesh<D> {
+        &self.mesh
+    }
+
+    fn cell_force(&self, cell: usize, y: &[[f64; D]], force: &mut [f64]) -> Result<f64, Inverted> {
+        self.integrate(cell, y, force, None)
+    }
+
+    fn cell_tangent(
+        &self,
+        cell: usize,
+        y: &[[f64; D]],
+        force: &mut [f64],
+        tangent: &mut [f64],
+    ) -> Result<f64, Inverted> {
+        let mut blocks = [[Mat::<D>::ZERO; N]; N];
+        let energy = self.integrate(cell, y, force, Some(&mut blocks))?;
+        for b in 0..N {
+            for a in 0..=b {
+                for i in 0..D {
+                    for j in 0..D {
+                        let (row, column) = (a * D + i, b * D + j);
+                        tangent[row * N * D + column] = blocks[b][a].0[i][j];
+                        tangent[column * N * D + row] = blocks[b][a].0[i][j];
+                    }
+                }
+            }
+        }
+        Ok(energy)
+    }
+
+    fn cell_mass(&self, cell: usize, mass: &mut [f64]) {
+        mass.fill(0.0);
+        self.each_mass_point(cell, |values, volume| {
+            for a in 0..N {
+                for b in 0..N {
+                    mass[a * N + b] += self.density * volume * values[a] * values[b];
+                }
+            }
+        });
+    }
+
+    fn cell_volumes(&self, cell: usize, volumes: &mut [f64]) {
+        volumes.fill(0.0);
+        self.each_mass_point(cell, |values, volume| {
+            for a in 0..N {
+                volumes[a] += volume * values[a];
+            }
+        });
+    }
+
+    fn cell_min_det_f(&self, cell: usize, y: &[[f64; D]]) -> f64 {
+        let u = self.displacements(cell, y);
+        let points = &self.gradients[self.start[cell]..self.start[cell + 1]];
+        points.iter().map(|g| 1.0 + excess_det(&gradient(&u, g))).fold(f64::INFINITY, f64::min)
+    }
+
+    fn point(&self, cell: usize, xi: &[f64], y: &[[f64; D]]) -> Result<PointState, Inverted> {
+        let x = self.reference(cell);
+        let inverse_transposed = gradient(&x, &S::gradients(&vector(xi))).inverse().transposed();
+        let g = S::gradients(&vector(xi)).map(|g| inverse_transposed.apply(&g));
+        let h = gradient(&self.displacements(cell, y), &g);
+        let point = self.law.at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
+        let within = self.law.cauchy(&point);
+        let lateral = self.law.lateral(&point);
+        let cauchy = std::array::from_fn(|i| {
+            std::array::from_fn(|j| match (i < D && j < D, i == j) {
+                (true, _) => within.0[i][j],
+                (false, true) => lateral,
+                (false, false) => 0.0,
+            })
+        });
+        Ok(PointState { det_f: 1.0 + excess_det(&h), cauchy })
+    }
+
+    fn shape(&self, xi: &[f64], values: &mut [f64]) {
+        values.copy_from_slice(&S::values(&vector(xi)));
+    }
+
+    fn locate(&self, point: &[f64; D]) -> Vec<(usize, Vec<f64>)> {
+        let near = (0..self.bounds.len()).filter(|&cell| self.bounds[cell].contains(point));
+        near.filter_map(|cell| {
+            let xi = locate::invert::<D, N, S>(&self.reference(cell), &Vector(*point))?;
+            Some((cell, xi.0.to_vec()))
+        })
+        .collect()
+    }
+
+    fn density(&self) -> f64 {
+        self.density
+    }
+}
+
+impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N, S, L> {
+    /// Shape functions and reference volume (× thickness) at the quadrature points for masses.
+    fn each_mass_point(&self, cell: usize, mut visit: impl FnMut(&[f64; N], f64)) {
+        let x = self.reference(cell);
+        for (xi, weight) in self.mass_rules[usize::from(self.curved[cell])].iter() {
+            let jacobian = gradient(&x, &S::gradients(xi)).det();
+            visit(&S::values(xi), weight * jacobian * self.thickness);
+        }
+    }
+}
+
+/// Reference coordinates from a slice of `D` numbers.
+fn vector<const D: usize>(xi: &[f64]) -> Vector<D> {
+    Vector(std::array::from_fn(|i| xi[i]))
+}
+
+#[cfg(test)]
+mod tests;

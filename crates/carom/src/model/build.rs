@@ -1,0 +1,313 @@
+//! From a resolved case to a model. Whatever the case names and the meshes lack is a [`Problem`] with the key it stands under.
+
+use carom_contact::{ContactMethod, NodeToPlane};
+use carom_solid::Law;
+
+use super::dimension::{Dimension, Space};
+use super::{Contact, Mass, Model, Part, Probe, Support, exists_in};
+use crate::case::{self, ActiveSetRule, Case, Persistency, PrimarySpec, Problem};
+
+/// A side in global node numbers.
+struct Side {
+    part: usize,
+    nodes: Vec<usize>,
+    facets: Vec<Vec<usize>>,
+    outward: f64,
+}
+
+/// Builds the model of a case of dimension `D`.
+///
+/// # Errors
+/// All problems found: missing sides, probes outside their body, meshes that cannot be made, contacts that cannot be solved, initial overlaps.
+pub fn build<const D: usize>(case: &Case) -> Result<Model<D>, Vec<Problem>>
+where
+    Space: Dimension<D>,
+{
+    let parts = parts::<D>(case)?;
+    let mut problems = Vec::new();
+    let dofs = parts.last().map_or(0, |p| p.nodes().end) * D;
+    let mut reference = Vec::with_capacity(dofs);
+    let mut initial_velocity = Vec::with_capacity(dofs);
+    for (part, spec) in parts.iter().zip(&case.bodies) {
+        reference.extend(part.body.mesh().nodes.as_flattened());
+        for _ in part.nodes() {
+            initial_velocity.extend_from_slice(&spec.velocity);
+        }
+    }
+
+    let mut fixed = vec![false; dofs];
+    let mut supports = Vec::new();
+    for (k, spec) in case.supports.iter().enumerate() {
+        let mut held = Vec::new();
+        for (j, name) in spec.on.iter().enumerate() {
+            match side(&parts, name, &format!("support[{k}].on[{j}]")) {
+                Ok(side) => held.extend(side.nodes.iter().flat_map(|n| spec.fix.iter().map(move |i| n * D + i))),
+                Err(problem) => problems.push(problem),
+            }
+        }
+        for &dof in &held {
+            fixed[dof] = true;
+            initial_velocity[dof] = 0.0;
+        }
+        held.sort_unstable();
+        held.dedup();
+        if let Some(name) = &spec.name {
+            supports.push(Support { name: name.clone(), dofs: held });
+        }
+    }
+
+    let kinds: Vec<_> = case.bodies.iter().map(|b| b.mass).collect();
+    let mass = Mass::assemble(&parts, &kinds);
+    let massless: Vec<bool> = (0..dofs).map(|dof| mass.is_massless(dof / D)).collect();
+    let gravity = gravity(case, &parts, dofs);
+    let contacts = contacts(case, &parts, &massless, &mut problems);
+    let probes = probes(case, &parts, &mut problems);
+
+    let free: Vec<usize> = (0..dofs).filter(|&i| !fixed[i]).collect();
+    let mut unknown = vec![usize::MAX; dofs];
+    for (place, &dof) in free.iter().enumerate() {
+        unknown[dof] = place;
+    }
+    let scale = parts.iter().map(|p| p.body.mesh().diameter()).fold(0.0, f64::max);
+    if problems.is_empty() {
+        Ok(Model {
+            parts,
+            reference,
+            initial_velocity,
+            fixed,
+            free,
+            unknown,
+            mass,
+            massless,
+            gravity,
+            contacts,
+            supports,
+            probes,
+            scale,
+        })
+    } else {
+        Err(problems)
+    }
+}
+
+fn parts<const D: usize>(case: &Case) -> Result<Vec<Part<D>>, Vec<Problem>>
+where
+    Space: Dimension<D>,
+{
+    let mut parts = Vec::new();
+    let mut problems = Vec::new();
+    let mut first_node = 0;
+    for (k, spec) in case.bodies.iter().enumerate() {
+        let Some(material) = case.materials.iter().find(|m| m.name == spec.material) else { continue };
+        let (lambda, mu) = (material.lambda, material.mu);
+        let law = match material.law {
+            case::Law::NeoHookean => Law::NeoHookean { lambda, mu },
+            case::Law::SaintVenantKirchhoff => Law::SaintVenantKirchhoff { lambda, mu },
+            case::Law::LinearElastic => Law::LinearElastic { lambda, mu },
+        };
+        let made = Space::mesh(spec)
+            .and_then(|mesh| Space::body(mesh, law, material.density, case.thickness).map_err(|e| e.to_string()));
+        match made {
+            Ok(body) => {
+                let mesh = body.mesh();
+                let n = mesh.element.nodes();
+                let mut volumes = vec![0.0; n];
+                let mut volume = 0.0;
+                for cell in 0..mesh.cell_count() {
+                    body.cell_volumes(cell, &mut volumes);
+                    volume += volumes.iter().sum::<f64>();
+                }
+                let nodes = mesh.nodes.len();
+                let massless = material.density == 0.0;
+                let total_mass = volume * material.density;
+                parts.push(Part { name: spec.name.clone(), first_node, body, massless, total_mass });
+                first_node += nodes;
+            }
+            Err(why) => problems.push(Problem::new(
+                format!("body[{k}].mesh"),
+                format!("the mesh of body \"{}\" cannot be made", spec.name),
+                why,
+                "change the numbers of the shape",
+            )),
+        }
+    }
+    if problems.is_empty() { Ok(parts) } else { Err(problems) }
+}
+
+/// Gravity as nodal forces ∫ρ₀ g φᵃ dΩ₀, whatever the mass matrix.
+fn gravity<const D: usize>(case: &Case, parts: &[Part<D>], dofs: usize) -> Vec<f64> {
+    let mut force = vec![0.0; dofs];
+    for (part, spec) in parts.iter().zip(&case.bodies) {
+        let mesh = part.body.mesh();
+        let mut volumes = vec![0.0; mesh.element.nodes()];
+        for cell in 0..mesh.cell_count() {
+            part.body.cell_volumes(cell, &mut volumes);
+            for (&node, volume) in mesh.cell(cell).iter().zip(&volumes) {
+                for i in 0..D {
+                    force[(part.first_node + node) * D + i] += part.body.density() * volume * spec.gravity[i];
+                }
+            }
+        }
+    }
+    force
+}
+
+fn side<const D: usize>(parts: &[Part<D>], name: &str, path: &str) -> Result<Side, Problem> {
+    let missing = |why: String, help: String| Problem::new(path, format!("there is no side \"{name}\""), why, help);
+    let bodies = || parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
+    let (body, side) = name
+        .split_once('.')
+        .ok_or_else(|| missing("a side is written body.side".into(), format!("bodies: {}", bodies())))?;
+    let part = parts
+        .iter()
+        .position(|p| p.name == body)
+        .ok_or_else(|| missing(format!("there is no body \"{body}\""), format!("bodies: {}", bodies())))?;
+    let mesh = parts[part].body.mesh();
+    let first = parts[part].first_node;
+    let (Some(facets), Some(nodes)) = (mesh.sides.get(side), mesh.side_nodes(side)) else {
+        let sides = mesh.sides.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
+        return Err(missing(format!("the sides of \"{body}\" are: {sides}"), "use one of them".into()));
+    };
+    // Dimension 1: out of the body is away from the other nodes of the end's cell.
+    let outward = facets.first().map_or(0.0, |f| {
+        let end = mesh.nodes[f.nodes[0]][0];
+        let cell = mesh.cell(f.cell);
+        (end - cell.iter().map(|&n| mesh.nodes[n][0]).sum::<f64>() / cell.len() as f64).signum()
+    });
+    Ok(Side {
+        part,
+        nodes: nodes.iter().map(|n| n + first).collect(),
+        facets: facets.iter().map(|f| f.nodes.iter().map(|n| n + first).collect()).collect(),
+        outward,
+    })
+}
+
+fn contacts<const D: usize>(
+    case: &Case,
+    parts: &[Part<D>],
+    massless: &[bool],
+    problems: &mut Vec<Problem>,
+) -> Vec<Contact<D>>
+where
+    Space: Dimension<D>,
+{
+    let mut contacts = Vec::new();
+    for (k, spec) in case.contacts.iter().enumerate() {
+        let secondary = match side(parts, &spec.secondary, &format!("contact[{k}].secondary")) {
+            Ok(side) => side,
+            Err(problem) => {
+                problems.push(problem);
+                continue;
+            }
+        };
+        let mut primary_part = None;
+        let method: Box<dyn ContactMethod<D>> = match &spec.primary {
+            PrimarySpec::Plane { point, normal } => {
+                let array = |v: &[f64]| std::array::from_fn(|i| v[i]);
+                Box::new(NodeToPlane::new(secondary.nodes.clone(), array(point), array(normal)))
+            }
+            PrimarySpec::Side(name) => match side(parts, name, &format!("contact[{k}].primary")) {
+                Ok(primary) if primary.part == secondary.part => {
+                    problems.push(Problem::new(
+                        format!("contact[{k}].primary"),
+                        format!("contact \"{}\" is of body \"{}\" with itself", spec.name, parts[primary.part].name),
+                        "self-contact is not in this version",
+                        "name sides of two bodies",
+                    ));
+                    continue;
+                }
+                Ok(primary) => {
+                    primary_part = Some(primary.part);
+                    Space::between(spec, &secondary.nodes, &primary.facets, primary.outward)
+                }
+                Err(problem) => {
+                    problems.push(problem);
+                    continue;
+                }
+            },
+        };
+        let contact = Contact {
+            name: spec.name.clone(),
+            method,
+            primary_part,
+            secondary_facets: secondary.facets,
+            force: spec.force,
+            persistency: spec.persistency,
+            within: spec.active_set == ActiveSetRule::Within,
+        };
+        let has_mass = |nodes: &[usize]| nodes.iter().any(|n| !massless[n * D]);
+        let primary_has_mass = matches!(&spec.primary, PrimarySpec::Side(name)
+            if side(parts, name, "").is_ok_and(|s| has_mass(&s.nodes)));
+        if contact.persistency == Persistency::Project && !has_mass(&secondary.nodes) && !primary_has_mass {
+            problems.push(Problem::new(
+                format!("contact[{k}]"),
+                format!("no node of contact \"{}\" has mass", spec.name),
+                "velocities where contact begins are projected with the mass as weight, and there is none",
+                "persistency = \"none\" for this contact",
+            ));
+        }
+        contacts.push(contact);
+    }
+    contacts
+}
+
+fn probes<const D: usize>(case: &Case, parts: &[Part<D>], problems: &mut Vec<Problem>) -> Vec<Probe> {
+    let mut probes = Vec::new();
+    for (k, spec) in case.probes.iter().enumerate() {
+        let Some(part) = parts.iter().position(|p| p.name == spec.body) else { continue };
+        let point: [f64; D] = std::array::from_fn(|i| spec.at[i]);
+        let places = parts[part].body.locate(&point);
+        if places.is_empty() {
+            let mesh = parts[part].body.mesh();
+            let distance = |x: &[f64; D]| (0..D).map(|i| (x[i] - point[i]).powi(2)).sum::<f64>();
+            let nearest = mesh.nodes.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            problems.push(Problem::new(
+                format!("probe[{k}].at"),
+                format!("probe \"{}\" lies outside body \"{}\"", spec.name, spec.body),
+                format!("no cell of the reference mesh contains {:?}", spec.at),
+                nearest.map_or(String::new(), |x| format!("the nearest node is at {x:?}")),
+            ));
+        }
+        if let Some(j) = spec.record.iter().position(|q| !exists_in(*q, D)) {
+            problems.push(Problem::new(
+                format!("probe[{k}].record[{j}]"),
+                format!("probe \"{}\" asks for a quantity that dimension {D} does not have", spec.name),
+                "a bar has ux, vx, ax, sigma_xx and det_f",
+                "remove it",
+            ));
+        }
+        probes.push(Probe { name: spec.name.clone(), part, places, record: spec.record.clone() });
+    }
+    probes
+}
+
+/// Initial overlaps deeper than round-off: a problem per contact with the deepest place.
+///
+/// Closing an overlap in one step throws the bodies apart, so it is refused.
+pub fn overlaps<const D: usize>(model: &Model<D>) -> Vec<Problem> {
+    let x = model.reference.as_chunks::<D>().0;
+    let mut problems = Vec::new();
+    for (k, contact) in model.contacts.iter().enumerate() {
+        let mut deepest: Option<(f64, usize)> = None;
+        for (place, &node) in contact.method.secondary().iter().enumerate() {
+            let Some(gap) = contact.method.signed_distance(place, x) else { continue };
+            // Behind a side is not yet inside its body: a plate has a lower side too.
+            let inside = D == 1 || contact.primary_part.is_none_or(|p| !model.parts[p].body.locate(&x[node]).is_empty());
+            if gap < -1e-9 * model.scale && inside && deepest.is_none_or(|(g, _)| gap < g) {
+                deepest = Some((gap, node));
+            }
+        }
+        if let Some((gap, node)) = deepest {
+            problems.push(Problem::new(
+                format!("contact[{k}]"),
+                format!("the bodies of contact \"{}\" overlap at the start by {:.6e}", contact.name, -gap),
+                format!(
+                    "the node of the secondary side at {:?} lies inside the primary; closing an overlap in one step would throw the bodies apart",
+                    x[node]
+                ),
+                format!("move a body by at least {:.6e}, or swap secondary and primary if the wrong side was named", -gap),
+            ));
+        }
+    }
+    problems
+}
