@@ -6,7 +6,7 @@
 //! v_{s+1} = v_s + Δt [(1 − γ) a_s + γ a_{s+1}]                                                   (14)
 //! ```
 //!
-//! Index s + 1 − α: an α is the share of the *old* term (Chung and Hulbert 1993). `explain` translates.
+//! Index s + 1 − α: an α is the share of the *old* term (Chung and Hulbert 1993). [`crate::explain`] translates.
 use serde::{Deserialize, Serialize};
 
 use crate::error::SchemeError;
@@ -70,7 +70,7 @@ impl Scheme {
     }
 
     /// Hilber, Hughes and Taylor 1977 by α = α_f ≥ 0 (their α is −α_f): γ = ½ + α, β = (1 + α)²/4. Above 1/3 ρ∞ rises again:
-    /// used as given, the analysis says so.
+    /// used as given, [`Scheme::remarks`] says so.
     ///
     /// ```
     /// let hht = carom_time::Scheme::hht(0.25)?;

@@ -1,6 +1,8 @@
 //! Free fall is a polynomial of degree two in time, which every member of the family reproduces: what remains is round-off.
 //! A wrong factor on inertia, a shifted weight or a careless increment shows here first.
 
+#![allow(clippy::unwrap_used)]
+
 use carom_time::{ForceRule, Oscillator, Scheme, Stage};
 
 fn family() -> Vec<Scheme> {

@@ -1,0 +1,268 @@
+//! What `carom explain` knows of a scheme: its parameters in every convention, its accuracy, and what contact makes of it.
+use std::f64::consts::TAU;
+
+use serde::Serialize;
+
+use crate::names::{Elsewhere, Name, elsewhere, info, names};
+use crate::scheme::{ForceRule, Scheme};
+
+/// Below this a root counts as zero, and 1 minus it as one.
+const NOTHING: f64 = 1e-9;
+
+/// The scheme under one convention for its parameters.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Convention {
+    /// Whose convention.
+    pub name: &'static str,
+    /// Symbols and values.
+    pub values: Vec<(&'static str, f64)>,
+}
+
+/// Accuracy at some resolution of a period.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Accuracy {
+    /// T/Δt.
+    pub steps_per_period: u32,
+    /// Largest modulus of all roots.
+    pub spectral_radius: f64,
+    /// ξ of the oscillating pair, none where nothing oscillates.
+    pub damping_ratio: Option<f64>,
+    /// PE of the oscillating pair.
+    pub period_error: Option<f64>,
+}
+
+/// What happens to velocity and acceleration of a dof whose position contact holds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Held {
+    /// Largest modulus of the roots that act on it.
+    pub radius: f64,
+    /// Steps until the transient is below 1 % of v₀/Δt; none where it does not settle.
+    pub steps: Option<u32>,
+    /// In words.
+    pub text: String,
+}
+
+/// All of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Explanation {
+    /// The four parameters and the rule.
+    pub scheme: Scheme,
+    /// Ways to ask for it.
+    pub names: Vec<Name>,
+    /// Where it was published.
+    pub references: Vec<&'static str>,
+    /// Parameters in every convention.
+    pub conventions: Vec<Convention>,
+    /// Order on smooth motion.
+    pub order: u8,
+    /// Stable at any step on linear motion.
+    pub a_stable: bool,
+    /// Spectral radius at infinity.
+    pub rho_inf: f64,
+    /// At 5, 10, 20, 50 and 100 steps per period.
+    pub accuracy: Vec<Accuracy>,
+    /// What is conserved, and what is not.
+    pub conserves: Vec<&'static str>,
+    /// Under contact.
+    pub held: Held,
+    /// What else its parameters imply.
+    pub remarks: Vec<String>,
+    /// In other codes.
+    pub elsewhere: Vec<Elsewhere>,
+}
+
+/// Explains a scheme.
+///
+/// ```
+/// let told = carom_time::explain(&carom_time::Scheme::chung_hulbert(0.1)?);
+/// assert_eq!((told.order, told.held.steps), (2, Some(6)));
+/// assert!(told.to_string().contains("chung-hulbert"));
+/// # Ok::<(), carom_time::SchemeError>(())
+/// ```
+pub fn explain(scheme: &Scheme) -> Explanation {
+    let names = names(scheme);
+    let mut references: Vec<_> = names.iter().filter_map(|name| Some(info(name.kind)?.reference)).collect();
+    references.dedup();
+    // The raw parameters are one more way to say it, not one more source.
+    if references.len() > 1 {
+        references.pop();
+    }
+    Explanation {
+        conventions: conventions(scheme, &names),
+        order: scheme.order(),
+        a_stable: scheme.is_a_stable(),
+        rho_inf: scheme.spectral_radius_at_infinity(),
+        accuracy: [5, 10, 20, 50, 100].map(|steps| accuracy(scheme, steps)).into(),
+        conserves: conserves(scheme),
+        held: held(scheme),
+        remarks: scheme.remarks(),
+        elsewhere: elsewhere(scheme, &names),
+        scheme: *scheme,
+        names,
+        references,
+    }
+}
+
+pub(crate) fn accuracy(scheme: &Scheme, steps_per_period: u32) -> Accuracy {
+    let omega_dt = TAU / f64::from(steps_per_period);
+    let pair = scheme.principal(omega_dt);
+    Accuracy {
+        steps_per_period,
+        spectral_radius: scheme.spectral_radius(omega_dt),
+        damping_ratio: pair.map(|pair| pair.damping_ratio),
+        period_error: pair.map(|pair| pair.period_error),
+    }
+}
+
+fn conventions(scheme: &Scheme, names: &[Name]) -> Vec<Convention> {
+    let Scheme { alpha_m, alpha_f, beta, gamma, .. } = *scheme;
+    let is = |kind: &str| names.iter().any(|name| name.kind == kind);
+    let mut told = vec![
+        Convention {
+            name: "index s + 1 − α, shares of the old terms (here; Chung and Hulbert)",
+            values: vec![("α_m", alpha_m), ("α_f", alpha_f), ("β", beta), ("γ", gamma)],
+        },
+        Convention {
+            name: "index n + α, shares of the new terms",
+            values: vec![("α_m", 1.0 - alpha_m), ("α_f", 1.0 - alpha_f), ("β", beta), ("γ", gamma)],
+        },
+    ];
+    if is("hht") {
+        told.push(Convention { name: "Hilber, Hughes and Taylor's own", values: vec![("α", 0.0 - alpha_f)] });
+    }
+    if is("wbz") {
+        told.push(Convention { name: "Wood, Bossak and Zienkiewicz's own", values: vec![("α_B = α_m", alpha_m)] });
+    }
+    told.push(Convention {
+        name: "spectral radius at infinity",
+        values: vec![("ρ∞", scheme.spectral_radius_at_infinity())],
+    });
+    told
+}
+
+fn conserves(scheme: &Scheme) -> Vec<&'static str> {
+    let mut told = vec!["momentum: exactly"];
+    let lossless = scheme.order() == 2 && scheme.rho_is_one_everywhere();
+    let midpoint =
+        lossless && scheme.alpha_m == 0.5 && scheme.alpha_f == 0.5 && scheme.forces == ForceRule::AverageState;
+    told.push(if midpoint {
+        "moment of momentum: exactly but for contact (this is the midpoint rule)"
+    } else {
+        "moment of momentum: to the order of the scheme"
+    });
+    told.push(if lossless {
+        "energy: no mode of linear motion is damped; not exact for nonlinear forces or contact"
+    } else {
+        "energy: dissipates, high frequencies most; see the damping above"
+    });
+    if !scheme.is_a_stable() {
+        told.pop();
+        told.push("energy: may grow, the scheme is not stable at every step");
+    }
+    told
+}
+
+/// The map of a held dof in words (theory: a constrained dof sees the limit Ω → ∞, whatever the step).
+pub(crate) fn held(scheme: &Scheme) -> Held {
+    let roots = scheme.held_roots();
+    let multiplier = (scheme.alpha_f / (1.0 - scheme.alpha_f)).abs();
+    let own = roots[0].modulus().max(roots[1].modulus());
+    let radius = own.max(multiplier);
+    // Two equal roots give n ρⁿ; the multiplier's, if equal too, n² ρⁿ.
+    let double = (roots[0].re - roots[1].re).hypot(roots[0].im - roots[1].im) < NOTHING;
+    let power = usize::from(double) + usize::from((multiplier - own).abs() < NOTHING);
+    let (steps, text) = if radius < NOTHING {
+        let steps = ringing(scheme, NOTHING);
+        (Some(steps), format!("its acceleration and contact force are clean after {steps} steps"))
+    } else if radius < 1.0 - NOTHING {
+        let steps = ringing(scheme, 0.01);
+        let text = format!(
+            "its acceleration and contact force ring as {}({})ⁿ v₀/Δt after impact at v₀, below 1 % of v₀/Δt after {steps} steps; steps count, \
+             not time: a finer Δt makes it shorter and higher",
+            ["", "n ", "n² "][power],
+            crate::names::short(-radius)
+        );
+        (Some(steps), text)
+    } else if (scheme.beta - 0.25).abs() < NOTHING && (scheme.gamma - 0.5).abs() < NOTHING {
+        let text = "its velocity flips sign for ever and its acceleration grows by 4 v₀/Δt per step: needs persistency = \"project\"";
+        (None, text.to_owned())
+    } else {
+        (
+            None,
+            format!(
+                "its velocity and acceleration do not settle (root of modulus {radius:.3}): needs persistency = \"project\""
+            ),
+        )
+    };
+    Held { radius, steps, text }
+}
+
+/// Steps until |Δt a| and |Δt λ/m| of a mass stopped at v₀ stay below `share` of v₀. Eq. (15) gives λ with the constraint held from the step's start.
+fn ringing(scheme: &Scheme, share: f64) -> u32 {
+    let [[vv, va], [av, aa]] = scheme.held_map();
+    let Scheme { alpha_m, alpha_f, .. } = *scheme;
+    let (mut v, mut a, mut force) = (1.0, 0.0, 0.0f64);
+    let mut last = 0;
+    for n in 1..=100_000 {
+        let new = av * v + aa * a;
+        force = -((1.0 - alpha_m) * new + alpha_m * a + alpha_f * force) / (1.0 - alpha_f);
+        (v, a) = (vv * v + va * a, new);
+        if new.abs().max(force.abs()) >= share {
+            last = n;
+        }
+    }
+    last + 1
+}
+
+impl Scheme {
+    fn rho_is_one_everywhere(&self) -> bool {
+        [0.1, 1.0, 3.0, 30.0].iter().all(|&omega_dt| (self.spectral_radius(omega_dt) - 1.0).abs() < 1e-6)
+            && self.principal(0.1).is_some_and(|pair| pair.damping_ratio.abs() < NOTHING)
+    }
+
+    /// What the parameters imply beyond numbers: loss of order, instability, overshoot, a wasted α.
+    ///
+    /// ```
+    /// assert!(carom_time::Scheme::hht(0.4)?.remarks().iter().any(|remark| remark.contains("ρ∞ rises")));
+    /// # Ok::<(), carom_time::SchemeError>(())
+    /// ```
+    pub fn remarks(&self) -> Vec<String> {
+        let Self { alpha_m, alpha_f, gamma, .. } = *self;
+        let mut told = Vec::new();
+        if self.order() == 0 {
+            told.push(format!(
+                "α_m = {alpha_m} > ½: errors of the acceleration grow from step to step; it does not converge"
+            ));
+        } else if self.order() == 1 {
+            let needed = 0.5 - alpha_m + alpha_f;
+            told.push(format!(
+                "first order: second order needs γ = ½ − α_m + α_f = {}, not {}",
+                crate::names::short(needed),
+                crate::names::short(gamma)
+            ));
+        }
+        if *self == (Self { forces: self.forces, ..Self::hu() }) {
+            told.push(
+                "γ and β are those of Chung and Hulbert at ρ∞ = 0; α_m = −1 would make it second order".to_owned(),
+            );
+        }
+        if !self.is_a_stable() {
+            told.push("not unconditionally stable: some Ω = ωΔt grows".to_owned());
+        }
+        let held = self.held_roots().iter().map(|root| root.modulus()).fold(0.0, f64::max);
+        let averaged = alpha_f / (1.0 - alpha_f);
+        if averaged > held + NOTHING {
+            told.push(format!(
+                "α_f/(1 − α_f) = {averaged:.3} exceeds the other roots at infinity ({held:.3}): ρ∞ rises again with α_f"
+            ));
+        }
+        let overshoot = self.velocity_overshoot();
+        if overshoot > NOTHING {
+            told.push(format!("overshoot: a stiff mode released from u₀ has velocity {overshoot:.3} Ω ω u₀ after a step; displacements stay bounded"));
+        }
+        if self.forces == ForceRule::AverageState && alpha_f != 0.0 {
+            told.push("averaged state and averaged forces differ as soon as forces are nonlinear; linear analysis cannot tell them apart".to_owned());
+        }
+        told
+    }
+}

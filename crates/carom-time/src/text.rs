@@ -1,0 +1,180 @@
+//! Explanations as text for a terminal, and the table over the catalogue.
+use std::fmt::{Display, Formatter, Result};
+
+use serde::Serialize;
+
+use crate::explain::{Accuracy, Explanation, accuracy, held};
+use crate::family::scheme;
+use crate::names::short;
+use crate::scheme::{ForceRule, Scheme};
+
+/// ξ and PE without noise of the last digits.
+fn cell(x: Option<f64>, scale: f64) -> String {
+    match x.map(|x| x * scale) {
+        None => "–".to_owned(),
+        Some(x) if x.abs() < 1e-12 => "0".to_owned(),
+        Some(x) if x.abs() < 1e-3 => format!("{x:.1e}"),
+        Some(x) => format!("{x:.4}"),
+    }
+}
+
+fn list<T: Display>(f: &mut Formatter, title: &str, items: &[T]) -> Result {
+    if items.is_empty() {
+        return Ok(());
+    }
+    writeln!(f, "\n{title}")?;
+    items.iter().try_for_each(|item| writeln!(f, "  {item}"))
+}
+
+impl Display for Explanation {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        let rule = match self.scheme.forces {
+            ForceRule::AverageForces => "forces averaged",
+            ForceRule::AverageState => "state averaged",
+        };
+        if let Some((name, others)) = self.names.split_first() {
+            writeln!(f, "{name}   {rule}   {}", self.references.join("; "))?;
+            list(f, "the same as", others)?;
+        }
+        writeln!(f, "\nparameters")?;
+        for convention in &self.conventions {
+            let values: Vec<_> =
+                convention.values.iter().map(|(symbol, value)| format!("{symbol} = {}", short(*value))).collect();
+            writeln!(f, "  {}\n      {}", convention.name, values.join("   "))?;
+        }
+        let stable = if self.a_stable { "stable at any Δt" } else { "not stable at any Δt" };
+        writeln!(f, "\norder {}   ρ∞ = {}   {stable} (linear motion)", self.order, cell(Some(self.rho_inf), 1.0))?;
+        writeln!(f, "\n  {:>6} {:>10} {:>12} {:>10}", "T/Δt", "ρ", "damping ξ", "PE %")?;
+        for Accuracy { steps_per_period, spectral_radius, damping_ratio, period_error } in &self.accuracy {
+            let (damping, period) = (cell(*damping_ratio, 1.0), cell(*period_error, 100.0));
+            writeln!(f, "  {steps_per_period:>6} {spectral_radius:>10.6} {damping:>12} {period:>10}")?;
+        }
+        list(f, "conserves", &self.conserves)?;
+        list(f, "a dof held by contact", &[&self.held.text])?;
+        list(f, "remarks", &self.remarks)?;
+        let elsewhere: Vec<_> = self.elsewhere.iter().map(|fact| format!("{}: {}", fact.code, fact.note)).collect();
+        list(f, "elsewhere", &elsewhere)
+    }
+}
+
+/// A line of the [`Catalogue`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CatalogueRow {
+    /// As in a case file.
+    pub kind: &'static str,
+    /// The parameters shown, in words.
+    pub parameters: String,
+    /// What they make.
+    pub scheme: Scheme,
+    /// Order on smooth motion.
+    pub order: u8,
+    /// Spectral radius at infinity.
+    pub rho_inf: f64,
+    /// At ten steps per period.
+    pub accuracy: Accuracy,
+    /// Steps a held dof rings; none: for ever.
+    pub held_steps: Option<u32>,
+}
+
+/// Typical members of every kind, side by side.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Catalogue {
+    /// In the order of the catalogue.
+    pub rows: Vec<CatalogueRow>,
+}
+
+/// Members shown of each kind.
+const SHOWN: &[(&str, &[(&str, f64)])] = &[
+    ("newmark", &[("beta", 0.25), ("gamma", 0.5)]),
+    ("newmark", &[("rho_inf", 0.9)]),
+    ("newmark", &[("rho_inf", 0.6)]),
+    ("hu", &[]),
+    ("hht", &[("alpha", 0.05)]),
+    ("hht", &[("alpha", 0.25)]),
+    ("wbz", &[("rho_inf", 0.6)]),
+    ("wbz", &[("rho_inf", 0.1)]),
+    ("chung-hulbert", &[("rho_inf", 0.8)]),
+    ("chung-hulbert", &[("rho_inf", 0.6)]),
+    ("chung-hulbert", &[("rho_inf", 0.1)]),
+    ("chung-hulbert", &[("rho_inf", 0.0)]),
+    ("generalized-alpha", &[("alpha_m", 0.5), ("alpha_f", 0.5), ("beta", 0.25), ("gamma", 0.5)]),
+];
+
+/// The catalogue as a table.
+///
+/// ```
+/// let hu = carom_time::explain_all().rows.into_iter().find(|row| row.kind == "hu");
+/// assert_eq!(hu.map(|row| (row.order, row.rho_inf, row.held_steps)), Some((1, 0.0, Some(2))));
+/// ```
+pub fn explain_all() -> Catalogue {
+    let row = |&(kind, parameters): &(&'static str, &[(&str, f64)])| {
+        let given = parameters.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();
+        let scheme = scheme(kind, &given, ForceRule::AverageForces).ok()?;
+        // Raw parameters stand in their columns.
+        let shown = if parameters.len() > 2 { &[] } else { parameters };
+        let words: Vec<_> = shown.iter().map(|(key, value)| format!("{key} {value}")).collect();
+        Some(CatalogueRow {
+            kind,
+            parameters: words.join(", "),
+            scheme,
+            order: scheme.order(),
+            rho_inf: scheme.spectral_radius_at_infinity(),
+            accuracy: accuracy(&scheme, 10),
+            held_steps: held(&scheme).steps,
+        })
+    };
+    Catalogue { rows: SHOWN.iter().filter_map(row).collect() }
+}
+
+impl Display for Catalogue {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        let heads = ["α_m", "α_f", "β", "γ", "order", "ρ∞", "ξ(T/10)", "PE(T/10)", "held"];
+        write!(f, "{:<18}{:<24}", "kind", "parameters")?;
+        heads.iter().try_for_each(|head| write!(f, "{head:>10}"))?;
+        writeln!(f)?;
+        for row in &self.rows {
+            let Scheme { alpha_m, alpha_f, beta, gamma, .. } = row.scheme;
+            write!(f, "{:<18}{:<24}{alpha_m:>10.4}{alpha_f:>10.4}{beta:>10.4}{gamma:>10.4}", row.kind, row.parameters)?;
+            let (xi, pe) = (cell(row.accuracy.damping_ratio, 1.0), cell(row.accuracy.period_error, 100.0));
+            let held = row.held_steps.map_or("∞".to_owned(), |steps| steps.to_string());
+            writeln!(f, "{:>10}{:>10.3}{xi:>10}{:>10}{held:>10}", row.order, row.rho_inf, format!("{pe} %"))?;
+        }
+        write!(
+            f,
+            "\nIndex s + 1 − α. ξ, PE: damping and lengthening of a period of ten steps. held: steps a dof held by contact rings above 1 % of v₀/Δt."
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{KINDS, explain};
+
+    #[test]
+    fn every_kind_is_shown() {
+        let table = explain_all();
+        assert_eq!(table.rows.len(), SHOWN.len());
+        assert!(KINDS.iter().all(|kind| table.rows.iter().any(|row| row.kind == kind.name)));
+    }
+
+    #[test]
+    fn the_text_says_what_matters() {
+        let hu = explain(&Scheme::hu()).to_string();
+        for part in [
+            "order 1",
+            "ρ∞ = 0 ",
+            "clean after 2 steps",
+            "asserts γ ≤ 1",
+            "Hu 1997",
+            "α_m = −1 would make it second order",
+        ] {
+            assert!(hu.contains(part), "no {part:?} in\n{hu}");
+        }
+        let hht = explain(&Scheme::hht(0.05).unwrap()).to_string();
+        assert!(hht.contains("α = -0.05") && hht.contains("α_f = 0.95"), "{hht}");
+        let trapezoidal = explain(&Scheme::newmark(0.25, 0.5).unwrap());
+        assert_eq!(trapezoidal.held.steps, None);
+        assert!(trapezoidal.to_string().contains("grows by 4 v₀/Δt per step"));
+    }
+}
