@@ -10,6 +10,7 @@ use crate::exit::Failure;
 
 /// How to run.
 #[derive(Clone, Copy, Debug)]
+#[allow(dead_code)]
 pub(crate) struct Options {
     /// Threads; results do not depend on them.
     pub(crate) threads: usize,

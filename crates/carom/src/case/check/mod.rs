@@ -6,6 +6,7 @@ mod time;
 
 use super::columns;
 use super::document::Document;
+use super::keys;
 use super::problem::Problem;
 use super::read::Draft;
 use super::suggest;
@@ -49,9 +50,14 @@ impl<'a> Check<'a> {
         self.document.root().get(list).and_then(Node::list).unwrap_or(&[])
     }
 
-    /// Names of a list of tables; `None` if one of them cannot be read, since a reference might mean that one.
+    /// Names of a list of tables; `None` if one of them cannot be read or its header is
+    /// misspelt, since a reference might mean that one.
     fn names(&self, list: &str) -> Option<Vec<&'a str>> {
         let tables = self.tables(list);
+        let root = &self.document.root().0;
+        if root.iter().any(|e| keys::CASE.key(&e.key).is_none() && suggest::nearest(&e.key, [list]).is_some()) {
+            return None;
+        }
         let names: Option<Vec<_>> = tables.iter().map(|n| n.table()?.get("name")?.text()).collect();
         names.filter(|names| !names.is_empty())
     }
@@ -196,11 +202,13 @@ impl<'a> Check<'a> {
     }
 
     fn expects(&mut self) {
-        // Columns come from names: with one unreadable, an unknown column proves nothing.
         let draft = self.draft;
-        let complete = draft.probes.iter().all(Option::is_some)
+        // Columns come from names: with a key unknown or missing somewhere, an unknown column proves nothing.
+        let complete = !self.problems.iter().any(|p| p.at_key)
+            && draft.probes.iter().all(Option::is_some)
             && draft.bodies.iter().all(Option::is_some)
-            && draft.contacts.iter().all(Option::is_some);
+            && draft.contacts.iter().all(Option::is_some)
+            && draft.supports.iter().all(Option::is_some);
         let known =
             columns::of(draft.dimension.unwrap_or(2), &draft.bodies, &draft.contacts, &draft.supports, &draft.probes);
         let end = draft.time.as_ref().map_or(f64::INFINITY, |t| t.end);

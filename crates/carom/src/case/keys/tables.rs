@@ -276,8 +276,11 @@ const FORCES: Key = key(
     "What is averaged over the step with α_f: the forces (eq. 15), or the state they are evaluated at.",
 )
 .default("\"average-forces\"");
-const SPECTRAL: &[Key] =
-    &[key("rho_inf", Number(RHO_INF), "Spectral radius at infinite frequency.").example("0.8"), FORCES];
+const SPECTRAL: &[Key] = &[
+    key("rho_inf", Number(RHO_INF), "Spectral radius at infinite frequency: 0 damps it within steps, 1 not at all.")
+        .example("0.8"),
+    FORCES,
+];
 
 /// Time integrators.
 pub const SCHEMES: Variants = Variants {
