@@ -23,6 +23,13 @@ pub(super) fn problems(document: &Document) -> Vec<Problem> {
     check.problems
 }
 
+/// The same for a table of variants alone.
+pub(super) fn variant(table: &Table, variants: &Variants) -> Vec<Problem> {
+    let mut check = Check { dimension: None, problems: Vec::new() };
+    check.variant(table, variants, "");
+    check.problems
+}
+
 struct Check {
     dimension: Option<usize>,
     problems: Vec<Problem>,
@@ -273,10 +280,12 @@ fn words(variants: &Variants) -> String {
 /// An unknown key, and the key of this table that was probably meant.
 fn unknown<'a>(word: &str, table: &Table, spec: &Spec<'a>, path: String) -> (Problem, Option<&'a str>) {
     let all = || spec.tag.into_iter().chain(spec.keys.iter().map(|k| k.name));
-    let near = suggest::nearest(word, all().filter(|k| table.get(k).is_none()))
-        .or_else(|| suggest::nearest(word, spec.later.iter().copied()));
+    // A key that is there already is hardly meant, unless there may be several.
+    let several = |name: &str| spec.keys.iter().any(|k| k.name == name && matches!(k.kind, Kind::Tables(_)));
+    let free = all().filter(|k| table.get(k).is_none() || several(k)).chain(spec.later.iter().copied());
     let mut homes = homes(word);
     homes.dedup();
+    let near = suggest::nearest(word, free).or_else(|| suggest::nearest(word, all()).filter(|_| homes.is_empty()));
     let elsewhere = format!("`{word}` is a key of {}", homes.join(", "));
     let help = match (near, homes.is_empty()) {
         (Some(near), true) => format!("did you mean `{near}`?"),
@@ -300,10 +309,10 @@ fn homes(word: &str) -> Vec<&'static str> {
         for key in table.keys {
             match key.kind {
                 Kind::Table(table) | Kind::Tables(table) | Kind::SideOr(table) => visit(table, word, found),
-                Kind::Variant(variants)
-                    if variants.tag == word || variants.tables.iter().any(|(_, t)| t.key(word).is_some()) =>
-                {
-                    found.push(variants.name);
+                Kind::Variant(variants) if variants.tag == word => found.push(variants.name),
+                Kind::Variant(variants) => {
+                    let with = variants.tables.iter().filter(|(_, t)| t.key(word).is_some());
+                    found.extend(with.map(|(_, t)| t.name));
                 }
                 _ => {}
             }

@@ -1,16 +1,18 @@
 //! A case as resolved: every default filled in, every name still a name. What `manifest.json` records and `resume` reads back.
 
 mod check;
+mod columns;
 mod conform;
 mod document;
 pub mod keys;
 mod overrides;
 mod problem;
 mod read;
+mod schema;
 mod suggest;
-mod tree;
 #[cfg(test)]
 mod tests;
+mod tree;
 mod view;
 
 use std::collections::BTreeMap;
@@ -19,7 +21,8 @@ use serde::{Deserialize, Serialize};
 
 pub use document::Document;
 pub use problem::{CaseError, Diagnostic, Problem};
-pub use read::read;
+pub use read::{read, read_scheme};
+pub use schema::schema;
 
 /// One simulation, fully resolved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -3,9 +3,12 @@
 use super::BodySpec;
 use super::check;
 use super::conform;
-use super::document::Document;
+use carom_time::SchemeError;
+
+use super::document::{Document, joined};
 use super::keys::{self, Kind};
-use super::problem::Problem;
+use super::problem::{CaseError, Problem};
+use super::suggest;
 use super::tree::{Node, Table};
 use super::view::{View, word};
 use super::{
@@ -277,7 +280,7 @@ fn probe(v: View) -> Option<ProbeSpec> {
 }
 
 fn time(v: View, problems: &mut Vec<Problem>) -> Option<TimeSpec> {
-    let scheme = v.value("scheme").and_then(|node| scheme(node.table()?, v.preset, problems));
+    let scheme = v.value("scheme").and_then(|node| scheme(node.table()?, v.preset, "time.scheme", problems));
     Some(TimeSpec {
         end: v.number("end")?,
         step: v.number("step")?,
@@ -286,22 +289,42 @@ fn time(v: View, problems: &mut Vec<Problem>) -> Option<TimeSpec> {
     })
 }
 
-fn scheme(table: &Table, preset: Preset, problems: &mut Vec<Problem>) -> Option<SchemeSpec> {
+fn scheme(table: &Table, preset: Preset, path: &str, problems: &mut Vec<Problem>) -> Option<SchemeSpec> {
     let kind = table.get("kind")?.text()?;
     let v = View { table, keys: keys::SCHEMES.table(kind)?.keys, preset };
     let numbers = v.keys.iter().filter(|k| matches!(k.kind, Kind::Number(_)));
     let parameters = numbers.filter_map(|k| Some((k.name.to_owned(), v.number(k.name)?))).collect();
-    let given: Vec<_> = ["beta", "gamma", "rho_inf"].into_iter().filter(|k| v.has(k)).collect();
-    if kind == "newmark" && given != ["beta", "gamma"] && given != ["rho_inf"] {
-        let what = format!(
-            "newmark's parameters are not one set: {}",
-            if given.is_empty() { "none".into() } else { given.join(", ") }
-        );
-        let help = "give `beta` and `gamma`, or `rho_inf`; the trapezoidal rule is beta = 0.25, gamma = 0.5";
-        problems.push(Problem::new("time.scheme", what, "β and γ follow from ρ∞", help));
-        return None;
+    let forces = v.choice("forces")?;
+    let spec = SchemeSpec { kind: kind.to_owned(), parameters, forces };
+    if let Err(error) = carom_time::scheme(kind, &spec.parameters, forces)
+        && !problems.iter().any(|p| p.path.starts_with(path))
+    {
+        let help = match &error {
+            SchemeError::OutOfRange { hint, .. } => hint.clone(),
+            SchemeError::Missing { expected, .. } | SchemeError::Superfluous { expected, .. } => {
+                format!("give {expected}")
+            }
+            SchemeError::UnknownKind { .. } => suggest::help(kind, error.known().iter().copied()),
+        };
+        let why = keys::SCHEMES.table(kind).map_or(keys::SCHEMES.doc, |t| t.doc);
+        problems.push(Problem::new(joined(path, error.key()), error.to_string(), why, help));
     }
-    Some(SchemeSpec { kind: kind.to_owned(), parameters, forces: v.choice("forces")? })
+    Some(spec)
+}
+
+/// A scheme by its kind and parameters `key=value`, as `carom explain` takes them.
+pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, CaseError> {
+    let mut text = format!("kind = {}\n", toml_edit::Value::from(kind));
+    for parameter in parameters {
+        let (key, value) = parameter.split_once('=').unwrap_or((parameter, ""));
+        let quoted = key.trim() == "forces" && !value.trim().starts_with('"');
+        let value = if quoted { toml_edit::Value::from(value.trim()).to_string() } else { value.trim().to_owned() };
+        text.push_str(&format!("{} = {value}\n", key.trim()));
+    }
+    let document = Document::parse("scheme", &text, &[])?;
+    let mut problems = conform::variant(document.root(), &keys::SCHEMES);
+    let spec = scheme(document.root(), Preset::Default, "", &mut problems);
+    spec.filter(|_| problems.is_empty()).ok_or_else(|| document.diagnose_all(&problems))
 }
 
 fn newton(v: View) -> Option<NewtonSpec> {

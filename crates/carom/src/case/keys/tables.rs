@@ -276,8 +276,11 @@ const FORCES: Key = key(
     "What is averaged over the step with α_f: the forces (eq. 15), or the state they are evaluated at.",
 )
 .default("\"average-forces\"");
-const SPECTRAL: &[Key] =
-    &[key("rho_inf", Number(RHO_INF), "Spectral radius at infinite frequency.").example("0.8"), FORCES];
+const SPECTRAL: &[Key] = &[
+    key("rho_inf", Number(RHO_INF), "Spectral radius at infinite frequency: 0 damps it within steps, 1 not at all.")
+        .example("0.8"),
+    FORCES,
+];
 
 /// Time integrators.
 pub const SCHEMES: Variants = Variants {
@@ -409,7 +412,12 @@ const EXPECT: Table = Table {
     name: "[[expect]]",
     doc: "An expected value with value and tolerance, value and relative, at_most, or at_least.",
     keys: &[
-        key("what", Text, "min | max | at T | first | last of a column, or a named metric.").example("\"min A.uy\""),
+        key(
+            "what",
+            Text,
+            "min | max | first | last | at T | time of min | time of max of a column, or a metric by name.",
+        )
+        .example("\"min A.uy\""),
         key("value", Number(ANY), "Expected value.").optional().example("-0.7827"),
         key("tolerance", Number(NOT_NEGATIVE), "Absolute tolerance.").optional().example("4e-3"),
         key("relative", Number(NOT_NEGATIVE), "Relative tolerance.").optional().example("0.01"),

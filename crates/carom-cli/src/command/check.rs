@@ -1,0 +1,86 @@
+//! `carom check`: reads and resolves a case, says what is wrong and where; runs nothing, writes nothing.
+
+use std::path::PathBuf;
+
+use carom::case::{Case, PrimarySpec};
+
+use crate::exit::{Exit, Failure};
+use crate::simulation::{self, Facts};
+use crate::summary::short;
+use crate::{out, summary};
+
+/// Read and resolve a case, say what is wrong and where; run nothing
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  carom check impact.toml --set time.scheme.rho_inf=0.5")]
+pub(crate) struct Arguments {
+    /// The case file
+    case: PathBuf,
+    /// Replace a value of the case, as in `carom run`
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    sets: Vec<String>,
+    /// The case as resolved, with every default, as JSON on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let (case, document) = super::case(&arguments.case, &arguments.sets)?;
+    let facts = simulation::facts(&case, &document)?;
+    if arguments.json {
+        out::event(&serde_json::json!({ "event": "check", "case": case, "model": facts }))?;
+    } else {
+        out::line(&table(&case, facts.as_ref()))?;
+    }
+    Ok(Exit::Done)
+}
+
+fn table(case: &Case, facts: Option<&Facts>) -> String {
+    let mut lines = vec![format!("{} (dimension {})", case.title, case.dimension)];
+    for body in &case.bodies {
+        let size = match facts.and_then(|f| f.bodies.iter().find(|b| b.name == body.name)) {
+            Some(b) => {
+                let sides: Vec<_> = b.sides.iter().map(|(side, n)| format!("{side} {n}")).collect();
+                format!(
+                    "{} nodes, {} cells, {} free dofs; nodes of sides: {}",
+                    b.nodes,
+                    b.cells,
+                    b.dofs,
+                    sides.join(", ")
+                )
+            }
+            None => {
+                let (cells, nodes) = body.mesh.estimate(body.element);
+                format!("about {nodes} nodes, {cells} cells; sides: {}", body.mesh.sides().join(", "))
+            }
+        };
+        lines.push(format!("  body     {:12} {:?} of {}: {size}", body.name, body.element, body.material));
+    }
+    for support in &case.supports {
+        let fixed: String = support.fix.iter().map(|axis| ["x", "y"][*axis]).collect();
+        lines.push(format!(
+            "  support  {:12} {} fixed in {fixed}",
+            support.name.as_deref().unwrap_or(""),
+            support.on.join(", ")
+        ));
+    }
+    for contact in &case.contacts {
+        let primary = match &contact.primary {
+            PrimarySpec::Side(side) => side.clone(),
+            PrimarySpec::Plane { .. } => "a rigid plane".to_owned(),
+        };
+        lines.push(format!("  contact  {:12} {} against {primary}", contact.name, contact.secondary));
+    }
+    for probe in &case.probes {
+        lines.push(format!("  probe    {:12} at {:?} of {}", probe.name, probe.at, probe.body));
+    }
+    let scheme = &case.time.scheme;
+    let parameters: String = scheme.parameters.iter().map(|(key, value)| format!(", {key} = {value}")).collect();
+    lines.push(format!("  scheme   {}{parameters}", scheme.kind));
+    let steps = case.time.steps();
+    lines.push(format!("  time     {steps} steps of {} to {}", summary::short(case.time.step), short(case.time.end)));
+    if let Some(facts) = facts {
+        let transit = short(facts.transit_steps);
+        lines.push(format!("           a pressure wave crosses the smallest body in {transit} steps"));
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,47 @@
+//! `carom explain`: what a time integrator does, before anything is computed.
+
+use std::fmt::Display;
+
+use carom::case::read_scheme;
+use serde::Serialize;
+
+use crate::exit::{Exit, Failure};
+use crate::out;
+
+/// Order, ρ∞, damping, period error of a time integrator, and its parameters in every convention
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  carom explain
+  carom explain chung-hulbert rho_inf=0.1
+  carom explain newmark beta=0.25 gamma=0.5
+  carom explain hht alpha=0.05 forces=average-state")]
+pub(crate) struct Arguments {
+    /// Kind, as in a case file; without one: all of them side by side
+    scheme: Option<String>,
+    /// Its parameters
+    #[arg(value_name = "KEY=VALUE")]
+    parameters: Vec<String>,
+    /// The same as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let Some(kind) = &arguments.scheme else {
+        return tell(&carom_time::explain_all(), arguments.json);
+    };
+    let spec = read_scheme(kind, &arguments.parameters)?;
+    let scheme = carom_time::scheme(&spec.kind, &spec.parameters, spec.forces)
+        .map_err(|e| Failure::Argument { what: e.to_string(), help: String::new() })?;
+    tell(&carom_time::explain(&scheme), arguments.json)
+}
+
+fn tell<T: Display + Serialize>(told: &T, json: bool) -> Result<Exit, Failure> {
+    if json {
+        out::event(told)?
+    } else {
+        out::line(&told.to_string())?
+    }
+    Ok(Exit::Done)
+}

@@ -1,0 +1,26 @@
+//! One file per command.
+
+pub(crate) mod check;
+pub(crate) mod explain;
+pub(crate) mod report;
+pub(crate) mod resume;
+pub(crate) mod run;
+pub(crate) mod schema;
+
+use std::path::Path;
+
+use carom::case::{Case, Document, read};
+
+use crate::exit::Failure;
+
+/// Reads a case with its overrides; nothing is written.
+fn case(path: &Path, sets: &[String]) -> Result<(Case, Document), Failure> {
+    let document = Document::open(path, sets)?;
+    let case = read(&document).map_err(|problems| document.diagnose_all(&problems))?;
+    Ok((case, document))
+}
+
+/// Threads as asked for, or one.
+fn threads(asked: Option<std::num::NonZero<usize>>) -> usize {
+    asked.map_or(1, std::num::NonZero::get)
+}

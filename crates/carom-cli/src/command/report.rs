@@ -1,0 +1,30 @@
+//! `carom report`: figures and page from the records alone.
+
+use std::path::{Path, PathBuf};
+
+use crate::exit::{Exit, Failure};
+use crate::{out, simulation};
+
+/// Rebuild the figures and the page of a run from its records alone
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  carom report runs/impact")]
+pub(crate) struct Arguments {
+    /// The run directory
+    directory: PathBuf,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    run_directory(&arguments.directory)?;
+    let page = simulation::report(&arguments.directory)?;
+    out::line(&page.display().to_string())?;
+    Ok(Exit::Done)
+}
+
+/// Refuses what is no run directory.
+pub(super) fn run_directory(directory: &Path) -> Result<(), Failure> {
+    if directory.join("manifest.json").is_file() {
+        return Ok(());
+    }
+    let what = format!("{} is no run directory: it has no manifest.json", directory.display());
+    Err(Failure::Argument { what, help: "name a directory that `carom run` made, for example runs/impact".to_owned() })
+}

@@ -1,0 +1,60 @@
+//! `carom run`: one simulation → a run directory, with its report.
+
+use std::num::NonZero;
+use std::path::PathBuf;
+
+use serde_json::json;
+
+use crate::exit::{Exit, Failure};
+use crate::live::{Live, stop_on_signal};
+use crate::simulation::{self, Options};
+use crate::{directory, out, summary};
+
+/// Simulate a case into a run directory, with its report
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  carom run impact.toml
+  carom run impact.toml --set time.step=1e-3 --set body.cylinder.element=T6
+  carom run impact.toml --set 'time.scheme={ kind = \"hu\" }' --out runs/hu")]
+pub(crate) struct Arguments {
+    /// The case file
+    case: PathBuf,
+    /// Directory of the run; must not exist yet [default: runs/NAME, runs/NAME-2, …]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace a value of the case; tables of a list by their name: body.cylinder.element=T6
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    sets: Vec<String>,
+    /// Threads; the results are the same bits for any number [default: 1]
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZero<usize>>,
+    /// Make no figures and no page
+    #[arg(long)]
+    no_report: bool,
+    /// Tell where the time went
+    #[arg(long)]
+    profile: bool,
+    /// One JSON object per event on standard output, and nothing else there
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let (case, document) = super::case(&arguments.case, &arguments.sets)?;
+    let directory = directory::of_run(&arguments.case, arguments.out.as_deref())?;
+    let options = Options {
+        threads: super::threads(arguments.threads),
+        report: !arguments.no_report,
+        profile: arguments.profile,
+    };
+    let stop = stop_on_signal()?;
+    if arguments.json {
+        let steps = case.time.steps();
+        out::event(&json!({ "event": "start", "title": case.title, "directory": directory, "steps": steps }))?;
+    }
+    let mut live = Live::new(arguments.json);
+    let done = simulation::run(&case, &document, &directory, options, &mut |p| live.show(p), &stop);
+    drop(live);
+    summary::tell(&done?, arguments.json)
+}

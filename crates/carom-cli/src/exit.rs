@@ -1,0 +1,54 @@
+//! What a process says when it ends, and why it does.
+
+use std::path::PathBuf;
+
+use carom::case::CaseError;
+
+/// Exit codes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Exit {
+    /// All was done.
+    Done = 0,
+    /// The case or an argument is wrong.
+    Wrong = 2,
+    /// The simulation stopped; its last good state is kept.
+    Stopped = 3,
+    /// The machine refused: disk, permission, memory.
+    Refused = 4,
+    /// Stopped by Ctrl-C; `carom resume` goes on.
+    Interrupted = 130,
+}
+
+/// Why a command did not end well.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Failure {
+    /// The case is wrong, or its file could not be read.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// An argument is wrong.
+    #[error("{what}")]
+    Argument { what: String, help: String },
+    /// The simulation stopped.
+    #[allow(dead_code)]
+    #[error("{reason}")]
+    Stopped { reason: String, help: String, directory: PathBuf },
+    /// The machine refused.
+    #[error("{what}")]
+    Refused { what: String },
+}
+
+impl Failure {
+    pub(crate) fn exit(&self) -> Exit {
+        match self {
+            Self::Case(CaseError::Wrong(_)) | Self::Argument { .. } => Exit::Wrong,
+            Self::Stopped { .. } => Exit::Stopped,
+            Self::Case(CaseError::Refused { .. }) | Self::Refused { .. } => Exit::Refused,
+        }
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Self {
+        Self::Refused { what: error.to_string() }
+    }
+}

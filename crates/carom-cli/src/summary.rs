@@ -1,0 +1,118 @@
+//! What is said at the end of a run.
+
+use serde::Serialize;
+
+use crate::exit::{Exit, Failure};
+use crate::live::duration;
+use crate::out;
+use crate::simulation::Outcome;
+
+#[derive(Serialize)]
+struct Event<'a> {
+    event: &'static str,
+    #[serde(flatten)]
+    outcome: &'a Outcome,
+}
+
+/// Tells the outcome on standard output; a missed expectation is told, not punished.
+pub(crate) fn tell(outcome: &Outcome, json: bool) -> Result<Exit, Failure> {
+    if json {
+        out::event(&Event { event: if outcome.interrupted { "interrupted" } else { "done" }, outcome })?;
+    } else {
+        out::line(&text(outcome))?;
+    }
+    Ok(if outcome.interrupted { Exit::Interrupted } else { Exit::Done })
+}
+
+fn text(outcome: &Outcome) -> String {
+    let directory = outcome.directory.display();
+    let mut lines = vec![format!("{} steps to t = {} in {}", outcome.steps, outcome.time, duration(outcome.wall))];
+    let width = outcome.extremes.iter().map(|e| e.column.chars().count()).max().unwrap_or(0);
+    for e in &outcome.extremes {
+        lines.push(format!(
+            "  {:width$}  min {:>12} at {:<9}  max {:>12} at {:<9}  {}",
+            e.column,
+            short(e.min),
+            short(e.min_time),
+            short(e.max),
+            short(e.max_time),
+            e.unit
+        ));
+    }
+    for e in &outcome.expectations {
+        let got = e.got.map_or_else(|| "nothing".to_owned(), short);
+        let verdict = if e.met { "as expected" } else { "NOT as expected" };
+        lines.push(format!("  {}: {got}, {verdict} ({})", e.what, e.wanted));
+    }
+    for (phase, seconds) in &outcome.profile {
+        lines.push(format!("  {phase:24} {}", duration(*seconds)));
+    }
+    if outcome.interrupted {
+        lines.push(format!("stopped by Ctrl-C; go on with: carom resume {directory}"));
+    }
+    lines.push(outcome.report.as_ref().map_or_else(|| directory.to_string(), |page| page.display().to_string()));
+    lines.join("\n")
+}
+
+/// Five digits, in the shorter of the two notations.
+pub(crate) fn short(x: f64) -> String {
+    if x == 0.0 || (1e-3..1e6).contains(&x.abs()) {
+        let digits = (4 - x.abs().max(1e-3).log10().floor() as i32).clamp(0, 7) as usize;
+        let text = format!("{x:.digits$}");
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    } else {
+        format!("{x:.4e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulation::{Expectation, Extreme};
+
+    #[test]
+    fn summary_names_directory_extremes_and_expectations() {
+        let outcome = Outcome {
+            directory: "runs/impact-2".into(),
+            interrupted: false,
+            steps: 400,
+            time: 0.75,
+            wall: 3.21,
+            extremes: vec![Extreme {
+                column: "A.uy".into(),
+                unit: "m".into(),
+                min: -0.78268,
+                min_time: 0.43125,
+                max: 0.0,
+                max_time: 0.0,
+            }],
+            expectations: vec![Expectation {
+                what: "min A.uy".into(),
+                wanted: "-0.7827 ± 0.004".into(),
+                got: Some(-0.78268),
+                met: true,
+            }],
+            profile: Vec::new(),
+            report: Some("runs/impact-2/report.html".into()),
+        };
+        let told = text(&outcome);
+        assert_eq!(
+            told.lines().collect::<Vec<_>>(),
+            [
+                "400 steps to t = 0.75 in 3.2 s",
+                "  A.uy  min     -0.78268 at 0.43125    max            0 at 0          m",
+                "  min A.uy: -0.78268, as expected (-0.7827 ± 0.004)",
+                "runs/impact-2/report.html",
+            ]
+        );
+        let stopped = text(&Outcome { interrupted: true, report: None, ..outcome });
+        assert!(stopped.ends_with("carom resume runs/impact-2\nruns/impact-2"), "{stopped}");
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        let numbers = [1.0, -0.097, 123456.7, 1.875e-3, 1e-5, 25.30801, 2e9];
+        let told = ["1", "-0.097", "123457", "0.001875", "1.0000e-5", "25.308", "2.0000e9"];
+        assert_eq!(numbers.map(short), told);
+    }
+}

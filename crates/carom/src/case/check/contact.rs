@@ -1,0 +1,68 @@
+//! Contacts: two different bodies, each pair once, mass where the projection needs it.
+
+use super::super::{ContactSpec, Persistency, PrimarySpec};
+use super::Check;
+
+impl Check<'_> {
+    pub(super) fn contacts(&mut self) {
+        let contacts = &self.draft.contacts;
+        for (i, contact) in contacts.iter().enumerate() {
+            let Some(contact) = contact else { continue };
+            let path = |key: &str| format!("contact[{i}].{key}");
+            let secondary = self.side(&contact.secondary, path("secondary"));
+            let primary = match &contact.primary {
+                PrimarySpec::Side(side) => {
+                    let primary = self.side(side, path("primary"));
+                    if let (Some(a), Some(b)) = (secondary, primary)
+                        && a.name == b.name
+                    {
+                        let what = format!("both sides of `{}` belong to the body `{}`", contact.name, a.name);
+                        let why = "a body in contact with itself belongs to a later version of Carom";
+                        self.add(path("primary"), what, why, "name a side of another body");
+                        continue;
+                    }
+                    primary
+                }
+                PrimarySpec::Plane { normal, .. } => {
+                    if normal.iter().all(|n| *n == 0.0) {
+                        let why = "it points out of the half-space, so it must have a length > 0";
+                        self.add(
+                            path("primary.plane.normal"),
+                            "the normal is zero",
+                            why,
+                            "write for example normal = [0.0, 1.0]",
+                        );
+                    }
+                    None
+                }
+            };
+            let rigid = matches!(contact.primary, PrimarySpec::Plane { .. });
+            if let Some(body) = secondary
+                && self.massless(body)
+                && (rigid || primary.is_some_and(|p| self.massless(p)))
+                && contact.persistency == Persistency::Project
+            {
+                let what = format!("nothing that touches in `{}` has mass", contact.name);
+                let why = "persistency = \"project\" projects velocities with the mass matrix, and a contact between massless \
+                           nodes has no row in it";
+                self.add(
+                    path("secondary"),
+                    what,
+                    why,
+                    format!("give contact `{}` persistency = \"none\"", contact.name),
+                );
+            }
+            if let Some(j) = contacts[..i].iter().position(|c| c.as_ref().is_some_and(|c| same_pair(c, contact))) {
+                let what = "these two sides are a contact already";
+                let why = format!("contact number {} has the same pair; each would add its own force", j + 1);
+                self.add(path("secondary"), what, why, "leave one of them out");
+            }
+        }
+    }
+}
+
+/// The same sides, either way round.
+fn same_pair(a: &ContactSpec, b: &ContactSpec) -> bool {
+    let swapped = |a: &ContactSpec, b: &ContactSpec| a.primary == PrimarySpec::Side(b.secondary.clone());
+    a.secondary == b.secondary && a.primary == b.primary || swapped(a, b) && swapped(b, a)
+}

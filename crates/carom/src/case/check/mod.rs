@@ -1,0 +1,263 @@
+//! What concerns several tables: names and references, sides, dimensions, steps, memory.
+
+mod contact;
+mod memory;
+mod time;
+
+use super::columns;
+use super::document::Document;
+use super::keys;
+use super::problem::Problem;
+use super::read::Draft;
+use super::suggest;
+use super::tree::Node;
+use super::{BodySpec, Quantity};
+
+/// Adds what is wrong between tables.
+pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Problem>) {
+    let mut check = Check { document, draft, problems };
+    check.dimension();
+    for list in ["material", "body", "support", "contact", "probe"] {
+        check.unique_names(list);
+    }
+    check.bodies();
+    check.supports();
+    check.contacts();
+    check.probes();
+    check.time();
+    check.expects();
+    check.memory();
+}
+
+struct Check<'a> {
+    document: &'a Document,
+    draft: &'a Draft,
+    problems: &'a mut Vec<Problem>,
+}
+
+impl<'a> Check<'a> {
+    fn add(
+        &mut self,
+        path: impl Into<String>,
+        what: impl Into<String>,
+        why: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        self.problems.push(Problem::new(path, what, why, help));
+    }
+
+    fn tables(&self, list: &str) -> &'a [Node] {
+        self.document.root().get(list).and_then(Node::list).unwrap_or(&[])
+    }
+
+    /// Names of a list of tables; `None` if one of them cannot be read or its header is
+    /// misspelt, since a reference might mean that one.
+    fn names(&self, list: &str) -> Option<Vec<&'a str>> {
+        let tables = self.tables(list);
+        let root = &self.document.root().0;
+        if root.iter().any(|e| keys::CASE.key(&e.key).is_none() && suggest::nearest(&e.key, [list]).is_some()) {
+            return None;
+        }
+        let names: Option<Vec<_>> = tables.iter().map(|n| n.table()?.get("name")?.text()).collect();
+        names.filter(|names| !names.is_empty())
+    }
+
+    fn dimension(&mut self) {
+        let given = self.document.root().get("dimension").and_then(Node::count);
+        if let Some(d) = given.filter(|d| *d > 2) {
+            let why = if d == 3 {
+                "three dimensions belong to a later version of Carom"
+            } else {
+                "space has 1 or 2 dimensions here"
+            };
+            self.add("dimension", format!("this version has no dimension {d}"), why, "use dimension = 1 or 2");
+        }
+    }
+
+    fn unique_names(&mut self, list: &str) {
+        let names: Vec<_> = self.tables(list).iter().map(|n| n.table()?.get("name")?.text()).collect();
+        for (i, name) in names.iter().enumerate() {
+            if let Some(first) = name.and_then(|_| names[..i].iter().position(|n| n == name)) {
+                let name = name.unwrap_or_default();
+                let why =
+                    format!("{list} number {} has this name already, and everything is referred to by name", first + 1);
+                self.add(
+                    format!("{list}[{i}].name"),
+                    format!("two tables [[{list}]] are named `{name}`"),
+                    why,
+                    "rename one of them",
+                );
+            }
+        }
+    }
+
+    /// Reports a reference to a name that is not there.
+    fn reference(&mut self, list: &str, name: &str, path: String) {
+        let Some(names) = self.names(list).filter(|names| !names.contains(&name)) else { return };
+        let why = format!("each {list} is a table [[{list}]] with a name; there are: {}", names.join(", "));
+        self.add(path, format!("there is no {list} `{name}`"), why, suggest::help(name, names.iter().copied()));
+    }
+
+    /// The body a side belongs to; reports a side that is not there.
+    fn side(&mut self, side: &str, path: String) -> Option<&'a BodySpec> {
+        let bodies = self.names("body")?;
+        let Some((name, part)) = side.split_once('.') else {
+            let why = "a side is written body.side";
+            let help = match bodies.contains(&side) {
+                true => self.body(side).map_or_else(String::new, |b| all_sides(b)),
+                false => format!("the bodies are: {}", bodies.join(", ")),
+            };
+            self.add(path, format!("`{side}` is not a side"), why, help);
+            return None;
+        };
+        if !bodies.contains(&name) {
+            let help = suggest::nearest(name, bodies.iter().copied()).map_or_else(
+                || format!("the bodies are: {}", bodies.join(", ")),
+                |near| format!("did you mean `{near}.{part}`?"),
+            );
+            self.add(path, format!("there is no body `{name}`"), format!("the side `{side}` is one of a body"), help);
+            return None;
+        }
+        let body = self.body(name)?;
+        if !body.mesh.sides().contains(&part) {
+            let why = format!("its mesh has the sides: {}", all_sides(body));
+            let help = suggest::nearest(part, body.mesh.sides().iter().copied()).map_or_else(
+                || format!("use one of: {}", all_sides(body)),
+                |near| format!("did you mean `{name}.{near}`?"),
+            );
+            self.add(path, format!("body `{name}` has no side `{part}`"), why, help);
+            return None;
+        }
+        Some(body)
+    }
+
+    fn body(&self, name: &str) -> Option<&'a BodySpec> {
+        self.draft.bodies.iter().flatten().find(|b| b.name == name)
+    }
+
+    /// Whether a body has no mass.
+    fn massless(&self, body: &BodySpec) -> bool {
+        self.draft.materials.iter().flatten().any(|m| m.name == body.material && m.density == 0.0)
+    }
+
+    fn bodies(&mut self) {
+        for (i, table) in self.tables("body").iter().enumerate() {
+            let text = |key| table.table()?.get(key)?.text();
+            if let Some(material) = text("material") {
+                self.reference("material", material, format!("body[{i}].material"));
+            }
+            let element: Option<carom_solid::Element> = text("element").and_then(super::view::word);
+            if let (Some(d), Some(element)) = (self.draft.dimension, element)
+                && element.dimension() != d
+            {
+                let help = if d == 1 { "use L2, L3 or L4" } else { "use T3, T6 or T10" };
+                let what = format!("the element {element:?} is of dimension {}", element.dimension());
+                self.add(format!("body[{i}].element"), what, format!("the case has dimension = {d}"), help);
+            }
+        }
+    }
+
+    fn supports(&mut self) {
+        for (i, table) in self.tables("support").iter().enumerate() {
+            let texts = |key| {
+                let list = table.table().and_then(|t| t.get(key)?.list()).unwrap_or(&[]);
+                list.iter().enumerate().filter_map(|(j, n)| Some((j, n.text()?)))
+            };
+            for (j, side) in texts("on") {
+                self.side(side, format!("support[{i}].on[{j}]"));
+            }
+            for (j, _) in texts("fix").filter(|(_, d)| *d == "y" && self.draft.dimension == Some(1)).collect::<Vec<_>>()
+            {
+                let why = "the case has dimension = 1";
+                self.add(format!("support[{i}].fix[{j}]"), "there is no direction y", why, "use fix = [\"x\"]");
+            }
+        }
+    }
+
+    fn probes(&mut self) {
+        for (i, probe) in self.draft.probes.iter().enumerate() {
+            let Some(probe) = probe else { continue };
+            self.reference("body", &probe.body, format!("probe[{i}].body"));
+            for (j, quantity) in probe.record.iter().enumerate() {
+                let name = columns::quantity(*quantity);
+                let path = format!("probe[{i}].record[{j}]");
+                if self.draft.dimension == Some(1) && !in_one_dimension(*quantity) {
+                    let why = "the case has dimension = 1";
+                    self.add(
+                        path,
+                        format!("there is no quantity {name}"),
+                        why,
+                        "use ux, vx, ax, sigma_xx, von_mises or det_f",
+                    );
+                } else if probe.record[..j].contains(quantity) {
+                    self.add(
+                        path,
+                        format!("{name} is recorded twice"),
+                        "each quantity is one column",
+                        "leave one of them out",
+                    );
+                }
+            }
+        }
+    }
+
+    fn expects(&mut self) {
+        let draft = self.draft;
+        // Columns come from names: with a key unknown or missing somewhere, an unknown column proves nothing.
+        let complete = !self.problems.iter().any(|p| p.at_key)
+            && draft.probes.iter().all(Option::is_some)
+            && draft.bodies.iter().all(Option::is_some)
+            && draft.contacts.iter().all(Option::is_some)
+            && draft.supports.iter().all(Option::is_some);
+        let known =
+            columns::of(draft.dimension.unwrap_or(2), &draft.bodies, &draft.contacts, &draft.supports, &draft.probes);
+        let end = draft.time.as_ref().map_or(f64::INFINITY, |t| t.end);
+        for (i, expect) in draft.expects.iter().enumerate() {
+            let Some(expect) = expect else { continue };
+            let path = format!("expect[{i}].what");
+            let forms =
+                "min | max | first | last COLUMN, at TIME COLUMN, time of min | max COLUMN, or the name of a metric";
+            let words: Vec<_> = expect.what.split_whitespace().collect();
+            let column = match words.as_slice() {
+                ["min" | "max" | "first" | "last", column] | ["time", "of", "min" | "max", column] => column,
+                ["at", time, column] => match time.parse::<f64>() {
+                    Ok(t) if (0.0..=end).contains(&t) => column,
+                    _ => {
+                        let why = format!("the run goes from 0 to {end}");
+                        self.add(
+                            path,
+                            format!("`{time}` is not a time of this run"),
+                            why,
+                            "write for example \"at 0.5 A.uy\"",
+                        );
+                        continue;
+                    }
+                },
+                [metric] if !metric.contains('.') => continue,
+                _ => {
+                    let what = format!("{:?} is not a quantity to expect", expect.what);
+                    self.add(path, what, format!("it is {forms}"), "write for example \"min A.uy\"");
+                    continue;
+                }
+            };
+            if complete && !known.iter().any(|c| c == column) {
+                let why = "columns are those of history.csv; probes add name.quantity";
+                let help = suggest::nearest(column, known.iter().map(String::as_str)).map_or_else(
+                    || format!("use one of: {}", known.join(", ")),
+                    |near| format!("did you mean `{near}`?"),
+                );
+                self.add(path, format!("history.csv will have no column `{column}`"), why, help);
+            }
+        }
+    }
+}
+
+fn all_sides(body: &BodySpec) -> String {
+    let sides: Vec<_> = body.mesh.sides().iter().map(|side| format!("{}.{side}", body.name)).collect();
+    sides.join(", ")
+}
+
+fn in_one_dimension(quantity: Quantity) -> bool {
+    use Quantity::{Ax, DetF, SigmaXx, Ux, VonMises, Vx};
+    matches!(quantity, Ux | Vx | Ax | SigmaXx | VonMises | DetF)
+}

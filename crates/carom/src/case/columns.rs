@@ -1,0 +1,59 @@
+//! The columns history.csv will have, in the order of the run directory's contract.
+
+use super::{BodySpec, ContactSpec, ProbeSpec, Quantity, SupportSpec};
+
+const SCALARS: [&str; 10] =
+    ["step", "time", "dt", "kinetic", "strain", "potential", "total", "external_work", "contact_work", "dissipation"];
+const COUNTS: [&str; 7] = ["active", "activations", "releases", "newton", "rejected", "penetration", "min_det_f"];
+
+/// Name of a quantity in columns.
+pub(super) fn quantity(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Ux => "ux",
+        Quantity::Uy => "uy",
+        Quantity::Vx => "vx",
+        Quantity::Vy => "vy",
+        Quantity::Ax => "ax",
+        Quantity::Ay => "ay",
+        Quantity::SigmaXx => "sigma_xx",
+        Quantity::SigmaYy => "sigma_yy",
+        Quantity::SigmaXy => "sigma_xy",
+        Quantity::VonMises => "von_mises",
+        Quantity::DetF => "det_f",
+    }
+}
+
+/// Column names of a case in the given dimension.
+pub(super) fn of(
+    dimension: usize,
+    bodies: &[Option<BodySpec>],
+    contacts: &[Option<ContactSpec>],
+    supports: &[Option<SupportSpec>],
+    probes: &[Option<ProbeSpec>],
+) -> Vec<String> {
+    let axes = &["x", "y"][..dimension.clamp(1, 2)];
+    let mut columns: Vec<String> = SCALARS.iter().map(ToString::to_string).collect();
+    let vector =
+        |columns: &mut Vec<String>, name: &str| columns.extend(axes.iter().map(|axis| format!("{name}_{axis}")));
+    vector(&mut columns, "momentum");
+    if dimension == 2 {
+        columns.push("angular_momentum".to_owned());
+    }
+    vector(&mut columns, "contact_force");
+    vector(&mut columns, "contact_impulse");
+    columns.extend(COUNTS.iter().map(ToString::to_string));
+    for body in bodies.iter().flatten() {
+        vector(&mut columns, &format!("{}.center", body.name));
+        vector(&mut columns, &format!("{}.velocity", body.name));
+    }
+    for contact in contacts.iter().flatten().filter(|_| contacts.len() > 1) {
+        vector(&mut columns, &format!("{}.force", contact.name));
+    }
+    for name in supports.iter().flatten().filter_map(|s| s.name.as_ref()) {
+        vector(&mut columns, &format!("{name}.reaction"));
+    }
+    for probe in probes.iter().flatten() {
+        columns.extend(probe.record.iter().map(|q| format!("{}.{}", probe.name, quantity(*q))));
+    }
+    columns
+}

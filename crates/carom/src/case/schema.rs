@@ -1,0 +1,157 @@
+//! JSON Schema (draft 2020-12) of the case file, for editors: made from the table of keys.
+
+use serde_json::{Map, Value, json};
+
+use super::keys::{CASE, Default, Key, Kind, Range, Table, Variants};
+
+/// The schema of a case file.
+pub fn schema() -> Value {
+    let mut schema = table(&CASE, None);
+    schema.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
+    schema.insert("title".into(), json!("Carom case"));
+    Value::Object(schema)
+}
+
+fn table(spec: &Table, tag: Option<(&str, &str, &str)>) -> Map<String, Value> {
+    let mut properties = Map::new();
+    let mut required = Vec::new();
+    if let Some((name, value, doc)) = tag {
+        properties.insert(name.into(), json!({ "const": value, "description": doc }));
+        required.push(name);
+    }
+    for key in spec.keys {
+        properties.insert(key.name.into(), property(key));
+        if matches!(key.default, Default::Required) {
+            required.push(key.name);
+        }
+    }
+    let mut schema = Map::new();
+    schema.insert("type".into(), json!("object"));
+    schema.insert("description".into(), json!(spec.doc));
+    schema.insert("properties".into(), Value::Object(properties));
+    schema.insert("required".into(), json!(required));
+    schema.insert("additionalProperties".into(), json!(false));
+    schema
+}
+
+fn property(key: &Key) -> Value {
+    let mut schema = values(&key.kind);
+    let unit = if key.unit.is_empty() { String::new() } else { format!(" Unit: {}.", key.unit) };
+    let paper = key.paper.map_or_else(String::new, |toml| format!(" With preset = \"paper\": {toml}."));
+    schema.insert("description".into(), json!(format!("{}{unit}{paper}", key.doc)));
+    if let Default::Is(toml) = key.default
+        && let Some(default) = json_of(toml)
+    {
+        schema.insert("default".into(), default);
+    } else if let Some(example) = json_of(key.example) {
+        schema.insert("examples".into(), json!([example]));
+    }
+    Value::Object(schema)
+}
+
+fn values(kind: &Kind) -> Map<String, Value> {
+    let side = json!({ "type": "string", "pattern": "^[^.]+\\.[^.]+$" });
+    let schema = match kind {
+        Kind::Text => json!({ "type": "string" }),
+        Kind::Name => json!({ "type": "string", "pattern": "^[^\\s./\\\\,\"'\\[\\]]+$" }),
+        Kind::Choice(words, _) => json!({ "type": "string", "enum": words }),
+        Kind::Choices(words) => json!({ "type": "array", "minItems": 1, "items": { "enum": words } }),
+        Kind::Number(range) => Value::Object(number(range)),
+        Kind::NumberOrFalse(range) => json!({ "oneOf": [number(range), { "const": false }] }),
+        Kind::Count(least) => json!({ "type": "integer", "minimum": least }),
+        Kind::Counts(least) => {
+            json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "integer", "minimum": least } })
+        }
+        Kind::Vector => json!({ "type": "array", "minItems": 1, "maxItems": 2, "items": { "type": "number" } }),
+        Kind::Numbers => json!({ "type": "array", "items": { "type": "number" } }),
+        Kind::Side => side,
+        Kind::Sides => json!({ "type": "array", "minItems": 1, "items": side }),
+        Kind::SideOr(spec) => json!({ "oneOf": [side, table(spec, None)] }),
+        Kind::Table(spec) => Value::Object(table(spec, None)),
+        Kind::Tables(spec) => json!({ "type": "array", "minItems": 1, "items": table(spec, None) }),
+        Kind::Variant(variants) => one_of(variants),
+    };
+    if let Value::Object(schema) = schema { schema } else { Map::new() }
+}
+
+fn one_of(variants: &Variants) -> Value {
+    let one = |(value, spec): &(&str, Table)| table(spec, Some((variants.tag, value, variants.doc)));
+    json!({ "oneOf": variants.tables.iter().map(one).collect::<Vec<_>>() })
+}
+
+fn number(range: &Range) -> Map<String, Value> {
+    let mut schema = Map::new();
+    schema.insert("type".into(), json!("number"));
+    if let Some((low, closed)) = range.low {
+        schema.insert(if closed { "minimum" } else { "exclusiveMinimum" }.into(), json!(low));
+    }
+    if let Some((high, closed)) = range.high {
+        schema.insert(if closed { "maximum" } else { "exclusiveMaximum" }.into(), json!(high));
+    }
+    schema
+}
+
+/// A TOML value as JSON.
+fn json_of(toml: &str) -> Option<Value> {
+    fn value(node: &super::tree::Node) -> Option<Value> {
+        use super::tree::Value as Toml;
+        Some(match &node.value {
+            Toml::Text(text) => json!(text),
+            Toml::Integer(n) => json!(n),
+            Toml::Float(x) => json!(x),
+            Toml::Flag(flag) => json!(flag),
+            Toml::Date(date) => json!(date),
+            Toml::List(list) => Value::Array(list.iter().map(value).collect::<Option<_>>()?),
+            Toml::Table(table) => {
+                Value::Object(table.0.iter().map(|e| Some((e.key.clone(), value(&e.node)?))).collect::<Option<_>>()?)
+            }
+        })
+    }
+    let parsed = toml_edit::Document::parse(format!("v = {toml}")).ok()?;
+    value(&super::tree::node(parsed.get("v")?, 0, 0, &(0..0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::keys::{self, Variants};
+    use super::*;
+
+    /// Every key of every table, visited once per place.
+    fn visit(spec: &'static Table, see: &mut dyn FnMut(&'static Table, &'static Key)) {
+        for key in spec.keys {
+            see(spec, key);
+            match key.kind {
+                Kind::Table(spec) | Kind::Tables(spec) | Kind::SideOr(spec) => visit(spec, see),
+                Kind::Variant(Variants { tables, .. }) => tables.iter().for_each(|(_, spec)| visit(spec, see)),
+                _ => {}
+            }
+        }
+    }
+
+    #[test]
+    fn defaults_and_examples_are_toml() {
+        visit(&CASE, &mut |spec, key| {
+            let nested = matches!(key.kind, Kind::Table(_) | Kind::Tables(_));
+            assert!(nested || json_of(key.example).is_some(), "{} {}: {:?}", spec.name, key.name, key.example);
+            assert!(key.paper.is_none_or(|toml| json_of(toml).is_some()), "{} {}", spec.name, key.name);
+            assert!(key.doc.ends_with('.'), "{} {}", spec.name, key.name);
+        });
+    }
+
+    #[test]
+    fn schema_has_every_key_and_forbids_others() {
+        let schema = schema();
+        let text = schema.to_string();
+        visit(&CASE, &mut |_, key| assert!(text.contains(&format!("\"{}\":", key.name)), "{}", key.name));
+        assert_eq!(schema["additionalProperties"], json!(false));
+        assert_eq!(schema["required"], json!(["dimension", "material", "body", "time"]));
+        let scheme = &schema["properties"]["time"]["properties"]["scheme"];
+        let kinds: Vec<_> =
+            scheme["oneOf"].as_array().unwrap().iter().map(|s| s["properties"]["kind"]["const"].clone()).collect();
+        assert_eq!(kinds.len(), keys::SCHEMES.tables.len());
+        assert_eq!(scheme["oneOf"][4]["properties"]["rho_inf"]["maximum"], json!(1.0));
+        let density = &schema["properties"]["material"]["items"]["properties"]["density"];
+        assert_eq!(density["minimum"], json!(0.0));
+        assert_eq!(schema["properties"]["contact"]["items"]["properties"]["persistency"]["default"], json!("project"));
+    }
+}

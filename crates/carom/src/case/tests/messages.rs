@@ -1,0 +1,220 @@
+//! What messages say: some word by word, the others by their essence and their place.
+
+use super::{BARS, IMPACT, resolved};
+use crate::case::{CaseError, Document};
+
+fn shown(text: &str, sets: &[&str]) -> String {
+    let found = resolved(text, sets).expect_err("the case is wrong");
+    found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n")
+}
+
+#[test]
+fn word_by_word() {
+    assert_eq!(
+        shown(&IMPACT.replace("density", "densty"), &[]),
+        "a/case.toml:11:1: unknown key `densty` in [[material]]
+  densty = 0.25
+  ^^^^^^
+why: the keys of [[material]] are: name, law, density, lambda, mu, young, poisson
+try: did you mean `density`?"
+    );
+    assert_eq!(
+        shown(&IMPACT.replace("\"prism.top\"", "\"prism.topp\""), &[]),
+        "a/case.toml:39:11: body `prism` has no side `topp`
+  primary = \"prism.topp\"
+            ^^^^^^^^^^^^
+why: its mesh has the sides: prism.bottom, prism.right, prism.top, prism.left
+try: did you mean `prism.top`?"
+    );
+    assert_eq!(
+        shown(IMPACT, &["time.scheme.rho_inf=1.2"]),
+        "--set:1:21: `rho_inf` must be a number in [0, 1], not 1.2
+  time.scheme.rho_inf=1.2
+                      ^^^
+why: Spectral radius at infinite frequency: 0 damps it within steps, 1 not at all.
+try: write for example `rho_inf = 0.8`"
+    );
+}
+
+/// (overrides of the impact, what the message contains)
+const IMPACTS: &[(&[&str], &[&str])] = &[
+    // types and ranges
+    (&["material.rubber.density=heavy"], &["`density` must be a number ≥ 0, not the text \"heavy\""]),
+    (&["material.rubber.density=-0.25"], &["must be a number ≥ 0, not -0.25", "did you mean `density = 0.25`?"]),
+    (&["time.end=nan"], &["`end` is NaN", "every number of a case is finite"]),
+    (&["body.cylinder.gravity=[0.0, -inf]"], &["`gravity` is -inf"]),
+    (&["body.cylinder.gravity=[0.0]"], &["must be a list of 2 numbers, not a list of 1 values"]),
+    (&["body.cylinder.gravity=[0.0, 0.0, -9.81]"], &["a list of 3 values"]),
+    (&["body.cylinder.mesh.radius=0"], &["`radius` must be a number > 0, not 0"]),
+    (&["body.cylinder.mesh.size=0.0"], &["`size` must be a number > 0, not 0"]),
+    (&["body.prism.mesh.cells=[8, 0]"], &["must be a whole number ≥ 1, not the whole number 0"]),
+    (&["body.prism.mesh.cells=[8, 4.0]"], &["must be a list of 2 whole numbers ≥ 1, not the number 4"]),
+    (&["body.prism.mesh.max=[1.0, -0.5]"], &["`max` = -0.5 is not greater than `min` = -0.5"]),
+    (&["thickness=0"], &["`thickness` must be a number > 0"]),
+    (&["material.rubber.mu=0"], &["`mu` must be a number > 0"]),
+    (&["material.rubber.lambda=-10"], &["Λ = -10, μ = 15 are not positive definite", "lambda must be > -10"]),
+    (&["material.rubber.young=3.0"], &["not one pair: lambda, mu, young"]),
+    (&["body.cylinder.element=T7"], &["`element` cannot be \"T7\"", "T10"]),
+    (&["body.cylinder.element=L2"], &["the element L2 is of dimension 1", "use T3, T6 or T10"]),
+    (&["dimension=3"], &["this version has no dimension 3", "later version"]),
+    (&["dimension=two"], &["`dimension` must be a whole number"]),
+    (&["newton.max_iterations=0"], &["whole number ≥ 1"]),
+    (&["time.energy_guard=true"], &["a number > 0, or false, not `true`"]),
+    // schemes
+    (&["time.scheme.kind=chung-hulber"], &["did you mean `chung-hulbert`?"]),
+    (&["time.scheme.kind=bathe"], &["this version does not have `kind = \"bathe\"` yet"]),
+    (&["time.scheme={ kind = \"hu\", rho_inf = 0.5 }"], &["unknown key `rho_inf` in scheme \"hu\"", "scheme \"wbz\""]),
+    (&["time.scheme={ kind = \"newmark\", beta = 0.25 }"], &["needs `gamma`"]),
+    (&["time.scheme={ kind = \"hht\", alpha = -0.1 }"], &["did you mean `alpha = 0.1`?"]),
+    (&["time.scheme=hu"], &["`scheme` must be a table { kind = \"…\", … }, not the text \"hu\""]),
+    // steps
+    (&["time.step=7e-3"], &["is not a multiple of the step", "end / step = 107.142857", "end = 0.749 or end = 0.756"]),
+    (&["time.step=1.0"], &["the step 1 is longer than the run"]),
+    (&["time.step=7.5e-13"], &["too many steps"]),
+    (&["output.at_times=[0.1, 0.8]"], &["0.8 is not a time of this run"]),
+    // names
+    (&["body.cylinder.material=ruber"], &["there is no material `ruber`", "did you mean `rubber`?"]),
+    (&["body.prism.name=cylinder"], &["two tables [[body]] are named `cylinder`"]),
+    (&["probe.A.name=a.b"], &["\"a.b\" cannot be a name", "`name = \"a_b\"`"]),
+    (&["probe.A.body=cylindr"], &["there is no body `cylindr`", "did you mean `cylinder`?"]),
+    (&["contact.strike.secondary=prism.left"], &["both sides of `strike` belong to the body `prism`"]),
+    (&["contact.strike.secondary=cylinder"], &["`cylinder` is not a side", "cylinder.arc, cylinder.axis"]),
+    (&["contact.strike.secondary=cylindr.arc"], &["there is no body `cylindr`", "did you mean `cylinder.arc`?"]),
+    (&["body.cylindr.element=T6"], &["no `body` is named `cylindr`", "did you mean `body.cylinder`?"]),
+    (&["expect=[{ what = \"min A.ux\", at_most = 0 }]"], &["no column `A.ux`", "did you mean `A.uy`?"]),
+    (&["expect=[{ what = \"at 0.9 A.uy\", at_most = 0 }]"], &["`0.9` is not a time of this run"]),
+    (&["expect=[{ what = \"lowest A.uy\", at_most = 0 }]"], &["is not a quantity to expect"]),
+    (&["expect=[{ what = \"min A.uy\", value = 0 }]"], &["does not set one bound", "it has value"]),
+    // contact without mass
+    (&["material.rubber.density=0"], &["nothing that touches in `strike` has mass", "persistency = \"none\""]),
+    // later versions
+    (&["plane=stress"], &["this version does not have `plane = \"stress\"` yet"]),
+    (&["contact.strike.method=mortar"], &["does not have `method = \"mortar\"` yet"]),
+    (&["contact.strike.enforcement=penalty"], &["use one of: multiplier"]),
+    (&["contact.strike.restitution=0.5"], &["this version does not have `restitution` yet"]),
+    (&["load=[]"], &["this version does not have `load` yet"]),
+    (&["time.step={ initial = 1e-3 }"], &["`step` must be a number > 0, not a table", "A later version"]),
+    (&["body.prism.mesh={ file = \"a.msh\", surface = \"prism\" }"], &["does not have `file` of mesh yet"]),
+    (&["body.prism.mesh.shape=ring"], &["does not have `shape = \"ring\"` yet"]),
+    // keys of other tables
+    (&["time.tolerance=1e-9"], &["unknown key `tolerance` in [time]", "is a key of [newton]"]),
+    // memory
+    (&["body.prism.mesh.cells=[10000000000, 1]"], &["too big for the memory: 1.200e11 nodes in 2.000e10 cells"]),
+    (&["body.prism.mesh.cells=[9223372036854775807, 9223372036854775807]"], &["too big for the memory"]),
+    (&["body.cylinder.mesh.size=1e-300"], &["the mesh of `cylinder` is too big"]),
+    // overrides themselves
+    (&["time.step"], &["there is no `=`"]),
+    (&["=3"], &["this is not a key"]),
+    (&["title.sub=3"], &["`title` has no key `sub`", "`title` is the text"]),
+    (&["time.scheme={ kind = "], &["--set:1:", "this is not TOML"]),
+    (&["tim.step=1e-3"], &["unknown key `tim`", "did you mean"]),
+];
+
+#[test]
+fn wrong_impacts() {
+    for (sets, parts) in IMPACTS {
+        let told = shown(IMPACT, sets);
+        for part in *parts {
+            assert!(told.contains(part), "{sets:?}: {part:?} not in\n{told}");
+        }
+        assert!(told.lines().all(|line| !line.ends_with(": ")), "{told}");
+    }
+}
+
+#[test]
+fn wrong_bars() {
+    let cases: &[(&str, &str, &[&str])] = &[
+        ("fix = [\"x\"]", "fix = [\"x\", \"y\"]", &["there is no direction y"]),
+        ("\"sigma_xx\"]", "\"sigma_yy\"]", &["there is no quantity sigma_yy"]),
+        ("[\"ux\", ", "[\"sigma_xx\", ", &["sigma_xx is recorded twice"]),
+        ("normal = [2]", "normal = [0]", &["the normal is zero"]),
+        ("shape = \"interval\", min = 0,", "shape = \"disc\", min = 0,", &["the shape \"disc\" is of dimension 2"]),
+        ("poisson = 0.3", "poisson = 0.5", &["`poisson` must be a number in (-1, 0.5), not 0.5"]),
+        ("[[support]]", "[support]", &["write its header in double brackets: [[support]]"]),
+        (
+            "secondary = \"left.left\"",
+            "secondary = \"left.top\"",
+            &["body `left` has no side `top`", "left.left, left.right"],
+        ),
+        ("primary = { plane = { point = [-1.0], normal = [2] } }", "primary = \"right.left\"\n#", &[]),
+    ];
+    for (from, to, parts) in cases {
+        let text = BARS.replacen(from, to, 1);
+        assert_ne!(&text, BARS);
+        let told = resolved(&text, &[]).map_or_else(|_| shown(&text, &[]), |_| String::new());
+        for part in *parts {
+            assert!(told.contains(part), "{to}: {part:?} not in\n{told}");
+        }
+    }
+}
+
+#[test]
+fn pairs_are_contacts_once() {
+    let twice = "\n[[contact]]\nname = \"again\"\nsecondary = \"prism.top\"\nprimary = \"cylinder.arc\"\n";
+    let told = shown(&format!("{IMPACT}{twice}"), &[]);
+    assert!(told.contains("these two sides are a contact already"), "{told}");
+}
+
+#[test]
+fn all_problems_in_one_pass() {
+    let told = shown(
+        &IMPACT.replace("density", "densty").replace("prism.top\"", "prism.topp\"").replace("end = 0.75", "end = -1"),
+        &["time.scheme.rho_inf=2"],
+    );
+    for part in ["densty", "topp", "`end` must be", "`rho_inf` must be"] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    // In the order of the file, overrides last.
+    let lines: Vec<_> = told.lines().filter(|l| l.starts_with("a/case") || l.starts_with("--set")).collect();
+    assert_eq!(lines.len(), 4);
+    assert!(lines[3].starts_with("--set"));
+}
+
+#[test]
+fn texts_that_are_no_case() {
+    let told = |text: &str| shown(text, &[]);
+    assert_eq!(
+        told(
+            "title = \"a
+"
+        )
+        .lines()
+        .next(),
+        Some("a/case.toml:1:11: this is not TOML")
+    );
+    println!(
+        "{}",
+        told(
+            "title = \"a
+b\""
+        )
+    );
+    assert!(told("").contains("the case is empty"));
+    assert!(told("# nothing\n").contains("the case is empty"));
+    assert!(told("title = 1\ntitle = 2\n").contains("duplicate key"));
+    assert!(told(&format!("a = {}", "[".repeat(100_000))).contains("this is not TOML"));
+    assert!(told("case = \"impact.toml\"\n[[arm]]\nname = \"a\"\n").contains("unknown key `arm`"));
+    assert!(told("a = 1\n\u{0}").contains("this is not TOML"));
+}
+
+#[test]
+fn files_that_are_no_case() {
+    let place = std::env::temp_dir().join(format!("carom-case-{}", std::process::id()));
+    std::fs::create_dir_all(&place).unwrap();
+    let told = |name: &str, bytes: Option<&[u8]>| {
+        let path = place.join(name);
+        if let Some(bytes) = bytes {
+            std::fs::write(&path, bytes).unwrap();
+        }
+        match Document::open(&path, &[]) {
+            Err(CaseError::Wrong(found)) => found[0].to_string(),
+            other => panic!("{other:?}"),
+        }
+    };
+    assert!(told("none.toml", None).contains("there is no such file"));
+    assert!(told("", None).contains("this is a directory"));
+    assert!(told("empty.toml", Some(b"")).contains("the case is empty"));
+    assert!(told("binary.toml", Some(b"\x7fELF\xff\x00")).contains("byte 5 is not UTF-8"));
+    assert!(told("huge.toml", Some(&vec![b'#'; 10_000_001])).contains("too large to be a case"));
+    std::fs::remove_dir_all(&place).unwrap();
+}
