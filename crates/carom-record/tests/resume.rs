@@ -4,12 +4,15 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use carom_record::{Block, Cell, Column, ContactRow, Event, FieldSet, Manifest, RecordError, Run, RunWriter, Source, Status};
+use carom_record::{
+    Block, Cell, Column, ContactRow, Event, FieldSet, Manifest, RecordError, Run, RunWriter, Source, Status,
+};
 
 const STEPS: u64 = 40;
 
 fn manifest() -> Manifest {
-    let column = |name: &str, integer| Column { name: name.into(), unit: "s".into(), description: String::new(), integer };
+    let column =
+        |name: &str, integer| Column { name: name.into(), unit: "s".into(), description: String::new(), integer };
     let columns = vec![column("step", true), column("time", false), column("A.uy, \"odd\"", false)];
     Manifest::new("0.1.0", serde_json::json!({"title": "t"}), Source::default(), columns, 1)
 }
@@ -30,7 +33,18 @@ fn record(writer: &mut RunWriter, step: u64) -> Result<(), RecordError> {
     for node in 0..step % 3 {
         let (xi, gap, multiplier) = (-0.3, 1e-17, -time);
         let contact = "a,b".into();
-        let row = ContactRow { step, time, contact, node, point: [1.0, 2.0], facet: 7, xi, gap, multiplier, pressure: f64::NAN };
+        let row = ContactRow {
+            step,
+            time,
+            contact,
+            node,
+            point: [1.0, 2.0],
+            facet: 7,
+            xi,
+            gap,
+            multiplier,
+            pressure: f64::NAN,
+        };
         writer.contact(&row)?;
     }
     if step % 7 == 3 {
@@ -135,7 +149,8 @@ fn a_damaged_checkpoint_falls_back_to_the_one_before() {
         if at == 0 {
             advance(reopened.writer, 30, 31, STEPS).finish(&manifest()).unwrap();
             let got = all_bytes(&directory);
-            let differing: Vec<_> = expected.keys().chain(got.keys()).filter(|&k| expected.get(k) != got.get(k)).collect();
+            let differing: Vec<_> =
+                expected.keys().chain(got.keys()).filter(|&k| expected.get(k) != got.get(k)).collect();
             assert!(differing.is_empty(), "{differing:?}");
         }
     }
