@@ -1,5 +1,7 @@
 //! A run that is killed and reopened ends in the same bytes as one that was not.
 
+#![allow(clippy::unwrap_used)] // the helpers are tests too
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
