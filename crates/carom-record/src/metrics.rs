@@ -160,7 +160,11 @@ fn apex(history: &History, episode: Episode) -> Option<(f64, f64)> {
     let after = episode.end?;
     let (i, top) = extreme(&center[after..], f64::gt).map(|(i, x)| (i + after, x))?;
     let (t, y) = (history.times(), center);
-    if i == after || i + 1 == y.len() {
+    // Still rising when the record ends: the apex was not reached.
+    if i + 1 == y.len() {
+        return None;
+    }
+    if i == after {
         return Some((t[i], top - y[0]));
     }
     let slope = |a: usize, b: usize| (y[b] - y[a]) / (t[b] - t[a]);

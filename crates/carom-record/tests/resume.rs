@@ -52,10 +52,10 @@ fn record(writer: &mut RunWriter, step: u64) -> Result<(), RecordError> {
     if step % 7 == 3 {
         writer.log(&Event::new(step, time, "rejected", "too far").with("depth", 0.1 * time))?;
     }
-    if step % 5 == 0 {
+    if step.is_multiple_of(5) {
         writer.fields(step, time, &fields(step))?;
     }
-    if step % 6 == 0 {
+    if step.is_multiple_of(6) {
         writer.checkpoint(step, &step.to_le_bytes())?;
     }
     Ok(())

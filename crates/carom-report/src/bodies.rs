@@ -9,11 +9,9 @@ use std::fmt::Write as _;
 use carom_record::{Cell, FieldSet};
 
 use crate::axis::{Axis, round_step};
+use crate::bands::{Bands, Point, band_polygons, color_bands, shape};
 use crate::chart::{open, scaled, write_text};
 use crate::labels::with_unit;
-use crate::palette::diverging;
-
-type Point = [f64; 2];
 
 /// One instant: deformed nodes, the quantity at them, and the cells.
 pub(crate) struct Instant {
@@ -41,65 +39,6 @@ impl Instant {
     }
 }
 
-/// Shape functions of a Lagrange triangle in VTK's node order at barycentric (a, b, c) of its corners.
-fn shape(degree: usize, [a, b, c]: [f64; 3], out: &mut Vec<f64>) {
-    out.clear();
-    match degree {
-        1 => out.extend([a, b, c]),
-        2 => {
-            out.extend([a, b, c].map(|l| l * (2.0 * l - 1.0)));
-            out.extend([4.0 * a * b, 4.0 * b * c, 4.0 * c * a]);
-        }
-        _ => {
-            out.extend([a, b, c].map(|l| 0.5 * l * (3.0 * l - 1.0) * (3.0 * l - 2.0)));
-            for (l, m) in [(a, b), (b, c), (c, a)] {
-                out.extend([4.5 * l * m * (3.0 * l - 1.0), 4.5 * l * m * (3.0 * m - 1.0)]);
-            }
-            out.push(27.0 * a * b * c);
-        }
-    }
-}
-
-/// What remains of a polygon where sign·(value − level) ≥ 0.
-fn clip(polygon: &[(Point, f64)], level: f64, sign: f64) -> Vec<(Point, f64)> {
-    let mut out = Vec::with_capacity(polygon.len() + 1);
-    for (i, &(p, f)) in polygon.iter().enumerate() {
-        let (q, g) = polygon[(i + 1) % polygon.len()];
-        let (inside, next) = (sign * (f - level) >= 0.0, sign * (g - level) >= 0.0);
-        if inside {
-            out.push((p, f));
-        }
-        if inside != next {
-            let s = (level - f) / (g - f);
-            out.push(([p[0] + s * (q[0] - p[0]), p[1] + s * (q[1] - p[1])], level));
-        }
-    }
-    out
-}
-
-/// Colour bands: `count` of equal width between `low` and `high`; everything beyond takes the last colour.
-struct Bands {
-    low: f64,
-    high: f64,
-    count: usize,
-}
-
-impl Bands {
-    fn level(&self, i: usize) -> f64 {
-        self.low + (self.high - self.low) * i as f64 / self.count as f64
-    }
-
-    fn color(&self, band: usize) -> String {
-        let middle = 0.5 * (self.level(band) + self.level(band + 1));
-        diverging(middle / self.low.abs().max(self.high.abs()))
-    }
-
-    fn of(&self, value: f64) -> usize {
-        let x = (value - self.low) / (self.high - self.low) * self.count as f64;
-        (x.max(0.0) as usize).min(self.count - 1)
-    }
-}
-
 /// Filled bands of all cells: one path per colour.
 fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -> Point) {
     let mut paths: Vec<String> = vec![String::new(); bands.count];
@@ -117,6 +56,14 @@ fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -
                 let p = [0, 1].map(|d| sum(&|k| instant.points[k][d]));
                 corner.push((to(p), sum(&|k| instant.values[k])));
             }
+        }
+        // A cell of one colour is drawn whole, inside its exact edges.
+        let band = bands.of(corner[0].1);
+        if corner.iter().all(|(_, f)| f.is_finite() && bands.of(*f) == band) {
+            let edge = |e: usize| edge_nodes(*degree, nodes, e).map(|k| to(instant.points[k])).collect::<Vec<_>>();
+            (0..3).for_each(|e| paths[band].push_str(&bezier(&edge(e), e == 0)));
+            paths[band].push('Z');
+            continue;
         }
         for j in 0..m {
             for i in 0..m - j {
@@ -140,31 +87,15 @@ fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -
     }
 }
 
-fn band_polygons(triangle: &[(Point, f64); 3], bands: &Bands, paths: &mut [String]) {
-    if triangle.iter().any(|(_, f)| !f.is_finite()) {
-        return;
-    }
-    let [first, last] =
-        [f64::min, f64::max].map(|pick| bands.of(triangle.iter().map(|t| t.1).reduce(pick).unwrap_or(0.0)));
-    for band in first..=last {
-        let mut polygon = triangle.to_vec();
-        if band > first {
-            polygon = clip(&polygon, bands.level(band), 1.0);
-        }
-        if band < last {
-            polygon = clip(&polygon, bands.level(band + 1), -1.0);
-        }
-        if polygon.len() > 2 {
-            for (i, (p, _)) in polygon.iter().enumerate() {
-                let _ = write!(paths[band], "{}{:.2} {:.2}", if i == 0 { 'M' } else { 'L' }, p[0], p[1]);
-            }
-            paths[band].push('Z');
-        }
-    }
+/// Nodes of an edge in order from end to end.
+fn edge_nodes(degree: usize, nodes: &[usize], edge: usize) -> impl Iterator<Item = usize> {
+    let inner = degree - 1;
+    let between = &nodes[3 + edge * inner..3 + (edge + 1) * inner];
+    std::iter::once(nodes[edge]).chain(between.iter().copied()).chain([nodes[(edge + 1) % 3]])
 }
 
-/// Béziers of an edge's nodes in order from end to end.
-fn bezier(nodes: &[Point]) -> String {
+/// Bézier of an edge's nodes in order from end to end; `moved`: the pen goes to its start first.
+fn bezier(nodes: &[Point], moved: bool) -> String {
     let mix = |weights: &[f64]| [0, 1].map(|d| weights.iter().zip(nodes).map(|(w, p)| w * p[d]).sum::<f64>());
     let controls: &[&[f64]] = match nodes.len() {
         2 => &[&[0.0, 1.0]],
@@ -173,7 +104,8 @@ fn bezier(nodes: &[Point]) -> String {
     };
     let points: Vec<String> = controls.iter().map(|w| mix(w)).map(|p| format!("{:.2} {:.2}", p[0], p[1])).collect();
     let command = ["L", "Q", "C"][controls.len() - 1];
-    format!("M{:.2} {:.2}{command}{}", nodes[0][0], nodes[0][1], points.join(" "))
+    let start = if moved { format!("M{:.2} {:.2}", nodes[0][0], nodes[0][1]) } else { String::new() };
+    format!("{start}{command}{}", points.join(" "))
 }
 
 /// Edges of all cells: those of one cell only are the outline.
@@ -181,14 +113,12 @@ fn edges(out: &mut String, instant: &Instant, to: &dyn Fn(Point) -> Point) {
     let mut found: HashMap<[usize; 2], (usize, Vec<usize>)> = HashMap::new();
     let mut order = Vec::new();
     for (degree, nodes) in &instant.cells {
-        let inner = degree - 1;
         for e in 0..3 {
             let (a, b) = (nodes[e], nodes[(e + 1) % 3]);
-            let between = &nodes[3 + e * inner..3 + (e + 1) * inner];
             let key = [a.min(b), a.max(b)];
             let entry = found.entry(key).or_insert_with(|| {
                 order.push(key);
-                (0, [&[a], between, &[b]].concat())
+                (0, edge_nodes(*degree, nodes, e).collect())
             });
             entry.0 += 1;
         }
@@ -196,7 +126,7 @@ fn edges(out: &mut String, instant: &Instant, to: &dyn Fn(Point) -> Point) {
     let (mut inside, mut outline) = (String::new(), String::new());
     for (count, nodes) in order.iter().filter_map(|key| found.get(key)) {
         let points: Vec<Point> = nodes.iter().map(|&k| to(instant.points[k])).collect();
-        if *count == 1 { &mut outline } else { &mut inside }.push_str(&bezier(&points));
+        if *count == 1 { &mut outline } else { &mut inside }.push_str(&bezier(&points, true));
     }
     let _ = writeln!(
         out,
@@ -208,30 +138,16 @@ fn edges(out: &mut String, instant: &Instant, to: &dyn Fn(Point) -> Point) {
     );
 }
 
-/// Range of colours: all values but the outermost half per cent on either side, always with zero inside; and whether any were cut off.
-fn color_range(instants: &[Instant]) -> ((f64, f64), [bool; 2]) {
-    let used = instants.iter().flat_map(|i| i.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| i.values[k])));
-    let mut values: Vec<f64> = used.filter(|x| x.is_finite()).collect();
-    values.sort_unstable_by(f64::total_cmp);
-    let Some(last) = values.len().checked_sub(1) else { return ((-1.0, 1.0), [false; 2]) };
-    let cut = last / 200;
-    let (low, high) = (values[cut].min(0.0), values[last - cut].max(0.0));
-    let (low, high) = if low == high { (-1.0, 1.0) } else { (low, high) };
-    // Round ends read well and make zero the edge of a band.
-    let step = round_step(high - low, 16.0);
-    let (low, high) = ((low / step - 1e-9).floor() * step, (high / step + 1e-9).ceil() * step);
-    ((low, high), [values[0] < low, values[last] > high])
-}
-
 /// The figure; `label` and `unit` stand at the colour bar. The second value says whether colours are cut off.
 pub(crate) fn figure(instants: &[Instant], title: &str, label: &str, unit: &str, length: &str) -> (String, bool) {
-    let ((low, high), cut) = color_range(instants);
-    let bands =
-        Bands { low, high, count: ((high - low) / round_step(high - low, 16.0)).round().clamp(1.0, 64.0) as usize };
+    let used = |i: &Instant| {
+        i.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| (i.points[k], i.values[k]))).collect::<Vec<_>>()
+    };
+    let used: Vec<(Point, f64)> = instants.iter().flat_map(used).collect();
+    let (bands, cut) = color_bands(used.iter().map(|(_, f)| *f));
     let mut frame = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
-    for [x, y] in instants.iter().flat_map(|i| i.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| i.points[k])))
-    {
-        frame = [frame[0].min(x), frame[1].max(x), frame[2].min(y), frame[3].max(y)];
+    for ([x, y], _) in &used {
+        frame = [frame[0].min(*x), frame[1].max(*x), frame[2].min(*y), frame[3].max(*y)];
     }
     let [x0, x1, y0, y1] = frame;
     let aspect = (x1 - x0) / (y1 - y0).max(1e-12 * (x1 - x0).abs()).max(f64::MIN_POSITIVE);
@@ -333,59 +249,15 @@ fn color_bar(
 mod tests {
     use super::*;
 
-    /// Nodes of the reference triangle in VTK's order.
-    fn nodes(degree: usize) -> Vec<[f64; 3]> {
-        let corners = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let mut nodes = corners.to_vec();
-        for e in 0..3 {
-            let (a, b) = (corners[e], corners[(e + 1) % 3]);
-            let at = |s: f64| [0, 1, 2].map(|d| a[d] + s * (b[d] - a[d]));
-            nodes.extend((1..degree).map(|i| at(i as f64 / degree as f64)));
-        }
-        if degree == 3 {
-            nodes.push([1.0 / 3.0; 3]);
-        }
-        nodes
-    }
-
-    #[test]
-    fn shapes_are_one_at_their_node_and_zero_at_the_others() {
-        let mut n = Vec::new();
-        for degree in 1..=3 {
-            for (i, node) in nodes(degree).into_iter().enumerate() {
-                shape(degree, node, &mut n);
-                assert_eq!(n.len(), nodes(degree).len());
-                assert!(n.iter().enumerate().all(|(j, v)| (v - f64::from(u8::from(i == j))).abs() < 1e-15));
-            }
-        }
-    }
-
     /// A cubic edge through four points of a parabola is the parabola: its Bézier's middle is the parabola's.
     #[test]
     fn beziers_pass_through_the_nodes() {
         let on = |s: f64| [s * 30.0, s * s * 90.0];
-        assert_eq!(bezier(&[on(0.0), on(1.0)]), "M0.00 0.00L30.00 90.00");
-        assert_eq!(bezier(&[on(0.0), on(0.5), on(1.0)]), "M0.00 0.00Q15.00 0.00 30.00 90.00");
-        assert_eq!(bezier(&[0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(on)), "M0.00 0.00C10.00 0.00 20.00 30.00 30.00 90.00");
-    }
-
-    #[test]
-    fn bands_cover_a_triangle_exactly_once() {
-        let bands = Bands { low: -1.0, high: 2.0, count: 6 };
-        let mut paths = vec![String::new(); 6];
-        band_polygons(&[([0.0, 0.0], -3.0), ([100.0, 0.0], 0.25), ([0.0, 100.0], 9.0)], &bands, &mut paths);
-        let area = |d: &String| -> f64 {
-            let polygon = |p: &str| {
-                let p: Vec<f64> = p.replace(['M', 'L'], " ").split_whitespace().map(|x| x.parse().unwrap()).collect();
-                let n = p.len() / 2;
-                (0..n)
-                    .map(|i| p[2 * i] * p[(2 * i + 3) % (2 * n)] - p[(2 * i + 2) % (2 * n)] * p[2 * i + 1])
-                    .sum::<f64>()
-                    / 2.0
-            };
-            d.split_terminator('Z').map(polygon).sum()
-        };
-        assert!(paths.iter().all(|d| !d.is_empty()));
-        assert!((paths.iter().map(area).sum::<f64>() - 5000.0).abs() < 2.0);
+        assert_eq!(bezier(&[on(0.0), on(1.0)], true), "M0.00 0.00L30.00 90.00");
+        assert_eq!(bezier(&[on(0.0), on(0.5), on(1.0)], true), "M0.00 0.00Q15.00 0.00 30.00 90.00");
+        assert_eq!(
+            bezier(&[0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(on), true),
+            "M0.00 0.00C10.00 0.00 20.00 30.00 30.00 90.00"
+        );
     }
 }

@@ -102,7 +102,11 @@ impl Chart<'_> {
             write_legend(&mut out, panel, rows, y0);
             y0 += rows.len() as f64 * 18.0;
             let h = panel.height;
-            let y_axis = Axis::new(range(panel.series.iter().flat_map(|s| &s.y)), (h / 42.0).max(2.0), false);
+            let (low, high) = range(panel.series.iter().flat_map(|s| &s.y));
+            let whole = panel.series.iter().flat_map(|s| &s.y).all(|y| y.fract() == 0.0);
+            // Counts have no ticks between them.
+            let most = if whole { (high - low).max(1.0) } else { f64::INFINITY };
+            let y_axis = Axis::new((low, high), (h / 42.0).max(2.0).min(most), false);
             let to_y = |y: f64| y0 + h * (1.0 - y_axis.position(y));
             for (a, b) in &self.shades {
                 let (a, b) = (to_x(a.max(x_axis.low)), to_x(b.min(x_axis.high)));

@@ -122,8 +122,8 @@ fn energy(run: &Run) -> Option<Figure> {
 
 /// What the solver did.
 fn solver(run: &Run) -> Option<Figure> {
-    let one = |name: &str, label: &str| panel(label, "", 74.0, curves(run, &[(name, "")], 0.0));
-    let mut panels = vec![one("newton", "iterations"), one("active", "active")];
+    let one = |name: &str, label: &str| panel(label, "", 84.0, curves(run, &[(name, "")], 0.0));
+    let mut panels = vec![one("newton", "iterations"), one("active", "active nodes")];
     if run.column("rejected").is_some_and(|c| c.iter().any(|&x| x > 0.0)) {
         panels.push(one("rejected", "rejected"));
     }

@@ -4,6 +4,7 @@
 //! text that came from a user escaped.
 
 mod axis;
+mod bands;
 mod bodies;
 mod chart;
 mod figures;

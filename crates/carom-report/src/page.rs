@@ -86,10 +86,7 @@ fn header(out: &mut String, run: &Run) {
         );
     }
     let machine = &m.machine;
-    row(
-        "Machine",
-        escape(&format!("{} cores, {} {}; {} threads used", machine.cpus, machine.os, machine.arch, m.threads)),
-    );
+    row("Machine", escape(&format!("{} cores, {} {}; threads: {}", machine.cpus, machine.os, machine.arch, m.threads)));
     row("Wall time", format!("{} s", number(wall)));
     row("Started", escape(&m.started));
     out.push_str("</table>\n");
