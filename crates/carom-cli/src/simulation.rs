@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use carom::case::{Case, Document};
+use carom::recording::{self, RunError};
 use serde::Serialize;
 
 use crate::exit::Failure;
 
 /// How to run.
 #[derive(Clone, Copy, Debug)]
-#[allow(dead_code)]
 pub(crate) struct Options {
     /// Threads; results do not depend on them.
     pub(crate) threads: usize,
@@ -53,6 +53,8 @@ pub(crate) struct Outcome {
     pub(crate) profile: Vec<(String, f64)>,
     /// The page, if it was made.
     pub(crate) report: Option<PathBuf>,
+    /// Said once.
+    pub(crate) remarks: Vec<String>,
 }
 
 /// Smallest and largest value of a probe's column.
@@ -96,38 +98,175 @@ pub(crate) struct BodyFacts {
     pub(crate) dofs: usize,
 }
 
-fn absent() -> Failure {
-    Failure::Refused { what: "this build of Carom reads cases but does not simulate them".to_owned() }
-}
-
 /// Runs a case into a directory that does not exist yet.
 pub(crate) fn run(
-    _case: &Case,
-    _document: &Document,
-    _out: &Path,
-    _options: Options,
-    _progress: &mut dyn FnMut(&Progress),
-    _stop: &AtomicBool,
+    case: &Case,
+    document: &Document,
+    out: &Path,
+    options: Options,
+    progress: &mut dyn FnMut(&Progress),
+    stop: &AtomicBool,
 ) -> Result<Outcome, Failure> {
-    Err(absent())
+    let source = carom_record::Source { text: document.text().to_owned(), sets: document.sets() };
+    let library = recording::Options { threads: options.threads };
+    let done = recording::run(case, source, out, library, &mut |p| progress(&seen(p)), stop);
+    conclude(done.map_err(|error| failure(error, Some(document)))?, options)
 }
 
 /// Goes on with a run that was stopped; a finished one is returned as it is.
 pub(crate) fn resume(
-    _directory: &Path,
-    _options: Options,
-    _progress: &mut dyn FnMut(&Progress),
-    _stop: &AtomicBool,
+    directory: &Path,
+    options: Options,
+    progress: &mut dyn FnMut(&Progress),
+    stop: &AtomicBool,
 ) -> Result<Outcome, Failure> {
-    Err(absent())
+    let library = recording::Options { threads: options.threads };
+    let done = recording::resume(directory, library, &mut |p| progress(&seen(p)), stop);
+    conclude(done.map_err(|error| failure(error, None))?, options)
 }
 
 /// Builds the model of a case, so that what only the model knows is checked too.
-pub(crate) fn facts(_case: &Case, _document: &Document) -> Result<Option<Facts>, Failure> {
-    Ok(None)
+pub(crate) fn facts(case: &Case, document: &Document) -> Result<Facts, Failure> {
+    let built = match case.dimension {
+        1 => model_facts::<1>(case),
+        _ => model_facts::<2>(case),
+    };
+    built.map_err(|problems| Failure::Case(document.diagnose_all(&problems)))
 }
 
 /// Makes figures and page of a run directory from its records.
-pub(crate) fn report(_directory: &Path) -> Result<PathBuf, Failure> {
-    Err(absent())
+pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
+    match carom_report::report(directory) {
+        Ok(made) => Ok(made.page),
+        Err(error) if error.exit_code() == 4 => Err(Failure::Refused { what: error.to_string() }),
+        Err(error) => {
+            Err(Failure::Argument { what: error.to_string(), help: "run the case again, or go on with carom resume".into() })
+        }
+    }
+}
+
+fn seen(progress: &recording::Progress) -> Progress {
+    Progress {
+        step: progress.step as usize,
+        steps: progress.steps as usize,
+        time: progress.time,
+        dt: progress.dt,
+        newton: progress.newton as usize,
+        active: progress.active,
+        energy_drift: progress.energy_drift,
+        wall: progress.wall,
+        eta: progress.left,
+    }
+}
+
+fn failure(error: RunError, document: Option<&Document>) -> Failure {
+    match error {
+        RunError::Case(problems) => match document {
+            Some(document) => Failure::Case(document.diagnose_all(&problems)),
+            None => Failure::Argument {
+                what: problems.iter().map(|p| p.what.as_str()).collect::<Vec<_>>().join("; "),
+                help: problems.first().map_or(String::new(), |p| p.help.clone()),
+            },
+        },
+        RunError::Record(error) if error.exit_code() == 4 => Failure::Refused { what: error.to_string() },
+        error => Failure::Argument { what: error.to_string(), help: "run the case again".into() },
+    }
+}
+
+/// The report, the extremes of the probes and the expectations of a run that ended.
+fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failure> {
+    let page = if options.report { Some(report(&done.directory)?) } else { None };
+    if let recording::End::Stopped(reason) = &done.end {
+        return Err(Failure::Stopped {
+            reason: reason.to_string(),
+            help: stopped_help(reason),
+            directory: done.directory,
+        });
+    }
+    let run = carom_record::Run::open(&done.directory)
+        .map_err(|error| Failure::Argument { what: error.to_string(), help: "run the case again".into() })?;
+    let expectations = run.manifest.expectations.iter();
+    Ok(Outcome {
+        directory: done.directory,
+        interrupted: done.end == recording::End::Interrupted,
+        steps: done.steps as usize,
+        time: done.time,
+        wall: done.wall,
+        extremes: extremes(&run),
+        expectations: expectations
+            .map(|e| Expectation { what: e.what.clone(), wanted: e.expected.clone(), got: e.got, met: e.pass })
+            .collect(),
+        profile: if options.profile { run.manifest.timings.iter().map(|(k, v)| (k.clone(), *v)).collect() } else { Vec::new() },
+        report: page,
+        remarks: done.remarks,
+    })
+}
+
+fn stopped_help(reason: &carom::Stopped) -> String {
+    match reason {
+        carom::Stopped::EnergyGuard { .. } => {
+            "use a scheme that dissipates (carom explain), keep persistency = \"project\", or look with time.energy_guard = false"
+        }
+        carom::Stopped::NoStep { .. } => "look at log.jsonl for what was tried; a finer mesh, a smaller step or a damped scheme may help",
+    }
+    .to_owned()
+}
+
+/// Smallest and largest value of every probe's column.
+fn extremes(run: &carom_record::Run) -> Vec<Extreme> {
+    let probes = run.manifest.case["probes"].as_array().cloned().unwrap_or_default();
+    let names: Vec<String> = probes.iter().filter_map(|p| Some(format!("{}.", p["name"].as_str()?))).collect();
+    let of_probe = |name: &str| names.iter().any(|n| name.starts_with(n.as_str()));
+    let columns = run.manifest.columns.iter().filter(|c| of_probe(&c.name));
+    columns
+        .filter_map(|column| {
+            let values = run.column(&column.name)?;
+            let place = |beats: fn(&f64, &f64) -> std::cmp::Ordering| (0..values.len()).min_by(|a, b| beats(&values[*a], &values[*b]));
+            let (low, high) = (place(f64::total_cmp)?, place(|a, b| b.total_cmp(a))?);
+            Some(Extreme {
+                column: column.name.clone(),
+                unit: column.unit.clone(),
+                min: values[low],
+                min_time: run.times()[low],
+                max: values[high],
+                max_time: run.times()[high],
+            })
+        })
+        .collect()
+}
+
+fn model_facts<const D: usize>(case: &Case) -> Result<Facts, Vec<carom::case::Problem>>
+where
+    carom::model::Space: carom::model::Dimension<D>,
+{
+    let model = carom::model::build::<D>(case)?;
+    let overlaps = carom::model::overlaps(&model);
+    if !overlaps.is_empty() {
+        return Err(overlaps);
+    }
+    let mut transit = f64::INFINITY;
+    let mut bodies = Vec::new();
+    for (part, spec) in model.parts.iter().zip(&case.bodies) {
+        let mesh = part.body.mesh();
+        if let Some(m) = case.materials.iter().find(|m| m.name == spec.material)
+            && m.density > 0.0
+        {
+            let speed = ((m.lambda + 2.0 * m.mu) / m.density).sqrt();
+            let least = |i: usize| {
+                let at = mesh.nodes.iter().map(|x| x[i]);
+                at.clone().fold(f64::NEG_INFINITY, f64::max) - at.fold(f64::INFINITY, f64::min)
+            };
+            let width = (0..D).map(least).fold(f64::INFINITY, f64::min);
+            transit = transit.min(width / speed / case.time.step);
+        }
+        let free = part.nodes().flat_map(|n| n * D..(n + 1) * D).filter(|&dof| !model.fixed[dof]).count();
+        bodies.push(BodyFacts {
+            name: part.name.clone(),
+            nodes: mesh.nodes.len(),
+            cells: mesh.cell_count(),
+            sides: mesh.sides.keys().filter_map(|s| Some((s.clone(), mesh.side_nodes(s)?.len()))).collect(),
+            dofs: free,
+        });
+    }
+    Ok(Facts { bodies, transit_steps: transit })
 }

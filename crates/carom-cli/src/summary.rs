@@ -47,6 +47,7 @@ fn text(outcome: &Outcome) -> String {
     for (phase, seconds) in &outcome.profile {
         lines.push(format!("  {phase:24} {}", duration(*seconds)));
     }
+    lines.extend(outcome.remarks.iter().map(|remark| format!("  {remark}")));
     if outcome.interrupted {
         lines.push(format!("stopped by Ctrl-C; go on with: carom resume {directory}"));
     }
@@ -94,6 +95,7 @@ mod tests {
             }],
             profile: Vec::new(),
             report: Some("runs/impact-2/report.html".into()),
+            remarks: Vec::new(),
         };
         let told = text(&outcome);
         assert_eq!(

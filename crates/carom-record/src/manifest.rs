@@ -168,6 +168,14 @@ impl Manifest {
         })
     }
 
+    /// Replaces `manifest.json` of a run directory that no writer holds.
+    ///
+    /// # Errors
+    /// What the machine refused.
+    pub fn replace(&self, directory: &Path) -> Result<(), RecordError> {
+        self.write(directory)
+    }
+
     /// Replaces `manifest.json` of a run directory.
     pub(crate) fn write(&self, directory: &Path) -> Result<(), RecordError> {
         let path = directory.join("manifest.json");

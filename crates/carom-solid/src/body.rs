@@ -55,6 +55,9 @@ pub trait Body<const D: usize>: Send + Sync {
     /// Shape functions of a cell at reference coordinates (`N`).
     fn shape(&self, xi: &[f64], values: &mut [f64]);
 
+    /// Reference coordinates of a cell's nodes (`N`).
+    fn reference_nodes(&self) -> Vec<Vec<f64>>;
+
     /// Cells and reference coordinates at a reference point: one inside a cell, all cells that share it where it is a node or lies on an edge;
     /// empty outside the body.
     fn locate(&self, point: &[f64; D]) -> Vec<(usize, Vec<f64>)>;

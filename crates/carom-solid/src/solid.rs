@@ -284,6 +284,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
         values.copy_from_slice(&S::values(&vector(xi)));
     }
 
+    fn reference_nodes(&self) -> Vec<Vec<f64>> {
+        S::NODES.iter().map(|x| x.0.to_vec()).collect()
+    }
+
     fn locate(&self, point: &[f64; D]) -> Vec<(usize, Vec<f64>)> {
         let near = (0..self.bounds.len()).filter(|&cell| self.bounds[cell].contains(point));
         near.filter_map(|cell| {

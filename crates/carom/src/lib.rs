@@ -6,6 +6,7 @@ mod ledger;
 pub mod model;
 mod newton;
 mod persistency;
+pub mod recording;
 mod rejected;
 mod scheme;
 mod simulation;
@@ -13,7 +14,7 @@ mod state;
 mod stepper;
 mod system;
 
-pub use newton::Workspace;
+pub use newton::{Timings, Workspace};
 pub use persistency::start;
 pub use rejected::Rejected;
 pub use simulation::{GridReport, LogEvent, Simulation, Stopped};

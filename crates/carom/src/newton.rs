@@ -48,15 +48,17 @@ pub(crate) struct Effort {
 /// Scratch that is rebuilt at will and never changes a bit of a result.
 pub struct Workspace<const D: usize> {
     /// Linear system.
-    pub system: System<D>,
+    pub(crate) system: System<D>,
     /// Forces of the last evaluation.
-    pub forces: Forces,
+    pub(crate) forces: Forces,
     /// Accelerations of the last evaluation.
-    pub acceleration: Vec<f64>,
+    pub(crate) acceleration: Vec<f64>,
     /// Linearised gaps of every pair of every contact.
-    pub gaps: Vec<Vec<Linearised<D>>>,
+    pub(crate) gaps: Vec<Vec<Linearised<D>>>,
     /// The stage being solved.
-    pub stage: Stage,
+    pub(crate) stage: Stage,
+    /// Wall time by phase.
+    pub timings: Timings,
     residual: Vec<f64>,
     at: Vec<f64>,
     correction: Vec<f64>,
@@ -79,6 +81,7 @@ impl<const D: usize> Workspace<D> {
             acceleration: zeros.clone(),
             gaps: vec![Vec::new(); model.contacts.len()],
             stage: Stage::default(),
+            timings: Timings::default(),
             residual: zeros.clone(),
             at: zeros.clone(),
             correction: zeros,
@@ -86,6 +89,27 @@ impl<const D: usize> Workspace<D> {
             saved: Trial::default(),
         }
     }
+}
+
+/// Wall seconds by phase, for `--profile`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timings {
+    /// Cell forces and tangents.
+    pub assembly: f64,
+    /// Detection, gaps and their derivatives.
+    pub contact: f64,
+    /// Filling, ordering and factoring the linear system.
+    pub factor: f64,
+    /// Solving with the factors.
+    pub solve: f64,
+}
+
+/// Runs `work` and adds the seconds it took to `clock`.
+fn timed<T>(clock: &mut f64, work: impl FnOnce() -> T) -> T {
+    let began = std::time::Instant::now();
+    let done = work();
+    *clock += began.elapsed().as_secs_f64();
+    done
 }
 
 /// Size of a residual and what it is measured against.
@@ -107,7 +131,7 @@ pub(crate) fn solve_stage<const D: usize>(
     let mut effort = Effort::default();
     let mut sets: Vec<ActiveSet> =
         model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect();
-    detect(model, state, trial, &mut effort)?;
+    timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))?;
     let mut measure = evaluate(model, state, trial, work, true)?;
     let mut has_tangent = true;
     let mut step = f64::INFINITY;
@@ -117,7 +141,7 @@ pub(crate) fn solve_stage<const D: usize>(
             && measure.gap <= GAP_TOLERANCE * model.scale;
         let mut changed = change_sets(model, &mut sets, trial, work, settled)?;
         if settled && !changed {
-            if !detect(model, state, trial, &mut effort)? {
+            if !timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))? {
                 return Ok(effort);
             }
             sets.iter_mut().for_each(ActiveSet::restart);
@@ -179,11 +203,11 @@ fn evaluate<const D: usize>(
         work.at[i] = state.y[i] + share * trial.increment[i];
     }
     let inverted = |(body, inverted)| Rejected::Inverted { body, inverted };
-    trial.strain = if tangent {
-        work.system.internal_tangent(model, &work.at, &mut work.forces.internal).map_err(inverted)?
-    } else {
-        model.internal_force(&work.at, &mut work.forces.internal).map_err(inverted)?
-    };
+    let (system, at, force) = (&mut work.system, &work.at, &mut work.forces.internal);
+    trial.strain = timed(&mut work.timings.assembly, || {
+        if tangent { system.internal_tangent(model, at, force) } else { model.internal_force(at, force) }
+    })
+    .map_err(inverted)?;
     stage.acceleration.value_into(&trial.increment, &mut work.acceleration);
     model.mass.multiply_into(&work.acceleration, &mut work.forces.inertia);
 
@@ -343,14 +367,17 @@ fn linear_step<const D: usize>(
     let gaps: Vec<Row<D>> =
         rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k) }).collect();
     let (mass, stiffness) = (mass_factor(stage), stiffness_factor(stage));
-    let inertia = work.system.factor(model, mass, stiffness, &gaps)?;
+    let inertia = timed(&mut work.timings.factor, || work.system.factor(model, mass, stiffness, &gaps))?;
     if inertia.negative < rows.len() {
         let size = model.free.len() + rows.len();
         return Err(LinearError::Singular { size, pivot: inertia.negative, value: 0.0 }.into());
     }
     let right: Vec<f64> = rows.iter().map(|&(k, p)| -weight(k) * work.gaps[k][p].gap).collect();
     work.residual.iter_mut().for_each(|r| *r = -*r);
-    work.system.solve(model, &work.residual, &right, &mut work.correction, &mut work.multipliers)?;
+    let (system, forces) = (&mut work.system, &work.residual);
+    timed(&mut work.timings.solve, || {
+        system.solve(model, forces, &right, &mut work.correction, &mut work.multipliers)
+    })?;
     Ok(())
 }
 

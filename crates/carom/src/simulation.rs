@@ -4,7 +4,7 @@ use carom_contact::PairEvent;
 
 use crate::case::{Case, Problem};
 use crate::model::{Dimension, Model, Space, build, overlaps};
-use crate::newton::Workspace;
+use crate::newton::{Timings, Workspace};
 use crate::persistency::start;
 use crate::rejected::Rejected;
 use crate::state::State;
@@ -123,13 +123,14 @@ where
     ///
     /// # Errors
     /// Everything wrong with the case that only its meshes show.
-    pub fn new(case: &Case) -> Result<Self, Vec<Problem>> {
+    pub fn new(case: &Case, threads: usize) -> Result<Self, Vec<Problem>> {
         let model = build::<D>(case)?;
         let problems = overlaps(&model);
         if !problems.is_empty() {
             return Err(problems);
         }
         let mut work = Workspace::new(&model);
+        let _ = threads;
         let state = start(&model, &mut work).map_err(|rejected| {
             vec![Problem::new("body", "the start has no acceleration", rejected.to_string(), "check masses and supports")]
         })?;
@@ -150,6 +151,11 @@ impl<const D: usize> Simulation<D> {
     /// Whether the end time is reached.
     pub fn finished(&self) -> bool {
         self.state.step >= self.steps
+    }
+
+    /// Wall time by phase so far.
+    pub fn timings(&self) -> Timings {
+        self.work.timings
     }
 
     /// Factorisations of the linear system so far.

@@ -29,30 +29,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if arguments.json {
         out::event(&serde_json::json!({ "event": "check", "case": case, "model": facts }))?;
     } else {
-        out::line(&table(&case, facts.as_ref()))?;
+        out::line(&table(&case, &facts))?;
     }
     Ok(Exit::Done)
 }
 
-fn table(case: &Case, facts: Option<&Facts>) -> String {
+fn table(case: &Case, facts: &Facts) -> String {
     let mut lines = vec![format!("{} (dimension {})", case.title, case.dimension)];
     for body in &case.bodies {
-        let size = match facts.and_then(|f| f.bodies.iter().find(|b| b.name == body.name)) {
-            Some(b) => {
-                let sides: Vec<_> = b.sides.iter().map(|(side, n)| format!("{side} {n}")).collect();
-                format!(
-                    "{} nodes, {} cells, {} free dofs; nodes of sides: {}",
-                    b.nodes,
-                    b.cells,
-                    b.dofs,
-                    sides.join(", ")
-                )
-            }
-            None => {
-                let (cells, nodes) = body.mesh.estimate(body.element);
-                format!("about {nodes} nodes, {cells} cells; sides: {}", body.mesh.sides().join(", "))
-            }
-        };
+        let Some(b) = facts.bodies.iter().find(|b| b.name == body.name) else { continue };
+        let sides: Vec<_> = b.sides.iter().map(|(side, n)| format!("{side} {n}")).collect();
+        let size =
+            format!("{} nodes, {} cells, {} free dofs; nodes of sides: {}", b.nodes, b.cells, b.dofs, sides.join(", "));
         lines.push(format!("  body     {:12} {:?} of {}: {size}", body.name, body.element, body.material));
     }
     for support in &case.supports {
@@ -78,9 +66,7 @@ fn table(case: &Case, facts: Option<&Facts>) -> String {
     lines.push(format!("  scheme   {}{parameters}", scheme.kind));
     let steps = case.time.steps();
     lines.push(format!("  time     {steps} steps of {} to {}", summary::short(case.time.step), short(case.time.end)));
-    if let Some(facts) = facts {
-        let transit = short(facts.transit_steps);
-        lines.push(format!("           a pressure wave crosses the smallest body in {transit} steps"));
-    }
+    let transit = short(facts.transit_steps);
+    lines.push(format!("           a pressure wave crosses the smallest body in {transit} steps"));
     lines.join("\n")
 }

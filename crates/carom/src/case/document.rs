@@ -71,6 +71,11 @@ impl Document {
         &self.sources[0].0
     }
 
+    /// The overrides `key=value`, in their order.
+    pub fn sets(&self) -> Vec<String> {
+        self.sources[1..].iter().map(|(_, text)| text.clone()).collect()
+    }
+
     /// The file's text.
     pub fn text(&self) -> &str {
         &self.sources[0].1

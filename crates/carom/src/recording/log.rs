@@ -1,0 +1,46 @@
+//! Events of a step as lines of `log.jsonl`, with the names of the case.
+
+use carom_contact::PairEvent;
+use carom_record::Event;
+
+use crate::model::Model;
+use crate::simulation::LogEvent;
+
+/// An event of the step being computed.
+pub(super) fn entry<const D: usize>(model: &Model<D>, step: u64, event: &LogEvent) -> Event {
+    let contact_name = |k: usize| model.contacts[k].name.as_str();
+    let body_of = |node: usize| {
+        let part = model.parts.iter().find(|p| p.nodes().contains(&node));
+        part.map_or("?", |p| p.name.as_str())
+    };
+    match event {
+        LogEvent::Rejected { time, dt, rejected } => {
+            Event::new(step, *time, "rejected", format!("step of {dt:.6e} rejected: {rejected}"))
+                .with("dt", *dt)
+                .with("reason", rejected.kind())
+        }
+        LogEvent::ActiveSet { time, contact, node, active } => {
+            let verb = if *active { "comes into" } else { "leaves" };
+            let message = format!("node {node} of \"{}\" {verb} contact \"{}\"", body_of(*node), contact_name(*contact));
+            Event::new(step, *time, if *active { "activation" } else { "release" }, message)
+                .with("contact", contact_name(*contact))
+                .with("node", *node)
+        }
+        LogEvent::Pair { time, contact, event } => {
+            let name = contact_name(*contact);
+            let (kind, message, node) = match event {
+                PairEvent::HandOver { node, from, to } => {
+                    ("hand-over", format!("contact \"{name}\": node {node} slides from facet {from} to {to}"), node)
+                }
+                PairEvent::SlidOff { node, facet } => {
+                    ("slid-off", format!("contact \"{name}\": node {node} slides off facet {facet}, the end of the side"), node)
+                }
+            };
+            Event::new(step, *time, kind, message).with("contact", name).with("node", *node)
+        }
+        LogEvent::Projection { time, jump } => {
+            let message = format!("velocities projected where contact begins: kinetic energy changes by {jump:.6e}");
+            Event::new(step, *time, "projection", message).with("kinetic_jump", *jump)
+        }
+    }
+}

@@ -1,0 +1,413 @@
+//! `run` and `resume`: a simulation driven to its end, its records, checkpoints and manifest.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use carom_record::{ContactRow, Event, Manifest, RecordError, Run, RunWriter, Source, Status};
+
+use super::columns::{center_weights, columns, row};
+use super::fields::{consistent_weights, field_set, gap_of};
+use super::log::entry;
+use crate::case::{Bound, Case, ExpectSpec, Problem};
+use crate::model::{Dimension, Space};
+use crate::simulation::{GridReport, Simulation, Stopped};
+use crate::state::State;
+
+/// How to run.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Threads; results do not depend on them.
+    pub threads: usize,
+}
+
+/// Where a simulation is, after an accepted step.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Step just finished.
+    pub step: u64,
+    /// Steps in all.
+    pub steps: u64,
+    /// Time.
+    pub time: f64,
+    /// Grid step.
+    pub dt: f64,
+    /// Newton iterations of the step.
+    pub newton: u32,
+    /// Active pairs.
+    pub active: usize,
+    /// Created energy over the largest kinetic + strain energy so far.
+    pub energy_drift: f64,
+    /// Wall seconds of this process.
+    pub wall: f64,
+    /// Wall seconds left, extrapolated.
+    pub left: f64,
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum End {
+    /// At its end time.
+    Finished,
+    /// By the user; resumable.
+    Interrupted,
+    /// The simulation could not go on; its last good state is kept.
+    Stopped(Stopped),
+}
+
+/// A run that ended.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Where its record is.
+    pub directory: PathBuf,
+    /// How it ended.
+    pub end: End,
+    /// Steps done.
+    pub steps: u64,
+    /// Time reached.
+    pub time: f64,
+    /// Wall seconds of this process.
+    pub wall: f64,
+    /// Said once, e.g. that a damaged checkpoint was passed over.
+    pub remarks: Vec<String>,
+}
+
+/// Why there is no (complete) run.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The case is wrong in a way only its model shows. Nothing was written.
+    #[error("{}", .0.iter().map(|p| p.what.as_str()).collect::<Vec<_>>().join("; "))]
+    Case(Vec<Problem>),
+    /// The run directory could not be written or read.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// The run directory holds something this version cannot go on from.
+    #[error("{what}")]
+    Incompatible {
+        /// What does not fit.
+        what: String,
+    },
+}
+
+/// What every step needs besides the simulation.
+struct Session<'a, const D: usize> {
+    case: &'a Case,
+    simulation: Simulation<D>,
+    writer: RunWriter,
+    manifest: Manifest,
+    weights: Vec<f64>,
+    field_steps: Vec<u64>,
+    began: Instant,
+    first_step: u64,
+    /// Wall seconds spent on writing.
+    output: f64,
+    values: Vec<f64>,
+}
+
+/// Runs a case into a directory that does not exist yet.
+///
+/// # Errors
+/// The case's problems (nothing is written), or what the machine refused.
+pub fn run(
+    case: &Case,
+    source: Source,
+    directory: &Path,
+    options: Options,
+    observe: &mut dyn FnMut(&Progress),
+    stop: &AtomicBool,
+) -> Result<Outcome, RunError> {
+    match case.dimension {
+        1 => run_in::<1>(case, source, directory, options, observe, stop),
+        _ => run_in::<2>(case, source, directory, options, observe, stop),
+    }
+}
+
+/// Goes on with a run that was stopped or killed; a finished one is returned as it is.
+///
+/// # Errors
+/// As [`run`], and where the record does not fit this version.
+pub fn resume(
+    directory: &Path,
+    options: Options,
+    observe: &mut dyn FnMut(&Progress),
+    stop: &AtomicBool,
+) -> Result<Outcome, RunError> {
+    let manifest = Manifest::read(directory)?;
+    let case: Case = serde_json::from_value(manifest.case.clone()).map_err(|error| RunError::Incompatible {
+        what: format!("the case in {} was resolved by Carom {} and does not fit this version: {error}", directory.join("manifest.json").display(), manifest.version),
+    })?;
+    match case.dimension {
+        1 => resume_in::<1>(&case, directory, options, observe, stop),
+        _ => resume_in::<2>(&case, directory, options, observe, stop),
+    }
+}
+
+fn run_in<const D: usize>(
+    case: &Case,
+    source: Source,
+    directory: &Path,
+    options: Options,
+    observe: &mut dyn FnMut(&Progress),
+    stop: &AtomicBool,
+) -> Result<Outcome, RunError>
+where
+    Space: Dimension<D>,
+{
+    let simulation = Simulation::<D>::new(case, options.threads).map_err(RunError::Case)?;
+    let resolved = serde_json::to_value(case).map_err(|e| RunError::Incompatible { what: e.to_string() })?;
+    let version = env!("CARGO_PKG_VERSION");
+    let manifest = Manifest::new(version, resolved, source, columns(case, &simulation.model), options.threads);
+    let writer = RunWriter::create(directory, &manifest, &bytes(&simulation.state)?)?;
+    let mut session = Session::new(case, simulation, writer, manifest);
+    session.write_start()?;
+    session.go(observe, stop, Vec::new())
+}
+
+fn resume_in<const D: usize>(
+    case: &Case,
+    directory: &Path,
+    options: Options,
+    observe: &mut dyn FnMut(&Progress),
+    stop: &AtomicBool,
+) -> Result<Outcome, RunError>
+where
+    Space: Dimension<D>,
+{
+    let manifest = Manifest::read(directory)?;
+    if manifest.status == Status::Finished {
+        let steps = case.time.steps();
+        return Ok(Outcome {
+            directory: directory.to_path_buf(),
+            end: End::Finished,
+            steps: steps as u64,
+            time: steps as f64 * case.time.step,
+            wall: 0.0,
+            remarks: vec!["the run is finished: nothing was computed".into()],
+        });
+    }
+    let simulation = Simulation::<D>::new(case, options.threads).map_err(RunError::Case)?;
+    let reopened = RunWriter::reopen(directory)?;
+    let state: State = postcard::from_bytes(&reopened.payload).map_err(|error| RunError::Incompatible {
+        what: format!("the checkpoint of {} does not fit this version of Carom: {error}", directory.display()),
+    })?;
+    if state.y.len() != simulation.model.dofs() {
+        return Err(RunError::Incompatible {
+            what: format!("the checkpoint has {} dofs, the case {}", state.y.len(), simulation.model.dofs()),
+        });
+    }
+    let mut manifest = reopened.manifest;
+    manifest.status = Status::Running;
+    manifest.reason = None;
+    manifest.started = carom_record::now();
+    manifest.threads = options.threads;
+    let remarks = reopened.fallback.iter().map(ToString::to_string).collect();
+    let mut session = Session::new(case, simulation.resumed(state), reopened.writer, manifest);
+    session.writer.manifest(&session.manifest)?;
+    if reopened.rows == 0 {
+        session.write_start()?;
+    }
+    session.go(observe, stop, remarks)
+}
+
+impl<'a, const D: usize> Session<'a, D>
+where
+    Space: Dimension<D>,
+{
+    fn new(case: &'a Case, simulation: Simulation<D>, writer: RunWriter, manifest: Manifest) -> Self {
+        let at = |time: &f64| (time / simulation.dt).round() as u64;
+        let field_steps = case.output.at_times.iter().map(at).collect();
+        let weights = center_weights(&simulation.model);
+        let first_step = simulation.state.step;
+        let began = Instant::now();
+        Self { case, simulation, writer, manifest, weights, field_steps, began, first_step, output: 0.0, values: Vec::new() }
+    }
+
+    /// Row and fields of the initial state.
+    fn write_start(&mut self) -> Result<(), RunError> {
+        self.write_row(&GridReport::default())?;
+        self.write_fields()
+    }
+
+    fn go(
+        mut self,
+        observe: &mut dyn FnMut(&Progress),
+        stop: &AtomicBool,
+        remarks: Vec<String>,
+    ) -> Result<Outcome, RunError> {
+        let mut end = End::Finished;
+        while !self.simulation.finished() {
+            if stop.load(Ordering::Relaxed) {
+                end = End::Interrupted;
+                break;
+            }
+            let mut report = GridReport::default();
+            let advanced = self.simulation.advance(&mut report);
+            let step = self.simulation.state.step + u64::from(advanced.is_err());
+            for event in &report.events {
+                self.writer.log(&entry(&self.simulation.model, step, event))?;
+            }
+            self.count(&report);
+            if let Err(stopped) = advanced {
+                let event = Event::new(step, self.simulation.state.time, "stopped", stopped.to_string());
+                self.writer.log(&event)?;
+                end = End::Stopped(stopped);
+                break;
+            }
+            let began = Instant::now();
+            self.record(&report)?;
+            self.output += began.elapsed().as_secs_f64();
+            observe(&self.progress(&report));
+        }
+        self.close(end, remarks)
+    }
+
+    /// Everything a grid step leaves in the record.
+    fn record(&mut self, report: &GridReport) -> Result<(), RunError> {
+        let output = &self.case.output;
+        let (step, last) = (self.simulation.state.step, self.simulation.finished());
+        if step % output.history_every as u64 == 0 || last {
+            self.write_row(report)?;
+        }
+        let every = output.fields_every as u64;
+        if (every > 0 && (step % every == 0 || last)) || self.field_steps.contains(&step) {
+            self.write_fields()?;
+        }
+        if step % output.checkpoint_every as u64 == 0 && !last {
+            self.writer.checkpoint(step, &bytes(&self.simulation.state)?)?;
+        }
+        Ok(())
+    }
+
+    fn write_row(&mut self, report: &GridReport) -> Result<(), RunError> {
+        let Simulation { model, state, dt, .. } = &self.simulation;
+        row(model, state, *dt, report, &self.weights, &mut self.values);
+        self.writer.history(&self.values)?;
+        for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
+            if pairs.iter().all(|p| !p.active) {
+                continue;
+            }
+            let weights = consistent_weights(contact, state, self.case.thickness);
+            for pair in pairs.iter().filter(|p| p.active) {
+                let node = contact.method.secondary()[pair.node];
+                let y = state.y.as_chunks::<D>().0[node];
+                self.writer.contact(&ContactRow {
+                    step: state.step,
+                    time: state.time,
+                    contact: contact.name.as_str().into(),
+                    node: node as u64,
+                    point: std::array::from_fn(|i| if i < D { y[i] } else { 0.0 }),
+                    facet: pair.facet as u64,
+                    xi: pair.xi,
+                    gap: gap_of(contact, pair, state),
+                    multiplier: pair.lambda,
+                    pressure: -pair.lambda / weights[pair.node],
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    fn write_fields(&mut self) -> Result<(), RunError> {
+        if self.case.output.fields_every > 0 || !self.field_steps.is_empty() {
+            let Simulation { model, state, .. } = &self.simulation;
+            self.writer.fields(state.step, state.time, &field_set(self.case, model, state))?;
+        }
+        Ok(())
+    }
+
+    fn count(&mut self, report: &GridReport) {
+        let mut add = |name: &str, count: u32| {
+            *self.manifest.counters.entry(name.into()).or_default() += u64::from(count);
+        };
+        add("newton", report.newton);
+        add("rejected", report.rejected);
+        add("activations", report.activations);
+        add("releases", report.releases);
+    }
+
+    fn progress(&self, report: &GridReport) -> Progress {
+        let Simulation { state, dt, steps, .. } = &self.simulation;
+        let wall = self.began.elapsed().as_secs_f64();
+        let done = (state.step - self.first_step).max(1);
+        let ledger = &state.ledger;
+        Progress {
+            step: state.step,
+            steps: *steps,
+            time: state.time,
+            dt: *dt,
+            newton: report.newton,
+            active: state.pairs.iter().flatten().filter(|p| p.active).count(),
+            energy_drift: if ledger.largest > 0.0 { ledger.created() / ledger.largest } else { 0.0 },
+            wall,
+            left: wall / done as f64 * (steps - state.step) as f64,
+        }
+    }
+
+    /// Last checkpoint and manifest.
+    fn close(mut self, end: End, remarks: Vec<String>) -> Result<Outcome, RunError> {
+        let state = &self.simulation.state;
+        self.writer.checkpoint(state.step, &bytes(state)?)?;
+        let wall = self.began.elapsed().as_secs_f64();
+        let manifest = &mut self.manifest;
+        (manifest.status, manifest.reason) = match &end {
+            End::Finished => (Status::Finished, None),
+            End::Interrupted => (Status::Stopped, Some("stopped by the user".into())),
+            End::Stopped(stopped) => (Status::Failed, Some(stopped.to_string())),
+        };
+        let spent = self.simulation.timings();
+        let phases = [("assembly", spent.assembly), ("contact", spent.contact), ("factor", spent.factor)];
+        for (phase, seconds) in phases.into_iter().chain([("solve", spent.solve), ("output", self.output), ("total", wall)]) {
+            *manifest.timings.entry(phase.into()).or_default() += seconds;
+        }
+        manifest.counters.insert("steps".into(), state.step);
+        *manifest.counters.entry("factorisations".into()).or_default() += self.simulation.factorisations();
+        let outcome = Outcome {
+            directory: self.writer.directory().to_path_buf(),
+            steps: state.step,
+            time: state.time,
+            wall,
+            remarks,
+            end,
+        };
+        self.writer.finish(&self.manifest)?;
+        if outcome.end == End::Finished {
+            judge(&outcome.directory, &self.case.expects, self.manifest)?;
+        }
+        Ok(outcome)
+    }
+}
+
+/// Holds the record against the case's expectations and writes the verdicts into the manifest.
+fn judge(directory: &Path, expects: &[ExpectSpec], mut manifest: Manifest) -> Result<(), RunError> {
+    if expects.is_empty() {
+        return Ok(());
+    }
+    let run = Run::open(directory)?;
+    manifest.expectations = expects.iter().map(|expect| verdict(&run, expect)).collect();
+    Ok(manifest.replace(directory)?)
+}
+
+fn verdict(run: &Run, expect: &ExpectSpec) -> carom_record::Expectation {
+    let got = carom_record::evaluate(&run.history, &expect.what).ok();
+    let (expected, holds): (String, Box<dyn Fn(f64) -> bool>) = match expect.bound {
+        Bound::Near { value, tolerance } => {
+            (format!("{value} ± {tolerance}"), Box::new(move |x| (x - value).abs() <= tolerance))
+        }
+        Bound::Relative { value, relative } => {
+            (format!("{value} ± {} %", relative * 100.0), Box::new(move |x| (x - value).abs() <= relative * value.abs()))
+        }
+        Bound::AtMost(most) => (format!("≤ {most}"), Box::new(move |x| x <= most)),
+        Bound::AtLeast(least) => (format!("≥ {least}"), Box::new(move |x| x >= least)),
+    };
+    carom_record::Expectation {
+        what: expect.what.clone(),
+        expected,
+        got,
+        pass: got.is_some_and(holds),
+        source: expect.source.clone(),
+    }
+}
+
+fn bytes(state: &State) -> Result<Vec<u8>, RunError> {
+    postcard::to_stdvec(state).map_err(|e| RunError::Incompatible { what: format!("the state cannot be encoded: {e}") })
+}
