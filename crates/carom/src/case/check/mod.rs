@@ -103,10 +103,10 @@ impl<'a> Check<'a> {
         let bodies = self.names("body")?;
         let Some((name, part)) = side.split_once('.') else {
             let why = "a side is written body.side";
-            let help = match bodies.contains(&side) {
-                true => self.body(side).map_or_else(String::new, |b| all_sides(b)),
-                false => format!("the bodies are: {}", bodies.join(", ")),
-            };
+            let help = self.body(side).map_or_else(
+                || format!("the bodies are: {}", bodies.join(", ")),
+                |b| format!("its sides are: {}", all_sides(b)),
+            );
             self.add(path, format!("`{side}` is not a side"), why, help);
             return None;
         };
