@@ -73,7 +73,7 @@ impl RecordError {
         move |source| Self::Io { action, path, source }
     }
 
-    pub(crate) fn corrupt(path: &Path, line: Option<u64>, what: impl ToString, hint: &'static str) -> Self {
-        Self::Corrupt { path: path.to_path_buf(), line, what: what.to_string(), hint }
+    pub(crate) fn corrupt(path: &Path, line: Option<u64>, what: impl Into<String>, hint: &'static str) -> Self {
+        Self::Corrupt { path: path.to_path_buf(), line, what: what.into(), hint }
     }
 }

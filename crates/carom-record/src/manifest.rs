@@ -159,7 +159,12 @@ impl Manifest {
         })?;
         serde_json::from_slice(&text).map_err(|error| {
             let line = Some(error.line() as u64);
-            RecordError::corrupt(&path, line, error, "run the case again, or use the version of Carom that wrote it")
+            RecordError::corrupt(
+                &path,
+                line,
+                error.to_string(),
+                "run the case again, or use the version of Carom that wrote it",
+            )
         })
     }
 

@@ -57,8 +57,8 @@ pub(crate) fn read(directory: &Path) -> Result<Vec<FieldEntry>, RecordError> {
             Event::Empty(tag) if tag.name().as_ref() == "DataSet" => {
                 let attribute = |name| Some(tag.try_get_attribute(name).ok()??.value);
                 let time = attribute("timestep").and_then(|t| t.parse().ok());
-                let step = attribute("file")
-                    .and_then(|f| f.strip_prefix("fields/")?.strip_suffix(".vtu")?.parse().ok());
+                let step =
+                    attribute("file").and_then(|f| f.strip_prefix("fields/")?.strip_suffix(".vtu")?.parse().ok());
                 let (Some(time), Some(step)) = (time, step) else {
                     return Err(damaged("a DataSet without a time or a file of ours".into()));
                 };

@@ -76,7 +76,10 @@ pub(crate) struct Table {
 
 impl Table {
     pub(crate) fn new(file: File) -> Self {
-        Self { writer: csv::WriterBuilder::new().terminator(csv::Terminator::Any(b'\n')).from_writer(file), text: String::new() }
+        Self {
+            writer: csv::WriterBuilder::new().terminator(csv::Terminator::Any(b'\n')).from_writer(file),
+            text: String::new(),
+        }
     }
 
     pub(crate) fn text(&mut self, field: &str) -> io::Result<()> {

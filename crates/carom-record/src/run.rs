@@ -169,7 +169,8 @@ fn contact(path: &Path) -> Result<Vec<ContactRow<'static>>, RecordError> {
 fn log(path: &Path) -> Result<Vec<Event>, RecordError> {
     let bytes = lines(path)?;
     let event = |(i, line)| {
-        serde_json::from_slice(line).map_err(|error| RecordError::corrupt(path, Some(i as u64 + 1), error, HINT))
+        serde_json::from_slice(line)
+            .map_err(|error| RecordError::corrupt(path, Some(i as u64 + 1), error.to_string(), HINT))
     };
     bytes.split(|&b| b == b'\n').filter(|line| !line.is_empty()).enumerate().map(event).collect()
 }

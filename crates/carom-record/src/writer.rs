@@ -172,7 +172,11 @@ impl RunWriter {
             .zip(&self.integer)
             .try_for_each(|(&value, &integer)| {
                 // A count that is none is shown as it is rather than rounded.
-                if integer && value >= 0.0 && value.fract() == 0.0 { table.integer(value as u64) } else { table.number(value) }
+                if integer && value >= 0.0 && value.fract() == 0.0 {
+                    table.integer(value as u64)
+                } else {
+                    table.number(value)
+                }
             })
             .and_then(|()| table.end_row());
         self.header.rows += 1;

@@ -1,1 +1,74 @@
-//! Placeholder of the workspace skeleton.
+//! Figures and a page from a run directory alone; nothing here runs anything.
+//!
+//! `report` writes `figures/*.svg` and a self-contained `report.html` beside the record: no script, no request to anywhere, every
+//! text that came from a user escaped.
+
+mod axis;
+mod bands;
+mod bodies;
+mod chart;
+mod figures;
+mod labels;
+mod page;
+mod palette;
+mod text;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use carom_record::{RecordError, Run};
+
+pub use figures::Figure;
+
+/// What a report consists of.
+#[derive(Clone, Debug)]
+pub struct ReportSummary {
+    /// The page.
+    pub page: PathBuf,
+    /// The figures' files.
+    pub figures: Vec<PathBuf>,
+    /// What could not be shown, and why.
+    pub notes: Vec<String>,
+}
+
+/// Why there is no report.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The record cannot be read.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// The page or a figure cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// Which file.
+        path: PathBuf,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+}
+
+impl ReportError {
+    /// Exit code of the command line: 4 when the machine refused, 2 when the record is at fault.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Record(error) => error.exit_code(),
+            Self::Write { .. } => 4,
+        }
+    }
+}
+
+/// Makes figures and page of a run directory, from the record alone.
+pub fn report(directory: &Path) -> Result<ReportSummary, ReportError> {
+    let run = Run::open(directory)?;
+    let (figures, notes) = figures::all(&run);
+    let write = |path: PathBuf, text: &str| match fs::write(&path, text) {
+        Ok(()) => Ok(path),
+        Err(source) => Err(ReportError::Write { path, source }),
+    };
+    let folder = directory.join("figures");
+    fs::create_dir_all(&folder).map_err(|source| ReportError::Write { path: folder.clone(), source })?;
+    let written = figures.iter().map(|f| write(folder.join(format!("{}.svg", f.name)), &f.svg));
+    let written = written.collect::<Result<Vec<_>, _>>()?;
+    let page = write(directory.join("report.html"), &page::page(&run, &figures, &notes))?;
+    Ok(ReportSummary { page, figures: written, notes })
+}

@@ -3,11 +3,11 @@
 mod body;
 mod factory;
 pub mod generate;
-mod locate;
 mod lumping;
 pub mod material;
 mod mesh;
 pub mod quadrature;
+mod reference;
 pub mod shape;
 mod solid;
 

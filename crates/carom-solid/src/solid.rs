@@ -14,10 +14,10 @@ use std::marker::PhantomData;
 use carom_algebra::{Mat, Vector};
 
 use crate::body::{Body, Inverted, PointState};
-use crate::locate::{self, Bounds};
 use crate::material::{Material, NotPositive, excess_det};
 use crate::mesh::{Element, Mesh};
 use crate::quadrature::Rule;
+use crate::reference::{self, Bounds, Degenerate, gradient};
 use crate::shape::{Domain, Shape};
 
 /// Why a body cannot be made.
@@ -86,13 +86,13 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
         };
         for cell in 0..cells {
             let x = solid.reference(cell);
-            let curved = locate::is_curved::<D, N, S>(&x);
+            let curved = reference::is_curved::<D, N, S>(&x);
+            let at = |Degenerate { place, jacobian }| SolidError::Degenerate { cell, place: place.to_vec(), jacobian };
             for xi in S::NODES.iter().chain(&solid.mass_rules[usize::from(curved)].points) {
-                map::<D, N, S>(&x, xi).map_err(|jacobian| degenerate::<D, N, S>(cell, &x, xi, jacobian))?;
+                reference::map::<D, N, S>(&x, xi).map_err(at)?;
             }
             for (xi, weight) in force_rules[usize::from(curved)].iter() {
-                let (gradients, jacobian) =
-                    map::<D, N, S>(&x, xi).map_err(|jacobian| degenerate::<D, N, S>(cell, &x, xi, jacobian))?;
+                let (gradients, jacobian) = reference::map::<D, N, S>(&x, xi).map_err(at)?;
                 solid.gradients.push(gradients);
                 solid.weights.push(weight * jacobian * thickness);
             }
@@ -150,16 +150,6 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
     }
 }
 
-/// The place of a bad Jacobian.
-fn degenerate<const D: usize, const N: usize, S: Shape<D, N>>(
-    cell: usize,
-    x: &[Vector<D>; N],
-    xi: &Vector<D>,
-    jacobian: f64,
-) -> SolidError {
-    SolidError::Degenerate { cell, place: interpolate(&S::values(xi), x).0.to_vec(), jacobian }
-}
-
 /// Numbers in range, cells whole, nodes there.
 fn check<const D: usize, const N: usize>(mesh: &Mesh<D>, density: f64, thickness: f64) -> Result<(), SolidError> {
     if mesh.element.dimension() != D || mesh.element.nodes() != N {
@@ -184,42 +174,6 @@ fn check<const D: usize, const N: usize>(mesh: &Mesh<D>, density: f64, thickness
     }
 }
 
-/// Σ φᵃ xᵃ.
-pub(crate) fn interpolate<const D: usize, const N: usize>(values: &[f64; N], x: &[Vector<D>; N]) -> Vector<D> {
-    let mut sum = Vector::ZERO;
-    for a in 0..N {
-        sum += x[a] * values[a];
-    }
-    sum
-}
-
-/// Σ xᵃ ⊗ gᵃ.
-#[inline]
-pub(crate) fn gradient<const D: usize, const N: usize>(x: &[Vector<D>; N], g: &[Vector<D>; N]) -> Mat<D> {
-    let mut sum = Mat::ZERO;
-    for a in 0..N {
-        sum += x[a].outer(&g[a]);
-    }
-    sum
-}
-
-/// Reference gradients ∇₀φᵃ and the Jacobian det(∂X/∂ξ), which is the error where it is not positive.
-fn map<const D: usize, const N: usize, S: Shape<D, N>>(
-    x: &[Vector<D>; N],
-    xi: &Vector<D>,
-) -> Result<([Vector<D>; N], f64), f64> {
-    let local = S::gradients(xi);
-    let jacobian = gradient(x, &local);
-    let det = jacobian.det();
-    // A sliver's determinant is compared with the lengths of its columns.
-    let size: f64 = (0..D).map(|j| Vector(jacobian.transposed().0[j]).norm()).product();
-    if !(det > 1e-12 * size) {
-        return Err(det);
-    }
-    let inverse_transposed = jacobian.inverse().transposed();
-    Ok((local.map(|g| inverse_transposed.apply(&g)), det))
-}
-
 /// `blocks[b][a]` += w Kᵃᵇ for a ≤ b. K is bilinear in the gradients: the law is asked for unit vectors only.
 #[inline]
 fn add_tangent<const D: usize, const N: usize, L: Material<D>>(
@@ -241,9 +195,11 @@ fn add_tangent<const D: usize, const N: usize, L: Material<D>>(
             sum
         });
         for a in 0..=b {
-            for j in 0..D {
-                blocks[b][a] += half[j] * g[a][j];
+            let mut sum = half[0] * g[a][0];
+            for j in 1..D {
+                sum += half[j] * g[a][j];
             }
+            blocks[b][a] += sum;
         }
     }
 }
@@ -331,7 +287,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
     fn locate(&self, point: &[f64; D]) -> Vec<(usize, Vec<f64>)> {
         let near = (0..self.bounds.len()).filter(|&cell| self.bounds[cell].contains(point));
         near.filter_map(|cell| {
-            let xi = locate::invert::<D, N, S>(&self.reference(cell), &Vector(*point))?;
+            let xi = reference::invert::<D, N, S>(&self.reference(cell), &Vector(*point))?;
             Some((cell, xi.0.to_vec()))
         })
         .collect()

@@ -1,3 +1,21 @@
 //! Impact and contact of deformable solids by the positional finite element method.
 
+mod balance;
 pub mod case;
+mod ledger;
+pub mod model;
+mod newton;
+mod persistency;
+mod rejected;
+mod scheme;
+mod simulation;
+mod state;
+mod stepper;
+mod system;
+
+pub use newton::Workspace;
+pub use persistency::start;
+pub use rejected::Rejected;
+pub use simulation::{GridReport, LogEvent, Simulation, Stopped};
+pub use state::{Ledger, State};
+pub use stepper::{Accepted, Implicit, StepReport, Stepper};

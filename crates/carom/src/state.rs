@@ -42,7 +42,7 @@ impl Ledger {
 }
 
 /// The state at the end of a step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Step on the grid of times.
     pub step: u64,
@@ -58,6 +58,8 @@ pub struct State {
     pub f_internal: Vec<f64>,
     /// Σ Gᵀλ of the contacts whose force is averaged: the known share of the next step.
     pub f_contact: Vec<f64>,
+    /// Force on the secondary side of each contact.
+    pub contact_forces: Vec<[f64; 2]>,
     /// Pairs of each contact.
     pub pairs: Vec<Vec<Pair>>,
     /// Energies and works.

@@ -107,14 +107,16 @@ impl FieldSet {
         let coordinates = n.checked_mul(3).ok_or("too many points")?;
         let points = numbers(data, find("Points", "points")?, coordinates)?.as_chunks::<3>().0.to_vec();
         let index = |bytes| usize::try_from(i64::from_le_bytes(bytes)).map_err(|e| e.to_string());
-        let read = |name| values::<8>(data, find("Cells", name)?)?.into_iter().map(index).collect::<Result<Vec<_>, _>>();
+        let read =
+            |name| values::<8>(data, find("Cells", name)?)?.into_iter().map(index).collect::<Result<Vec<_>, _>>();
         let (connectivity, ends) = (read("connectivity")?, read("offsets")?);
         if let Some(node) = connectivity.iter().find(|&&node| node >= n) {
             return Err(format!("a cell names node {node}, but there are {n} points"));
         }
         let types = values::<1>(data, find("Cells", "types")?)?;
         let bodies = values::<4>(data, find("CellData", "body")?)?;
-        let codes = find("FieldData", "bodies")?.text.split_whitespace().map(str::parse).collect::<Result<Vec<u8>, _>>();
+        let codes =
+            find("FieldData", "bodies")?.text.split_whitespace().map(str::parse).collect::<Result<Vec<u8>, _>>();
         let codes = codes.map_err(|e| format!("body names: {e}"))?;
         let names: Vec<String> = codes.split(|&c| c == 0).map(|n| String::from_utf8_lossy(n).into_owned()).collect();
 

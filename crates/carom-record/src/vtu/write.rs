@@ -16,7 +16,13 @@ struct Parts {
 
 impl Parts {
     /// One appended array: its byte count (UInt64), then its values, little-endian.
-    fn array<const B: usize>(&mut self, kind: &str, attributes: &str, unit: &str, values: impl Iterator<Item = [u8; B]>) {
+    fn array<const B: usize>(
+        &mut self,
+        kind: &str,
+        attributes: &str,
+        unit: &str,
+        values: impl Iterator<Item = [u8; B]>,
+    ) {
         let offset = self.data.len();
         self.data.extend([0; 8]);
         values.for_each(|v| self.data.extend(v));
@@ -46,7 +52,9 @@ impl FieldSet {
             let (body, size) = (&block.body, block.cell.nodes(block.degree));
             if !(1..=3).contains(&block.degree) || !block.connectivity.len().is_multiple_of(size) {
                 let (got, degree) = (block.connectivity.len(), block.degree);
-                return refuse(format!("body `{body}` has {got} node numbers in cells of {size} nodes, degree {degree}"));
+                return refuse(format!(
+                    "body `{body}` has {got} node numbers in cells of {size} nodes, degree {degree}"
+                ));
             }
             if let Some(node) = block.connectivity.iter().find(|&&node| node >= n) {
                 return refuse(format!("body `{body}` names node {node}, but there are {n} points"));
@@ -75,9 +83,11 @@ impl FieldSet {
             names.len(),
             codes.join(" ")
         );
-        let _ = writeln!(p.head, "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{cells}\">\n<PointData>", self.points.len());
+        let _ =
+            writeln!(p.head, "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{cells}\">\n<PointData>", self.points.len());
         for array in &self.arrays {
-            let mut attributes = format!("Name=\"{}\" NumberOfComponents=\"{}\"", escape(&array.name), array.components);
+            let mut attributes =
+                format!("Name=\"{}\" NumberOfComponents=\"{}\"", escape(&array.name), array.components);
             let names: &[&str] = match array.components {
                 3 => &["X", "Y", "Z"],
                 6 => &["XX", "YY", "ZZ", "XY", "YZ", "XZ"],

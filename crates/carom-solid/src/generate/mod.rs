@@ -1,5 +1,6 @@
 //! Built-in meshes: interval, rectangle, disc and half-disc. The geometric cells of a shape are the same for every order; see `elevate` for
-//! the nodes between corners. Node counts are known without building anything.
+//! the nodes between corners. `*_nodes` count without building: ask them first whether a mesh fits the
+//! memory.
 
 mod disc;
 mod elevate;

@@ -37,7 +37,7 @@ impl<const D: usize> Material<D> for NeoHookean {
     #[inline]
     fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
         let excess = excess_det(h);
-        if !(excess > -1.0) {
+        if excess <= -1.0 || excess.is_nan() {
             return Err(NotPositive(1.0 + excess));
         }
         let c = excess_cofactor(h);

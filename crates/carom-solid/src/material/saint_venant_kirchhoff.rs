@@ -34,7 +34,7 @@ impl<const D: usize> Material<D> for SaintVenantKirchhoff {
     #[inline]
     fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
         let det_f = 1.0 + excess_det(h);
-        if !(det_f > 0.0) {
+        if det_f <= 0.0 || det_f.is_nan() {
             return Err(NotPositive(det_f));
         }
         let f = Mat::identity() + *h;

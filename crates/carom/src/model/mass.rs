@@ -1,6 +1,6 @@
 //! Mass matrix M = ∫ρ₀ NᵀN dΩ₀ between nodes; the same for every direction.
 
-use carom_solid::lumped;
+use carom_solid::cell_lumped_mass;
 
 use super::Part;
 use crate::case::MassKind;
@@ -22,11 +22,17 @@ impl Mass {
         for (part, kind) in parts.iter().zip(kinds) {
             let mesh = part.body.mesh();
             let n = mesh.element.nodes();
-            let mut local = vec![0.0; n * n];
+            let (mut local, mut diagonal) = (vec![0.0; n * n], vec![0.0; n]);
             for cell in 0..mesh.cell_count() {
-                part.body.cell_mass(cell, &mut local);
-                if *kind == MassKind::Lumped {
-                    lumped(&mut local);
+                match kind {
+                    MassKind::Consistent => part.body.cell_mass(cell, &mut local),
+                    MassKind::Lumped => {
+                        cell_lumped_mass(&*part.body, cell, &mut local, &mut diagonal);
+                        local.fill(0.0);
+                        for p in 0..n {
+                            local[p * n + p] = diagonal[p];
+                        }
+                    }
                 }
                 let nodes = mesh.cell(cell);
                 for p in 0..n {

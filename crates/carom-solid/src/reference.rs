@@ -1,9 +1,52 @@
-//! Which cell holds a reference point: bounding boxes, then Newton's method on the reference map X(ξ) = Σ φᵃ Xᵃ.
+//! The reference map X(ξ) = Σ φᵃ Xᵃ of a cell: its gradient ∂X/∂ξ, the gradients ∇₀φ = (∂X/∂ξ)⁻ᵀ ∂φ/∂ξ, and its inverse by Newton's
+//! method, which finds the cell that holds a point.
 
-use carom_algebra::Vector;
+use carom_algebra::{Mat, Vector};
 
 use crate::shape::{Domain, Shape};
-use crate::solid::{gradient, interpolate};
+
+/// A place where a cell is degenerate or turned over.
+pub(crate) struct Degenerate<const D: usize> {
+    pub(crate) place: [f64; D],
+    pub(crate) jacobian: f64,
+}
+
+/// Σ φᵃ xᵃ.
+pub(crate) fn interpolate<const D: usize, const N: usize>(values: &[f64; N], x: &[Vector<D>; N]) -> Vector<D> {
+    let mut sum = Vector::ZERO;
+    for a in 0..N {
+        sum += x[a] * values[a];
+    }
+    sum
+}
+
+/// Σ xᵃ ⊗ gᵃ.
+#[inline]
+pub(crate) fn gradient<const D: usize, const N: usize>(x: &[Vector<D>; N], g: &[Vector<D>; N]) -> Mat<D> {
+    let mut sum = Mat::ZERO;
+    for a in 0..N {
+        sum += x[a].outer(&g[a]);
+    }
+    sum
+}
+
+/// Reference gradients ∇₀φᵃ and the Jacobian det(∂X/∂ξ) > 0.
+pub(crate) fn map<const D: usize, const N: usize, S: Shape<D, N>>(
+    x: &[Vector<D>; N],
+    xi: &Vector<D>,
+) -> Result<([Vector<D>; N], f64), Degenerate<D>> {
+    let local = S::gradients(xi);
+    let derivative = gradient(x, &local);
+    let jacobian = derivative.det();
+    // Compared with the lengths of the columns, so that a sliver is none at any scale.
+    let size: f64 = derivative.transposed().0.map(|column| Vector(column).norm()).iter().product();
+    if jacobian > 1e-12 * size {
+        let inverse_transposed = derivative.inverse().transposed();
+        Ok((local.map(|g| inverse_transposed.apply(&g)), jacobian))
+    } else {
+        Err(Degenerate { place: interpolate(&S::values(xi), x).0, jacobian })
+    }
+}
 
 /// A point this far outside a cell, in reference coordinates, still belongs to it: places are typed with six digits.
 const TOLERANCE: f64 = 1e-6;

@@ -1,0 +1,170 @@
+//! Bands of equal colour inside a Lagrange triangle.
+//!
+//! A small triangle, on which the quantity is taken as linear, is cut along the levels between bands: every band's part is a convex
+//! polygon and together they are the triangle.
+
+use std::fmt::Write as _;
+
+use crate::axis::round_step;
+use crate::palette::diverging;
+
+pub(crate) type Point = [f64; 2];
+
+/// Shape functions of a Lagrange triangle in VTK's node order at barycentric (a, b, c) of its corners.
+pub(crate) fn shape(degree: usize, [a, b, c]: [f64; 3], out: &mut Vec<f64>) {
+    out.clear();
+    match degree {
+        1 => out.extend([a, b, c]),
+        2 => {
+            out.extend([a, b, c].map(|l| l * (2.0 * l - 1.0)));
+            out.extend([4.0 * a * b, 4.0 * b * c, 4.0 * c * a]);
+        }
+        _ => {
+            out.extend([a, b, c].map(|l| 0.5 * l * (3.0 * l - 1.0) * (3.0 * l - 2.0)));
+            for (l, m) in [(a, b), (b, c), (c, a)] {
+                out.extend([4.5 * l * m * (3.0 * l - 1.0), 4.5 * l * m * (3.0 * m - 1.0)]);
+            }
+            out.push(27.0 * a * b * c);
+        }
+    }
+}
+
+/// What remains of a polygon where sign·(value − level) ≥ 0.
+fn clip(polygon: &[(Point, f64)], level: f64, sign: f64) -> Vec<(Point, f64)> {
+    let mut out = Vec::with_capacity(polygon.len() + 1);
+    for (i, &(p, f)) in polygon.iter().enumerate() {
+        let (q, g) = polygon[(i + 1) % polygon.len()];
+        let (inside, next) = (sign * (f - level) >= 0.0, sign * (g - level) >= 0.0);
+        if inside {
+            out.push((p, f));
+        }
+        if inside != next {
+            let s = (level - f) / (g - f);
+            out.push(([p[0] + s * (q[0] - p[0]), p[1] + s * (q[1] - p[1])], level));
+        }
+    }
+    out
+}
+
+/// Colour bands: `count` of equal width between `low` and `high`, zero in the middle of one; everything beyond takes the last colour.
+pub(crate) struct Bands {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    pub(crate) count: usize,
+}
+
+impl Bands {
+    fn level(&self, i: usize) -> f64 {
+        self.low + (self.high - self.low) * i as f64 / self.count as f64
+    }
+
+    pub(crate) fn color(&self, band: usize) -> String {
+        let middle = 0.5 * (self.level(band) + self.level(band + 1));
+        diverging(middle / self.low.abs().max(self.high.abs()))
+    }
+
+    pub(crate) fn of(&self, value: f64) -> usize {
+        let x = (value - self.low) / (self.high - self.low) * self.count as f64;
+        (x.max(0.0) as usize).min(self.count - 1)
+    }
+}
+
+/// Colour bands of all values but the outermost half per cent on either side; and whether any were cut off.
+pub(crate) fn color_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool; 2]) {
+    let mut values: Vec<f64> = values.filter(|x| x.is_finite()).collect();
+    values.sort_unstable_by(f64::total_cmp);
+    let last = values.len().saturating_sub(1);
+    let value = |k: usize| values.get(k).copied().unwrap_or(0.0);
+    let (low, high) = (value(last / 200).min(0.0), value(last - last / 200).max(0.0));
+    let (low, high) = if low == high { (-1.0, 1.0) } else { (low, high) };
+    // Edges half a step beside round numbers: what is not stressed is white.
+    let step = round_step(high - low, 24.0);
+    let [below, above] = [-low, high].map(|x| (x / step - 0.5).ceil().max(0.0));
+    let (low, high) = (-(below + 0.5) * step, (above + 0.5) * step);
+    (Bands { low, high, count: (below + above) as usize + 1 }, [value(0) < low, value(last) > high])
+}
+
+/// Adds a triangle's parts to the path of each band.
+pub(crate) fn band_polygons(triangle: &[(Point, f64); 3], bands: &Bands, paths: &mut [String]) {
+    if triangle.iter().any(|(_, f)| !f.is_finite()) {
+        return;
+    }
+    let [first, last] =
+        [f64::min, f64::max].map(|pick| bands.of(triangle.iter().map(|t| t.1).reduce(pick).unwrap_or(0.0)));
+    for band in first..=last {
+        let mut polygon = triangle.to_vec();
+        if band > first {
+            polygon = clip(&polygon, bands.level(band), 1.0);
+        }
+        if band < last {
+            polygon = clip(&polygon, bands.level(band + 1), -1.0);
+        }
+        if polygon.len() > 2 {
+            for (i, (p, _)) in polygon.iter().enumerate() {
+                let _ = write!(paths[band], "{}{:.2} {:.2}", if i == 0 { 'M' } else { 'L' }, p[0], p[1]);
+            }
+            paths[band].push('Z');
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nodes of the reference triangle in VTK's order.
+    fn nodes(degree: usize) -> Vec<[f64; 3]> {
+        let corners = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let mut nodes = corners.to_vec();
+        for e in 0..3 {
+            let (a, b) = (corners[e], corners[(e + 1) % 3]);
+            let at = |s: f64| [0, 1, 2].map(|d| a[d] + s * (b[d] - a[d]));
+            nodes.extend((1..degree).map(|i| at(i as f64 / degree as f64)));
+        }
+        if degree == 3 {
+            nodes.push([1.0 / 3.0; 3]);
+        }
+        nodes
+    }
+
+    #[test]
+    fn shapes_are_one_at_their_node_and_zero_at_the_others() {
+        let mut n = Vec::new();
+        for degree in 1..=3 {
+            for (i, node) in nodes(degree).into_iter().enumerate() {
+                shape(degree, node, &mut n);
+                assert_eq!(n.len(), nodes(degree).len());
+                assert!(n.iter().enumerate().all(|(j, v)| (v - f64::from(u8::from(i == j))).abs() < 1e-15));
+            }
+        }
+    }
+
+    #[test]
+    fn bands_cover_a_triangle_exactly_once() {
+        let bands = Bands { low: -1.0, high: 2.0, count: 6 };
+        let mut paths = vec![String::new(); 6];
+        band_polygons(&[([0.0, 0.0], -3.0), ([100.0, 0.0], 0.25), ([0.0, 100.0], 9.0)], &bands, &mut paths);
+        let area = |d: &String| -> f64 {
+            let polygon = |p: &str| {
+                let p: Vec<f64> = p.replace(['M', 'L'], " ").split_whitespace().map(|x| x.parse().unwrap()).collect();
+                let n = p.len() / 2;
+                (0..n)
+                    .map(|i| p[2 * i] * p[(2 * i + 3) % (2 * n)] - p[(2 * i + 2) % (2 * n)] * p[2 * i + 1])
+                    .sum::<f64>()
+                    / 2.0
+            };
+            d.split_terminator('Z').map(polygon).sum()
+        };
+        assert!(paths.iter().all(|d| !d.is_empty()));
+        assert!((paths.iter().map(area).sum::<f64>() - 5000.0).abs() < 2.0);
+    }
+
+    #[test]
+    fn zero_is_in_the_middle_of_a_band_and_outliers_are_cut_off() {
+        let values = (0..1000).map(|i| -0.03 * f64::from(i)).chain([-500.0, 0.3]);
+        let (bands, cut) = color_bands(values);
+        assert_eq!((bands.low, bands.high, bands.count, cut), (-31.0, 1.0, 16, [true, false]));
+        assert_eq!(bands.color(bands.of(0.0)), diverging(0.0));
+        assert!(color_bands(std::iter::empty()).0.count > 1);
+    }
+}

@@ -1,0 +1,263 @@
+//! Deformed bodies with a nodal quantity in colour, several instants at one scale.
+//!
+//! A cell's geometry and quantity are its own Lagrange polynomials: filled in bands of equal colour on a fine subdivision, its edges
+//! drawn as exact Bézier curves (a Lagrange edge of degree ≤ 3 is one).
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+
+use carom_record::{Cell, FieldSet};
+
+use crate::axis::{Axis, round_step};
+use crate::bands::{Bands, Point, band_polygons, color_bands, shape};
+use crate::chart::{open, scaled, write_text};
+use crate::labels::with_unit;
+
+/// One instant: deformed nodes, the quantity at them, and the cells.
+pub(crate) struct Instant {
+    pub(crate) time: String,
+    points: Vec<Point>,
+    values: Vec<f64>,
+    /// Degree and node numbers.
+    cells: Vec<(usize, Vec<usize>)>,
+}
+
+impl Instant {
+    /// Triangles of a field set at reference position + displacement, coloured by one component of an array.
+    pub(crate) fn new(fields: &FieldSet, array: &str, component: usize, time: String) -> Option<Self> {
+        let quantity = fields.array(array).filter(|a| component < a.components)?;
+        let u = fields.array("displacement").filter(|a| a.components == 3);
+        let moved = |(i, x): (usize, &[f64; 3])| [0, 1].map(|d| x[d] + u.map_or(0.0, |u| u.values[3 * i + d]));
+        let triangles = fields.blocks.iter().filter(|b| b.cell == Cell::Triangle);
+        Some(Self {
+            time,
+            points: fields.points.iter().enumerate().map(moved).collect(),
+            values: quantity.values.iter().skip(component).step_by(quantity.components).copied().collect(),
+            cells: triangles.flat_map(|b| b.cells().map(|c| (b.degree, c.to_vec()))).collect(),
+        })
+        .filter(|instant| !instant.cells.is_empty())
+    }
+}
+
+/// Filled bands of all cells: one path per colour.
+fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -> Point) {
+    let mut paths: Vec<String> = vec![String::new(); bands.count];
+    let (mut n, mut corner) = (Vec::new(), Vec::new());
+    for (degree, nodes) in &instant.cells {
+        let m = [1, 4, 5][degree.saturating_sub(1).min(2)];
+        corner.clear();
+        // Row j of the subdivision starts at `row(j)`: m + 1 − j points.
+        let row = |j: usize| j * (m + 1) - j * j.saturating_sub(1) / 2;
+        for j in 0..=m {
+            for i in 0..=m - j {
+                let (b, c) = (i as f64 / m as f64, j as f64 / m as f64);
+                shape(*degree, [1.0 - b - c, b, c], &mut n);
+                let sum = |f: &dyn Fn(usize) -> f64| n.iter().zip(nodes).map(|(n, &k)| n * f(k)).sum::<f64>();
+                let p = [0, 1].map(|d| sum(&|k| instant.points[k][d]));
+                corner.push((to(p), sum(&|k| instant.values[k])));
+            }
+        }
+        // A cell of one colour is drawn whole, inside its exact edges.
+        let band = bands.of(corner[0].1);
+        if corner.iter().all(|(_, f)| f.is_finite() && bands.of(*f) == band) {
+            let edge = |e: usize| edge_nodes(*degree, nodes, e).map(|k| to(instant.points[k])).collect::<Vec<_>>();
+            (0..3).for_each(|e| paths[band].push_str(&bezier(&edge(e), e == 0)));
+            paths[band].push('Z');
+            continue;
+        }
+        for j in 0..m {
+            for i in 0..m - j {
+                let (low, high) = (row(j) + i, row(j + 1) + i);
+                let mut triangle =
+                    |triangle: [usize; 3]| band_polygons(&triangle.map(|k| corner[k]), bands, &mut paths);
+                triangle([low, low + 1, high]);
+                if i + 1 < m - j {
+                    triangle([low + 1, high + 1, high]);
+                }
+            }
+        }
+    }
+    for (band, d) in paths.iter().enumerate().filter(|(_, d)| !d.is_empty()) {
+        let color = bands.color(band);
+        // The stroke in the fill's own colour closes the hairlines between neighbours.
+        let _ = writeln!(
+            out,
+            "<path d=\"{d}\" fill=\"{color}\" stroke=\"{color}\" stroke-width=\"0.5\" stroke-linejoin=\"round\"/>"
+        );
+    }
+}
+
+/// Nodes of an edge in order from end to end.
+fn edge_nodes(degree: usize, nodes: &[usize], edge: usize) -> impl Iterator<Item = usize> {
+    let inner = degree - 1;
+    let between = &nodes[3 + edge * inner..3 + (edge + 1) * inner];
+    std::iter::once(nodes[edge]).chain(between.iter().copied()).chain([nodes[(edge + 1) % 3]])
+}
+
+/// Bézier of an edge's nodes in order from end to end; `moved`: the pen goes to its start first.
+fn bezier(nodes: &[Point], moved: bool) -> String {
+    let mix = |weights: &[f64]| [0, 1].map(|d| weights.iter().zip(nodes).map(|(w, p)| w * p[d]).sum::<f64>());
+    let controls: &[&[f64]] = match nodes.len() {
+        2 => &[&[0.0, 1.0]],
+        3 => &[&[-0.5, 2.0, -0.5], &[0.0, 0.0, 1.0]],
+        _ => &[&[-5.0 / 6.0, 3.0, -1.5, 1.0 / 3.0], &[1.0 / 3.0, -1.5, 3.0, -5.0 / 6.0], &[0.0, 0.0, 0.0, 1.0]],
+    };
+    let points: Vec<String> = controls.iter().map(|w| mix(w)).map(|p| format!("{:.2} {:.2}", p[0], p[1])).collect();
+    let command = ["L", "Q", "C"][controls.len() - 1];
+    let start = if moved { format!("M{:.2} {:.2}", nodes[0][0], nodes[0][1]) } else { String::new() };
+    format!("{start}{command}{}", points.join(" "))
+}
+
+/// Edges of all cells: those of one cell only are the outline.
+fn edges(out: &mut String, instant: &Instant, to: &dyn Fn(Point) -> Point) {
+    let mut found: HashMap<[usize; 2], (usize, Vec<usize>)> = HashMap::new();
+    let mut order = Vec::new();
+    for (degree, nodes) in &instant.cells {
+        for e in 0..3 {
+            let (a, b) = (nodes[e], nodes[(e + 1) % 3]);
+            let key = [a.min(b), a.max(b)];
+            let entry = found.entry(key).or_insert_with(|| {
+                order.push(key);
+                (0, edge_nodes(*degree, nodes, e).collect())
+            });
+            entry.0 += 1;
+        }
+    }
+    let (mut inside, mut outline) = (String::new(), String::new());
+    for (count, nodes) in order.iter().filter_map(|key| found.get(key)) {
+        let points: Vec<Point> = nodes.iter().map(|&k| to(instant.points[k])).collect();
+        if *count == 1 { &mut outline } else { &mut inside }.push_str(&bezier(&points, true));
+    }
+    let _ = writeln!(
+        out,
+        "<path d=\"{inside}\" fill=\"none\" stroke=\"#000\" stroke-opacity=\"0.28\" stroke-width=\"0.4\"/>"
+    );
+    let _ = writeln!(
+        out,
+        "<path d=\"{outline}\" fill=\"none\" stroke=\"#000\" stroke-width=\"0.9\" stroke-linecap=\"round\"/>"
+    );
+}
+
+/// The figure; `label` and `unit` stand at the colour bar. The second value says whether colours are cut off.
+pub(crate) fn figure(instants: &[Instant], title: &str, label: &str, unit: &str, length: &str) -> (String, bool) {
+    let used = |i: &Instant| {
+        i.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| (i.points[k], i.values[k]))).collect::<Vec<_>>()
+    };
+    let used: Vec<(Point, f64)> = instants.iter().flat_map(used).collect();
+    let (bands, cut) = color_bands(used.iter().map(|(_, f)| *f));
+    let mut frame = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
+    for ([x, y], _) in &used {
+        frame = [frame[0].min(*x), frame[1].max(*x), frame[2].min(*y), frame[3].max(*y)];
+    }
+    let [x0, x1, y0, y1] = frame;
+    let aspect = (x1 - x0) / (y1 - y0).max(1e-12 * (x1 - x0).abs()).max(f64::MIN_POSITIVE);
+    let columns = instants
+        .len()
+        .min(if aspect < 1.3 {
+            5
+        } else if aspect < 2.6 {
+            3
+        } else {
+            1
+        })
+        .max(1);
+    let (width, bar, gap) = (940.0, 96.0, 14.0);
+    let cell_width = (width - bar - 8.0) / columns as f64;
+    let scale = ((cell_width - gap) / (x1 - x0)).min(460.0 / (y1 - y0));
+    let (picture, line) = ((y1 - y0) * scale, 30.0);
+    let rows = instants.len().div_ceil(columns);
+    let height = rows as f64 * (picture + line + 14.0) + 34.0;
+    let mut out = open(title, width, height);
+    for (k, instant) in instants.iter().enumerate() {
+        let left = 8.0 + (k % columns) as f64 * cell_width + 0.5 * (cell_width - gap - (x1 - x0) * scale);
+        let top = (k / columns) as f64 * (picture + line + 14.0) + line;
+        let to = |p: Point| [left + (p[0] - x0) * scale, top + (y1 - p[1]) * scale];
+        let letter = char::from(b'B' + (k % 25) as u8);
+        let heading = left.min(8.0 + (k % columns) as f64 * cell_width + 0.5 * cell_width - 50.0);
+        let _ = writeln!(
+            out,
+            "<text x=\"{heading:.1}\" y=\"{:.1}\"><tspan font-weight=\"bold\">({letter})</tspan> {}</text>",
+            top - 11.0,
+            crate::text::svg(&instant.time)
+        );
+        fill(&mut out, instant, &bands, &to);
+        edges(&mut out, instant, &to);
+    }
+    // A bar of a round length under the first picture.
+    let size = round_step(x1 - x0, 3.0);
+    let y = height - 22.0;
+    let _ = writeln!(
+        out,
+        "<path d=\"M8 {:.1}v6m0 -3h{:.1}m0 -3v6\" fill=\"none\" stroke=\"#222\"/>",
+        y - 3.0,
+        size * scale
+    );
+    write_text(&mut out, 8.0 + size * scale + 8.0, y + 4.0, "", format!("{size} {length}").trim());
+    color_bar(&mut out, &bands, cut, width - bar + 18.0, (line, height - 50.0), (label, unit));
+    out.push_str("</svg>\n");
+    (out, cut[0] || cut[1])
+}
+
+/// Vertical bar of the bands with ticks; an arrow at an end beyond which values were cut off.
+fn color_bar(
+    out: &mut String,
+    bands: &Bands,
+    cut: [bool; 2],
+    x: f64,
+    (top, bottom): (f64, f64),
+    (label, unit): (&str, &str),
+) {
+    let (top, width) = (top + 22.0, 15.0);
+    let h = (bottom - top) / bands.count as f64;
+    let mut arrow = |end: f64, tip: f64, band: usize| {
+        let color = bands.color(band);
+        let _ = writeln!(
+            out,
+            "<path d=\"M{x:.1} {end:.1}h{width}l-7.5 {tip}z\" fill=\"{color}\" stroke=\"#222\" stroke-width=\"0.7\"/>"
+        );
+    };
+    if cut[1] {
+        arrow(top, -11.0, bands.count - 1);
+    }
+    if cut[0] {
+        arrow(bottom, 11.0, 0);
+    }
+    for band in 0..bands.count {
+        let y = bottom - (band + 1) as f64 * h;
+        let _ = writeln!(
+            out,
+            "<rect x=\"{x:.1}\" y=\"{y:.2}\" width=\"{width}\" height=\"{:.2}\" fill=\"{}\"/>",
+            h + 0.3,
+            bands.color(band)
+        );
+    }
+    let _ = writeln!(
+        out,
+        "<rect x=\"{x:.1}\" y=\"{top:.1}\" width=\"{width}\" height=\"{:.1}\" fill=\"none\" stroke=\"#222\" stroke-width=\"0.7\"/>",
+        bottom - top
+    );
+    let axis = Axis::new((bands.low, bands.high), 6.0, true);
+    for (value, tick) in &axis.ticks {
+        let y = bottom - (bottom - top) * axis.position(*value);
+        let _ = writeln!(out, "<path d=\"M{:.1} {y:.1}h4\" stroke=\"#222\" stroke-width=\"0.8\"/>", x + width);
+        write_text(out, x + width + 7.0, y + 4.3, "", tick);
+    }
+    write_text(out, x - 2.0, top - 20.0, "", &with_unit(label, &scaled(unit, axis.exponent)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cubic edge through four points of a parabola is the parabola: its Bézier's middle is the parabola's.
+    #[test]
+    fn beziers_pass_through_the_nodes() {
+        let on = |s: f64| [s * 30.0, s * s * 90.0];
+        assert_eq!(bezier(&[on(0.0), on(1.0)], true), "M0.00 0.00L30.00 90.00");
+        assert_eq!(bezier(&[on(0.0), on(0.5), on(1.0)], true), "M0.00 0.00Q15.00 0.00 30.00 90.00");
+        assert_eq!(
+            bezier(&[0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(on), true),
+            "M0.00 0.00C10.00 0.00 20.00 30.00 30.00 90.00"
+        );
+    }
+}

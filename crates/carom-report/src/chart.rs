@@ -1,0 +1,227 @@
+//! Line charts against a shared horizontal axis, one panel above the other.
+
+use std::fmt::Write as _;
+
+use crate::axis::{Axis, range};
+use crate::labels::with_unit;
+use crate::text;
+
+const WIDTH: f64 = 720.0;
+const LEFT: f64 = 74.0;
+const RIGHT: f64 = 14.0;
+const FONT: f64 = 13.0;
+
+/// A curve.
+pub(crate) struct Series<'a> {
+    pub(crate) label: String,
+    pub(crate) color: &'static str,
+    pub(crate) x: &'a [f64],
+    pub(crate) y: Vec<f64>,
+}
+
+/// Curves with one vertical axis.
+pub(crate) struct Panel<'a> {
+    pub(crate) label: String,
+    pub(crate) unit: String,
+    pub(crate) height: f64,
+    pub(crate) series: Vec<Series<'a>>,
+}
+
+/// What all panels share.
+pub(crate) struct Chart<'a> {
+    pub(crate) title: &'a str,
+    pub(crate) x_label: String,
+    /// Intervals of x to shade.
+    pub(crate) shades: Vec<(f64, f64)>,
+    pub(crate) panels: Vec<Panel<'a>>,
+}
+
+/// Opening of a figure. It names its own fonts and is legible on its own.
+pub(crate) fn open(title: &str, width: f64, height: f64) -> String {
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\" \
+         role=\"img\" font-family=\"Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif\" font-size=\"{FONT}\" fill=\"#222\">\n\
+         <title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+        text::escape(title)
+    )
+}
+
+/// A text element; `extra` holds further attributes.
+pub(crate) fn write_text(out: &mut String, x: f64, y: f64, extra: &str, label: &str) {
+    let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" {extra}>{}</text>", text::svg(label));
+}
+
+/// Points of a curve in pixels, thinned to what half a pixel can show: first, lowest, highest, last of each column of pixels.
+/// Gaps stay gaps.
+fn path(points: impl Iterator<Item = (f64, f64)>) -> String {
+    let mut out = String::new();
+    let mut pen_up = true;
+    let mut column: Vec<(f64, f64)> = Vec::new();
+    let mut emit = |column: &mut Vec<(f64, f64)>, pen_up: &mut bool| {
+        let by_height = |a: &usize, b: &usize| column[*a].1.total_cmp(&column[*b].1);
+        let low = (0..column.len()).min_by(by_height);
+        let high = (0..column.len()).max_by(by_height);
+        let mut keep: Vec<usize> = [Some(0), low, high, column.len().checked_sub(1)].into_iter().flatten().collect();
+        keep.sort_unstable();
+        keep.dedup();
+        for (x, y) in keep.into_iter().filter_map(|i| column.get(i)) {
+            let _ = write!(out, "{}{x:.2} {y:.2}", if *pen_up { 'M' } else { 'L' });
+            *pen_up = false;
+        }
+        column.clear();
+    };
+    for (x, y) in points {
+        if !(x.is_finite() && y.is_finite()) {
+            emit(&mut column, &mut pen_up);
+            pen_up = true;
+            continue;
+        }
+        if column.first().is_some_and(|first| (first.0 * 2.0).floor() != (x * 2.0).floor()) {
+            emit(&mut column, &mut pen_up);
+        }
+        column.push((x, y));
+    }
+    emit(&mut column, &mut pen_up);
+    out
+}
+
+impl Chart<'_> {
+    /// The figure.
+    pub(crate) fn svg(&self) -> String {
+        const GAP: f64 = 16.0;
+        let plot = WIDTH - LEFT - RIGHT;
+        let x_axis = Axis::new(range(self.panels.iter().flat_map(|p| &p.series).flat_map(|s| s.x)), 8.0, true);
+        let rows: Vec<Vec<Vec<usize>>> = self.panels.iter().map(|p| legend_rows(p, plot)).collect();
+        let tops = rows.iter().map(|r| GAP + r.len() as f64 * 18.0);
+        let height = tops.zip(&self.panels).map(|(top, p)| top + p.height).sum::<f64>() + 48.0;
+        let mut out = open(self.title, WIDTH, height);
+        let to_x = |x: f64| LEFT + plot * x_axis.position(x);
+        let mut y0 = 0.0;
+        for (i, (panel, rows)) in self.panels.iter().zip(&rows).enumerate() {
+            y0 += GAP;
+            write_legend(&mut out, panel, rows, y0);
+            y0 += rows.len() as f64 * 18.0;
+            let h = panel.height;
+            let (low, high) = range(panel.series.iter().flat_map(|s| &s.y));
+            let whole = panel.series.iter().flat_map(|s| &s.y).all(|y| y.fract() == 0.0);
+            // Counts have no ticks between them.
+            let most = if whole { (high - low).max(1.0) } else { f64::INFINITY };
+            let y_axis = Axis::new((low, high), (h / 42.0).max(2.0).min(most), false);
+            let to_y = |y: f64| y0 + h * (1.0 - y_axis.position(y));
+            for (a, b) in &self.shades {
+                let (a, b) = (to_x(a.max(x_axis.low)), to_x(b.min(x_axis.high)));
+                let _ = writeln!(
+                    out,
+                    "<rect x=\"{a:.1}\" y=\"{y0:.1}\" width=\"{:.1}\" height=\"{h:.1}\" fill=\"#ececec\"/>",
+                    (b - a).max(0.6)
+                );
+            }
+            for (value, label) in &y_axis.ticks {
+                let y = to_y(*value);
+                let colour = if *value == 0.0 { "#999" } else { "#d8d8d8" };
+                let _ = writeln!(out, "<path d=\"M{LEFT} {y:.1}h{plot}\" stroke=\"{colour}\" stroke-width=\"0.6\"/>");
+                write_text(&mut out, LEFT - 8.0, y + 4.3, "text-anchor=\"end\"", label);
+            }
+            let bottom = y0 + h;
+            for (value, label) in &x_axis.ticks {
+                let x = to_x(*value);
+                let _ = writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v5\" stroke=\"#222\" stroke-width=\"0.8\"/>");
+                if i + 1 == self.panels.len() {
+                    write_text(&mut out, x, bottom + 19.0, "text-anchor=\"middle\"", label);
+                }
+            }
+            let _ = writeln!(
+                out,
+                "<path d=\"M{LEFT} {y0:.1}v{h:.1}h{plot}\" fill=\"none\" stroke=\"#222\" stroke-width=\"0.9\"/>"
+            );
+            for series in &panel.series {
+                let points = series.x.iter().zip(&series.y).map(|(&x, &y)| (to_x(x), to_y(y)));
+                let (d, color) = (path(points), series.color);
+                let _ = writeln!(
+                    out,
+                    "<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.5\" stroke-linejoin=\"round\"/>"
+                );
+            }
+            let label = with_unit(&panel.label, &scaled(&panel.unit, y_axis.exponent));
+            let middle = y0 + 0.5 * h;
+            write_text(
+                &mut out,
+                0.0,
+                0.0,
+                &format!("text-anchor=\"middle\" transform=\"translate(17 {middle:.1}) rotate(-90)\""),
+                &label,
+            );
+            y0 = bottom;
+        }
+        let exponent = x_axis.exponent;
+        let x_label =
+            if exponent == 0 { self.x_label.clone() } else { format!("{} × 10^{{{exponent}}}", self.x_label) };
+        write_text(&mut out, LEFT + 0.5 * plot, y0 + 39.0, "text-anchor=\"middle\"", &x_label);
+        out.push_str("</svg>\n");
+        out
+    }
+}
+
+/// A unit with the power of ten its numbers are in.
+pub(crate) fn scaled(unit: &str, exponent: i32) -> String {
+    match (exponent, unit) {
+        (0, unit) => unit.to_string(),
+        (_, "") => format!("10^{{{exponent}}}"),
+        _ => format!("10^{{{exponent}}} {unit}"),
+    }
+}
+
+fn entry_width(series: &Series) -> f64 {
+    46.0 + text::width(&series.label) * FONT
+}
+
+/// Which entries of the legend stand on which line; a single curve needs none.
+fn legend_rows(panel: &Panel, width: f64) -> Vec<Vec<usize>> {
+    let mut rows: Vec<Vec<usize>> = Vec::new();
+    let mut used = f64::INFINITY;
+    for (i, series) in panel.series.iter().enumerate().filter(|(_, s)| !s.label.is_empty()) {
+        let needed = entry_width(series);
+        if used + needed > width {
+            rows.push(Vec::new());
+            used = 0.0;
+        }
+        used += needed;
+        if let Some(row) = rows.last_mut() {
+            row.push(i);
+        }
+    }
+    rows
+}
+
+fn write_legend(out: &mut String, panel: &Panel, rows: &[Vec<usize>], top: f64) {
+    for (line, row) in rows.iter().enumerate() {
+        let (mut x, y) = (LEFT + 6.0, top + 18.0 * line as f64 + 5.0);
+        for series in row.iter().map(|&i| &panel.series[i]) {
+            let _ = writeln!(out, "<path d=\"M{x:.1} {y:.1}h22\" stroke=\"{}\" stroke-width=\"2\"/>", series.color);
+            write_text(out, x + 27.0, y + 4.3, "", &series.label);
+            x += entry_width(series);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_extremes_and_gaps() {
+        // 100 000 points on 10 pixels, one spike up, one down, one gap.
+        let value = |i: usize| match i {
+            31_234 => 99.0,
+            67_890 => -55.0,
+            80_000 => f64::NAN,
+            _ => (i % 7) as f64,
+        };
+        let d = path((0..100_000).map(|i| (i as f64 * 1e-4, value(i))));
+        assert!(d.contains(" 99.00") && d.contains(" -55.00"));
+        assert_eq!(d.matches('M').count(), 2);
+        assert!(d.len() < 2000, "{}", d.len());
+        // Few points stay as they are.
+        assert_eq!(path([(0.0, 1.0), (1.0, 2.0), (2.0, 0.5)].into_iter()), "M0.00 1.00L1.00 2.00L2.00 0.50");
+    }
+}

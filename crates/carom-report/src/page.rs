@@ -1,0 +1,222 @@
+//! `report.html`: one page that needs nothing but itself, on screen and on paper.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use carom_record::{Run, Status, metrics};
+
+use crate::figures::Figure;
+use crate::text::{escape, html};
+
+/// Log events shown; all are counted.
+const EVENTS: usize = 50;
+
+/// The page.
+pub(crate) fn page(run: &Run, figures: &[Figure], notes: &[String]) -> String {
+    let title = run.manifest.case.get("title").and_then(|t| t.as_str()).unwrap_or("Carom run");
+    let mut out = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
+         <title>{title}</title>\n<style>\n{}</style>\n</head>\n<body>\n<h1>{title}</h1>\n",
+        include_str!("page.css"),
+        title = escape(title)
+    );
+    header(&mut out, run);
+    for note in notes {
+        let _ = writeln!(out, "<p class=\"small\">{}</p>", escape(note));
+    }
+    results(&mut out, run);
+    expectations(&mut out, run);
+    out.push_str("<h2>Figures</h2>\n");
+    for (i, figure) in figures.iter().enumerate() {
+        let (caption, name) = (html(&figure.caption), figure.name);
+        let link = format!("<a href=\"figures/{name}.svg\">figures/{name}.svg</a>");
+        let _ = writeln!(
+            out,
+            "<figure>\n{}<figcaption><b>Figure {}.</b> {caption} <span class=\"small\">({link})</span></figcaption>\n</figure>",
+            figure.svg,
+            i + 1
+        );
+    }
+    events(&mut out, run);
+    work(&mut out, run);
+    reproduce(&mut out, run);
+    out.push_str("</body>\n</html>\n");
+    out
+}
+
+/// A number as people read it: six digits, an exponent when far from one.
+fn number(x: f64) -> String {
+    if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) {
+        return format!("{x:.5e}").replace('-', "−");
+    }
+    let decimals = if x == 0.0 { 0 } else { (5 - x.abs().log10().floor() as i32).clamp(0, 9) as usize };
+    let text = format!("{x:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    text.replace('-', "−")
+}
+
+fn header(out: &mut String, run: &Run) {
+    let m = &run.manifest;
+    let (class, word) = match m.status {
+        Status::Running => ("running", "running, or killed: resumable"),
+        Status::Finished => ("finished", "finished"),
+        Status::Stopped => ("stopped", "stopped: resumable"),
+        Status::Failed => ("failed", "failed"),
+    };
+    let reason = m.reason.as_ref().map(|r| format!(" {}", escape(r))).unwrap_or_default();
+    let _ = writeln!(out, "<p><span class=\"status {class}\">{word}</span>{reason}</p>\n<table>");
+    let (rows, last) = (run.times().len(), run.times().last().copied().unwrap_or(0.0));
+    let wall: f64 = m.timings.get("total").copied().unwrap_or_else(|| m.timings.values().sum());
+    let mut row = |name: &str, value: String| {
+        let _ = writeln!(out, "<tr><th>{name}</th><td>{value}</td></tr>");
+    };
+    row("Carom", escape(&m.version));
+    row("Input hash", format!("<code class=\"hash\">{}</code>", escape(&m.input_hash)));
+    row("Recorded", format!("{rows} rows to t = {} {}", number(last), html(run.history.unit("time"))));
+    if let Some(scheme) = m.case.pointer("/time/scheme").and_then(|s| s.as_object()) {
+        let part = |(k, v): (&String, &serde_json::Value)| match v.as_str() {
+            Some(text) if k == "kind" => text.to_string(),
+            Some(text) => format!("{k} {text}"),
+            None => format!("{k} = {v}"),
+        };
+        let step = m.case.pointer("/time/step").and_then(serde_json::Value::as_f64).map_or(String::new(), number);
+        row(
+            "Time integration",
+            escape(&format!("{}; Δt = {step}", scheme.iter().map(part).collect::<Vec<_>>().join(", "))),
+        );
+    }
+    let machine = &m.machine;
+    row("Machine", escape(&format!("{} cores, {} {}; threads: {}", machine.cpus, machine.os, machine.arch, m.threads)));
+    row("Wall time", format!("{} s", number(wall)));
+    row("Started", escape(&m.started));
+    out.push_str("</table>\n");
+}
+
+fn results(out: &mut String, run: &Run) {
+    out.push_str("<h2>Key results</h2>\n<table>\n<thead><tr><th>Metric</th><th>Value</th><th>Unit</th><th>Definition</th></tr></thead>\n");
+    for metric in metrics::all(&run.history) {
+        if let Some(value) = metric.value {
+            let _ = writeln!(
+                out,
+                "<tr><td><code>{}</code></td><td class=\"n\">{}</td><td>{}</td><td>{}</td></tr>",
+                metric.name,
+                number(value),
+                html(&metric.unit),
+                escape(metric.definition)
+            );
+        }
+    }
+    out.push_str("</table>\n");
+    if let Some(body) = metrics::striker(&run.history) {
+        let _ = writeln!(
+            out,
+            "<p class=\"small\">Striker: {}. All values are computed from history.csv alone.</p>",
+            escape(body)
+        );
+    }
+}
+
+fn expectations(out: &mut String, run: &Run) {
+    if run.manifest.expectations.is_empty() {
+        return;
+    }
+    out.push_str("<h2>Expectations</h2>\n<table>\n<thead><tr><th>What</th><th>Expected</th><th>Got</th><th></th><th>Source</th></tr></thead>\n");
+    for e in &run.manifest.expectations {
+        let (class, word) = if e.pass { ("pass", "holds") } else { ("miss", "missed") };
+        let _ = writeln!(
+            out,
+            "<tr><td><code>{}</code></td><td>{}</td><td class=\"n\">{}</td><td class=\"{class}\">{word}</td><td>{}</td></tr>",
+            escape(&e.what),
+            escape(&e.expected),
+            e.got.map_or("–".into(), number),
+            escape(e.source.as_deref().unwrap_or_default())
+        );
+    }
+    out.push_str("</table>\n");
+}
+
+fn events(out: &mut String, run: &Run) {
+    let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
+    for event in &run.log {
+        *kinds.entry(&event.kind).or_default() += 1;
+    }
+    out.push_str("<h2>Events</h2>\n");
+    if kinds.is_empty() {
+        out.push_str("<p>None.</p>\n");
+        return;
+    }
+    let counts: Vec<String> = kinds.iter().map(|(kind, n)| format!("{n} × {}", escape(kind))).collect();
+    let shown = run.log.len().min(EVENTS);
+    let _ = writeln!(
+        out,
+        "<p>{}.</p>\n<details><summary>The first {shown} of {}</summary>\n<table>",
+        counts.join(", "),
+        run.log.len()
+    );
+    out.push_str("<thead><tr><th>Step</th><th>Time</th><th>Kind</th><th>What happened</th></tr></thead>\n");
+    for e in &run.log[..shown] {
+        let (time, kind, message) = (number(e.time), escape(&e.kind), escape(&e.message));
+        let _ = writeln!(
+            out,
+            "<tr><td class=\"n\">{}</td><td class=\"n\">{time}</td><td>{kind}</td><td>{message}</td></tr>",
+            e.step
+        );
+    }
+    out.push_str("</table></details>\n");
+}
+
+fn work(out: &mut String, run: &Run) {
+    let m = &run.manifest;
+    out.push_str("<h2>Work</h2>\n<table>\n");
+    for (name, count) in &m.counters {
+        let _ =
+            writeln!(out, "<tr><td>{}</td><td class=\"n\">{count}</td><td></td></tr>", escape(&name.replace('_', " ")));
+    }
+    for (phase, seconds) in &m.timings {
+        let (phase, seconds) = (escape(&phase.replace('_', " ")), number(*seconds));
+        let _ = writeln!(out, "<tr><td>{phase}</td><td class=\"n\">{seconds}</td><td>s</td></tr>");
+    }
+    out.push_str("</table>\n");
+}
+
+fn reproduce(out: &mut String, run: &Run) {
+    let source = &run.manifest.source;
+    // A quote inside single quotes of a shell ends them, is escaped, and begins them anew.
+    let sets: String = source.sets.iter().map(|s| [" --set '", &s.replace('\'', r"'\''"), "'"].concat()).collect();
+    let _ = writeln!(
+        out,
+        "<h2>To reproduce</h2>\n<p>Save the case as <code>case.toml</code>, then with Carom {}:</p>\n<pre>carom run case.toml{}</pre>\n\
+         <details><summary>The case file</summary>\n<pre>{}</pre></details>",
+        escape(&run.manifest.version),
+        escape(&sets),
+        escape(&source.text)
+    );
+    out.push_str("<p>Beside this page: ");
+    let mut files = vec!["manifest.json", "history.csv", "contact.csv", "log.jsonl"];
+    if !run.fields.is_empty() {
+        files.push("fields.pvd");
+    }
+    let links: Vec<String> = files.iter().map(|f| format!("<a href=\"{f}\">{f}</a>")).collect();
+    let _ = writeln!(out, "{}.</p>", links.join(", "));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number;
+
+    #[test]
+    fn numbers() {
+        let cases = [
+            (0.0, "0"),
+            (-0.7827, "−0.7827"),
+            (400.0, "400"),
+            (1.0 / 3.0, "0.333333"),
+            (123456.7, "123457"),
+            (1.5e-7, "1.50000e−7"),
+            (2e6, "2.00000e6"),
+        ];
+        for (x, text) in cases {
+            assert_eq!(number(x), text);
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! A made-up run that looks like a half disc striking a block: smooth formulas in place of a simulation, written with the real writer.
+
+#![allow(clippy::unwrap_used)]
+
+use std::f64::consts::PI;
+use std::path::Path;
+
+use carom_record::{
+    Block, Cell, Column, Event, Expectation, FieldSet, Manifest, PointArray, RunWriter, Source, Status,
+};
+
+const N: usize = 7;
+const START: f64 = 0.32;
+const END: f64 = 0.56;
+
+/// T10 cells on a lattice of 3n × 3m intervals, each square cut in two.
+fn lattice(n: usize, m: usize, map: impl Fn(f64, f64) -> [f64; 2]) -> (Vec<[f64; 3]>, Vec<usize>) {
+    let (w, h) = (3 * n, 3 * m);
+    let node = |i: usize, j: usize| j * (w + 1) + i;
+    let at = |k: usize| map((k % (w + 1)) as f64 / w as f64, (k / (w + 1)) as f64 / h as f64);
+    let points = (0..(w + 1) * (h + 1)).map(|k| [at(k)[0], at(k)[1], 0.0]).collect();
+    let local = [[0, 0], [3, 0], [0, 3], [1, 0], [2, 0], [2, 1], [1, 2], [0, 2], [0, 1], [1, 1]];
+    let mut cells = Vec::new();
+    for (i, j) in (0..n * m).map(|c| (3 * (c % n), 3 * (c / n))) {
+        cells.extend(local.map(|[a, b]| node(i + a, j + b)));
+        cells.extend(local.map(|[a, b]| node(i + 3 - a, j + 3 - b)));
+    }
+    (points, cells)
+}
+
+/// How far the strike has come: 0 outside the contact, 1 in its middle.
+fn press(t: f64) -> f64 {
+    if (START..END).contains(&t) { (PI * (t - START) / (END - START)).sin() } else { 0.0 }
+}
+
+/// Vertical position of the disc's centre relative to its start.
+fn fall(t: f64) -> f64 {
+    let (v, g) = (-9.81 * START, 9.81);
+    match t {
+        t if t < START => -0.5 * g * t * t,
+        t if t < END => -0.5 * g * START * START + 0.24 * v * (END - START) * press(t) / PI * 2.4,
+        t => -0.5 * g * START * START + 0.8 * -v * (t - END) - 0.5 * g * (t - END) * (t - END),
+    }
+}
+
+fn fields(t: f64) -> FieldSet {
+    // A square mapped on the half disc, elliptically.
+    let disc = |s: f64, r: f64| {
+        let r = 2.0 * r - 1.0;
+        [0.5 * s * (1.0 - 0.5 * r * r).sqrt(), 1.0 + 0.5 * r * (1.0 - 0.5 * s * s).sqrt()]
+    };
+    let (mut points, disc_cells) = lattice(N, 2 * N, disc);
+    let disc_points = points.len();
+    let (block_points, block_cells) = lattice(8, 4, |s, r| [s, -0.5 + 0.5 * r]);
+    points.extend(block_points);
+    let p = press(t);
+    let (mut u, mut stress) = (Vec::new(), Vec::new());
+    for (k, [x, y, _]) in points.iter().enumerate() {
+        let (dx, dy, s) = if k < disc_points {
+            let h = (y - 0.5) / 0.3;
+            let bulge = 0.16 * p * x * (-h * h).exp() * 2.0;
+            (
+                bulge,
+                fall(t) + 0.17 * p * (-h).exp() * (1.0 - x * x),
+                -38.0 * p * (-(x * x) / 0.05 - h).exp() + 2.5 * p * (6.0 * y).sin(),
+            )
+        } else {
+            let w = (-(x * x) / 0.08).exp();
+            (
+                0.12 * p * x * w * (y + 0.5) * 2.0,
+                -0.2 * p * w * (1.0 + 2.0 * y) + 0.03 * p * (x - 0.4) * (1.0 + 2.0 * y),
+                -33.0 * p * w * (1.0 + 0.6 * y) + 4.0 * p * x,
+            )
+        };
+        u.extend([dx, dy, 0.0]);
+        stress.extend([0.3 * s, s, 0.2 * s, 0.0, 0.0, 0.0]);
+    }
+    let array = |name: &str, unit: &str, components, values| PointArray {
+        name: name.into(),
+        unit: unit.into(),
+        components,
+        values,
+    };
+    let block = |body: &str, connectivity| Block { body: body.into(), cell: Cell::Triangle, degree: 3, connectivity };
+    FieldSet {
+        points,
+        blocks: vec![
+            block("cylinder", disc_cells),
+            block("prism", block_cells.into_iter().map(|k| k + disc_points).collect()),
+        ],
+        arrays: vec![array("displacement", "m", 3, u), array("stress", "N/m^2", 6, stress)],
+    }
+}
+
+const COLUMNS: [(&str, &str); 27] = [
+    ("step", ""),
+    ("time", "s"),
+    ("kinetic", "J"),
+    ("strain", "J"),
+    ("potential", "J"),
+    ("total", "J"),
+    ("external_work", "J"),
+    ("contact_work", "J"),
+    ("dissipation", "J"),
+    ("contact_force_x", "N"),
+    ("contact_force_y", "N"),
+    ("contact_impulse_x", "N·s"),
+    ("contact_impulse_y", "N·s"),
+    ("active", ""),
+    ("newton", ""),
+    ("rejected", ""),
+    ("penetration", "m"),
+    ("cylinder.center_x", "m"),
+    ("cylinder.center_y", "m"),
+    ("cylinder.velocity_x", "m/s"),
+    ("cylinder.velocity_y", "m/s"),
+    ("prism.velocity_x", "m/s"),
+    ("prism.velocity_y", "m/s"),
+    ("A.uy", "m"),
+    ("B.uy", "m"),
+    ("B.sigma_yy", "N/m^2"),
+    ("min_det_f", ""),
+];
+
+/// Writes the run; `title` and `reason` come from a user.
+pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
+    let columns = COLUMNS.map(|(name, unit)| Column {
+        name: name.into(),
+        unit: unit.into(),
+        description: String::new(),
+        integer: matches!(name, "step" | "active" | "newton" | "rejected"),
+    });
+    let case = serde_json::json!({
+        "title": title, "dimension": 2, "probes": [{"name": "A"}, {"name": "B"}],
+        "time": {"step": 1.875e-3, "scheme": {"kind": "chung-hulbert", "rho_inf": 0.1, "forces": "average-forces"}},
+    });
+    let source = Source {
+        text: format!("title = \"{title}\"\n# …\n"),
+        sets: vec!["time.end=0.75".into(), "title='x'".into()],
+    };
+    let mut manifest = Manifest::new("0.1.0", case, source, columns.to_vec(), 1);
+    let mut writer = RunWriter::create(directory, &manifest, b"").unwrap();
+    let (dt, mut impulse) = (1.875e-3, 0.0);
+    let noise = |i: usize| ((i * 7919 % 101) as f64 / 101.0 - 0.5) * 2.0;
+    for i in 0..=400usize {
+        let t = i as f64 * dt;
+        let p = press(t);
+        let force = 17.0 * p * (1.0 + 0.12 * noise(i));
+        impulse += force * dt;
+        let kinetic = 0.5 * 0.098 * 9.0 * (t.min(START) / START).powi(2) * (1.0 - 0.9 * p);
+        let strain = 0.33 * p;
+        let potential = 0.098 * 9.81 * fall(t);
+        let total = kinetic + strain + potential;
+        let velocity = (fall(t + 1e-6) - fall(t - 1e-6)) / 2e-6;
+        let newton = if i == 0 { 0.0 } else { 3.0 + 2.0 * (p * 3.0).floor() };
+        let row = [
+            i as f64,
+            t,
+            kinetic,
+            strain,
+            potential,
+            total,
+            0.0,
+            -0.002 * p,
+            0.03 * t - 0.002 * p,
+            1e-17,
+            force,
+            0.0,
+            impulse,
+            (6.0 * p).ceil(),
+            newton,
+            f64::from(i % 90 == 89),
+            0.0,
+            0.2,
+            1.0 + fall(t),
+            0.0,
+            velocity,
+            0.0,
+            0.01 * p,
+            fall(t) + 0.02 * (40.0 * t).sin() * t,
+            -0.1 * p + 0.01 * (50.0 * t).sin() * f64::from(t > START),
+            -33.0 * p * (1.0 + 0.1 * noise(i)) + 2.0 * (60.0 * t).sin() * f64::from(t > START),
+            0.8,
+        ];
+        writer.history(&row).unwrap();
+        if i % 90 == 89 {
+            writer
+                .log(&Event::new(i as u64, t, "rejected", "Newton's method did not converge in 20 iterations <&>"))
+                .unwrap();
+        }
+        if i % 8 == 0 {
+            writer.fields(i as u64, t, &fields(t)).unwrap();
+        }
+    }
+    manifest.status = if reason.is_some() { Status::Failed } else { Status::Finished };
+    manifest.reason = reason.map(String::from);
+    manifest.counters = [("steps".into(), 400), ("newton".into(), 1532)].into();
+    manifest.timings = [("assembly".into(), 1.234), ("factorisation".into(), 0.87), ("total".into(), 2.7)].into();
+    let expectation = |what: &str, got, pass| Expectation {
+        what: what.into(),
+        expected: "-0.7827 ± 0.004".into(),
+        got,
+        pass,
+        source: Some("two unrelated codes agree".into()),
+    };
+    manifest.expectations = vec![expectation("min A.uy", Some(-0.7811), true), expectation("min <B>.uy", None, false)];
+    writer.finish(&manifest).unwrap();
+}

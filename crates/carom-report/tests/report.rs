@@ -1,0 +1,121 @@
+//! A report is made of a made-up run: whole, self-contained, well-formed, and safe from what a user wrote.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use carom_record::{Block, Cell, Column, FieldSet, Manifest, PointArray, RunWriter, Source};
+use carom_report::report;
+
+/// Elements of an XML text; panics where it is not well-formed.
+fn elements(text: &str) -> usize {
+    let mut reader = quick_xml::Reader::from_str(text);
+    let mut count = 0;
+    loop {
+        match reader.read_event().unwrap() {
+            quick_xml::events::Event::Eof => return count,
+            quick_xml::events::Event::Start(_) | quick_xml::events::Event::Empty(_) => count += 1,
+            _ => {}
+        }
+    }
+}
+
+fn check_page(directory: &Path) -> String {
+    let page = fs::read_to_string(directory.join("report.html")).unwrap();
+    let without_namespace = page.replace("http://www.w3.org/2000/svg", "");
+    for outside in ["http:", "https:", "src=", "url(", "@import", "<script", "<link"] {
+        assert!(!without_namespace.contains(outside), "{outside}");
+    }
+    page
+}
+
+#[test]
+fn figures_and_page() {
+    let scratch = tempfile::tempdir().unwrap();
+    let directory = scratch.path().join("run");
+    common::write(&directory, "</title><script>alert(1)</script> & \"more\"", Some("energy <created>: 3 %"));
+    let summary = report(&directory).unwrap();
+    let names: Vec<_> = summary.figures.iter().map(|f| f.file_stem().unwrap().to_str().unwrap().to_string()).collect();
+    assert_eq!(names, ["bodies", "probes", "force", "energy", "solver"]);
+    assert!(summary.notes.is_empty());
+    for figure in &summary.figures {
+        let text = fs::read_to_string(figure).unwrap();
+        assert!(elements(&text) > 20);
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{figure:?}");
+    }
+    let bodies = fs::read_to_string(&summary.figures[0]).unwrap();
+    for part in ["(B)", "(F)", "t = 0.3150 s", "t = 0.5550 s", ">yy</tspan>", "0.5 m"] {
+        assert!(bodies.contains(part), "{part}");
+    }
+    let page = check_page(&directory);
+    for part in [
+        "&lt;script&gt;",
+        "failed</span> energy &lt;created&gt;: 3 %",
+        "missed",
+        "3.3168",
+        "4 × rejected",
+        r"&#39;\&#39;&#39;x",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    // From the record alone, a second report is the same report.
+    report(&directory).unwrap();
+    assert_eq!(fs::read_to_string(directory.join("report.html")).unwrap(), page);
+}
+
+fn bar(directory: &Path, rows: usize, with_fields: bool) {
+    let columns = ["step", "time", "active", "total"].map(|name| Column {
+        name: name.into(),
+        unit: String::new(),
+        description: String::new(),
+        integer: false,
+    });
+    let manifest = Manifest::new("0.1.0", serde_json::json!({"dimension": 1}), Source::default(), columns.to_vec(), 1);
+    let mut writer = RunWriter::create(directory, &manifest, b"").unwrap();
+    for i in 0..rows {
+        let t = i as f64 * 0.1;
+        writer.history(&[i as f64, t, f64::from((3..6).contains(&i)), if i == 2 { f64::NAN } else { t }]).unwrap();
+        if with_fields {
+            let displacement = (0..4).flat_map(|k| [t * f64::from(k), 0.0, 0.0]).collect();
+            let (name, unit) = ("displacement".into(), "m".into());
+            let fields = FieldSet {
+                points: [0.0, 1.0, 0.3, 0.6].map(|x| [x, 0.0, 0.0]).to_vec(),
+                blocks: vec![Block {
+                    body: "bar".into(),
+                    cell: Cell::Curve,
+                    degree: 3,
+                    connectivity: vec![0, 1, 2, 3],
+                }],
+                arrays: vec![PointArray { name, unit, components: 3, values: displacement }],
+            };
+            writer.fields(i as u64, t, &fields).unwrap();
+        }
+    }
+    writer.finish(&manifest).unwrap();
+}
+
+#[test]
+fn dimension_one_shows_displacement_along_the_bar() {
+    let scratch = tempfile::tempdir().unwrap();
+    let directory = scratch.path().join("run");
+    bar(&directory, 9, true);
+    let summary = report(&directory).unwrap();
+    let text = fs::read_to_string(&summary.figures[0]).unwrap();
+    assert!(text.contains("reference position X (m)") && elements(&text) > 20);
+}
+
+#[test]
+fn little_to_show_is_said_and_no_error() {
+    let scratch = tempfile::tempdir().unwrap();
+    for (rows, expected) in [(0, "no rows yet"), (1, "No field files"), (9, "No field files")] {
+        let directory = scratch.path().join(format!("run-{rows}"));
+        bar(&directory, rows, false);
+        let summary = report(&directory).unwrap();
+        assert!(summary.notes[0].contains(expected), "{:?}", summary.notes);
+        assert!(check_page(&directory).contains(expected));
+    }
+    assert_eq!(report(scratch.path()).unwrap_err().exit_code(), 2);
+}

@@ -1,0 +1,72 @@
+//! The balance of forces, eq. (15): where space, contact and time meet.
+//!
+//! ```text
+//! r(d, λ) =  w.mass M a(d) + w.internal f_int + w.contact Gᵀλ − w.external f_ext
+//!          + b.mass M a_s  + b.internal f_int,s + b.contact f_cont,s − b.external f_ext,s
+//! ```
+//!
+//! with y = y_s + d, a(d) and the weights w (now), b (before) from the stage. The unknown is the increment d: formed from rounded positions, the
+//! acceleration would carry their last digit divided by Δt². A dof without mass has no inertia to average with: its balance holds at s + 1 alone.
+
+use carom_time::{Stage, Weights};
+
+use crate::case::ForceTime;
+use crate::model::Model;
+use crate::state::State;
+
+/// The forces of one evaluation, flat over all dofs.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Forces {
+    /// M a(d).
+    pub inertia: Vec<f64>,
+    /// f_int.
+    pub internal: Vec<f64>,
+    /// Σ w.contact Gᵀλ, weighted per contact.
+    pub contact: Vec<f64>,
+    /// The lower line of the balance: what is known from the step's start.
+    pub known: Vec<f64>,
+}
+
+/// Weight of a contact's force now and before: averaged like eq. (15), or all at the end.
+pub(crate) fn contact_weights(stage: &Stage, force: ForceTime) -> (f64, f64) {
+    match force {
+        ForceTime::AlphaF => (stage.weights.contact, stage.before.contact),
+        ForceTime::End => (1.0, 0.0),
+    }
+}
+
+/// Fills `forces.known` from the state at the step's start.
+pub(crate) fn known_into<const D: usize>(model: &Model<D>, stage: &Stage, state: &State, forces: &mut Forces) {
+    let Weights { mass, internal, external, contact } = stage.before;
+    model.mass.multiply_into(&state.a, &mut forces.known);
+    for i in 0..forces.known.len() {
+        forces.known[i] = if model.massless[i] {
+            0.0
+        } else {
+            mass * forces.known[i] + internal * state.f_internal[i] + contact * state.f_contact[i]
+                - external * model.gravity[i]
+        };
+    }
+}
+
+/// r over all dofs. The sum of the norms of its terms is returned: the scale a residual is small against.
+pub(crate) fn residual_into<const D: usize>(model: &Model<D>, stage: &Stage, forces: &Forces, residual: &mut [f64]) -> f64 {
+    let Weights { mass, internal, external, .. } = stage.weights;
+    let mut squares = [0.0_f64; 5];
+    for i in 0..residual.len() {
+        let terms = [
+            mass * forces.inertia[i],
+            internal * forces.internal[i],
+            forces.contact[i],
+            -external * model.gravity[i],
+            forces.known[i],
+        ];
+        residual[i] = terms.iter().sum();
+        if !model.fixed[i] {
+            for (square, term) in squares.iter_mut().zip(terms) {
+                *square += term * term;
+            }
+        }
+    }
+    squares.iter().map(|s| s.sqrt()).sum()
+}

@@ -1,0 +1,410 @@
+//! One stage solved: Newton on positions and active multipliers with the primal–dual active set inside.
+//!
+//! Converged means, all at once: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus the round-off the system's diagonal stands for); |g| ≤ 1e-12·L on every active pair;
+//! no pair penetrates, pulls, or has slid off its facet. Nothing less is accepted.
+
+use carom_algebra::{LinearError, Vector};
+use carom_contact::{ActiveSet, Contender, Linearised, Pair, PairEvent};
+use carom_time::Stage;
+
+use crate::balance::{Forces, contact_weights, residual_into};
+use crate::case::NewtonSpec;
+use crate::model::Model;
+use crate::rejected::Rejected;
+use crate::state::State;
+use crate::system::{Row, System};
+
+/// Penetration, as a fraction of L, that counts as touching.
+pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
+/// Below this step, relative to L, the next iterate may well be the last: its tangent is not formed before it is needed.
+const NEARLY_THERE: f64 = 1e-3;
+/// Halvings of a Newton step that inverts a cell or makes the residual much worse.
+const HALVINGS: usize = 8;
+/// Rows shorter than this (their gradient is of order one) say nothing about free dofs.
+const SHORT_ROW: f64 = 1e-8;
+
+/// The unknowns of a stage while they are being found.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Trial {
+    /// d = y − y_s.
+    pub increment: Vec<f64>,
+    /// y.
+    pub y: Vec<f64>,
+    /// Pairs of each contact, multipliers included.
+    pub pairs: Vec<Vec<Pair>>,
+    /// Strain energy at the evaluated positions.
+    pub strain: f64,
+}
+
+/// What a solve cost and what happened in it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Effort {
+    /// Newton iterations (linear solves).
+    pub iterations: u32,
+    /// Events of the pairs, with the place of their contact.
+    pub events: Vec<(usize, PairEvent)>,
+}
+
+/// Scratch that is rebuilt at will and never changes a bit of a result.
+pub struct Workspace<const D: usize> {
+    /// Linear system.
+    pub system: System<D>,
+    /// Forces of the last evaluation.
+    pub forces: Forces,
+    /// Accelerations of the last evaluation.
+    pub acceleration: Vec<f64>,
+    /// Linearised gaps of every pair of every contact.
+    pub gaps: Vec<Vec<Linearised<D>>>,
+    /// The stage being solved.
+    pub stage: Stage,
+    residual: Vec<f64>,
+    at: Vec<f64>,
+    correction: Vec<f64>,
+    multipliers: Vec<f64>,
+    saved: Trial,
+}
+
+impl<const D: usize> Workspace<D> {
+    /// Scratch for a model.
+    pub fn new(model: &Model<D>) -> Self {
+        let zeros = vec![0.0; model.dofs()];
+        Self {
+            system: System::new(model),
+            forces: Forces {
+                inertia: zeros.clone(),
+                internal: zeros.clone(),
+                contact: zeros.clone(),
+                known: zeros.clone(),
+            },
+            acceleration: zeros.clone(),
+            gaps: vec![Vec::new(); model.contacts.len()],
+            stage: Stage::default(),
+            residual: zeros.clone(),
+            at: zeros.clone(),
+            correction: zeros,
+            multipliers: Vec::new(),
+            saved: Trial::default(),
+        }
+    }
+}
+
+/// Size of a residual and what it is measured against.
+#[derive(Clone, Copy, Debug, Default)]
+struct Measure {
+    residual: f64,
+    forces: f64,
+    gap: f64,
+}
+
+/// Solves the stage in `work.stage` from the guess in `trial`.
+pub(crate) fn solve_stage<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    settings: &NewtonSpec,
+    trial: &mut Trial,
+    work: &mut Workspace<D>,
+) -> Result<Effort, Rejected> {
+    let mut effort = Effort::default();
+    let mut sets: Vec<ActiveSet> =
+        model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect();
+    detect(model, state, trial, &mut effort)?;
+    let mut measure = evaluate(model, state, trial, work, true)?;
+    let mut has_tangent = true;
+    let mut step = f64::INFINITY;
+    loop {
+        let settled = step <= settings.tolerance * model.scale
+            && measure.residual <= settings.tolerance * measure.forces + round_off(model, work)
+            && measure.gap <= GAP_TOLERANCE * model.scale;
+        let mut changed = change_sets(model, &mut sets, trial, work, settled)?;
+        if settled && !changed {
+            if !detect(model, state, trial, &mut effort)? {
+                return Ok(effort);
+            }
+            sets.iter_mut().for_each(ActiveSet::restart);
+            changed = true;
+        }
+        if effort.iterations as usize >= settings.max_iterations {
+            stuck(model, trial, work)?;
+            return Err(Rejected::NoConvergence {
+                iterations: effort.iterations,
+                step: step / model.scale,
+                residual: measure.residual / measure.forces.max(f64::MIN_POSITIVE),
+            });
+        }
+        if changed || !has_tangent {
+            measure = evaluate(model, state, trial, work, !has_tangent)?;
+        }
+        let rows = independent_rows(model, &trial.pairs, work);
+        linear_step(model, work, &rows)?;
+        step = max_abs(&work.correction);
+        effort.iterations += 1;
+        let may_be_last = step <= NEARLY_THERE * model.scale;
+        measure = advance(model, state, trial, work, &rows, !may_be_last, (!changed).then_some(measure))?;
+        has_tangent = !may_be_last;
+    }
+}
+
+/// Brings the pairs up to date with the trial's positions; whether that asks for another solve.
+fn detect<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    trial: &mut Trial,
+    effort: &mut Effort,
+) -> Result<bool, Rejected> {
+    let (before, now) = (state.y.as_chunks::<D>().0, trial.y.as_chunks::<D>().0);
+    let mut changed = false;
+    for (k, contact) in model.contacts.iter().enumerate() {
+        let mut events = Vec::new();
+        changed |= contact
+            .method
+            .detect(before, now, &mut trial.pairs[k], &mut events)
+            .map_err(|error| Rejected::Contact { contact: contact.name.clone(), error })?;
+        effort.events.extend(events.into_iter().map(|event| (k, event)));
+    }
+    Ok(changed)
+}
+
+/// Forces, gaps and residual at the trial, and the tangent of the bodies if asked for.
+fn evaluate<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    trial: &mut Trial,
+    work: &mut Workspace<D>,
+    tangent: bool,
+) -> Result<Measure, Rejected> {
+    let stage = &work.stage;
+    let share = 1.0 - stage.average;
+    for i in 0..trial.y.len() {
+        trial.y[i] = state.y[i] + trial.increment[i];
+        work.at[i] = state.y[i] + share * trial.increment[i];
+    }
+    let inverted = |(body, inverted)| Rejected::Inverted { body, inverted };
+    trial.strain = if tangent {
+        work.system.internal_tangent(model, &work.at, &mut work.forces.internal).map_err(inverted)?
+    } else {
+        model.internal_force(&work.at, &mut work.forces.internal).map_err(inverted)?
+    };
+    stage.acceleration.value_into(&trial.increment, &mut work.acceleration);
+    model.mass.multiply_into(&work.acceleration, &mut work.forces.inertia);
+
+    let y = trial.y.as_chunks::<D>().0;
+    work.forces.contact.fill(0.0);
+    let mut measure = Measure::default();
+    for (k, contact) in model.contacts.iter().enumerate() {
+        let weight = contact_weights(stage, contact.force).0;
+        work.gaps[k].resize(trial.pairs[k].len(), Linearised::default());
+        for (pair, gap) in trial.pairs[k].iter_mut().zip(&mut work.gaps[k]) {
+            match contact.method.linearise(pair, y, pair.lambda, gap) {
+                Ok(()) => {}
+                Err(error) if pair.active => {
+                    return Err(Rejected::Contact { contact: contact.name.clone(), error });
+                }
+                // An open pair whose closest point is not unique is far away.
+                Err(_) => gap.gap = f64::INFINITY,
+            }
+            if pair.active {
+                measure.gap = measure.gap.max(gap.gap.abs());
+                add_gradient(gap, weight * pair.lambda, &mut work.forces.contact);
+            }
+        }
+    }
+    measure.forces = residual_into(model, stage, &work.forces, &mut work.residual);
+    measure.residual = model.free.iter().map(|&i| work.residual[i] * work.residual[i]).sum::<f64>().sqrt();
+    Ok(measure)
+}
+
+/// force += factor ∇g.
+pub(crate) fn add_gradient<const D: usize>(gap: &Linearised<D>, factor: f64, force: &mut [f64]) {
+    for p in 0..gap.count {
+        for i in 0..D {
+            force[gap.nodes[p] * D + i] += factor * gap.gradient[p][i];
+        }
+    }
+}
+
+/// What the last digits of the positions alone make of the residual.
+fn round_off<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> f64 {
+    let diagonal = work.system.diagonal(mass_factor(&work.stage), stiffness_factor(&work.stage));
+    16.0 * f64::EPSILON * model.scale * diagonal.map(|d| d * d).sum::<f64>().sqrt()
+}
+
+fn mass_factor(stage: &Stage) -> f64 {
+    stage.weights.mass * stage.acceleration.slope
+}
+
+fn stiffness_factor(stage: &Stage) -> f64 {
+    stage.weights.internal * (1.0 - stage.average)
+}
+
+/// Lets each contact's active set change; a released pair loses its multiplier.
+fn change_sets<const D: usize>(
+    model: &Model<D>,
+    sets: &mut [ActiveSet],
+    trial: &mut Trial,
+    work: &Workspace<D>,
+    settled: bool,
+) -> Result<bool, Rejected> {
+    let mut changed = false;
+    for (k, set) in sets.iter_mut().enumerate() {
+        let secondary = model.contacts[k].method.secondary();
+        let stiffness = stiffness_of_touch(model, work);
+        let contenders: Vec<Contender> = trial.pairs[k]
+            .iter()
+            .zip(&work.gaps[k])
+            .map(|(pair, gap)| Contender { active: pair.active, gap: gap.gap, lambda: pair.lambda, stiffness })
+            .collect();
+        let changes = set.changes(&contenders, settled).map_err(|cycle| Rejected::Cycle {
+            contact: model.contacts[k].name.clone(),
+            nodes: cycle.pairs.iter().map(|&p| secondary[trial.pairs[k][p].node]).collect(),
+        })?;
+        for p in changes {
+            let pair = &mut trial.pairs[k][p];
+            pair.active = !pair.active;
+            pair.lambda = 0.0;
+            changed = true;
+        }
+    }
+    Ok(changed)
+}
+
+/// Mean diagonal of the stage's tangent: makes a gap comparable with a multiplier.
+fn stiffness_of_touch<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> f64 {
+    let sum: f64 = work.system.diagonal(mass_factor(&work.stage), stiffness_factor(&work.stage)).sum();
+    sum / model.free.len().max(1) as f64
+}
+
+/// Active pairs whose rows say something new about the free dofs: (contact, pair). Redundant ones would make the system singular.
+pub(crate) fn independent_rows<const D: usize>(
+    model: &Model<D>,
+    pairs: &[Vec<Pair>],
+    work: &Workspace<D>,
+) -> Vec<(usize, usize)> {
+    let mut rows: Vec<(usize, usize)> = Vec::new();
+    // Orthonormal rows kept so far at each secondary node: only rows that share it can repeat each other.
+    let mut kept: Vec<(usize, Vec<(usize, Vector<D>)>)> = Vec::new();
+    for (k, contact) in model.contacts.iter().enumerate() {
+        for (p, pair) in pairs[k].iter().enumerate().filter(|(_, pair)| pair.active) {
+            let gap = &work.gaps[k][p];
+            let mut row: Vec<(usize, Vector<D>)> = (0..gap.count)
+                .map(|q| {
+                    let held = |i: usize| model.fixed[gap.nodes[q] * D + i];
+                    let free = Vector(std::array::from_fn(|i| if held(i) { 0.0 } else { gap.gradient[q][i] }));
+                    (gap.nodes[q], free)
+                })
+                .collect();
+            let node = contact.method.secondary()[pair.node];
+            for (_, other) in kept.iter().filter(|(n, _)| *n == node) {
+                let overlap: f64 = product(&row, other);
+                for (m, v) in other {
+                    match row.iter_mut().find(|(n, _)| n == m) {
+                        Some((_, r)) => *r -= *v * overlap,
+                        None => row.push((*m, *v * -overlap)),
+                    }
+                }
+            }
+            let length = product(&row, &row).sqrt();
+            if length > SHORT_ROW {
+                row.iter_mut().for_each(|(_, v)| *v = *v * length.recip());
+                kept.push((node, row));
+                rows.push((k, p));
+            }
+        }
+    }
+    rows
+}
+
+fn product<const D: usize>(a: &[(usize, Vector<D>)], b: &[(usize, Vector<D>)]) -> f64 {
+    a.iter().map(|(n, v)| b.iter().filter(|(m, _)| m == n).map(|(_, w)| v.dot(w)).sum::<f64>()).sum()
+}
+
+/// Names an active pair that no row holds: supports leave it no way out.
+fn stuck<const D: usize>(model: &Model<D>, trial: &Trial, work: &Workspace<D>) -> Result<(), Rejected> {
+    let rows = independent_rows(model, &trial.pairs, work);
+    for (k, contact) in model.contacts.iter().enumerate() {
+        for (p, pair) in trial.pairs[k].iter().enumerate().filter(|(_, pair)| pair.active) {
+            let depth = -work.gaps[k][p].gap;
+            if !rows.contains(&(k, p)) && depth > GAP_TOLERANCE * model.scale {
+                let node = contact.method.secondary()[pair.node];
+                return Err(Rejected::Stuck { contact: contact.name.clone(), node, depth });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Solves for `work.correction` and `work.multipliers`.
+fn linear_step<const D: usize>(
+    model: &Model<D>,
+    work: &mut Workspace<D>,
+    rows: &[(usize, usize)],
+) -> Result<(), Rejected> {
+    let stage = &work.stage;
+    let weight = |k: usize| contact_weights(stage, model.contacts[k].force).0;
+    let gaps: Vec<Row<D>> =
+        rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k) }).collect();
+    let (mass, stiffness) = (mass_factor(stage), stiffness_factor(stage));
+    let inertia = work.system.factor(model, mass, stiffness, &gaps)?;
+    if inertia.negative < rows.len() {
+        let size = model.free.len() + rows.len();
+        return Err(LinearError::Singular { size, pivot: inertia.negative, value: 0.0 }.into());
+    }
+    let right: Vec<f64> = rows.iter().map(|&(k, p)| -weight(k) * work.gaps[k][p].gap).collect();
+    work.residual.iter_mut().for_each(|r| *r = -*r);
+    work.system.solve(model, &work.residual, &right, &mut work.correction, &mut work.multipliers)?;
+    Ok(())
+}
+
+/// Takes the Newton step, shortened where it inverts a cell or, with an unchanged active set, makes the residual much worse.
+fn advance<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    trial: &mut Trial,
+    work: &mut Workspace<D>,
+    rows: &[(usize, usize)],
+    tangent: bool,
+    before: Option<Measure>,
+) -> Result<Measure, Rejected> {
+    work.saved.increment.clone_from(&trial.increment);
+    work.saved.pairs.clone_from(&trial.pairs);
+    let merit = |m: &Measure| (m.residual / m.forces.max(f64::MIN_POSITIVE)).max(m.gap / model.scale);
+    let mut length = 1.0;
+    let mut outcome = take(model, state, trial, work, rows, length, tangent);
+    for _ in 0..HALVINGS {
+        let worse = match (&outcome, &before) {
+            (Err(_), _) => true,
+            (Ok(now), Some(then)) => merit(now) > 2.0 * merit(then) && merit(now) > 1e-6,
+            (Ok(_), None) => false,
+        };
+        if !worse {
+            return outcome;
+        }
+        length *= 0.5;
+        let shorter = take(model, state, trial, work, rows, length, tangent);
+        // Where shortening does not help, the full step is as good as any: contact forces come and go.
+        outcome = shorter;
+    }
+    if outcome.is_ok() { take(model, state, trial, work, rows, 1.0, tangent).or(outcome) } else { outcome }
+}
+
+fn take<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    trial: &mut Trial,
+    work: &mut Workspace<D>,
+    rows: &[(usize, usize)],
+    length: f64,
+    tangent: bool,
+) -> Result<Measure, Rejected> {
+    for i in 0..trial.increment.len() {
+        trial.increment[i] = work.saved.increment[i] + length * work.correction[i];
+    }
+    trial.pairs.clone_from(&work.saved.pairs);
+    for (&(k, p), multiplier) in rows.iter().zip(&work.multipliers) {
+        trial.pairs[k][p].lambda += length * multiplier;
+    }
+    evaluate(model, state, trial, work, tangent)
+}
+
+fn max_abs(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |m: f64, v| if v.is_finite() { m.max(v.abs()) } else { f64::INFINITY })
+}

@@ -1,0 +1,139 @@
+//! Where contact begins: velocities and accelerations made to agree with the constraints that now hold (persistency, g ġ = 0).
+//!
+//! ```text
+//! M Δv + Gᵀp = 0,   G (v + Δv) = 0            then       M a + Gᵀλ = f_ext − f_int,   G a = −v·∇²g·v
+//! ```
+//!
+//! with all active rows as equalities. Projecting v alone leaves the accelerations of the impact behind and cures nothing (theory.md §5.3).
+//! Dofs without mass keep their velocity: they follow what the massive side does.
+
+use carom_contact::Linearised;
+
+use crate::case::Persistency;
+use crate::ledger::{book_contact_forces, book_kinetic};
+use crate::model::Model;
+use crate::newton::{Workspace, independent_rows};
+use crate::rejected::Rejected;
+use crate::state::State;
+use crate::stepper::averaged_contact_into;
+use crate::system::Row;
+
+/// Projects `state` if one of the new contacts (contact, node) asks for it. The jump of kinetic energy is booked as contact work and returned.
+pub(crate) fn project<const D: usize>(
+    model: &Model<D>,
+    state: &mut State,
+    activations: &[(usize, usize)],
+    work: &mut Workspace<D>,
+) -> Result<f64, Rejected> {
+    let asks = |k: usize| model.contacts[k].persistency == Persistency::Project;
+    if !activations.iter().any(|&(k, _)| asks(k)) {
+        return Ok(0.0);
+    }
+    linearise_all(model, state, work)?;
+    let mut places = independent_rows(model, &state.pairs, work);
+    places.retain(|&(k, _)| asks(k));
+    let rows: Vec<Row<D>> = places.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: 1.0 }).collect();
+    let inertia = work.system.factor_mass(model, &rows)?;
+    if inertia.negative < rows.len() {
+        let size = model.free.len() + rows.len();
+        return Err(carom_algebra::LinearError::Singular { size, pivot: inertia.negative, value: 0.0 }.into());
+    }
+    let dofs = model.dofs();
+    let (mut change, mut multipliers) = (vec![0.0; dofs], Vec::new());
+
+    let closing: Vec<f64> = rows.iter().map(|row| -rate(row.gap, &state.v)).collect();
+    work.system.solve(model, &vec![0.0; dofs], &closing, &mut change, &mut multipliers)?;
+    for i in 0..dofs {
+        state.v[i] += if model.massless[i] { 0.0 } else { change[i] };
+    }
+    for (row, impulse) in rows.iter().zip(&multipliers) {
+        for i in 0..D.min(2) {
+            state.ledger.impulse[i] -= impulse * row.gap.gradient[0][i];
+        }
+    }
+
+    let forces: Vec<f64> = (0..dofs)
+        .map(|i| if model.massless[i] { 0.0 } else { model.gravity[i] - state.f_internal[i] })
+        .collect();
+    let bending: Vec<f64> = rows.iter().map(|row| -curvature(row.gap, &state.v)).collect();
+    work.system.solve(model, &forces, &bending, &mut change, &mut multipliers)?;
+    for i in 0..dofs {
+        state.a[i] = if model.massless[i] { 0.0 } else { change[i] };
+    }
+    for (&(k, p), lambda) in places.iter().zip(&multipliers) {
+        state.pairs[k][p].lambda = *lambda;
+    }
+
+    averaged_contact_into(model, &state.pairs, &work.gaps, &mut state.f_contact);
+    book_contact_forces(model, state);
+    let before = state.ledger.kinetic;
+    book_kinetic(model, state);
+    let jump = state.ledger.kinetic - before;
+    state.ledger.contact_work += jump;
+    Ok(jump)
+}
+
+/// Gaps of all pairs at the state, with second derivatives for λ = 1.
+fn linearise_all<const D: usize>(model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), Rejected> {
+    let y = state.y.as_chunks::<D>().0;
+    for (k, contact) in model.contacts.iter().enumerate() {
+        work.gaps[k].resize(state.pairs[k].len(), Linearised::default());
+        for (pair, gap) in state.pairs[k].iter_mut().zip(&mut work.gaps[k]).filter(|(pair, _)| pair.active) {
+            contact
+                .method
+                .linearise(pair, y, 1.0, gap)
+                .map_err(|error| Rejected::Contact { contact: contact.name.clone(), error })?;
+        }
+    }
+    Ok(())
+}
+
+/// ġ = ∇g·v.
+fn rate<const D: usize>(gap: &Linearised<D>, v: &[f64]) -> f64 {
+    (0..gap.count).map(|p| (0..D).map(|i| gap.gradient[p][i] * v[gap.nodes[p] * D + i]).sum::<f64>()).sum()
+}
+
+/// v·∇²g·v.
+fn curvature<const D: usize>(gap: &Linearised<D>, v: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for p in 0..gap.count {
+        for q in 0..gap.count {
+            for i in 0..D {
+                for j in 0..D {
+                    sum += v[gap.nodes[p] * D + i] * gap.hessian[p][q].0[i][j] * v[gap.nodes[q] * D + j];
+                }
+            }
+        }
+    }
+    sum
+}
+
+/// The state before the first step: M a₀ = f_ext − f_int with no contact force (λ₀ = 0).
+///
+/// # Errors
+/// A cell is inverted in the reference position, or the mass matrix is singular.
+pub fn start<const D: usize>(model: &Model<D>, work: &mut Workspace<D>) -> Result<State, Rejected> {
+    let dofs = model.dofs();
+    let mut state = State {
+        y: model.reference.clone(),
+        v: model.initial_velocity.clone(),
+        a: vec![0.0; dofs],
+        f_internal: vec![0.0; dofs],
+        f_contact: vec![0.0; dofs],
+        contact_forces: vec![[0.0; 2]; model.contacts.len()],
+        pairs: vec![Vec::new(); model.contacts.len()],
+        ..State::default()
+    };
+    state.ledger.strain = model
+        .internal_force(&state.y, &mut state.f_internal)
+        .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+    let forces: Vec<f64> = (0..dofs)
+        .map(|i| if model.massless[i] { 0.0 } else { model.gravity[i] - state.f_internal[i] })
+        .collect();
+    work.system.factor_mass(model, &[])?;
+    work.system.solve(model, &forces, &[], &mut state.a, &mut Vec::new())?;
+    book_kinetic(model, &mut state);
+    state.ledger.potential = model.potential(&state.y);
+    state.ledger.total_at_start = state.ledger.total();
+    Ok(state)
+}

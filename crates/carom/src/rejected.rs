@@ -1,0 +1,78 @@
+//! Why a step was not accepted: with names, for the log and for the person who reads it.
+
+use carom_algebra::LinearError;
+use carom_contact::ContactError;
+use carom_solid::Inverted;
+
+/// A step that was not accepted; it is bisected, or ends the run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Rejected {
+    /// A cell turned inside out.
+    #[error("body \"{body}\": {inverted}")]
+    Inverted {
+        /// Body.
+        body: String,
+        /// Cell and J.
+        inverted: Inverted,
+    },
+    /// A gap has no usable value.
+    #[error("contact \"{contact}\": {error}")]
+    Contact {
+        /// Contact.
+        contact: String,
+        /// What is wrong with the pair.
+        error: ContactError,
+    },
+    /// Newton did not converge.
+    #[error("Newton's method did not converge in {iterations} iterations: last step {step:.2e} L, residual {residual:.2e} of the forces")]
+    NoConvergence {
+        /// Iterations made.
+        iterations: u32,
+        /// ‖Δy‖∞/L.
+        step: f64,
+        /// ‖r‖/Σ‖f‖.
+        residual: f64,
+    },
+    /// The active set keeps returning to one visited before.
+    #[error("contact \"{contact}\": nodes {nodes:?} open and close in turn")]
+    Cycle {
+        /// Contact.
+        contact: String,
+        /// Global numbers of the nodes.
+        nodes: Vec<usize>,
+    },
+    /// The linear system could not be solved.
+    #[error(transparent)]
+    Linear(#[from] LinearError),
+    /// An active pair could not be held: its row says nothing about free dofs.
+    #[error("contact \"{contact}\": node {node} penetrates by {depth:.3e} and supports leave it no way out")]
+    Stuck {
+        /// Contact.
+        contact: String,
+        /// Global number of the secondary node.
+        node: usize,
+        /// Penetration.
+        depth: f64,
+    },
+    /// A number is not finite.
+    #[error("{what} is not finite")]
+    NotFinite {
+        /// Which number.
+        what: &'static str,
+    },
+}
+
+impl Rejected {
+    /// One word for the log.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Inverted { .. } => "inverted-cell",
+            Self::Contact { .. } => "contact-geometry",
+            Self::NoConvergence { .. } => "no-convergence",
+            Self::Cycle { .. } => "active-set-cycle",
+            Self::Linear(_) => "linear-solver",
+            Self::Stuck { .. } => "stuck-contact",
+            Self::NotFinite { .. } => "not-finite",
+        }
+    }
+}

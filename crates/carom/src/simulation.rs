@@ -1,0 +1,226 @@
+//! The loop: steps on the grid of times n·Δt, bisected where one is rejected and brought back to the grid, watched by the energy guard.
+
+use carom_contact::PairEvent;
+
+use crate::case::{Case, Problem};
+use crate::model::{Dimension, Model, Space, build, overlaps};
+use crate::newton::Workspace;
+use crate::persistency::start;
+use crate::rejected::Rejected;
+use crate::state::State;
+use crate::stepper::{Implicit, Stepper};
+
+/// Halvings of Δt before the run stops.
+const MOST_HALVINGS: u32 = 12;
+
+/// Why a simulation stopped before its end; the state of the last grid time is kept.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Stopped {
+    /// No step from here, however small, is accepted.
+    #[error("no step from t = {time} is accepted, not even Δt = {dt:.3e} ({halvings} halvings): {rejected}")]
+    NoStep {
+        /// Time of the last accepted state.
+        time: f64,
+        /// Smallest step tried.
+        dt: f64,
+        /// Halvings of the grid's step.
+        halvings: u32,
+        /// Why that one was not accepted.
+        rejected: Rejected,
+    },
+    /// The scheme created energy.
+    #[error(
+        "energy was created at t = {time}: {created:.4e}, more than {share} of the largest kinetic + strain energy so far ({largest:.4e})"
+    )]
+    EnergyGuard {
+        /// Time.
+        time: f64,
+        /// total − total at start − external work.
+        created: f64,
+        /// Allowed share.
+        share: f64,
+        /// Largest kinetic + strain energy so far.
+        largest: f64,
+    },
+}
+
+/// An event worth a line in the log.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LogEvent {
+    /// A step was rejected and will be bisected.
+    Rejected {
+        /// Time at its start.
+        time: f64,
+        /// Its size.
+        dt: f64,
+        /// Why.
+        rejected: Rejected,
+    },
+    /// A secondary node came into contact, or left it.
+    ActiveSet {
+        /// Time at the end of the (sub)step.
+        time: f64,
+        /// Place of the contact.
+        contact: usize,
+        /// Global node.
+        node: usize,
+        /// Came (true) or left.
+        active: bool,
+    },
+    /// A pair changed its facet or slid off the end.
+    Pair {
+        /// Time at the end of the (sub)step.
+        time: f64,
+        /// Place of the contact.
+        contact: usize,
+        /// What happened.
+        event: PairEvent,
+    },
+    /// Velocities were projected where contact began.
+    Projection {
+        /// Time.
+        time: f64,
+        /// Jump of kinetic energy.
+        jump: f64,
+    },
+}
+
+/// What happened between two grid times.
+#[derive(Clone, Debug, Default)]
+pub struct GridReport {
+    /// Newton iterations of the accepted steps.
+    pub newton: u32,
+    /// Rejected steps.
+    pub rejected: u32,
+    /// Nodes that came into contact.
+    pub activations: u32,
+    /// Nodes that left contact.
+    pub releases: u32,
+    /// Events in order.
+    pub events: Vec<LogEvent>,
+}
+
+/// A case in motion.
+pub struct Simulation<const D: usize> {
+    /// What does not change.
+    pub model: Model<D>,
+    /// The state at the last grid time.
+    pub state: State,
+    /// Grid step Δt.
+    pub dt: f64,
+    /// Grid steps to the end.
+    pub steps: u64,
+    stepper: Box<dyn Stepper<D>>,
+    work: Workspace<D>,
+    guard: Option<f64>,
+}
+
+impl<const D: usize> Simulation<D>
+where
+    Space: Dimension<D>,
+{
+    /// Builds the model of a case and its state at t = 0.
+    ///
+    /// # Errors
+    /// Everything wrong with the case that only its meshes show.
+    pub fn new(case: &Case) -> Result<Self, Vec<Problem>> {
+        let model = build::<D>(case)?;
+        let problems = overlaps(&model);
+        if !problems.is_empty() {
+            return Err(problems);
+        }
+        let mut work = Workspace::new(&model);
+        let state = start(&model, &mut work).map_err(|rejected| {
+            vec![Problem::new("body", "the start has no acceleration", rejected.to_string(), "check masses and supports")]
+        })?;
+        let stepper = Box::new(Implicit::new(case.time.scheme.kernel()?, case.newton.clone()));
+        let steps = (case.time.end / case.time.step).round() as u64;
+        let guard = case.time.energy_guard;
+        Ok(Self { model, state, dt: case.time.step, steps, stepper, work, guard })
+    }
+}
+
+impl<const D: usize> Simulation<D> {
+    /// Goes on from a state of an earlier run of the same case.
+    #[must_use]
+    pub fn resumed(self, state: State) -> Self {
+        Self { state, ..self }
+    }
+
+    /// Whether the end time is reached.
+    pub fn finished(&self) -> bool {
+        self.state.step >= self.steps
+    }
+
+    /// Factorisations of the linear system so far.
+    pub fn factorisations(&self) -> u64 {
+        self.work.system.factorisations
+    }
+
+    /// Advances to the next grid time.
+    ///
+    /// # Errors
+    /// Why it cannot; `state` is then still that of the last grid time. The report tells what was tried.
+    pub fn advance(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
+        let start = self.state.step as f64 * self.dt;
+        let mut state = self.state.clone();
+        // Progress through the grid step in units of Δt/2^level.
+        let (mut level, mut done) = (0_u32, 0_u64);
+        while done < 1 << level {
+            let dt = self.dt / f64::from(1_u32 << level);
+            let time = start + done as f64 * dt;
+            match self.stepper.step(&self.model, &state, dt, &mut self.work) {
+                Ok(accepted) => {
+                    let (next, step) = accepted.into_parts();
+                    state = next;
+                    done += 1;
+                    let now = start + done as f64 * dt;
+                    report.newton += step.newton;
+                    report.activations += step.activations.len() as u32;
+                    report.releases += step.releases.len() as u32;
+                    for (list, active) in [(step.activations, true), (step.releases, false)] {
+                        report.events.extend(
+                            list.into_iter().map(|(contact, node)| LogEvent::ActiveSet { time: now, contact, node, active }),
+                        );
+                    }
+                    let pairs = step.events.into_iter();
+                    report.events.extend(pairs.map(|(contact, event)| LogEvent::Pair { time: now, contact, event }));
+                    if step.projection != 0.0 {
+                        report.events.push(LogEvent::Projection { time: now, jump: step.projection });
+                    }
+                    while level > 0 && done % 2 == 0 {
+                        level -= 1;
+                        done /= 2;
+                    }
+                }
+                Err(rejected) => {
+                    report.rejected += 1;
+                    report.events.push(LogEvent::Rejected { time, dt, rejected: rejected.clone() });
+                    if level == MOST_HALVINGS {
+                        return Err(Stopped::NoStep { time, dt, halvings: level, rejected });
+                    }
+                    level += 1;
+                    done *= 2;
+                }
+            }
+        }
+        state.step += 1;
+        state.time = state.step as f64 * self.dt;
+        self.watch(&state)?;
+        self.state = state;
+        Ok(())
+    }
+
+    /// The energy guard.
+    fn watch(&self, state: &State) -> Result<(), Stopped> {
+        let Some(share) = self.guard else { return Ok(()) };
+        let ledger = &state.ledger;
+        let created = ledger.created();
+        // Round-off of the energies themselves is not creation.
+        let noise = 1e-12 * (ledger.kinetic + ledger.strain.abs() + ledger.potential.abs() + ledger.total_at_start.abs());
+        if created > share * ledger.largest + noise {
+            return Err(Stopped::EnergyGuard { time: state.time, created, share, largest: ledger.largest });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,327 @@
+//! The linear system of one Newton iteration over free dofs and active multipliers,
+//!
+//! ```text
+//! [ K  Gᵀ ] [Δy]   [−r]        K = w.mass a' M + w.internal K_int + Σ w.contact λ ∇²g,   rows of G: w.contact ∇g
+//! [ G  0  ] [Δλ] = [−g]
+//! ```
+//!
+//! Bodies have a pattern of their own, made once, with the slots of every cell; contact entries are merged in when the set of rows changes, and only then is
+//! the system analysed again. The pattern is a function of the rows alone: a resumed run eliminates in the same order.
+
+use carom_algebra::{FaerSolver, Inertia, LinearError, LinearSolver, Pattern};
+use carom_contact::Linearised;
+use carom_solid::Inverted;
+
+use crate::model::{MAX_CELL_DOFS, Model};
+
+/// Slot of an entry that is not stored: upper triangle, or a held dof.
+const SKIP: u32 = u32::MAX;
+
+/// One active contact row: its linearised gap and the weight of its contact force.
+pub(crate) struct Row<'a, const D: usize> {
+    /// Gap, gradient, λ-contracted second derivative.
+    pub gap: &'a Linearised<D>,
+    /// Weight of the contact force in the balance.
+    pub weight: f64,
+}
+
+/// The system and its solver.
+pub(crate) struct System<const D: usize> {
+    base: Pattern,
+    stiffness: Vec<f64>,
+    mass: Vec<f64>,
+    /// Slots of each cell's dof pairs, cell after cell through all bodies.
+    cells: Vec<u32>,
+    merged: Pattern,
+    from_base: Vec<usize>,
+    /// Stencils of the rows the merged pattern was made for.
+    rows: Vec<Vec<usize>>,
+    analysed: bool,
+    solver: FaerSolver,
+    rhs: Vec<f64>,
+    solution: Vec<f64>,
+    /// Factorisations so far.
+    pub factorisations: u64,
+}
+
+impl<const D: usize> System<D> {
+    /// Pattern and slots of the bodies of a model.
+    pub(crate) fn new(model: &Model<D>) -> Self {
+        let n = model.free.len();
+        let mut entries = Vec::new();
+        for_each_cell_pair(model, |a, b| {
+            if a != usize::MAX && b != usize::MAX && a >= b {
+                entries.push((a, b));
+            }
+        });
+        entries.sort_unstable();
+        entries.dedup();
+        let base = Pattern::from_entries(n, entries);
+        let mut cells = Vec::new();
+        for_each_cell_pair(model, |a, b| {
+            let stored = a != usize::MAX && b != usize::MAX && a >= b;
+            cells.push(if stored { base.slot(a, b).map_or(SKIP, |s| s as u32) } else { SKIP });
+        });
+        let mut mass = vec![0.0; base.len()];
+        for node in 0..model.mass.nodes() {
+            for (other, value) in model.mass.row(node) {
+                for i in 0..D {
+                    let (a, b) = (model.unknown[node * D + i], model.unknown[other * D + i]);
+                    if a != usize::MAX && b != usize::MAX && a >= b {
+                        if let Some(slot) = base.slot(a, b) {
+                            mass[slot] += value;
+                        }
+                    }
+                }
+            }
+        }
+        Self {
+            stiffness: vec![0.0; base.len()],
+            mass,
+            cells,
+            merged: Pattern::default(),
+            from_base: Vec::new(),
+            rows: Vec::new(),
+            analysed: false,
+            solver: FaerSolver::default(),
+            rhs: Vec::new(),
+            solution: Vec::new(),
+            factorisations: 0,
+            base,
+        }
+    }
+
+    /// Internal forces over all dofs and the tangent ∂f_int/∂y of the free ones; the strain energy is returned.
+    pub(crate) fn internal_tangent(
+        &mut self,
+        model: &Model<D>,
+        y: &[f64],
+        force: &mut [f64],
+    ) -> Result<f64, (String, Inverted)> {
+        force.fill(0.0);
+        self.stiffness.fill(0.0);
+        let mut slots = self.cells.iter();
+        let mut strain = 0.0;
+        let (mut f, mut k) = ([0.0; MAX_CELL_DOFS], [0.0; MAX_CELL_DOFS * MAX_CELL_DOFS]);
+        for part in &model.parts {
+            let mesh = part.body.mesh();
+            let positions = &y.as_chunks::<D>().0[part.nodes()];
+            let dofs = mesh.element.nodes() * D;
+            for cell in 0..mesh.cell_count() {
+                strain += part
+                    .body
+                    .cell_tangent(cell, positions, &mut f[..dofs], &mut k[..dofs * dofs])
+                    .map_err(|inverted| (part.name.clone(), inverted))?;
+                for (a, &node) in mesh.cell(cell).iter().enumerate() {
+                    for i in 0..D {
+                        force[(part.first_node + node) * D + i] += f[a * D + i];
+                    }
+                }
+                for (value, slot) in k[..dofs * dofs].iter().zip(slots.by_ref()) {
+                    if *slot != SKIP {
+                        self.stiffness[*slot as usize] += value;
+                    }
+                }
+            }
+        }
+        Ok(strain)
+    }
+
+    /// Diagonal of `mass_factor` M + `stiffness_factor` K over the free dofs: the force that stands for one unit of displacement.
+    pub(crate) fn diagonal(&self, mass_factor: f64, stiffness_factor: f64) -> impl Iterator<Item = f64> + '_ {
+        self.base.starts[..self.base.size()]
+            .iter()
+            .map(move |&s| mass_factor * self.mass[s] + stiffness_factor * self.stiffness[s])
+    }
+
+    /// Factors the system of the last tangent with these rows.
+    pub(crate) fn factor(
+        &mut self,
+        model: &Model<D>,
+        mass_factor: f64,
+        stiffness_factor: f64,
+        rows: &[Row<D>],
+    ) -> Result<Inertia, LinearError> {
+        self.analyse(model, rows)?;
+        let values = self.solver.values();
+        values.fill(0.0);
+        for (k, &slot) in self.from_base.iter().enumerate() {
+            values[slot] = mass_factor * self.mass[k] + stiffness_factor * self.stiffness[k];
+        }
+        let n = self.base.size();
+        for (r, row) in rows.iter().enumerate() {
+            let gap = row.gap;
+            for p in 0..gap.count {
+                for i in 0..D {
+                    let a = model.unknown[gap.nodes[p] * D + i];
+                    if a == usize::MAX {
+                        continue;
+                    }
+                    if let Some(slot) = self.merged.slot(n + r, a) {
+                        values[slot] += row.weight * gap.gradient[p][i];
+                    }
+                    for q in 0..gap.count {
+                        for j in 0..D {
+                            let b = model.unknown[gap.nodes[q] * D + j];
+                            if b != usize::MAX
+                                && a >= b
+                                && let Some(slot) = self.merged.slot(a, b)
+                            {
+                                values[slot] += row.weight * gap.hessian[p][q].0[i][j];
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        self.factorisations += 1;
+        self.solver.factor()
+    }
+
+    /// Factors [M Gᵀ; G 0] over the free dofs that have mass; massless ones keep a unit diagonal and stay out of the rows.
+    pub(crate) fn factor_mass(&mut self, model: &Model<D>, rows: &[Row<D>]) -> Result<Inertia, LinearError> {
+        self.analyse(model, rows)?;
+        let values = self.solver.values();
+        values.fill(0.0);
+        for (k, &slot) in self.from_base.iter().enumerate() {
+            values[slot] = self.mass[k];
+        }
+        let n = self.base.size();
+        for (place, &dof) in model.free.iter().enumerate() {
+            if model.massless[dof]
+                && let Some(slot) = self.merged.slot(place, place)
+            {
+                values[slot] = 1.0;
+            }
+        }
+        for (r, row) in rows.iter().enumerate() {
+            for p in 0..row.gap.count {
+                for i in 0..D {
+                    let dof = row.gap.nodes[p] * D + i;
+                    let a = model.unknown[dof];
+                    if a != usize::MAX
+                        && !model.massless[dof]
+                        && let Some(slot) = self.merged.slot(n + r, a)
+                    {
+                        values[slot] += row.gap.gradient[p][i];
+                    }
+                }
+            }
+        }
+        self.factorisations += 1;
+        self.solver.factor()
+    }
+
+    /// Solves with the last factorisation: `forces` over all dofs, `gaps` one per row; answers alike (held dofs get zero).
+    pub(crate) fn solve(
+        &mut self,
+        model: &Model<D>,
+        forces: &[f64],
+        gaps: &[f64],
+        increment: &mut [f64],
+        multipliers: &mut Vec<f64>,
+    ) -> Result<(), LinearError> {
+        let n = self.base.size();
+        self.rhs.clear();
+        self.rhs.extend(model.free.iter().map(|&dof| forces[dof]));
+        self.rhs.extend_from_slice(gaps);
+        self.solution.clear();
+        self.solution.resize(self.rhs.len(), 0.0);
+        self.solver.solve(&self.rhs, &mut self.solution)?;
+        increment.fill(0.0);
+        for (place, &dof) in model.free.iter().enumerate() {
+            increment[dof] = self.solution[place];
+        }
+        multipliers.clear();
+        multipliers.extend_from_slice(&self.solution[n..]);
+        Ok(())
+    }
+
+    /// Merges the rows into the pattern and orders it anew, unless the rows touch the same dofs as last time.
+    fn analyse(&mut self, model: &Model<D>, rows: &[Row<D>]) -> Result<(), LinearError> {
+        let n = self.base.size();
+        let dofs = |row: &Row<D>| -> Vec<usize> {
+            let all = row.gap.nodes[..row.gap.count].iter().flat_map(|&node| (0..D).map(move |i| node * D + i));
+            all.map(|dof| model.unknown[dof]).filter(|&u| u != usize::MAX).collect()
+        };
+        let stencils: Vec<Vec<usize>> = rows.iter().map(dofs).collect();
+        if self.analysed && stencils == self.rows {
+            return Ok(());
+        }
+        let mut entries = Vec::new();
+        for (r, stencil) in stencils.iter().enumerate() {
+            for &a in stencil {
+                entries.push((n + r, a));
+                entries.extend(stencil.iter().filter(|&&b| a >= b).map(|&b| (a, b)));
+            }
+        }
+        let contact = Pattern::from_entries(n + rows.len(), entries);
+        self.merge(&contact);
+        // A multiplier is eliminated right after the dofs of a node its row really depends on.
+        let mut groups: Vec<usize> = model.free.iter().map(|dof| dof / D).collect();
+        for row in rows {
+            groups.push(self.anchor(model, row));
+        }
+        let mut names = groups.clone();
+        names.sort_unstable();
+        names.dedup();
+        for g in &mut groups {
+            *g = names.binary_search(g).unwrap_or(0);
+        }
+        self.solver.analyse(&self.merged, &groups)?;
+        self.rows = stencils;
+        self.analysed = true;
+        Ok(())
+    }
+
+    /// The node whose dofs a row leans on: the secondary one unless supports hold it along the normal.
+    #[allow(clippy::unused_self)]
+    fn anchor(&self, model: &Model<D>, row: &Row<D>) -> usize {
+        let freedom = |p: usize| -> f64 {
+            (0..D)
+                .filter(|i| model.unknown[row.gap.nodes[p] * D + i] != usize::MAX)
+                .map(|i| row.gap.gradient[p][i].powi(2))
+                .sum()
+        };
+        let best = (1..row.gap.count).fold(0, |best, p| if freedom(p) > 10.0 * freedom(best) { p } else { best });
+        row.gap.nodes[best]
+    }
+
+    fn merge(&mut self, contact: &Pattern) {
+        let size = contact.size();
+        self.merged = Pattern { starts: vec![0], rows: Vec::with_capacity(self.base.len() + contact.len()) };
+        self.from_base.clear();
+        for j in 0..size {
+            let base: &[usize] = if j < self.base.size() { self.base.column(j) } else { &[] };
+            let mut extra = contact.column(j).iter().peekable();
+            for &row in base {
+                while let Some(&r) = extra.next_if(|&&r| r < row) {
+                    self.merged.rows.push(r);
+                }
+                extra.next_if_eq(&&row);
+                self.from_base.push(self.merged.rows.len());
+                self.merged.rows.push(row);
+            }
+            self.merged.rows.extend(extra);
+            self.merged.starts.push(self.merged.rows.len());
+        }
+    }
+}
+
+/// Calls `visit(a, b)` with the unknowns of every two dofs of every cell, in the order of the cells' tangents.
+fn for_each_cell_pair<const D: usize>(model: &Model<D>, mut visit: impl FnMut(usize, usize)) {
+    let mut unknowns = Vec::new();
+    for part in &model.parts {
+        let mesh = part.body.mesh();
+        for cell in 0..mesh.cell_count() {
+            unknowns.clear();
+            let dofs = mesh.cell(cell).iter().flat_map(|node| (0..D).map(move |i| (part.first_node + node) * D + i));
+            unknowns.extend(dofs.map(|dof| model.unknown[dof]));
+            for &a in &unknowns {
+                for &b in &unknowns {
+                    visit(a, b);
+                }
+            }
+        }
+    }
+}
