@@ -4,6 +4,8 @@ mod contact;
 mod memory;
 mod time;
 
+use carom_record::metrics;
+
 use super::columns;
 use super::document::Document;
 use super::keys;
@@ -233,7 +235,13 @@ impl<'a> Check<'a> {
                         continue;
                     }
                 },
-                [metric] if !metric.contains('.') => continue,
+                [metric] if metrics::DEFINITIONS.iter().any(|(name, _)| name == metric) => continue,
+                [word] => {
+                    let names = metrics::DEFINITIONS.iter().map(|(name, _)| *name);
+                    let why = format!("it is {forms}");
+                    self.add(path, format!("there is no metric `{word}`"), why, suggest::help(word, names));
+                    continue;
+                }
                 _ => {
                     let what = format!("{:?} is not a quantity to expect", expect.what);
                     self.add(path, what, format!("it is {forms}"), "write for example \"min A.uy\"");
