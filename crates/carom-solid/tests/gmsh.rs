@@ -1,5 +1,7 @@
 //! Meshes of Gmsh (made by `scripts/make_gmsh_fixtures.py`): every version, encoding and order gives the same bodies.
 
+#![allow(clippy::unwrap_used)]
+
 use std::f64::consts::PI;
 use std::path::PathBuf;
 
@@ -160,5 +162,58 @@ fn bars() {
         let at = |side: &str| bar.nodes[bar.sides[side][0].nodes[0]][0];
         assert_eq!((at("left"), at("right")), (0.0, 2.0));
         assert!(bar.repairs.is_empty());
+    }
+}
+
+/// Two triangles on the unit square in a binary file of either byte order, written here by the format's description.
+fn square(version: f64, big_endian: bool) -> Vec<u8> {
+    let int = |n: i32| if big_endian { n.to_be_bytes() } else { n.to_le_bytes() }.to_vec();
+    let size = |n: i64| if big_endian { n.to_be_bytes() } else { n.to_le_bytes() }.to_vec();
+    let double = |x: f64| if big_endian { x.to_be_bytes() } else { x.to_le_bytes() }.to_vec();
+    let ints = |all: &[i32]| all.iter().flat_map(|n| int(*n)).collect::<Vec<_>>();
+    let sizes = |all: &[i64]| all.iter().flat_map(|n| size(*n)).collect::<Vec<_>>();
+    let doubles = |all: &[f64]| all.iter().flat_map(|x| double(*x)).collect::<Vec<_>>();
+    let nodes = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let box_of = [0.0, 0.0, 0.0, 1.0, 1.0, 0.0];
+    let names = b"\n$EndMeshFormat\n$PhysicalNames\n2\n1 7 \"low\"\n2 8 \"plate\"\n$EndPhysicalNames\n".to_vec();
+    let start = [format!("$MeshFormat\n{version} 1 8\n").into_bytes(), int(1), names].concat();
+    let nodes = if version == 4.1 {
+        [
+            b"$Entities\n".to_vec(),
+            sizes(&[0, 1, 1, 0]),
+            [int(1), doubles(&box_of), size(1), int(7), size(2), ints(&[1, -2])].concat(),
+            [int(5), doubles(&box_of), size(1), int(-8), size(0)].concat(),
+            b"\n$EndEntities\n$Nodes\n".to_vec(),
+            sizes(&[1, 4, 1, 4]),
+            [ints(&[2, 5, 0]), sizes(&[4, 1, 2, 3, 4]), doubles(nodes.as_flattened())].concat(),
+            b"\n$EndNodes\n$Elements\n".to_vec(),
+            sizes(&[2, 3, 1, 3]),
+            [ints(&[1, 1, 1]), sizes(&[1, 1, 2, 1])].concat(),
+            [ints(&[2, 5, 2]), sizes(&[2, 2, 1, 2, 3, 3, 1, 3, 4])].concat(),
+        ]
+        .concat()
+    } else {
+        let rows: Vec<u8> = (1..).zip(&nodes).flat_map(|(n, x)| [int(n), doubles(x)].concat()).collect();
+        [
+            [b"$Nodes\n4\n".to_vec(), rows, b"\n$EndNodes\n$Elements\n3\n".to_vec()].concat(),
+            ints(&[1, 1, 2, 1, 7, 1, 2, 1]),
+            ints(&[2, 2, 2, 2, 8, 1, 1, 2, 3, 3, 8, 1, 1, 3, 4]),
+        ]
+        .concat()
+    };
+    [start, nodes, b"\n$EndElements\n".to_vec()].concat()
+}
+
+#[test]
+fn byte_orders() {
+    for version in [2.2, 4.1] {
+        for big_endian in [false, true] {
+            let mesh = gmsh::read(&square(version, big_endian)).unwrap().body("plate").unwrap();
+            assert_eq!(mesh.nodes, [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+            assert_eq!(
+                (mesh.cells.as_slice(), mesh.sides["low"][0].nodes.as_slice()),
+                (&[0, 1, 2, 0, 2, 3][..], &[0, 1][..])
+            );
+        }
     }
 }

@@ -23,7 +23,9 @@ impl MshFile {
         }
         let mut cells_at = vec![Vec::new(); part.used.len()];
         for (cell, nodes) in part.cells.chunks_exact(part.element.nodes()).enumerate() {
-            nodes.iter().for_each(|&n| cells_at[n].push(cell));
+            for &n in nodes {
+                cells_at[n].push(cell);
+            }
         }
         if let Some(n) = cells_at.iter().position(|cells| cells.len() > 2) {
             let node = part.node(n);

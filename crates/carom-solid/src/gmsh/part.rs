@@ -47,10 +47,16 @@ impl<'a, const D: usize> Part<'a, D> {
 
         // Numbered in the order of the file, so that what is written is read back the same.
         let mut number = vec![usize::MAX; file.nodes.len()];
-        cells.iter().for_each(|&n| number[n] = 0);
+        for &n in &cells {
+            number[n] = 0;
+        }
         let used: Vec<usize> = (0..number.len()).filter(|&n| number[n] == 0).collect();
-        used.iter().enumerate().for_each(|(i, &n)| number[n] = i);
-        cells.iter_mut().for_each(|n| *n = number[*n]);
+        for (i, &n) in used.iter().enumerate() {
+            number[n] = i;
+        }
+        for n in &mut cells {
+            *n = number[*n];
+        }
 
         let mut part = Self { file, name, element, used, positions: Vec::new(), rows, cells, repairs: Vec::new() };
         part.flatten()?;

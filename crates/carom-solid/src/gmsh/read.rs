@@ -39,9 +39,8 @@ pub fn read(bytes: &[u8]) -> Result<MshFile, MshError> {
     end(&mut source, "$EndMeshFormat", "$MeshFormat")?;
     let mut sections = Sections::default();
     while let Some((place, name)) = source.next_line()? {
-        let twice = |there: bool, name| match there {
-            true => Err(MshError { place, fault: Fault::SectionTwice(name) }),
-            false => Ok(()),
+        let twice = |there: bool, name| {
+            if there { Err(MshError { place, fault: Fault::SectionTwice(name) }) } else { Ok(()) }
         };
         match (name, version) {
             ("$PhysicalNames", _) => {
@@ -67,14 +66,12 @@ pub fn read(bytes: &[u8]) -> Result<MshFile, MshError> {
                 sections.blocks = Some(read(&mut source)?);
                 end(&mut source, "$EndElements", "$Elements")?;
             }
-            (name, _) => match name.strip_prefix('$').filter(|n| !n.starts_with("End")) {
-                Some(other) => source.skip_past(&format!("$End{other}"), "a section that is not read")?,
-                None => {
-                    let fault =
-                        Fault::Unexpected { wanted: "a section $…".into(), found: name.chars().take(40).collect() };
-                    return Err(MshError { place, fault });
-                }
-            },
+            (name, _) => {
+                let Some(other) = name.strip_prefix('$').filter(|n| !n.starts_with("End")) else {
+                    return Err(unexpected(place, "a section $…", name));
+                };
+                source.skip_past(&format!("$End{other}"), "a section that is not read")?;
+            }
         }
     }
     resolved(sections, source.encoding == Encoding::Text)
@@ -85,14 +82,11 @@ fn header(source: &mut Source) -> Result<u8, MshError> {
     let wrong = |fault| Err(MshError { place, fault });
     let words: Vec<_> = line.split_ascii_whitespace().collect();
     let [version, binary, size] = words[..] else {
-        return wrong(Fault::Unexpected {
-            wanted: "version, file type and size".into(),
-            found: line.chars().take(40).collect(),
-        });
+        return Err(unexpected(place, "version, file type and size", line));
     };
     let number = match version.parse::<f64>() {
-        Ok(v) if v == 4.1 => 4,
-        Ok(v) if v == 2.2 => 2,
+        Ok(4.1) => 4,
+        Ok(2.2) => 2,
         _ => return wrong(Fault::Version(version.to_owned())),
     };
     match (binary, size) {
@@ -119,8 +113,12 @@ fn end(source: &mut Source, wanted: &str, section: &'static str) -> Result<(), M
     if source.left() == 0 && wanted.starts_with(found) {
         return Err(source.error(Fault::Truncated(section)));
     }
+    Err(unexpected(place, wanted, found))
+}
+
+fn unexpected(place: Place, wanted: &str, found: &str) -> MshError {
     let fault = Fault::Unexpected { wanted: wanted.to_owned(), found: found.chars().take(40).collect() };
-    Err(MshError { place, fault })
+    MshError { place, fault }
 }
 
 /// Text in both encodings: `dimension tag "name"`.
@@ -136,11 +134,7 @@ fn physical_names(source: &mut Source) -> Result<Vec<Group>, MshError> {
             let numbers = (number(), number());
             let name = parts.next().and_then(|n| n.trim().strip_prefix('"')?.strip_suffix('"'));
             let ((Some(dimension), Some(tag)), Some(name)) = (numbers, name) else {
-                let fault = Fault::Unexpected {
-                    wanted: "dimension, number and \"name\"".into(),
-                    found: line.chars().take(40).collect(),
-                };
-                return Err(MshError { place, fault });
+                return Err(unexpected(place, "dimension, number and \"name\"", line));
             };
             groups.push(Group { dimension, tag, name: name.to_owned() });
         }

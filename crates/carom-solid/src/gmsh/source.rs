@@ -40,7 +40,7 @@ impl<'a> Source<'a> {
     }
 
     fn advance(&mut self, to: usize) {
-        self.line += self.bytes[self.at..to].iter().filter(|b| **b == b'\n').count();
+        self.line += self.bytes[self.at..to].split(|b| *b == b'\n').count() - 1;
         self.at = to;
     }
 

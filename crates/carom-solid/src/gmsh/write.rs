@@ -76,9 +76,9 @@ pub fn write_msh41(bodies: &[(&str, &Mesh<2>)]) -> String {
     let mut cell = |out: &mut String, nodes: &[usize], first: usize| {
         tag += 1;
         let _ = write!(out, "{tag}");
-        nodes.iter().for_each(|n| {
+        for n in nodes {
             let _ = write!(out, " {}", first + n);
-        });
+        }
         out.push('\n');
     };
     for (s, (body, _, facets)) in sides.iter().enumerate() {
