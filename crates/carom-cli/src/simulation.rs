@@ -123,6 +123,7 @@ pub(crate) fn resume(
 }
 
 /// Builds the model of a case, so that what only the model knows is checked too.
+#[allow(clippy::unnecessary_wraps)]
 pub(crate) fn facts(_case: &Case, _document: &Document) -> Result<Option<Facts>, Failure> {
     Ok(None)
 }

@@ -50,7 +50,12 @@ pub(crate) fn known_into<const D: usize>(model: &Model<D>, stage: &Stage, state:
 }
 
 /// r over all dofs. The sum of the norms of its terms is returned: the scale a residual is small against.
-pub(crate) fn residual_into<const D: usize>(model: &Model<D>, stage: &Stage, forces: &Forces, residual: &mut [f64]) -> f64 {
+pub(crate) fn residual_into<const D: usize>(
+    model: &Model<D>,
+    stage: &Stage,
+    forces: &Forces,
+    residual: &mut [f64],
+) -> f64 {
     let Weights { mass, internal, external, .. } = stage.weights;
     let mut squares = [0.0_f64; 5];
     for i in 0..residual.len() {

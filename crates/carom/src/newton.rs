@@ -340,8 +340,7 @@ fn linear_step<const D: usize>(
 ) -> Result<(), Rejected> {
     let stage = &work.stage;
     let weight = |k: usize| contact_weights(stage, model.contacts[k].force).0;
-    let gaps: Vec<Row<D>> =
-        rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k) }).collect();
+    let gaps: Vec<Row<D>> = rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k) }).collect();
     let (mass, stiffness) = (mass_factor(stage), stiffness_factor(stage));
     let inertia = work.system.factor(model, mass, stiffness, &gaps)?;
     if inertia.negative < rows.len() {

@@ -52,9 +52,8 @@ pub(crate) fn project<const D: usize>(
         }
     }
 
-    let forces: Vec<f64> = (0..dofs)
-        .map(|i| if model.massless[i] { 0.0 } else { model.gravity[i] - state.f_internal[i] })
-        .collect();
+    let forces: Vec<f64> =
+        (0..dofs).map(|i| if model.massless[i] { 0.0 } else { model.gravity[i] - state.f_internal[i] }).collect();
     let bending: Vec<f64> = rows.iter().map(|row| -curvature(row.gap, &state.v)).collect();
     work.system.solve(model, &forces, &bending, &mut change, &mut multipliers)?;
     for i in 0..dofs {
@@ -127,9 +126,8 @@ pub fn start<const D: usize>(model: &Model<D>, work: &mut Workspace<D>) -> Resul
     state.ledger.strain = model
         .internal_force(&state.y, &mut state.f_internal)
         .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
-    let forces: Vec<f64> = (0..dofs)
-        .map(|i| if model.massless[i] { 0.0 } else { model.gravity[i] - state.f_internal[i] })
-        .collect();
+    let forces: Vec<f64> =
+        (0..dofs).map(|i| if model.massless[i] { 0.0 } else { model.gravity[i] - state.f_internal[i] }).collect();
     work.system.factor_mass(model, &[])?;
     work.system.solve(model, &forces, &[], &mut state.a, &mut Vec::new())?;
     book_kinetic(model, &mut state);

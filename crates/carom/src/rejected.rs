@@ -24,7 +24,9 @@ pub enum Rejected {
         error: ContactError,
     },
     /// Newton did not converge.
-    #[error("Newton's method did not converge in {iterations} iterations: last step {step:.2e} L, residual {residual:.2e} of the forces")]
+    #[error(
+        "Newton's method did not converge in {iterations} iterations: last step {step:.2e} L, residual {residual:.2e} of the forces"
+    )]
     NoConvergence {
         /// Iterations made.
         iterations: u32,

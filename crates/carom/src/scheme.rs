@@ -22,7 +22,12 @@ impl SchemeSpec {
             Ok(scheme) => Ok(Box::new(scheme)),
             Err(error) => {
                 let path = format!("time.scheme.{}", error.key());
-                Err(vec![Problem::new(path, "the scheme cannot be used", error.to_string(), "carom explain lists schemes")])
+                Err(vec![Problem::new(
+                    path,
+                    "the scheme cannot be used",
+                    error.to_string(),
+                    "carom explain lists schemes",
+                )])
             }
         }
     }

@@ -131,7 +131,12 @@ where
         }
         let mut work = Workspace::new(&model);
         let state = start(&model, &mut work).map_err(|rejected| {
-            vec![Problem::new("body", "the start has no acceleration", rejected.to_string(), "check masses and supports")]
+            vec![Problem::new(
+                "body",
+                "the start has no acceleration",
+                rejected.to_string(),
+                "check masses and supports",
+            )]
         })?;
         let stepper = Box::new(Implicit::new(case.time.scheme.kernel()?, case.newton.clone()));
         let steps = (case.time.end / case.time.step).round() as u64;
@@ -179,9 +184,12 @@ impl<const D: usize> Simulation<D> {
                     report.activations += step.activations.len() as u32;
                     report.releases += step.releases.len() as u32;
                     for (list, active) in [(step.activations, true), (step.releases, false)] {
-                        report.events.extend(
-                            list.into_iter().map(|(contact, node)| LogEvent::ActiveSet { time: now, contact, node, active }),
-                        );
+                        report.events.extend(list.into_iter().map(|(contact, node)| LogEvent::ActiveSet {
+                            time: now,
+                            contact,
+                            node,
+                            active,
+                        }));
                     }
                     let pairs = step.events.into_iter();
                     report.events.extend(pairs.map(|(contact, event)| LogEvent::Pair { time: now, contact, event }));
@@ -217,7 +225,8 @@ impl<const D: usize> Simulation<D> {
         let ledger = &state.ledger;
         let created = ledger.created();
         // Round-off of the energies themselves is not creation.
-        let noise = 1e-12 * (ledger.kinetic + ledger.strain.abs() + ledger.potential.abs() + ledger.total_at_start.abs());
+        let noise =
+            1e-12 * (ledger.kinetic + ledger.strain.abs() + ledger.potential.abs() + ledger.total_at_start.abs());
         if created > share * ledger.largest + noise {
             return Err(Stopped::EnergyGuard { time: state.time, created, share, largest: ledger.largest });
         }

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use carom::case::{Case, PrimarySpec};
+use carom::case::{BodySpec, Case, PrimarySpec, SchemeSpec};
 
 use crate::exit::{Exit, Failure};
-use crate::simulation::{self, Facts};
+use crate::out;
+use crate::simulation::{self, BodyFacts, Facts};
 use crate::summary::short;
-use crate::{out, summary};
 
 /// Read and resolve a case, say what is wrong and where; run nothing
 #[derive(clap::Args)]
@@ -37,22 +37,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 fn table(case: &Case, facts: Option<&Facts>) -> String {
     let mut lines = vec![format!("{} (dimension {})", case.title, case.dimension)];
     for body in &case.bodies {
-        let size = match facts.and_then(|f| f.bodies.iter().find(|b| b.name == body.name)) {
-            Some(b) => {
-                let sides: Vec<_> = b.sides.iter().map(|(side, n)| format!("{side} {n}")).collect();
-                format!(
-                    "{} nodes, {} cells, {} free dofs; nodes of sides: {}",
-                    b.nodes,
-                    b.cells,
-                    b.dofs,
-                    sides.join(", ")
-                )
-            }
-            None => {
-                let (cells, nodes) = body.mesh.estimate(body.element);
-                format!("about {nodes} nodes, {cells} cells; sides: {}", body.mesh.sides().join(", "))
-            }
-        };
+        let built = facts.and_then(|f| f.bodies.iter().find(|b| b.name == body.name));
+        let size = built.map_or_else(|| estimated(body), counted);
         lines.push(format!("  body     {:12} {:?} of {}: {size}", body.name, body.element, body.material));
     }
     for support in &case.supports {
@@ -74,13 +60,32 @@ fn table(case: &Case, facts: Option<&Facts>) -> String {
         lines.push(format!("  probe    {:12} at {:?} of {}", probe.name, probe.at, probe.body));
     }
     let scheme = &case.time.scheme;
-    let parameters: String = scheme.parameters.iter().map(|(key, value)| format!(", {key} = {value}")).collect();
-    lines.push(format!("  scheme   {}{parameters}", scheme.kind));
+    let parameters = scheme.parameters.iter().map(|(key, value)| format!("{key} = {value}"));
+    let told: Vec<_> = std::iter::once(scheme.kind.clone()).chain(parameters).chain(derived(scheme)).collect();
+    lines.push(format!("  scheme   {}", told.join(", ")));
     let steps = case.time.steps();
-    lines.push(format!("  time     {steps} steps of {} to {}", summary::short(case.time.step), short(case.time.end)));
+    lines.push(format!("  time     {steps} steps of {} to {}", short(case.time.step), short(case.time.end)));
     if let Some(facts) = facts {
         let transit = short(facts.transit_steps);
         lines.push(format!("           a pressure wave crosses the smallest body in {transit} steps"));
     }
     lines.join("\n")
+}
+
+fn counted(body: &BodyFacts) -> String {
+    let sides: Vec<_> = body.sides.iter().map(|(side, n)| format!("{side} {n}")).collect();
+    let BodyFacts { nodes, cells, dofs, .. } = body;
+    format!("{nodes} nodes, {cells} cells, {dofs} free dofs; nodes of sides: {}", sides.join(", "))
+}
+
+fn estimated(body: &BodySpec) -> String {
+    let (cells, nodes) = body.mesh.estimate(body.element);
+    format!("about {nodes} nodes, {cells} cells; sides: {}", body.mesh.sides().join(", "))
+}
+
+/// What the scheme's parameters imply.
+fn derived(spec: &SchemeSpec) -> Option<String> {
+    let scheme = carom_time::scheme(&spec.kind, &spec.parameters, spec.forces).ok()?;
+    let told = carom_time::explain(&scheme);
+    Some(format!("order {}, ρ∞ = {}", told.order, short(told.rho_inf)))
 }

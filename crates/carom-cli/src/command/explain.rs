@@ -39,9 +39,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 
 fn tell<T: Display + Serialize>(told: &T, json: bool) -> Result<Exit, Failure> {
     if json {
-        out::event(told)?
+        out::event(told)?;
     } else {
-        out::line(&told.to_string())?
+        out::line(&told.to_string())?;
     }
     Ok(Exit::Done)
 }

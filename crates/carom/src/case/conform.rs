@@ -83,10 +83,11 @@ impl Check {
 
     fn value(&mut self, node: &Node, key: &Key, path: &str) {
         match (&key.kind, &node.value) {
-            (Kind::Text, Value::Text(_)) => {}
+            (Kind::Text | Kind::Side | Kind::SideOr(_), Value::Text(_))
+            | (Kind::NumberOrFalse(_), Value::Flag(false)) => {}
             (Kind::Name, Value::Text(name)) => self.name(name, key, path),
             (Kind::Choice(now, later), Value::Text(word)) => {
-                self.choice(word, key.name, now, later, &meaning(key), path)
+                self.choice(word, key.name, now, later, &meaning(key), path);
             }
             (Kind::Choices(words), Value::List(list)) if !list.is_empty() => {
                 for (i, node) in list.iter().enumerate() {
@@ -97,12 +98,12 @@ impl Check {
                     }
                 }
             }
-            (Kind::Number(range), Value::Integer(_) | Value::Float(_)) => self.number(node, range, key, path),
-            (Kind::NumberOrFalse(range), Value::Integer(_) | Value::Float(_)) => self.number(node, range, key, path),
-            (Kind::NumberOrFalse(_), Value::Flag(false)) => {}
+            (Kind::Number(range) | Kind::NumberOrFalse(range), Value::Integer(_) | Value::Float(_)) => {
+                self.number(node, range, key, path);
+            }
             (Kind::Count(least), Value::Integer(n)) => self.count(*n, *least, node, key, path),
             (Kind::Counts(least), Value::Integer(n)) if self.dimension == Some(1) => {
-                self.count(*n, *least, node, key, path)
+                self.count(*n, *least, node, key, path);
             }
             (Kind::Counts(least), Value::List(list)) if list.len() == 2 => {
                 for (i, node) in list.iter().enumerate() {
@@ -114,10 +115,9 @@ impl Check {
                 }
             }
             (Kind::Vector, Value::List(list)) if self.dimension.is_none_or(|d| d == list.len()) => {
-                self.numbers(list, key, path)
+                self.numbers(list, key, path);
             }
             (Kind::Numbers, Value::List(list)) => self.numbers(list, key, path),
-            (Kind::Side | Kind::SideOr(_), Value::Text(_)) => {}
             (Kind::Sides, Value::List(list)) if !list.is_empty() => {
                 for (i, node) in list.iter().enumerate().filter(|(_, n)| n.text().is_none()) {
                     self.wrong(node, key, &format!("{path}[{i}]"));

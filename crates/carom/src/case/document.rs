@@ -61,7 +61,7 @@ impl Document {
         for set in sets {
             document.sources.push(("--set".to_owned(), set.clone()));
             let source = document.sources.len() - 1;
-            overrides::apply(&mut document.root, set, source).map_err(wrong)?;
+            overrides::apply(&mut document.root, set, source).map_err(|d| wrong(*d))?;
         }
         Ok(document)
     }

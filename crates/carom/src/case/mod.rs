@@ -5,6 +5,7 @@ mod columns;
 mod conform;
 mod document;
 pub mod keys;
+mod mesh;
 mod overrides;
 mod problem;
 mod read;

@@ -7,9 +7,9 @@ use super::suggest;
 use super::tree::{self, Node, Origin, Value};
 
 /// Applies the override `set`, the document's source number `source`.
-pub(super) fn apply(root: &mut Node, set: &str, source: usize) -> Result<(), Diagnostic> {
+pub(super) fn apply(root: &mut Node, set: &str, source: usize) -> Result<(), Box<Diagnostic>> {
     let wrong = |span: std::ops::Range<usize>, what: String, why: String, help: String| {
-        Diagnostic::at("--set", set, span, [what, why, help])
+        Box::new(Diagnostic::at("--set", set, span, [what, why, help]))
     };
     let example = "for example --set time.step=1e-3 or --set body.cylinder.element=T6";
     let Some((key, value)) = set.split_once('=') else {
@@ -54,20 +54,20 @@ pub(super) fn apply(root: &mut Node, set: &str, source: usize) -> Result<(), Dia
 }
 
 /// The value of an override, its spans counted from the start of `set`.
-fn value_of(value: &str, start: usize, set: &str, source: usize) -> Result<Node, Diagnostic> {
+fn value_of(value: &str, start: usize, set: &str, source: usize) -> Result<Node, Box<Diagnostic>> {
     let span = start..set.len();
     let line = format!("v={value}\n");
     let shift = 2 - start as isize;
     match toml_edit::Document::parse(line.as_str()) {
         Ok(parsed) => match parsed.get("v") {
             Some(item) if parsed.len() == 1 => Ok(tree::node(item, source, shift, &span)),
-            _ => Err(Diagnostic::at("--set", set, span, several())),
+            _ => Err(Box::new(Diagnostic::at("--set", set, span, several()))),
         },
         Err(error) if value.trim_start().starts_with(['{', '[', '"', '\'']) => {
             let mut found = syntax("--set", &line, 0, &error);
-            found.quoted = set.to_owned();
+            set.clone_into(&mut found.quoted);
             found.column = (found.column as isize - shift).max(1) as usize;
-            Err(found)
+            Err(Box::new(found))
         }
         Err(_) => {
             let value = Value::Text(value.trim().to_owned());

@@ -7,13 +7,14 @@ use carom_time::SchemeError;
 
 use super::document::{Document, joined};
 use super::keys::{self, Kind};
+use super::mesh;
 use super::problem::{CaseError, Problem};
 use super::suggest;
 use super::tree::{Node, Table};
 use super::view::{View, word};
 use super::{
-    Bound, Case, ContactSpec, ExpectSpec, MaterialSpec, MeshSpec, NewtonSpec, OutputSpec, Preset, PrimarySpec,
-    ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
+    Bound, Case, ContactSpec, ExpectSpec, MaterialSpec, NewtonSpec, OutputSpec, Preset, PrimarySpec, ProbeSpec,
+    SchemeSpec, SupportSpec, TimeSpec, Units,
 };
 
 /// Tables read so far: `None` where one of them could not be.
@@ -153,7 +154,7 @@ fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<Material
 
 fn body(v: View, dimension: usize, path: &str, problems: &mut Vec<Problem>) -> Option<BodySpec> {
     let shape = v.value("mesh")?;
-    let mesh = mesh(shape.table()?, dimension, v.preset, &format!("{path}.mesh"), problems)?;
+    let mesh = mesh::read(shape.table()?, dimension, v.preset, &format!("{path}.mesh"), problems)?;
     Some(BodySpec {
         name: v.text("name")?,
         material: v.text("material")?,
@@ -165,89 +166,6 @@ fn body(v: View, dimension: usize, path: &str, problems: &mut Vec<Problem>) -> O
     })
 }
 
-fn mesh(table: &Table, dimension: usize, preset: Preset, path: &str, problems: &mut Vec<Problem>) -> Option<MeshSpec> {
-    let shape = table.get("shape")?.text()?;
-    let v = View { table, keys: keys::SHAPES.table(shape)?.keys, preset };
-    let wanted = if shape == "interval" { 1 } else { 2 };
-    if wanted != dimension {
-        let what = format!("the shape \"{shape}\" is of dimension {wanted}");
-        let why = format!("the case has dimension = {dimension}");
-        let help =
-            if dimension == 1 { "use shape = \"interval\"" } else { "use \"rectangle\", \"disc\" or \"half-disc\"" };
-        problems.push(Problem::new(format!("{path}.shape"), what, why, help));
-        return None;
-    }
-    let point = |name| v.numbers(name)?.try_into().ok();
-    match shape {
-        "interval" => {
-            let (min, max) = (v.number("min")?, v.number("max")?);
-            ordered(min, max, "", path, problems)?;
-            Some(MeshSpec::Interval { min, max, cells: v.count("cells")? })
-        }
-        "rectangle" => {
-            let (min, max): ([f64; 2], [f64; 2]) = (point("min")?, point("max")?);
-            ordered(min[0], max[0], "[0]", path, problems)?;
-            ordered(min[1], max[1], "[1]", path, problems)?;
-            Some(MeshSpec::Rectangle { min, max, cells: rectangle_cells(v, min, max, path, problems)? })
-        }
-        "disc" => {
-            Some(MeshSpec::Disc { radius: v.number("radius")?, center: point("center")?, size: v.number("size")? })
-        }
-        _ => {
-            Some(MeshSpec::HalfDisc { radius: v.number("radius")?, center: point("center")?, size: v.number("size")? })
-        }
-    }
-}
-
-fn rectangle_cells(
-    v: View,
-    min: [f64; 2],
-    max: [f64; 2],
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<[usize; 2]> {
-    match (v.has("cells"), v.has("size")) {
-        (true, false) => v.value("cells")?.list()?.iter().map(Node::count).collect::<Option<Vec<_>>>()?.try_into().ok(),
-        (false, true) => {
-            let size = v.number("size").filter(|size| *size > 0.0)?;
-            Some([0, 1].map(|i| ((max[i] - min[i]) / size - 1e-9).ceil().max(1.0) as usize))
-        }
-        (both, _) => {
-            let misspelt = v.table.0.iter().any(|e| e.key != "shape" && !v.keys.iter().any(|k| k.name == e.key));
-            if both || !misspelt {
-                let what = if both {
-                    "a rectangle has `cells` or `size`, not both"
-                } else {
-                    "the rectangle has neither `cells` nor `size`"
-                };
-                problems.push(Problem::new(
-                    path,
-                    what,
-                    "they both say how fine the mesh is",
-                    "write for example `cells = [8, 4]`",
-                ));
-            }
-            None
-        }
-    }
-}
-
-fn ordered(min: f64, max: f64, index: &str, path: &str, problems: &mut Vec<Problem>) -> Option<()> {
-    if min < max {
-        return Some(());
-    }
-    if min.is_finite() && max.is_finite() {
-        let what = format!("`max` = {max} is not greater than `min` = {min}");
-        problems.push(Problem::new(
-            format!("{path}.max{index}"),
-            what,
-            "the shape would have no extent",
-            "give max > min",
-        ));
-    }
-    None
-}
-
 fn support(v: View) -> Option<SupportSpec> {
     let fix = v.texts("fix")?.iter().map(|d| ["x", "y"].iter().position(|x| x == d)).collect::<Option<_>>()?;
     Some(SupportSpec { name: v.text("name"), on: v.texts("on")?, fix })
@@ -255,13 +173,12 @@ fn support(v: View) -> Option<SupportSpec> {
 
 fn contact(v: View) -> Option<ContactSpec> {
     let primary = v.value("primary")?;
-    let primary = match primary.text() {
-        Some(side) => PrimarySpec::Side(side.to_owned()),
-        None => {
-            let plane = primary.table()?.get("plane")?.table()?;
-            let numbers = |key| plane.get(key)?.list()?.iter().map(Node::number).collect::<Option<Vec<_>>>();
-            PrimarySpec::Plane { point: numbers("point")?, normal: numbers("normal")? }
-        }
+    let primary = if let Some(side) = primary.text() {
+        PrimarySpec::Side(side.to_owned())
+    } else {
+        let plane = primary.table()?.get("plane")?.table()?;
+        let numbers = |key| plane.get(key)?.list()?.iter().map(Node::number).collect::<Option<Vec<_>>>();
+        PrimarySpec::Plane { point: numbers("point")?, normal: numbers("normal")? }
     };
     Some(ContactSpec {
         name: v.text("name")?,
@@ -314,13 +231,13 @@ fn scheme(table: &Table, preset: Preset, path: &str, problems: &mut Vec<Problem>
 
 /// A scheme by its kind and parameters `key=value`, as `carom explain` takes them.
 pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, CaseError> {
-    let mut text = format!("kind = {}\n", toml_edit::Value::from(kind));
-    for parameter in parameters {
-        let (key, value) = parameter.split_once('=').unwrap_or((parameter, ""));
-        let quoted = key.trim() == "forces" && !value.trim().starts_with('"');
-        let value = if quoted { toml_edit::Value::from(value.trim()).to_string() } else { value.trim().to_owned() };
-        text.push_str(&format!("{} = {value}\n", key.trim()));
-    }
+    let line = |parameter: &String| {
+        let (key, value) = parameter.split_once('=').map_or((parameter.trim(), ""), |(k, v)| (k.trim(), v.trim()));
+        let word = key == "forces" && !value.starts_with('"');
+        if word { format!("{key} = {}", toml_edit::Value::from(value)) } else { format!("{key} = {value}") }
+    };
+    let kind_line = format!("kind = {}", toml_edit::Value::from(kind));
+    let text = std::iter::once(kind_line).chain(parameters.iter().map(line)).collect::<Vec<_>>().join("\n");
     let document = Document::parse("scheme", &text, &[])?;
     let mut problems = conform::variant(document.root(), &keys::SCHEMES);
     let spec = scheme(document.root(), Preset::Default, "", &mut problems);

@@ -292,7 +292,8 @@ pub fn overlaps<const D: usize>(model: &Model<D>) -> Vec<Problem> {
         for (place, &node) in contact.method.secondary().iter().enumerate() {
             let Some(gap) = contact.method.signed_distance(place, x) else { continue };
             // Behind a side is not yet inside its body: a plate has a lower side too.
-            let inside = D == 1 || contact.primary_part.is_none_or(|p| !model.parts[p].body.locate(&x[node]).is_empty());
+            let inside =
+                D == 1 || contact.primary_part.is_none_or(|p| !model.parts[p].body.locate(&x[node]).is_empty());
             if gap < -1e-9 * model.scale && inside && deepest.is_none_or(|(g, _)| gap < g) {
                 deepest = Some((gap, node));
             }

@@ -15,8 +15,12 @@ pub trait Dimension<const D: usize> {
     fn body(mesh: Mesh<D>, law: Law, density: f64, thickness: f64) -> Result<Box<dyn Body<D>>, SolidError>;
 
     /// Contact of two sides: secondary nodes, primary facets, and in dimension 1 the direction out of the primary.
-    fn between(spec: &ContactSpec, secondary: &[usize], primary: &[Vec<usize>], outward: f64)
-    -> Box<dyn ContactMethod<D>>;
+    fn between(
+        spec: &ContactSpec,
+        secondary: &[usize],
+        primary: &[Vec<usize>],
+        outward: f64,
+    ) -> Box<dyn ContactMethod<D>>;
 }
 
 /// Carries the implementations.
@@ -61,12 +65,7 @@ impl Dimension<2> for Space {
         carom_solid::body(mesh, law, density, thickness)
     }
 
-    fn between(
-        spec: &ContactSpec,
-        secondary: &[usize],
-        primary: &[Vec<usize>],
-        _: f64,
-    ) -> Box<dyn ContactMethod<2>> {
+    fn between(spec: &ContactSpec, secondary: &[usize], primary: &[Vec<usize>], _: f64) -> Box<dyn ContactMethod<2>> {
         let detection = match spec.detection {
             Detection::ClosestPoint => carom_contact::Detection::ClosestPoint,
             Detection::Trajectory => carom_contact::Detection::Trajectory,

@@ -71,9 +71,8 @@ impl<const D: usize> Stepper<D> for Implicit {
 /// Positions if the acceleration stayed, multipliers as they were, each pair free to change facets again.
 fn guess<const D: usize>(model: &Model<D>, state: &State, dt: f64) -> Trial {
     let dofs = model.dofs();
-    let increment: Vec<f64> = (0..dofs)
-        .map(|i| if model.fixed[i] { 0.0 } else { dt * (state.v[i] + 0.5 * dt * state.a[i]) })
-        .collect();
+    let increment: Vec<f64> =
+        (0..dofs).map(|i| if model.fixed[i] { 0.0 } else { dt * (state.v[i] + 0.5 * dt * state.a[i]) }).collect();
     let y = (0..dofs).map(|i| state.y[i] + increment[i]).collect();
     let mut pairs = state.pairs.clone();
     for pairs in &mut pairs {

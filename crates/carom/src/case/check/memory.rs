@@ -12,39 +12,6 @@ use crate::case::{BodySpec, MeshSpec};
 /// Taken where the machine does not tell.
 const ASSUMED: f64 = 8.0 * 1024.0 * 1024.0 * 1024.0;
 
-impl MeshSpec {
-    /// Names of the shape's sides, in the order in which its boundary is walked.
-    pub fn sides(&self) -> &'static [&'static str] {
-        match self {
-            Self::Interval { .. } => &["left", "right"],
-            Self::Rectangle { .. } => &["bottom", "right", "top", "left"],
-            Self::Disc { .. } => &["arc"],
-            Self::HalfDisc { .. } => &["arc", "axis"],
-        }
-    }
-
-    /// Roughly how many cells and nodes the mesh will have, in floating point: nothing overflows.
-    pub fn estimate(&self, element: Element) -> (f64, f64) {
-        let k = element.degree() as f64;
-        let rings = |radius: f64, size: f64| (radius / size).ceil().max(1.0);
-        match *self {
-            Self::Interval { cells, .. } => (cells as f64, k * cells as f64 + 1.0),
-            Self::Rectangle { cells: [nx, ny], .. } => {
-                let (nx, ny) = (nx as f64, ny as f64);
-                (2.0 * nx * ny, (k * nx + 1.0) * (k * ny + 1.0))
-            }
-            Self::Disc { radius, size, .. } => {
-                let n = rings(radius, size);
-                (6.0 * n * n, 1.0 + 3.0 * k * n * (k * n + 1.0))
-            }
-            Self::HalfDisc { radius, size, .. } => {
-                let n = rings(radius, size);
-                (3.0 * n * n, 1.0 + 1.5 * k * n * (k * n + 1.0) + k * n)
-            }
-        }
-    }
-}
-
 /// Bytes a body of n nodes will need.
 fn bytes(element: Element, nodes: f64) -> f64 {
     let coupled = match element {

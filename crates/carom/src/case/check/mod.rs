@@ -4,6 +4,8 @@ mod contact;
 mod memory;
 mod time;
 
+use carom_record::metrics;
+
 use super::columns;
 use super::document::Document;
 use super::keys;
@@ -103,10 +105,10 @@ impl<'a> Check<'a> {
         let bodies = self.names("body")?;
         let Some((name, part)) = side.split_once('.') else {
             let why = "a side is written body.side";
-            let help = match bodies.contains(&side) {
-                true => self.body(side).map_or_else(String::new, |b| all_sides(b)),
-                false => format!("the bodies are: {}", bodies.join(", ")),
-            };
+            let help = self.body(side).map_or_else(
+                || format!("the bodies are: {}", bodies.join(", ")),
+                |b| format!("its sides are: {}", all_sides(b)),
+            );
             self.add(path, format!("`{side}` is not a side"), why, help);
             return None;
         };
@@ -233,7 +235,13 @@ impl<'a> Check<'a> {
                         continue;
                     }
                 },
-                [metric] if !metric.contains('.') => continue,
+                [metric] if metrics::DEFINITIONS.iter().any(|(name, _)| name == metric) => continue,
+                [word] => {
+                    let names = metrics::DEFINITIONS.iter().map(|(name, _)| *name);
+                    let why = format!("it is {forms}");
+                    self.add(path, format!("there is no metric `{word}`"), why, suggest::help(word, names));
+                    continue;
+                }
                 _ => {
                     let what = format!("{:?} is not a quantity to expect", expect.what);
                     self.add(path, what, format!("it is {forms}"), "write for example \"min A.uy\"");

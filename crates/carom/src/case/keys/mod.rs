@@ -1,8 +1,10 @@
 //! The keys of a case file, once: what the reader accepts, what the schema and the documentation say.
 
 mod tables;
+mod variants;
 
-pub use tables::{CASE, SCHEMES, SHAPES};
+pub use tables::CASE;
+pub use variants::{SCHEMES, SHAPES};
 
 /// A table of the case file: its keys, and those of later versions.
 #[derive(Debug)]

@@ -84,6 +84,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["expect=[{ what = \"min A.ux\", at_most = 0 }]"], &["no column `A.ux`", "did you mean `A.uy`?"]),
     (&["expect=[{ what = \"at 0.9 A.uy\", at_most = 0 }]"], &["`0.9` is not a time of this run"]),
     (&["expect=[{ what = \"lowest A.uy\", at_most = 0 }]"], &["is not a quantity to expect"]),
+    (&["expect=[{ what = \"restitutoin\", at_most = 1 }]"], &["there is no metric `restitutoin`", "`restitution`?"]),
     (&["expect=[{ what = \"min A.uy\", value = 0 }]"], &["does not set one bound", "it has value"]),
     // contact without mass
     (&["material.rubber.density=0"], &["nothing that touches in `strike` has mass", "persistency = \"none\""]),
@@ -182,13 +183,8 @@ fn texts_that_are_no_case() {
         .next(),
         Some("a/case.toml:1:11: this is not TOML")
     );
-    println!(
-        "{}",
-        told(
-            "title = \"a
-b\""
-        )
-    );
+    let open = told(&IMPACT.replace("half model\"", "half model"));
+    assert!(open.starts_with("a/case.toml:4:49: this is not TOML\n  title = \"Cylinder"), "{open}");
     assert!(told("").contains("the case is empty"));
     assert!(told("# nothing\n").contains("the case is empty"));
     assert!(told("title = 1\ntitle = 2\n").contains("duplicate key"));

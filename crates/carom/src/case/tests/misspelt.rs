@@ -1,7 +1,7 @@
 //! Every key of every shipped case, misspelt in three ways: one error, whose help names the key that was meant.
 
 use super::super::Document;
-use super::{BARS, IMPACT, REBOUND, resolved};
+use super::{BARS, resolved};
 use crate::case::tree::{Node, Table, Value};
 
 /// The byte spans of all keys, with their names.
@@ -20,14 +20,29 @@ fn values(node: &Node, found: &mut Vec<(std::ops::Range<usize>, String)>) {
     }
 }
 
+/// Every case of a directory and those inside it; files of several runs have an `[[arm]]` or a `[grid]` and are none.
+fn shipped(directory: &std::path::Path) -> Vec<String> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(directory).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(shipped(&path));
+        } else if path.extension().is_some_and(|e| e == "toml") {
+            found.extend(Some(std::fs::read_to_string(&path).unwrap()).filter(|t| t.contains("[[body]]")));
+        }
+    }
+    found
+}
+
 #[test]
 fn every_misspelt_key_is_recognised() {
     let mut checked = 0;
-    for text in [IMPACT, REBOUND, BARS] {
+    let shipped = shipped(std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases")));
+    assert!(shipped.len() >= 2);
+    for text in shipped.iter().map(String::as_str).chain([BARS]) {
         let document = Document::parse("case.toml", text, &[]).unwrap();
         let mut found = Vec::new();
         keys(document.root(), &mut found);
-        assert!(found.len() > 40);
         for (span, key) in found {
             let doubled = format!("{key}{}", &key[key.len() - 1..]);
             let swapped = format!("{}{}{}", &key[1..2], &key[..1], &key[2..]);

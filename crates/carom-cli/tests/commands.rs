@@ -1,0 +1,203 @@
+//! The binary from outside: exit codes, what is said where, and that a wrong case leaves nothing behind.
+
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+const IMPACT: &str = include_str!("../../../cases/impact/impact.toml");
+
+/// A directory of its own per test, removed when it ends.
+struct Place(PathBuf);
+
+impl Place {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("carom-cli-{}-{name}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn file(&self, name: &str, bytes: impl AsRef<[u8]>) -> &Self {
+        std::fs::write(self.0.join(name), bytes).unwrap();
+        self
+    }
+
+    fn carom(&self, arguments: &[&str]) -> Output {
+        command(&self.0).args(arguments).output().unwrap()
+    }
+
+    fn entries(&self) -> Vec<String> {
+        let names = std::fs::read_dir(&self.0).unwrap().map(|e| e.unwrap().file_name().to_string_lossy().into_owned());
+        let mut names: Vec<_> = names.collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn command(place: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_carom"));
+    command.current_dir(place);
+    command
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+#[test]
+fn wrong_cases_exit_2_say_where_and_write_nothing() {
+    let cases: &[(&str, Vec<u8>, &[&str])] = &[
+        ("key", IMPACT.replace("density", "densty").into(), &["unknown key `densty`", "case.toml:11:1", "`density`?"]),
+        (
+            "side",
+            IMPACT.replace("prism.top", "prism.topp").into(),
+            &["no side `topp`", "case.toml:39:11", "prism.top`?"],
+        ),
+        (
+            "type",
+            IMPACT.replace("density = 0.25", "density = \"heavy\"").into(),
+            &["`density` must be a number", "case.toml:11:11"],
+        ),
+        ("negative", IMPACT.replace("density = ", "density = -").into(), &["not -0.25", "case.toml:11:11"]),
+        ("radius", IMPACT.replace("rho_inf = 0.1", "rho_inf = 1.2").into(), &["in [0, 1], not 1.2", "case.toml:44:46"]),
+        ("nan", IMPACT.replace("1.875e-3", "nan").into(), &["`step` is NaN", "case.toml:43:8"]),
+        ("memory", IMPACT.replace("[8, 4]", "[10000000000, 1]").into(), &["too big for the memory", "GiB"]),
+        ("empty", Vec::new(), &["the case is empty", "case.toml"]),
+        ("binary", b"\x7fELF\x02\xff\xfe".to_vec(), &["not text", "byte 6", "UTF-8"]),
+        ("syntax", IMPACT.replace("dimension = 2", "dimension 2").into(), &["not TOML", "case.toml:5:"]),
+        ("scheme", IMPACT.replace("chung-hulbert", "chung-hulbart").into(), &["`chung-hulbert`?"]),
+        ("dimension", IMPACT.replace("dimension = 2", "dimension = 1").into(), &["dimension 2", "dimension = 1"]),
+    ];
+    for (name, bytes, parts) in cases {
+        let place = Place::new(name);
+        place.file("case.toml", bytes);
+        for arguments in [
+            &["run", "case.toml"][..],
+            &["run", "case.toml", "--out", "out"],
+            &["run", "case.toml", "--json"],
+            &["check", "case.toml"],
+        ] {
+            let done = place.carom(arguments);
+            let told = text(&done.stderr);
+            assert_eq!(done.status.code(), Some(2), "{name}: {told}");
+            assert!(done.stdout.is_empty(), "{name}");
+            for part in *parts {
+                assert!(told.contains(part), "{name}: {part:?} not in\n{told}");
+            }
+            assert!(!told.contains('\u{1b}'), "no colour into a pipe");
+            assert_eq!(place.entries(), ["case.toml"], "{name}");
+        }
+    }
+}
+
+#[test]
+fn files_that_cannot_be_read() {
+    let place = Place::new("files");
+    for (name, part) in [("none.toml", "no such file"), (".", "this is a directory")] {
+        let done = place.carom(&["run", name]);
+        assert_eq!(done.status.code(), Some(2));
+        assert!(text(&done.stderr).contains(part));
+    }
+    assert!(place.entries().is_empty());
+}
+
+#[test]
+fn one_diagnostic_as_it_is_shown() {
+    let place = Place::new("shown");
+    place.file("case.toml", IMPACT.replace("prism.top", "prism.topp"));
+    let told = text(&place.carom(&["check", "case.toml"]).stderr);
+    let expected = "\
+error: body `prism` has no side `topp`
+  --> case.toml:39:11
+   |
+39 | primary = \"prism.topp\"
+   |           ^^^^^^^^^^^^
+   |
+   = why: its mesh has the sides: prism.bottom, prism.right, prism.top, prism.left
+   = try: did you mean `prism.top`?
+";
+    assert_eq!(told, expected);
+}
+
+#[test]
+fn arguments_are_checked() {
+    let place = Place::new("arguments");
+    place.file("case.toml", IMPACT);
+    std::fs::create_dir(place.0.join("old")).unwrap();
+    let wrong: &[(&[&str], &str)] = &[
+        (&["run", "case.toml", "--out", "old"], "old exists already"),
+        (&["run", "case.toml", "--threads", "0"], "invalid value '0'"),
+        (&["run", "case.toml", "--set", "time.step"], "there is no `=`"),
+        (&["run", "case.toml", "--set", "time.scheme.rho_inf=1.2"], "--set:1:21"),
+        (&["run"], "<CASE>"),
+        (&["rnu", "case.toml"], "unrecognized subcommand"),
+        (&["resume", "old"], "old is no run directory"),
+        (&["report", "nowhere"], "nowhere is no run directory"),
+        (&["explain", "bathe"], "does not have `kind = \"bathe\"` yet"),
+        (&["explain", "hht", "alpha=-0.1"], "did you mean `alpha = 0.1`?"),
+        (&["explain", "wbz", "rho=0.5"], "unknown key `rho`"),
+    ];
+    for (arguments, part) in wrong {
+        let done = place.carom(arguments);
+        let told = text(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{arguments:?}: {told}");
+        assert!(told.contains(part), "{arguments:?}: {part:?} not in\n{told}");
+        assert!(done.stdout.is_empty());
+    }
+    assert_eq!(place.entries(), ["case.toml", "old"]);
+    assert!(std::fs::read_dir(place.0.join("old")).unwrap().next().is_none());
+}
+
+#[test]
+fn check_tells_the_case() {
+    let place = Place::new("check");
+    place.file("case.toml", IMPACT);
+    let done = place.carom(&["check", "case.toml", "--set", "body.cylinder.element=T6"]);
+    let told = text(&done.stdout);
+    assert_eq!((done.status.code(), done.stderr.len()), (Some(0), 0));
+    for part in ["Cylinder falling on a prism", "T6 of rubber", "cylinder.arc against prism.top", "400 steps"] {
+        assert!(told.contains(part), "{part:?} not in\n{told}");
+    }
+    let done = place.carom(&["check", "case.toml", "--json", "--set", "preset=paper"]);
+    let told: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    assert_eq!(told["case"]["contacts"][0]["persistency"], "none");
+    assert_eq!(told["case"]["time"]["scheme"]["rho_inf"], 0.1);
+    assert_eq!(place.entries(), ["case.toml"]);
+}
+
+#[test]
+fn explain_and_schema_and_help() {
+    let place = Place::new("explain");
+    let told = |arguments: &[&str]| {
+        let done = place.carom(arguments);
+        assert_eq!(done.status.code(), Some(0), "{arguments:?}");
+        text(&done.stdout)
+    };
+    assert!(told(&["explain"]).contains("hu"));
+    assert!(told(&["explain", "chung-hulbert", "rho_inf=0.1"]).contains("order 2"));
+    let hu: serde_json::Value = serde_json::from_str(&told(&["explain", "hu", "--json"])).unwrap();
+    assert_eq!((&hu["scheme"]["beta"], &hu["order"]), (&1.0.into(), &1.into()));
+    let schema: serde_json::Value = serde_json::from_str(&told(&["schema"])).unwrap();
+    assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+    for command in ["run", "resume", "check", "explain", "report", "schema"] {
+        assert!(told(&[command, "--help"]).contains("Example"), "{command}");
+    }
+    assert!(told(&["--help"]).contains("Exit codes"));
+    assert!(place.entries().is_empty());
+}
+
+/// `carom schema | head -1` closes the pipe long before the schema ends.
+#[test]
+fn closed_output_is_no_panic() {
+    let place = Place::new("pipe");
+    let mut child = command(&place.0).arg("schema").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let done = child.wait_with_output().unwrap();
+    assert_eq!((done.status.code(), text(&done.stderr)), (Some(0), String::new()));
+}

@@ -1,0 +1,155 @@
+//! Tables whose keys depend on one of them: shapes of meshes, kinds of schemes.
+
+use super::Kind::{Choice, Count, Counts, Number, Vector};
+use super::{ANY, Key, POSITIVE, Range, Table, Variants, key};
+
+/// Built-in shapes.
+pub const SHAPES: Variants = Variants {
+    name: "mesh",
+    tag: "shape",
+    doc: "Built-in shape.",
+    tables: &[
+        (
+            "interval",
+            Table {
+                name: "mesh of shape \"interval\"",
+                doc: "Dimension 1; sides left, right.",
+                keys: &[
+                    key("min", Number(ANY), "Left end.").unit("length").example("0.0"),
+                    key("max", Number(ANY), "Right end.").unit("length").example("1.0"),
+                    key("cells", Count(1), "Number of cells.").example("20"),
+                ],
+                later: &[],
+            },
+        ),
+        (
+            "rectangle",
+            Table {
+                name: "mesh of shape \"rectangle\"",
+                doc: "Sides bottom, right, top, left.",
+                keys: &[
+                    key("min", Vector, "Lower left corner.").unit("length").example("[0.0, 0.0]"),
+                    key("max", Vector, "Upper right corner.").unit("length").example("[1.0, 1.0]"),
+                    key("cells", Counts(1), "Squares along x and y, each cut into two triangles; or size.")
+                        .optional()
+                        .example("[8, 4]"),
+                    key("size", Number(POSITIVE), "Largest side of the squares; or cells.")
+                        .unit("length")
+                        .optional()
+                        .example("0.1"),
+                ],
+                later: &[],
+            },
+        ),
+        ("disc", Table { name: "mesh of shape \"disc\"", doc: "A whole disc; side arc.", keys: ROUND, later: &[] }),
+        (
+            "half-disc",
+            Table {
+                name: "mesh of shape \"half-disc\"",
+                doc: "The half of a disc right of its centre; sides arc, axis.",
+                keys: ROUND,
+                later: &[],
+            },
+        ),
+    ],
+    later: &["ring", "polygon"],
+    later_keys: &["file", "surface", "refine"],
+};
+
+const ROUND: &[Key] = &[
+    key("radius", Number(POSITIVE), "Radius.").unit("length").example("0.5"),
+    key("center", Vector, "Centre.").unit("length").example("[0.0, 1.0]"),
+    key("size", Number(POSITIVE), "Length of a cell's edge.").unit("length").example("0.1"),
+];
+
+const RHO_INF: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };
+const BELOW_ONE: Range = Range { low: None, high: Some((1.0, false)) };
+const ALPHA: Range = Range { low: Some((0.0, true)), high: Some((1.0, false)) };
+const FORCES: Key = key(
+    "forces",
+    Choice(&["average-forces", "average-state"], &[]),
+    "What is averaged over the step with α_f: the forces (eq. 15), or the state they are evaluated at.",
+)
+.default("\"average-forces\"");
+const SPECTRAL: &[Key] = &[
+    key("rho_inf", Number(RHO_INF), "Spectral radius at infinite frequency: 0 damps it within steps, 1 not at all.")
+        .example("0.8"),
+    FORCES,
+];
+
+/// Time integrators.
+pub const SCHEMES: Variants = Variants {
+    name: "scheme",
+    tag: "kind",
+    doc: "Published name of the integrator.",
+    tables: &[
+        (
+            "newmark",
+            Table {
+                name: "scheme \"newmark\"",
+                doc: "Newmark: beta and gamma, or rho_inf.",
+                keys: &[
+                    key("beta", Number(POSITIVE), "Newmark's β.").optional().example("0.25"),
+                    key("gamma", Number(POSITIVE), "Newmark's γ.").optional().example("0.5"),
+                    key(
+                        "rho_inf",
+                        Number(RHO_INF),
+                        "Spectral radius at infinite frequency, instead of beta and gamma.",
+                    )
+                    .optional()
+                    .example("1.0"),
+                    FORCES,
+                ],
+                later: &[],
+            },
+        ),
+        ("hu", Table { name: "scheme \"hu\"", doc: "Hu: β = 1, γ = 3/2, first order.", keys: &[FORCES], later: &[] }),
+        (
+            "hht",
+            Table {
+                name: "scheme \"hht\"",
+                doc: "Hilber–Hughes–Taylor.",
+                keys: &[
+                    key("alpha", Number(ALPHA), "α = α_f ≥ 0: the share of the old forces.").example("0.1"),
+                    FORCES,
+                ],
+                later: &[],
+            },
+        ),
+        ("wbz", Table { name: "scheme \"wbz\"", doc: "Wood–Bossak–Zienkiewicz.", keys: SPECTRAL, later: &[] }),
+        (
+            "chung-hulbert",
+            Table {
+                name: "scheme \"chung-hulbert\"", doc: "Chung–Hulbert generalised α.", keys: SPECTRAL, later: &[]
+            },
+        ),
+        (
+            "generalized-alpha",
+            Table {
+                name: "scheme \"generalized-alpha\"",
+                doc: "The four parameters as they are.",
+                keys: &[
+                    key("alpha_m", Number(BELOW_ONE), "Share of the old inertia force.").example("0.0"),
+                    key("alpha_f", Number(BELOW_ONE), "Share of the old other forces.").example("0.0"),
+                    key("beta", Number(POSITIVE), "Newmark's β.").example("0.25"),
+                    key("gamma", Number(POSITIVE), "Newmark's γ.").example("0.5"),
+                    FORCES,
+                ],
+                later: &[],
+            },
+        ),
+    ],
+    later: &[
+        "backward-euler",
+        "bdf2",
+        "tr-bdf2",
+        "bathe",
+        "energy-momentum",
+        "central-difference",
+        "moreau-jean",
+        "nonsmooth-generalized-alpha",
+        "paoli-schatzman",
+        "static",
+    ],
+    later_keys: &[],
+};
