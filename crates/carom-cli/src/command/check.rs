@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use carom::case::{BodySpec, Case, PrimarySpec, SchemeSpec};
+use carom::case::{BodySpec, Case, MeshSpec, PrimarySpec, SchemeSpec};
 
 use crate::exit::{Exit, Failure};
 use crate::out;
@@ -40,6 +40,10 @@ fn table(case: &Case, facts: Option<&Facts>) -> String {
         let built = facts.and_then(|f| f.bodies.iter().find(|b| b.name == body.name));
         let size = built.map_or_else(|| estimated(body), counted);
         lines.push(format!("  body     {:12} {:?} of {}: {size}", body.name, body.element, body.material));
+        if let MeshSpec::File { file, repairs, .. } = &body.mesh {
+            lines.push(format!("           from {}", file.display()));
+            lines.extend(repairs.iter().map(|repair| format!("           repaired: {repair}")));
+        }
     }
     for support in &case.supports {
         let fixed: String = support.fix.iter().map(|axis| ["x", "y"][*axis]).collect();
