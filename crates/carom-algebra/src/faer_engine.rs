@@ -145,8 +145,8 @@ fn grouped_ordering(pattern: &Pattern, groups: &[usize]) -> Result<(Vec<usize>, 
     let quotient = Pattern::from_entries(count, entries);
     let graph = SymbolicSparseColMatRef::new_checked(count, count, &quotient.starts, None, &quotient.rows);
     let (mut order, mut inverse) = (vec![0_usize; count], vec![0_usize; count]);
-    let mut scratch =
-        MemBuffer::try_new(amd::order_maybe_unsorted_scratch::<usize>(count, quotient.len())).map_err(|e| format!("{e:?}"))?;
+    let mut scratch = MemBuffer::try_new(amd::order_maybe_unsorted_scratch::<usize>(count, quotient.len()))
+        .map_err(|e| format!("{e:?}"))?;
     amd::order_maybe_unsorted(&mut order, &mut inverse, graph, amd::Control::default(), MemStack::new(&mut scratch))
         .map_err(|e| format!("{e:?}"))?;
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];

@@ -220,9 +220,7 @@ impl<const D: usize> Mul for Mat<D> {
     type Output = Self;
     #[inline]
     fn mul(self, other: Self) -> Self {
-        Self(std::array::from_fn(|i| {
-            std::array::from_fn(|j| (0..D).map(|k| self.0[i][k] * other.0[k][j]).sum())
-        }))
+        Self(std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| self.0[i][k] * other.0[k][j]).sum())))
     }
 }
 

@@ -10,7 +10,7 @@ mod summary;
 mod wrong;
 
 use clap::{Parser, Subcommand};
-use command::{check, explain, report, resume, run, schema};
+use command::{check, explain, mesh, report, resume, run, schema};
 
 /// Impact and contact of deformable solids, and the laboratory of its time integrators.
 #[derive(Parser)]
@@ -33,6 +33,7 @@ enum Command {
     Resume(resume::Arguments),
     Check(check::Arguments),
     Explain(explain::Arguments),
+    Mesh(mesh::Arguments),
     Report(report::Arguments),
     Schema(schema::Arguments),
 }
@@ -43,6 +44,7 @@ fn main() -> std::process::ExitCode {
         Command::Resume(arguments) => resume::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Mesh(arguments) => mesh::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
     };

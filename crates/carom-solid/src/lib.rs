@@ -3,6 +3,7 @@
 mod body;
 mod factory;
 pub mod generate;
+pub mod gmsh;
 mod lumping;
 pub mod material;
 mod mesh;

@@ -65,7 +65,7 @@ pub struct Facet {
 }
 
 /// Nodes, cells and named sides of one body.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Mesh<const D: usize> {
     /// Cell type of every cell.
     pub element: Element,
@@ -75,6 +75,8 @@ pub struct Mesh<const D: usize> {
     pub cells: Vec<usize>,
     /// Facets of each named side, in the order in which the boundary is walked.
     pub sides: BTreeMap<String, Vec<Facet>>,
+    /// What was put right when the mesh was read from a file, as sentences; nothing for built-in shapes.
+    pub repairs: Vec<String>,
 }
 
 impl<const D: usize> Mesh<D> {
@@ -104,12 +106,17 @@ impl<const D: usize> Mesh<D> {
 
     /// Diagonal of the box around the reference nodes.
     pub fn diameter(&self) -> f64 {
-        let mut square = 0.0;
-        for i in 0..D {
-            let low = self.nodes.iter().map(|x| x[i]).fold(f64::INFINITY, f64::min);
-            let high = self.nodes.iter().map(|x| x[i]).fold(f64::NEG_INFINITY, f64::max);
-            square += (high - low) * (high - low);
-        }
-        square.sqrt()
+        diameter(&self.nodes)
     }
+}
+
+/// Diagonal of the box around positions.
+pub(crate) fn diameter<const D: usize>(positions: &[[f64; D]]) -> f64 {
+    let mut square = 0.0;
+    for i in 0..D {
+        let low = positions.iter().map(|x| x[i]).fold(f64::INFINITY, f64::min);
+        let high = positions.iter().map(|x| x[i]).fold(f64::NEG_INFINITY, f64::max);
+        square += (high - low) * (high - low);
+    }
+    square.sqrt()
 }

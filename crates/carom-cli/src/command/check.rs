@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use carom::case::{Case, PrimarySpec, SchemeSpec};
+use carom::case::{Case, MeshSpec, PrimarySpec, SchemeSpec};
 
 use crate::exit::{Exit, Failure};
 use crate::out;
@@ -39,6 +39,10 @@ fn table(case: &Case, facts: &Facts) -> String {
     for body in &case.bodies {
         let size = facts.bodies.iter().find(|b| b.name == body.name).map_or_else(String::new, counted);
         lines.push(format!("  body     {:12} {:?} of {}: {size}", body.name, body.element, body.material));
+        if let MeshSpec::File { file, repairs, .. } = &body.mesh {
+            lines.push(format!("           from {}", file.display()));
+            lines.extend(repairs.iter().map(|repair| format!("           repaired: {repair}")));
+        }
     }
     for support in &case.supports {
         let fixed: String = support.fix.iter().map(|axis| ["x", "y"][*axis]).collect();

@@ -2,6 +2,7 @@
 
 pub(crate) mod check;
 pub(crate) mod explain;
+pub(crate) mod mesh;
 pub(crate) mod report;
 pub(crate) mod resume;
 pub(crate) mod run;

@@ -100,7 +100,7 @@ pub(super) fn elevate(skeleton: Skeleton, element: Element) -> Mesh<2> {
         (side.name.to_string(), side.edges.iter().map(facet).collect())
     };
     let sides: BTreeMap<_, _> = sides.into_iter().map(facets).collect();
-    Mesh { element, nodes, cells, sides }
+    Mesh { element, nodes, cells, sides, repairs: Vec::new() }
 }
 
 /// The nodes between an edge's corners in its direction.

@@ -53,7 +53,7 @@ pub fn interval(element: Element, min: f64, max: f64, cells: usize) -> Result<Me
     }
     let end = |cell, node| vec![Facet { cell, nodes: vec![node] }];
     let sides = BTreeMap::from([("left".into(), end(0, 0)), ("right".into(), end(cells - 1, cells))]);
-    Ok(Mesh { element, nodes, cells: numbers, sides })
+    Ok(Mesh { element, nodes, cells: numbers, sides, repairs: Vec::new() })
 }
 
 /// Number of nodes of an interval; saturates.

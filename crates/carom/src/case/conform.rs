@@ -152,6 +152,9 @@ impl Check {
             let why = format!("it belongs to a later version of Carom; {} is one of {}", tag, words(variants));
             return self.problems.push(Problem::new(here, what, why, "leave it out").at_key());
         }
+        if let Some(spec) = variants.or.filter(|spec| spec.keys.iter().take(1).any(|k| table.get(k.name).is_some())) {
+            return self.table(table, spec, path);
+        }
         let named = table.get(tag).map(|node| node.text().ok_or(node));
         if let Some(Ok(word)) = named
             && let Some(spec) = variants.table(word)
@@ -159,10 +162,11 @@ impl Check {
             let spec = Spec { name: spec.name, tag: Some(tag), keys: spec.keys.iter().collect(), later };
             return self.keys(table, &spec, path);
         }
+        let or = variants.or.filter(|_| named.is_none());
         // The tag is missing or wrong: any key of any variant is known, none is required.
         let before = self.problems.len();
         let mut spec = Spec { name: variants.name, tag: Some(tag), keys: Vec::new(), later };
-        spec.keys.extend(variants.tables.iter().flat_map(|(_, t)| t.keys));
+        spec.keys.extend(variants.tables.iter().map(|(_, t)| t).chain(or).flat_map(|t| t.keys));
         for entry in table.0.iter().filter(|e| e.key != tag && !spec.keys.iter().any(|k| k.name == e.key)) {
             let (problem, _) = unknown(&entry.key, table, &spec, joined(path, &entry.key));
             self.problems.push(problem);
@@ -177,10 +181,15 @@ impl Check {
                 let what = format!("`{tag}` must be a text in quotes, not {}", node.described());
                 self.add(&here, what, variants.doc.to_owned(), format!("use one of: {}", words(variants)));
             }
-            None if self.problems[before..].iter().any(|p| p.help.contains(&format!("`{tag}`"))) => {}
+            None if self.problems[before..]
+                .iter()
+                .any(|p| meant(p, tag) || or.is_some_and(|t| meant(p, t.keys[0].name))) => {}
             None => {
                 let what = format!("{} has no `{tag}`", variants.name);
-                self.problems.push(Problem::new(path, what, variants.doc, format!("use one of: {}", words(variants))));
+                let or =
+                    or.and_then(|t| t.keys.first()).map_or_else(String::new, |k| format!("; or give `{}`", k.name));
+                let help = format!("use one of: {}{or}", words(variants));
+                self.problems.push(Problem::new(path, what, variants.doc, help));
             }
         }
     }
@@ -268,6 +277,11 @@ impl Check {
     }
 }
 
+/// Whether a problem says that this key was probably meant.
+fn meant(problem: &Problem, key: &str) -> bool {
+    problem.help.contains(&format!("`{key}`"))
+}
+
 /// What a key means, with its unit.
 fn meaning(key: &Key) -> String {
     if key.unit.is_empty() { key.doc.to_owned() } else { format!("{} Unit: {}.", key.doc, key.unit) }
@@ -311,8 +325,8 @@ fn homes(word: &str) -> Vec<&'static str> {
                 Kind::Table(table) | Kind::Tables(table) | Kind::SideOr(table) => visit(table, word, found),
                 Kind::Variant(variants) if variants.tag == word => found.push(variants.name),
                 Kind::Variant(variants) => {
-                    let with = variants.tables.iter().filter(|(_, t)| t.key(word).is_some());
-                    found.extend(with.map(|(_, t)| t.name));
+                    let all = variants.tables.iter().map(|(_, t)| t).chain(variants.or);
+                    found.extend(all.filter(|t| t.key(word).is_some()).map(|t| t.name));
                 }
                 _ => {}
             }

@@ -1,8 +1,11 @@
-//! Built-in shapes: read, their sides by name, their size estimated before they are made.
+//! Meshes: built-in shapes and files; read, their sides by name, their size estimated before they are made.
+
+use std::path::Path;
 
 use carom_solid::Element;
 
 use super::keys;
+use super::mesh_file;
 use super::problem::Problem;
 use super::tree::{Node, Table};
 use super::view::View;
@@ -10,12 +13,13 @@ use super::{MeshSpec, Preset};
 
 impl MeshSpec {
     /// Names of the shape's sides, in the order in which its boundary is walked.
-    pub fn sides(&self) -> &'static [&'static str] {
+    pub fn sides(&self) -> Vec<&str> {
         match self {
-            Self::Interval { .. } => &["left", "right"],
-            Self::Rectangle { .. } => &["bottom", "right", "top", "left"],
-            Self::Disc { .. } => &["arc"],
-            Self::HalfDisc { .. } => &["arc", "axis"],
+            Self::File { sides, .. } => sides.iter().map(String::as_str).collect(),
+            Self::Interval { .. } => vec!["left", "right"],
+            Self::Rectangle { .. } => vec!["bottom", "right", "top", "left"],
+            Self::Disc { .. } => vec!["arc"],
+            Self::HalfDisc { .. } => vec!["arc", "axis"],
         }
     }
 
@@ -24,6 +28,7 @@ impl MeshSpec {
         let k = element.degree() as f64;
         let rings = |radius: f64, size: f64| (radius / size).ceil().max(1.0);
         match *self {
+            Self::File { nodes, cells, .. } => (cells as f64, nodes as f64),
             Self::Interval { cells, .. } => (cells as f64, k * cells as f64 + 1.0),
             Self::Rectangle { cells: [nx, ny], .. } => {
                 let (nx, ny) = (nx as f64, ny as f64);
@@ -41,14 +46,20 @@ impl MeshSpec {
     }
 }
 
-/// Reads the table of a built-in shape.
+/// Reads the table of a mesh.
 pub(super) fn read(
     table: &Table,
     dimension: usize,
+    element: Option<Element>,
+    folder: &Path,
     preset: Preset,
     path: &str,
     problems: &mut Vec<Problem>,
 ) -> Option<MeshSpec> {
+    if let Some(spec) = keys::SHAPES.or.filter(|_| table.get("file").is_some()) {
+        let v = View { table, keys: spec.keys, preset };
+        return mesh_file::read(v, dimension, element, folder, path, problems);
+    }
     let shape = table.get("shape")?.text()?;
     let v = View { table, keys: keys::SHAPES.table(shape)?.keys, preset };
     let wanted = if shape == "interval" { 1 } else { 2 };

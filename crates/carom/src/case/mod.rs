@@ -6,6 +6,7 @@ mod conform;
 mod document;
 pub mod keys;
 mod mesh;
+pub(crate) mod mesh_file;
 mod overrides;
 mod problem;
 mod read;
@@ -17,6 +18,7 @@ mod tree;
 mod view;
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
@@ -145,7 +147,7 @@ pub enum MassKind {
     Lumped,
 }
 
-/// Source of a mesh: a built-in shape.
+/// Source of a mesh: a built-in shape, or a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "shape", rename_all = "kebab-case")]
 pub enum MeshSpec {
@@ -184,6 +186,23 @@ pub enum MeshSpec {
         center: [f64; 2],
         /// Length of a cell's edge.
         size: f64,
+    },
+    /// A named physical surface (dimension 1: curve) of a .msh file; sides are its named physical curves (points).
+    File {
+        /// Absolute path.
+        file: PathBuf,
+        /// Name of the physical group.
+        surface: String,
+        /// BLAKE3 of the file when the case was read.
+        hash: String,
+        /// Nodes of the mesh.
+        nodes: usize,
+        /// Cells of the mesh.
+        cells: usize,
+        /// Sides of the mesh.
+        sides: Vec<String>,
+        /// What was put right when the mesh was read.
+        repairs: Vec<String>,
     },
 }
 

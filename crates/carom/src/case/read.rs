@@ -1,5 +1,7 @@
 //! Document → case: every table read with its defaults; what concerns one table alone is checked here, the rest in `check`.
 
+use std::path::Path;
+
 use super::BodySpec;
 use super::check;
 use super::conform;
@@ -43,7 +45,8 @@ pub fn read(document: &Document) -> Result<Case, Vec<Problem>> {
         expects: Vec::new(),
         time: reader.one("time").and_then(|v| time(v, &mut problems)),
     };
-    draft.bodies = reader.each("body", |v, path| body(v, reader.dimension?, path, &mut problems));
+    let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
+    draft.bodies = reader.each("body", |v, path| body(v, reader.dimension?, folder, path, &mut problems));
     draft.expects = reader.each("expect", |v, path| expect(v, path, &mut problems));
     check::problems(document, &draft, &mut problems);
     if !problems.is_empty() {
@@ -152,9 +155,17 @@ fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<Material
     Some(MaterialSpec { name: name?, law: law?, density: density?, lambda, mu })
 }
 
-fn body(v: View, dimension: usize, path: &str, problems: &mut Vec<Problem>) -> Option<BodySpec> {
+fn body(v: View, dimension: usize, folder: &Path, path: &str, problems: &mut Vec<Problem>) -> Option<BodySpec> {
     let shape = v.value("mesh")?;
-    let mesh = mesh::read(shape.table()?, dimension, v.preset, &format!("{path}.mesh"), problems)?;
+    let mesh = mesh::read(
+        shape.table()?,
+        dimension,
+        v.choice("element"),
+        folder,
+        v.preset,
+        &format!("{path}.mesh"),
+        problems,
+    )?;
     Some(BodySpec {
         name: v.text("name")?,
         material: v.text("material")?,

@@ -76,7 +76,8 @@ fn values(kind: &Kind) -> Map<String, Value> {
 
 fn one_of(variants: &Variants) -> Value {
     let one = |(value, spec): &(&str, Table)| table(spec, Some((variants.tag, value, variants.doc)));
-    json!({ "oneOf": variants.tables.iter().map(one).collect::<Vec<_>>() })
+    let or = variants.or.map(|spec| table(spec, None));
+    json!({ "oneOf": variants.tables.iter().map(one).chain(or).collect::<Vec<_>>() })
 }
 
 fn number(range: &Range) -> Map<String, Value> {
@@ -122,7 +123,9 @@ mod tests {
             see(spec, key);
             match key.kind {
                 Kind::Table(spec) | Kind::Tables(spec) | Kind::SideOr(spec) => visit(spec, see),
-                Kind::Variant(Variants { tables, .. }) => tables.iter().for_each(|(_, spec)| visit(spec, see)),
+                Kind::Variant(Variants { tables, or, .. }) => {
+                    tables.iter().map(|(_, spec)| spec).chain(*or).for_each(|spec| visit(spec, see));
+                }
                 _ => {}
             }
         }

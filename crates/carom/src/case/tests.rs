@@ -1,5 +1,6 @@
 //! The shipped cases, defaults and presets, overrides, and what messages say.
 
+mod mesh_file;
 mod messages;
 mod misspelt;
 
@@ -68,12 +69,16 @@ at_least = 0.0
 "#;
 
 fn resolved(text: &str, sets: &[&str]) -> Result<Case, Vec<Diagnostic>> {
+    resolved_as("a/case.toml", text, sets)
+}
+
+fn resolved_as(name: &str, text: &str, sets: &[&str]) -> Result<Case, Vec<Diagnostic>> {
     let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
     let wrong = |e: CaseError| match e {
         CaseError::Wrong(found) => found,
         CaseError::Refused { .. } => unreachable!(),
     };
-    let document = Document::parse("a/case.toml", text, &sets).map_err(wrong)?;
+    let document = Document::parse(name, text, &sets).map_err(wrong)?;
     read(&document).map_err(|p| wrong(document.diagnose_all(&p)))
 }
 

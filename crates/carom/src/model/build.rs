@@ -127,7 +127,7 @@ where
                 format!("body[{k}].mesh"),
                 format!("the mesh of body \"{}\" cannot be made", spec.name),
                 why,
-                "change the numbers of the shape",
+                "change what `mesh` names",
             )),
         }
     }

@@ -4,6 +4,7 @@
 use carom_contact::{ContactMethod, NodeToNode, NodeToSegment, Surface};
 use carom_solid::{Body, Law, Mesh, SolidError, generate};
 
+use crate::case::mesh_file;
 use crate::case::{BodySpec, ContactSpec, Detection, MeshSpec};
 
 /// A space of dimension `D` that cases can be computed in.
@@ -32,6 +33,7 @@ impl Dimension<1> for Space {
             MeshSpec::Interval { min, max, cells } => {
                 generate::interval(spec.element, min, max, cells).map_err(|e| e.to_string())
             }
+            MeshSpec::File { ref file, ref surface, ref hash, .. } => mesh_file::mesh(file, surface, hash),
             _ => Err("this shape needs dimension = 2".into()),
         }
     }
@@ -53,6 +55,7 @@ impl Dimension<1> for Space {
 impl Dimension<2> for Space {
     fn mesh(spec: &BodySpec) -> Result<Mesh<2>, String> {
         match spec.mesh {
+            MeshSpec::File { ref file, ref surface, ref hash, .. } => return mesh_file::mesh(file, surface, hash),
             MeshSpec::Interval { .. } => return Err("shape \"interval\" needs dimension = 1".into()),
             MeshSpec::Rectangle { min, max, cells } => generate::rectangle(spec.element, min, max, cells),
             MeshSpec::Disc { radius, center, size } => generate::disc(spec.element, radius, center, size),

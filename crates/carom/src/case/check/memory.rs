@@ -45,6 +45,7 @@ impl Check<'_> {
         let Some((i, body)) = largest.filter(|_| total > available) else { return };
         let (cells, nodes) = body.mesh.estimate(body.element);
         let key = match body.mesh {
+            MeshSpec::File { .. } => "file",
             MeshSpec::Interval { .. } | MeshSpec::Rectangle { .. } => "cells",
             _ => "size",
         };

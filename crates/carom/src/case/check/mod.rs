@@ -123,7 +123,7 @@ impl<'a> Check<'a> {
         let body = self.body(name)?;
         if !body.mesh.sides().contains(&part) {
             let why = format!("its mesh has the sides: {}", all_sides(body));
-            let help = suggest::nearest(part, body.mesh.sides().iter().copied()).map_or_else(
+            let help = suggest::nearest(part, body.mesh.sides()).map_or_else(
                 || format!("use one of: {}", all_sides(body)),
                 |near| format!("did you mean `{name}.{near}`?"),
             );
@@ -261,7 +261,7 @@ impl<'a> Check<'a> {
 }
 
 fn all_sides(body: &BodySpec) -> String {
-    let sides: Vec<_> = body.mesh.sides().iter().map(|side| format!("{}.{side}", body.name)).collect();
+    let sides: Vec<_> = body.mesh.sides().into_iter().map(|side| format!("{}.{side}", body.name)).collect();
     sides.join(", ")
 }
 

@@ -99,6 +99,8 @@ pub struct Variants {
     pub doc: &'static str,
     /// Values of the key with the keys that go with it.
     pub tables: &'static [(&'static str, Table)],
+    /// Keys of the table without the tag, told by the first of them.
+    pub or: Option<&'static Table>,
     /// Values a later version will take.
     pub later: &'static [&'static str],
     /// Keys a later version will have, whatever the value.

@@ -1,6 +1,6 @@
 //! Tables whose keys depend on one of them: shapes of meshes, kinds of schemes.
 
-use super::Kind::{Choice, Count, Counts, Number, Vector};
+use super::Kind::{Choice, Count, Counts, Number, Text, Vector};
 use super::{ANY, Key, POSITIVE, Range, Table, Variants, key};
 
 /// Built-in shapes.
@@ -52,8 +52,21 @@ pub const SHAPES: Variants = Variants {
             },
         ),
     ],
+    or: Some(&MESH_FILE),
     later: &["ring", "polygon"],
-    later_keys: &["file", "surface", "refine"],
+    later_keys: &["refine"],
+};
+
+const MESH_FILE: Table = Table {
+    name: "mesh from a file",
+    doc: "A body of a Gmsh file; its sides are the named physical curves (dimension 1: points) on its boundary.",
+    keys: &[
+        key("file", Text, "Path of a .msh file of version 4.1 or 2.2, from the folder of the case.")
+            .example("\"impact.msh\""),
+        key("surface", Text, "Name of the physical surface (dimension 1: curve) that is the body.")
+            .example("\"cylinder\""),
+    ],
+    later: &[],
 };
 
 const ROUND: &[Key] = &[
@@ -139,6 +152,7 @@ pub const SCHEMES: Variants = Variants {
             },
         ),
     ],
+    or: None,
     later: &[
         "backward-euler",
         "bdf2",

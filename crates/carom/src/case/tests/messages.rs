@@ -95,7 +95,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["contact.strike.restitution=0.5"], &["this version does not have `restitution` yet"]),
     (&["load=[]"], &["this version does not have `load` yet"]),
     (&["time.step={ initial = 1e-3 }"], &["`step` must be a number > 0, not a table", "A later version"]),
-    (&["body.prism.mesh={ file = \"a.msh\", surface = \"prism\" }"], &["does not have `file` of mesh yet"]),
+    (&["body.prism.mesh={ file = \"a.msh\", surface = \"prism\" }"], &["the mesh \"a.msh\" cannot be read"]),
     (&["body.prism.mesh.shape=ring"], &["does not have `shape = \"ring\"` yet"]),
     // keys of other tables
     (&["time.tolerance=1e-9"], &["unknown key `tolerance` in [time]", "is a key of [newton]"]),

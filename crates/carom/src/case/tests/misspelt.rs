@@ -1,7 +1,7 @@
 //! Every key of every shipped case, misspelt in three ways: one error, whose help names the key that was meant.
 
 use super::super::Document;
-use super::{BARS, resolved};
+use super::{BARS, resolved_as};
 use crate::case::tree::{Node, Table, Value};
 
 /// The byte spans of all keys, with their names.
@@ -21,14 +21,15 @@ fn values(node: &Node, found: &mut Vec<(std::ops::Range<usize>, String)>) {
 }
 
 /// Every case of a directory and those inside it; files of several runs have an `[[arm]]` or a `[grid]` and are none.
-fn shipped(directory: &std::path::Path) -> Vec<String> {
+fn shipped(directory: &std::path::Path) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(directory).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
             found.extend(shipped(&path));
         } else if path.extension().is_some_and(|e| e == "toml") {
-            found.extend(Some(std::fs::read_to_string(&path).unwrap()).filter(|t| t.contains("[[body]]")));
+            let text = std::fs::read_to_string(&path).unwrap();
+            found.extend(text.contains("[[body]]").then(|| (path.display().to_string(), text)));
         }
     }
     found
@@ -39,8 +40,9 @@ fn every_misspelt_key_is_recognised() {
     let mut checked = 0;
     let shipped = shipped(std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases")));
     assert!(shipped.len() >= 2);
-    for text in shipped.iter().map(String::as_str).chain([BARS]) {
-        let document = Document::parse("case.toml", text, &[]).unwrap();
+    let bars = ("bars.toml".to_owned(), BARS.to_owned());
+    for (name, text) in shipped.iter().chain([&bars]) {
+        let document = Document::parse(name, text, &[]).unwrap();
         let mut found = Vec::new();
         keys(document.root(), &mut found);
         for (span, key) in found {
@@ -49,7 +51,7 @@ fn every_misspelt_key_is_recognised() {
             let capital = format!("{}{}", key[..1].to_uppercase(), &key[1..]);
             for wrong in [doubled, swapped, capital].into_iter().filter(|wrong| *wrong != key) {
                 let text = format!("{}{wrong}{}", &text[..span.start], &text[span.end..]);
-                let problems = resolved(&text, &[]).expect_err(&wrong);
+                let problems = resolved_as(name, &text, &[]).expect_err(&wrong);
                 // A header of a list that is misspelt leaves the others of the list: one problem all the same.
                 let told: Vec<_> = problems.iter().map(|p| format!("{} / {}", p.what, p.help)).collect();
                 assert_eq!(problems.len(), 1, "{wrong} for {key}: {told:#?}");

@@ -1,0 +1,97 @@
+//! `carom mesh`: the meshes of a case as one file, for Gmsh or ParaView.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use carom::case::{Case, Document, Problem};
+use carom::model::{Dimension, Space};
+use carom_record::{Block, Cell, FieldSet};
+use carom_solid::{Mesh, gmsh};
+
+use crate::exit::{Exit, Failure};
+use crate::out;
+
+/// Write the meshes of a case into one file, for Gmsh or ParaView
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  carom mesh impact.toml --out impact.msh
+  carom mesh impact.toml --set body.cylinder.mesh.size=0.05 --out fine.vtu")]
+pub(crate) struct Arguments {
+    /// The case file
+    case: PathBuf,
+    /// File to write, .msh (Gmsh 4.1, with the names of bodies and sides) or .vtu; must not exist yet
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Replace a value of the case, as in `carom run`
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    sets: Vec<String>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let path = &arguments.out;
+    let argument = |what, help: &str| Err(Failure::Argument { what, help: help.to_owned() });
+    let msh = match path.extension().and_then(|e| e.to_str()) {
+        Some("msh") => true,
+        Some("vtu") => false,
+        _ => {
+            return argument(format!("{} is neither .msh nor .vtu", path.display()), "the ending says what is written");
+        }
+    };
+    if path.exists() {
+        return argument(format!("{} exists already and is not overwritten", path.display()), "name another file");
+    }
+    let (case, document) = super::case(&arguments.case, &arguments.sets)?;
+    let bytes = match (case.dimension, msh) {
+        (1, true) => return argument("bars are not written as .msh".to_owned(), "write them as .vtu"),
+        (1, false) => vtu(&case, &meshes::<1>(&case, &document)?)?,
+        (_, false) => vtu(&case, &meshes::<2>(&case, &document)?)?,
+        (_, true) => {
+            let meshes = meshes::<2>(&case, &document)?;
+            let named: Vec<_> = case.bodies.iter().map(|b| b.name.as_str()).zip(&meshes).collect();
+            gmsh::write_msh41(&named).into_bytes()
+        }
+    };
+    write(path, &bytes)?;
+    out::line(&path.display().to_string())?;
+    Ok(Exit::Done)
+}
+
+fn meshes<const D: usize>(case: &Case, document: &Document) -> Result<Vec<Mesh<D>>, Failure>
+where
+    Space: Dimension<D>,
+{
+    let mesh = |(k, spec)| {
+        Space::mesh(spec).map_err(|why| {
+            let what = format!("the mesh of body \"{}\" cannot be made", spec.name);
+            Failure::Case(document.diagnose_all(&[Problem::new(format!("body[{k}].mesh"), what, why, "")]))
+        })
+    };
+    case.bodies.iter().enumerate().map(mesh).collect()
+}
+
+/// Bodies side by side; they share no points.
+fn vtu<const D: usize>(case: &Case, meshes: &[Mesh<D>]) -> Result<Vec<u8>, Failure> {
+    let mut fields = FieldSet::default();
+    for (spec, mesh) in case.bodies.iter().zip(meshes) {
+        let first = fields.points.len();
+        fields.points.extend(mesh.nodes.iter().map(|x| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))));
+        fields.blocks.push(Block {
+            body: spec.name.clone(),
+            cell: if D == 1 { Cell::Curve } else { Cell::Triangle },
+            degree: mesh.element.degree(),
+            connectivity: mesh.cells.iter().map(|n| first + n).collect(),
+        });
+    }
+    fields.to_vtu(0.0).map_err(|e| Failure::Refused { what: e.to_string() })
+}
+
+/// A file that was not there before; half a file is taken away again.
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let refused = |e: std::io::Error| Failure::Refused { what: format!("{}: {e}", path.display()) };
+    let mut file = std::fs::File::create_new(path).map_err(refused)?;
+    file.write_all(bytes).and_then(|()| file.sync_all()).map_err(|e| {
+        let _ = std::fs::remove_file(path);
+        refused(e)
+    })
+}

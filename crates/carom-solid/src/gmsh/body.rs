@@ -1,0 +1,134 @@
+//! A physical surface as a body: its boundary, and the named curves on it.
+//!
+//! An edge of one cell alone belongs to the boundary; its cell, counter-clockwise, walks it with the body on the left.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::MshFile;
+use super::checks::orient;
+use super::error::{Fault, MshError};
+use super::part::Part;
+use crate::mesh::{Element, Facet, Mesh};
+use crate::shape::{Tri3, Tri6, Tri10};
+
+impl MshFile {
+    /// The mesh of a physical surface. Its sides are the physical curves with edges on its boundary.
+    ///
+    /// # Errors
+    /// With line or byte: a name that is not there, cells that are no triangles of one order 1 to 3, folded cells, coincident nodes, edges
+    /// of more than two cells, nodes off the plane.
+    pub fn body(&self, surface: &str) -> Result<Mesh<2>, MshError> {
+        let mut part = Part::<2>::of(self, surface)?;
+        match part.element {
+            Element::T3 => orient::<2, 3, Tri3>(&mut part, [0, 2, 1])?,
+            Element::T6 => orient::<2, 6, Tri6>(&mut part, [0, 2, 1, 5, 4, 3])?,
+            _ => orient::<2, 10, Tri10>(&mut part, [0, 2, 1, 8, 7, 6, 5, 4, 3, 9])?,
+        }
+        let boundary = boundary(&part)?;
+        let sides = part.sides(&boundary)?;
+        let (element, nodes, cells) =
+            (part.element, std::mem::take(&mut part.positions), std::mem::take(&mut part.cells));
+        Ok(Mesh { element, nodes, cells, sides, repairs: part.finish() })
+    }
+}
+
+/// The edge of a cell after corner `side`: start, end, then the nodes between them.
+fn edge(cell: &[usize], degree: usize, side: usize) -> Vec<usize> {
+    let between = &cell[3 + side * (degree - 1)..3 + (side + 1) * (degree - 1)];
+    [cell[side], cell[(side + 1) % 3]].into_iter().chain(between.iter().copied()).collect()
+}
+
+/// The same edge from its end to its start.
+fn reversed(edge: &[usize]) -> Vec<usize> {
+    [edge[1], edge[0]].into_iter().chain(edge[2..].iter().rev().copied()).collect()
+}
+
+/// Edges of one cell alone, by start and end.
+fn boundary(part: &Part<2>) -> Result<HashMap<(usize, usize), Facet>, MshError> {
+    let (n, degree) = (part.element.nodes(), part.element.degree());
+    let mut edges: HashMap<(usize, usize), Facet> = HashMap::with_capacity(part.cells.len() / n * 3);
+    for (cell, nodes) in part.cells.chunks_exact(n).enumerate() {
+        for side in 0..3 {
+            let facet = Facet { cell, nodes: edge(nodes, degree, side) };
+            if let Some(other) = edges.insert((facet.nodes[0], facet.nodes[1]), facet) {
+                let [start, end] = [other.nodes[0], other.nodes[1]].map(|n| part.node(n).tag);
+                let (a, b) = (part.rows[other.cell].tag, part.rows[cell].tag);
+                let fault = Fault::Overlap { name: part.name.to_owned(), a, b, start, end };
+                return Err(part.file.at(&part.rows[cell], fault));
+            }
+        }
+    }
+    let mut alone = HashMap::new();
+    for (&(start, end), facet) in &edges {
+        let Some(other) = edges.get(&(end, start)) else {
+            alone.insert((start, end), facet.clone());
+            continue;
+        };
+        if facet.nodes != reversed(&other.nodes) {
+            // The map has no order: name the cells in that of the file.
+            let [a, b] = [facet.cell.min(other.cell), facet.cell.max(other.cell)].map(|c| part.rows[c]);
+            let [start, end] = [start.min(end), start.max(end)].map(|n| part.node(n).tag);
+            let (a, at) = (format!("cell {}", a.tag), b);
+            let fault = Fault::EdgeNodes { a, b: format!("cell {}", b.tag), start, end };
+            return Err(part.file.at(&at, fault));
+        }
+    }
+    Ok(alone)
+}
+
+impl Part<'_, 2> {
+    /// Named curves on the boundary.
+    fn sides(&self, boundary: &HashMap<(usize, usize), Facet>) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
+        let own: HashMap<usize, usize> = self.used.iter().enumerate().map(|(i, &n)| (n, i)).collect();
+        let mut sides = BTreeMap::new();
+        for name in self.file.names(1) {
+            let mut facets = Vec::new();
+            for block in self.file.blocks(1, name) {
+                for (row, line) in block.cells() {
+                    // A curve that leaves the body is not one of its edges.
+                    let Some(line) = line.iter().map(|n| own.get(n).copied()).collect::<Option<Vec<_>>>() else {
+                        continue;
+                    };
+                    let facet = boundary.get(&(line[0], line[1])).or_else(|| boundary.get(&(line[1], line[0])));
+                    let Some(facet) = facet else { continue };
+                    if facet.nodes != line && facet.nodes != reversed(&line) {
+                        let [start, end] = [line[0], line[1]].map(|n| self.node(n).tag);
+                        let (a, b) = (format!("curve \"{name}\""), format!("cell {}", self.rows[facet.cell].tag));
+                        return Err(self.file.at(row, Fault::EdgeNodes { a, b, start, end }));
+                    }
+                    facets.push(facet.clone());
+                }
+            }
+            if !facets.is_empty() {
+                sides.insert(name.to_owned(), walked(facets));
+            }
+        }
+        Ok(sides)
+    }
+}
+
+/// Each facet once, in chains end to start; chains and closed loops begin in the order of the file.
+fn walked(facets: Vec<Facet>) -> Vec<Facet> {
+    let mut next: HashMap<usize, Vec<usize>> = HashMap::new();
+    let mut ends = std::collections::HashSet::new();
+    let mut seen = std::collections::HashSet::new();
+    let facets: Vec<Facet> = facets.into_iter().filter(|f| seen.insert((f.nodes[0], f.nodes[1]))).collect();
+    for (i, facet) in facets.iter().enumerate().rev() {
+        next.entry(facet.nodes[0]).or_default().push(i);
+        ends.insert(facet.nodes[1]);
+    }
+    let heads = (0..facets.len()).filter(|&i| !ends.contains(&facets[i].nodes[0]));
+    let starts: Vec<usize> = heads.chain(0..facets.len()).collect();
+    let mut order = Vec::with_capacity(facets.len());
+    let mut taken = vec![false; facets.len()];
+    for start in starts {
+        let mut here = Some(start).filter(|&i| !taken[i]);
+        while let Some(i) = here {
+            taken[i] = true;
+            order.push(i);
+            let after = next.get_mut(&facets[i].nodes[1]);
+            here = after.and_then(|list| std::iter::from_fn(|| list.pop()).find(|&j| !taken[j]));
+        }
+    }
+    order.into_iter().map(|i| facets[i].clone()).collect()
+}

@@ -1,0 +1,161 @@
+//! What can be wrong with a mesh file: where, what, why, and what to try.
+
+use std::fmt;
+
+/// Place in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Line from 1 of a text.
+    Line(usize),
+    /// Byte from 0 of a binary file.
+    Byte(usize),
+    /// The file as a whole.
+    File,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}: "),
+            Self::Byte(byte) => write!(f, "byte {byte}: "),
+            Self::File => Ok(()),
+        }
+    }
+}
+
+/// Why no mesh came out of a file: [`Display`](fmt::Display) says where and what.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{place}{fault}")]
+pub struct MshError {
+    /// Where.
+    pub place: Place,
+    /// What.
+    pub fault: Fault,
+}
+
+/// What is wrong. Numbers of nodes and cells are the file's tags.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)]
+pub enum Fault {
+    #[error("this is no Gmsh mesh: it does not begin with $MeshFormat")]
+    NotMsh,
+    #[error("Gmsh format version {0} is not read")]
+    Version(String),
+    #[error("the header cannot be true: {0}")]
+    Header(&'static str),
+    #[error("the file ends within {0}")]
+    Truncated(&'static str),
+    #[error("expected {wanted}, found `{found}`")]
+    Unexpected { wanted: String, found: String },
+    #[error("the line ends before {0}")]
+    ShortLine(&'static str),
+    #[error("the line goes on with `{0}`")]
+    LongLine(String),
+    #[error("{count} {what} are announced, but {left} bytes are left")]
+    Count { what: &'static str, count: u64, left: usize },
+    #[error("{count} {what} are announced, and {found} follow")]
+    Total { what: &'static str, count: u64, found: u64 },
+    #[error("section ${0} comes a second time")]
+    SectionTwice(&'static str),
+    #[error("there is no section ${0}")]
+    NoSection(&'static str),
+    #[error("the mesh is partitioned")]
+    Partitioned,
+    #[error("{what} {tag} comes a second time")]
+    TagTwice { what: &'static str, tag: i64 },
+    #[error("node {0} is not at a finite place")]
+    NotFinite(i64),
+    #[error("cell {cell} is of the unknown type {kind}")]
+    UnknownType { cell: i64, kind: i64 },
+    #[error("cell {cell} names node {node}, which is not in the file")]
+    NoNode { cell: i64, node: i64 },
+    #[error("there is no physical {what} \"{name}\"")]
+    NoName { what: &'static str, name: String, names: Vec<String> },
+    #[error("the physical {what} \"{name}\" has no cells")]
+    NoCells { what: &'static str, name: String },
+    #[error("cell {cell} of \"{name}\" is {kind}")]
+    Unsupported { name: String, cell: i64, kind: String },
+    #[error("cell {cell} of \"{name}\" is of order {order}, the cells before are of order {before}")]
+    MixedOrders { name: String, cell: i64, order: usize, before: usize },
+    #[error("node {node} of \"{name}\" is at {axis} = {value:e}, another at {axis} = {other:e}")]
+    NotFlat { name: String, node: i64, axis: char, value: f64, other: f64 },
+    #[error("cell {cell} of \"{name}\" is folded: its Jacobian is {jacobian:.3e} at {at:.6?}")]
+    Folded { name: String, cell: i64, jacobian: f64, at: Vec<f64> },
+    #[error("nodes {a} and {b} of \"{name}\" are both at {at:.9?}")]
+    Coincident { name: String, a: i64, b: i64, at: Vec<f64> },
+    #[error("cells {a} and {b} of \"{name}\" lie on the same side of the edge {start}–{end}")]
+    Overlap { name: String, a: i64, b: i64, start: i64, end: i64 },
+    #[error("the edge {start}–{end} has other nodes between its ends in {a} than in {b}")]
+    EdgeNodes { a: String, b: String, start: i64, end: i64 },
+    #[error("node {node} of \"{name}\" belongs to {cells} cells")]
+    Branching { name: String, node: i64, cells: usize },
+}
+
+impl MshError {
+    pub(super) fn whole(fault: Fault) -> Self {
+        Self { place: Place::File, fault }
+    }
+
+    /// Why this is wrong.
+    pub fn why(&self) -> String {
+        match &self.fault {
+            Fault::NotMsh => "a .msh file of Gmsh begins with the line $MeshFormat".into(),
+            Fault::Version(_) => "versions 4.1 and 2.2 are read, as text and as binary".into(),
+            Fault::Header(_) => {
+                "$MeshFormat holds version, 0 (text) or 1 (binary), the size of a number, and in binary files a one"
+                    .into()
+            }
+            Fault::Truncated(_) | Fault::Count { .. } | Fault::Total { .. } => {
+                "the file was cut short, or its counts were changed".into()
+            }
+            Fault::Unexpected { .. } | Fault::ShortLine(_) | Fault::LongLine(_) => {
+                "the file does not follow the format of its version".into()
+            }
+            Fault::SectionTwice(_) => "it would be unclear which one holds".into(),
+            Fault::NoSection(_) => "bodies need nodes, cells and the names of physical groups".into(),
+            Fault::Partitioned => "its cells belong to parts instead of physical groups".into(),
+            Fault::TagTwice { .. } => "whatever names it could mean either".into(),
+            Fault::NotFinite(_) => "a position is made of finite numbers".into(),
+            Fault::UnknownType { .. } => "the number of its nodes is unknown, so nothing after it can be read".into(),
+            Fault::NoNode { .. } => "every cell is made of nodes of $Nodes".into(),
+            Fault::NoName { what, names, .. } if names.is_empty() => {
+                format!("the file names no physical {what} at all")
+            }
+            Fault::NoName { what, names, .. } => format!("the physical {what}s are: {}", names.join(", ")),
+            Fault::NoCells { .. } => "the name is there, but no cell belongs to it".into(),
+            Fault::Unsupported { .. } => "bodies are made of triangles of order 1, 2 or 3; bars of lines".into(),
+            Fault::MixedOrders { .. } => "a body is made of one element type".into(),
+            Fault::NotFlat { .. } => "a body of dimension 2 lies in a plane z = constant, a bar on the x axis".into(),
+            Fault::Folded { .. } => "the Jacobian of a cell must be positive everywhere in it".into(),
+            Fault::Coincident { .. } => {
+                "cells on the two nodes are not connected: the body would fall apart there".into()
+            }
+            Fault::Overlap { .. } => "an edge separates at most two cells, one on each side".into(),
+            Fault::EdgeNodes { .. } => "neighbours share every node of their edge, or the body gapes".into(),
+            Fault::Branching { .. } => "a node of a bar joins at most two cells".into(),
+        }
+    }
+
+    /// What to try.
+    pub fn help(&self) -> &'static str {
+        match &self.fault {
+            Fault::NotMsh | Fault::Version(_) | Fault::Header(_) => {
+                "save the mesh with Gmsh as .msh: gmsh -2 shape.geo -format msh41"
+            }
+            Fault::NoName { names, .. } if !names.is_empty() => "use one of them, or name the group in Gmsh",
+            Fault::NoName { .. } | Fault::NoCells { .. } | Fault::NoSection(_) => {
+                "name groups in Gmsh, for example Physical Surface(\"body\") = {1}; and mesh again"
+            }
+            Fault::Unsupported { .. } => "mesh with triangles (in Gmsh without Recombine), order at most 3",
+            Fault::MixedOrders { .. } => "set one Mesh.ElementOrder for the whole mesh",
+            Fault::NotFlat { .. } => "put the geometry into the plane z = 0",
+            Fault::Folded { .. } => "optimise high-order cells in Gmsh (Mesh.HighOrderOptimize = 2), or mesh finer",
+            Fault::Coincident { .. } => "merge them in Gmsh: Coherence; in the geometry, or Coherence Mesh;",
+            Fault::Overlap { .. } => "look for surfaces that overlap or are in the group twice",
+            Fault::EdgeNodes { .. } => "set the order after all surfaces are meshed",
+            Fault::Branching { .. } => "a bar is one line of cells",
+            Fault::Partitioned => "save the mesh without partitions",
+            _ => "save the mesh again with Gmsh",
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! The cells of a named group as a mesh of their own: one element, only the nodes they use, in the order of the file.
+
+use super::error::{Fault, MshError};
+use super::{MshFile, Row};
+use crate::mesh::Element;
+
+/// Cells of a group, before they are checked. Node numbers are the part's own.
+pub(super) struct Part<'a, const D: usize> {
+    pub(super) file: &'a MshFile,
+    pub(super) name: &'a str,
+    pub(super) element: Element,
+    /// Places in the file's list of nodes, ascending.
+    pub(super) used: Vec<usize>,
+    pub(super) positions: Vec<[f64; D]>,
+    pub(super) rows: Vec<Row>,
+    pub(super) cells: Vec<usize>,
+    pub(super) repairs: Vec<String>,
+}
+
+impl<'a, const D: usize> Part<'a, D> {
+    pub(super) fn of(file: &'a MshFile, name: &'a str) -> Result<Self, MshError> {
+        let what = if D == 1 { "curve" } else { "surface" };
+        let names = file.names(D);
+        if !names.contains(&name) {
+            let names = names.into_iter().map(str::to_owned).collect();
+            return Err(MshError::whole(Fault::NoName { what, name: name.to_owned(), names }));
+        }
+        let mut element: Option<Element> = None;
+        let (mut rows, mut cells) = (Vec::new(), Vec::new());
+        for block in file.blocks(D, name) {
+            let Some(row) = block.rows.first() else { continue };
+            let name = || name.to_owned();
+            let Some(this) = block.kind.element() else {
+                let fault = Fault::Unsupported { name: name(), cell: row.tag, kind: block.kind.described() };
+                return Err(file.at(row, fault));
+            };
+            let first = *element.get_or_insert(this);
+            if first != this {
+                let (order, before) = (this.degree(), first.degree());
+                return Err(file.at(row, Fault::MixedOrders { name: name(), cell: row.tag, order, before }));
+            }
+            rows.extend_from_slice(&block.rows);
+            cells.extend_from_slice(&block.nodes);
+        }
+        let none = || MshError::whole(Fault::NoCells { what, name: name.to_owned() });
+        let element = element.ok_or_else(none)?;
+
+        // Numbered in the order of the file, so that what is written is read back the same.
+        let mut number = vec![usize::MAX; file.nodes.len()];
+        for &n in &cells {
+            number[n] = 0;
+        }
+        let used: Vec<usize> = (0..number.len()).filter(|&n| number[n] == 0).collect();
+        for (i, &n) in used.iter().enumerate() {
+            number[n] = i;
+        }
+        for n in &mut cells {
+            *n = number[*n];
+        }
+
+        let mut part = Self { file, name, element, used, positions: Vec::new(), rows, cells, repairs: Vec::new() };
+        part.flatten()?;
+        part.apart()?;
+        Ok(part)
+    }
+
+    /// Drops the coordinates that are the same for all nodes: z, and on a line y, which must be zero there.
+    fn flatten(&mut self) -> Result<(), MshError> {
+        let x = |i: usize| &self.file.nodes[self.used[i]].1;
+        let size = (0..self.used.len()).flat_map(|i| x(i).iter().map(|c| c.abs())).fold(0.0, f64::max);
+        for axis in D..3 {
+            let first = if D == 1 { 0.0 } else { x(0)[axis] };
+            if let Some(i) = (0..self.used.len()).find(|&i| (x(i)[axis] - first).abs() > 1e-9 * size) {
+                let node = self.node(i);
+                let (name, value, axis) = (self.name.to_owned(), x(i)[axis], ['x', 'y', 'z'][axis]);
+                let fault = Fault::NotFlat { name, node: node.tag, axis, value, other: first };
+                return Err(self.file.at(&node, fault));
+            }
+            if first.abs() > 1e-9 * size {
+                let z = format!("the body lies in the plane z = {first}; z was dropped");
+                self.repairs.push(z);
+            }
+        }
+        self.positions = (0..self.used.len()).map(|i| std::array::from_fn(|d| x(i)[d])).collect();
+        Ok(())
+    }
+
+    /// Two nodes at one place would hold no cells together.
+    fn apart(&self) -> Result<(), MshError> {
+        let near = 1e-9 * crate::mesh::diameter(&self.positions);
+        let mut order: Vec<usize> = (0..self.positions.len()).collect();
+        order.sort_unstable_by(|&a, &b| self.positions[a][0].total_cmp(&self.positions[b][0]));
+        // Columns of equal x hold many nodes: the second coordinate is compared by sorting each column.
+        let mut start = 0;
+        for i in 1..=order.len() {
+            if i < order.len() && self.positions[order[i]][0] - self.positions[order[i - 1]][0] <= near {
+                continue;
+            }
+            let column = &mut order[start..i];
+            start = i;
+            column.sort_unstable_by(|&a, &b| self.positions[a][D - 1].total_cmp(&self.positions[b][D - 1]));
+            for pair in column.windows(2) {
+                let (a, b) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+                if (0..D).all(|d| (self.positions[a][d] - self.positions[b][d]).abs() <= near) {
+                    let (name, at) = (self.name.to_owned(), self.positions[b].to_vec());
+                    let fault = Fault::Coincident { name, a: self.node(a).tag, b: self.node(b).tag, at };
+                    return Err(self.file.at(&self.node(b), fault));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A node as it was read.
+    pub(super) fn node(&self, node: usize) -> Row {
+        self.file.nodes[self.used[node]].0
+    }
+
+    /// Says what was dropped.
+    pub(super) fn finish(mut self) -> Vec<String> {
+        let elsewhere: usize = self.file.unused();
+        if elsewhere > 0 {
+            self.repairs.push(format!("nodes of the file that belong to no cell were dropped: {elsewhere}"));
+        }
+        self.repairs
+    }
+}
+
+impl MshFile {
+    /// Nodes that no line, triangle or other cell uses.
+    fn unused(&self) -> usize {
+        let mut used = vec![false; self.nodes.len()];
+        self.blocks.iter().filter(|b| b.kind.nodes > 1).flat_map(|b| &b.nodes).for_each(|&n| used[n] = true);
+        used.iter().filter(|u| !**u).count()
+    }
+}

@@ -1,0 +1,188 @@
+//! The sections of a .msh file, versions 4.1 and 2.2 (Gmsh reference manual, "Gmsh file formats").
+
+use std::collections::HashMap;
+
+use super::cell_type::CellType;
+use super::error::{Fault, MshError, Place};
+use super::source::{Encoding, Source};
+use super::{Block, Group, MshFile, Row, version_2, version_4};
+
+/// Sections read so far. Cells name nodes by tag and, in 4.1, groups through entities, until all is there.
+#[derive(Default)]
+pub(super) struct Sections {
+    pub(super) groups: Option<Vec<Group>>,
+    /// Physical groups of an entity by its dimension and tag.
+    pub(super) entities: Option<HashMap<(i64, i64), Vec<i64>>>,
+    pub(super) nodes: Option<Vec<(Row, [f64; 3])>>,
+    pub(super) blocks: Option<Vec<RawBlock>>,
+}
+
+/// Cells of one type on one entity (4.1) or in one group (2.2), node tags row after row.
+pub(super) struct RawBlock {
+    pub(super) kind: CellType,
+    pub(super) dimension: i64,
+    pub(super) owner: i64,
+    pub(super) rows: Vec<Row>,
+    pub(super) nodes: Vec<i64>,
+}
+
+/// Reads a .msh file of version 4.1 or 2.2, text or binary of either byte order.
+///
+/// # Errors
+/// With line or byte: whatever does not follow the format.
+pub fn read(bytes: &[u8]) -> Result<MshFile, MshError> {
+    let mut source = Source::new(bytes);
+    if !matches!(source.next_line(), Ok(Some((_, "$MeshFormat")))) {
+        return Err(MshError { place: Place::Line(1), fault: Fault::NotMsh });
+    }
+    let version = header(&mut source)?;
+    end(&mut source, "$EndMeshFormat", "$MeshFormat")?;
+    let mut sections = Sections::default();
+    while let Some((place, name)) = source.next_line()? {
+        let twice = |there: bool, name| {
+            if there { Err(MshError { place, fault: Fault::SectionTwice(name) }) } else { Ok(()) }
+        };
+        match (name, version) {
+            ("$PhysicalNames", _) => {
+                twice(sections.groups.is_some(), "PhysicalNames")?;
+                sections.groups = Some(physical_names(&mut source)?);
+                end(&mut source, "$EndPhysicalNames", "$PhysicalNames")?;
+            }
+            ("$Entities", 4) => {
+                twice(sections.entities.is_some(), "Entities")?;
+                sections.entities = Some(version_4::entities(&mut source)?);
+                end(&mut source, "$EndEntities", "$Entities")?;
+            }
+            ("$PartitionedEntities", _) => return Err(MshError { place, fault: Fault::Partitioned }),
+            ("$Nodes", _) => {
+                twice(sections.nodes.is_some(), "Nodes")?;
+                let read = if version == 4 { version_4::nodes } else { version_2::nodes };
+                sections.nodes = Some(read(&mut source)?);
+                end(&mut source, "$EndNodes", "$Nodes")?;
+            }
+            ("$Elements", _) => {
+                twice(sections.blocks.is_some(), "Elements")?;
+                let read = if version == 4 { version_4::elements } else { version_2::elements };
+                sections.blocks = Some(read(&mut source)?);
+                end(&mut source, "$EndElements", "$Elements")?;
+            }
+            (name, _) => {
+                let Some(other) = name.strip_prefix('$').filter(|n| !n.starts_with("End")) else {
+                    return Err(unexpected(place, "a section $…", name));
+                };
+                source.skip_past(&format!("$End{other}"), "a section that is not read")?;
+            }
+        }
+    }
+    resolved(sections, source.encoding == Encoding::Text)
+}
+
+fn header(source: &mut Source) -> Result<u8, MshError> {
+    let (place, line) = source.line("$MeshFormat")?;
+    let wrong = |fault| Err(MshError { place, fault });
+    let words: Vec<_> = line.split_ascii_whitespace().collect();
+    let [version, binary, size] = words[..] else {
+        return Err(unexpected(place, "version, file type and size", line));
+    };
+    let number = match version.parse::<f64>() {
+        Ok(4.1) => 4,
+        Ok(2.2) => 2,
+        _ => return wrong(Fault::Version(version.to_owned())),
+    };
+    match (binary, size) {
+        ("0", _) => return Ok(number),
+        ("1", "8") => {}
+        ("1", _) => return wrong(Fault::Header("a binary file must have numbers of 8 bytes")),
+        _ => return wrong(Fault::Header("the file type is neither 0 nor 1")),
+    }
+    source.encoding = Encoding::Binary { big_endian: false };
+    match source.int("$MeshFormat")? {
+        1 => {}
+        0x0100_0000 => source.encoding = Encoding::Binary { big_endian: true },
+        _ => return wrong(Fault::Header("the integer after it is 1 in neither byte order")),
+    }
+    Ok(number)
+}
+
+fn end(source: &mut Source, wanted: &str, section: &'static str) -> Result<(), MshError> {
+    let (place, found) = source.line(section)?;
+    if found == wanted {
+        return Ok(());
+    }
+    // Cut within its own last word.
+    if source.left() == 0 && wanted.starts_with(found) {
+        return Err(source.error(Fault::Truncated(section)));
+    }
+    Err(unexpected(place, wanted, found))
+}
+
+fn unexpected(place: Place, wanted: &str, found: &str) -> MshError {
+    let fault = Fault::Unexpected { wanted: wanted.to_owned(), found: found.chars().take(40).collect() };
+    MshError { place, fault }
+}
+
+/// Text in both encodings: `dimension tag "name"`.
+fn physical_names(source: &mut Source) -> Result<Vec<Group>, MshError> {
+    source.as_text(|source| {
+        let count = source.count("physical names", 2)?;
+        source.end_row()?;
+        let mut groups = Vec::new();
+        for _ in 0..count {
+            let (place, line) = source.line("$PhysicalNames")?;
+            let mut parts = line.splitn(3, char::is_whitespace);
+            let mut number = || parts.next()?.parse::<i64>().ok();
+            let numbers = (number(), number());
+            let name = parts.next().and_then(|n| n.trim().strip_prefix('"')?.strip_suffix('"'));
+            let ((Some(dimension), Some(tag)), Some(name)) = (numbers, name) else {
+                return Err(unexpected(place, "dimension, number and \"name\"", line));
+            };
+            groups.push(Group { dimension, tag, name: name.to_owned() });
+        }
+        Ok(groups)
+    })
+}
+
+/// Tags become places in lists.
+fn resolved(sections: Sections, text: bool) -> Result<MshFile, MshError> {
+    let missing = |name| MshError::whole(Fault::NoSection(name));
+    let raw_nodes = sections.nodes.ok_or_else(|| missing("Nodes"))?;
+    let raw_blocks = sections.blocks.ok_or_else(|| missing("Elements"))?;
+    let groups = sections.groups.unwrap_or_default();
+    let mut index = HashMap::with_capacity(raw_nodes.len());
+    for (i, (row, _)) in raw_nodes.iter().enumerate() {
+        if index.insert(row.tag, i).is_some() {
+            return Err(MshError { place: place(text, row), fault: Fault::TagTwice { what: "node", tag: row.tag } });
+        }
+    }
+    let mut blocks = Vec::with_capacity(raw_blocks.len());
+    for raw in raw_blocks {
+        let groups = match &sections.entities {
+            Some(entities) => entities.get(&(raw.dimension, raw.owner)).cloned().unwrap_or_default(),
+            None => vec![raw.owner],
+        };
+        let mut nodes = Vec::with_capacity(raw.nodes.len());
+        for (tags, row) in raw.nodes.chunks_exact(raw.kind.nodes).zip(&raw.rows) {
+            for &node in tags {
+                let fault = Fault::NoNode { cell: row.tag, node };
+                nodes.push(*index.get(&node).ok_or(MshError { place: place(text, row), fault })?);
+            }
+        }
+        blocks.push(Block { kind: raw.kind, groups, rows: raw.rows, nodes });
+    }
+    Ok(MshFile { text, groups, nodes: raw_nodes, blocks })
+}
+
+/// Where a cell was written.
+pub(super) fn place(text: bool, row: &Row) -> Place {
+    if text { Place::Line(row.place) } else { Place::Byte(row.place) }
+}
+
+/// Coordinates of a node.
+pub(super) fn position(source: &mut Source, tag: i64) -> Result<[f64; 3], MshError> {
+    let place = source.place();
+    let mut x = [0.0; 3];
+    for x in &mut x {
+        *x = source.double("$Nodes")?;
+    }
+    if x.iter().all(|x| x.is_finite()) { Ok(x) } else { Err(MshError { place, fault: Fault::NotFinite(tag) }) }
+}

@@ -1,0 +1,219 @@
+//! Meshes of Gmsh (made by `scripts/make_gmsh_fixtures.py`): every version, encoding and order gives the same bodies.
+
+#![allow(clippy::unwrap_used)]
+
+use std::f64::consts::PI;
+use std::path::PathBuf;
+
+use carom_solid::gmsh::{self, MshFile};
+use carom_solid::{Element, Law, Mesh, body};
+
+const ELEMENTS: [Element; 3] = [Element::T3, Element::T6, Element::T10];
+
+fn bytes(name: &str) -> Vec<u8> {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/msh").join(name);
+    std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+fn fixture(name: &str) -> MshFile {
+    gmsh::read(&bytes(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+fn variants(order: usize) -> impl Iterator<Item = String> {
+    ["41_binary", "41_ascii", "22_binary", "22_ascii"].into_iter().map(move |v| format!("impact_order{order}_{v}.msh"))
+}
+
+/// ∫dΩ by the quadrature of the body.
+fn area(mesh: &Mesh<2>) -> f64 {
+    let body = body(mesh.clone(), Law::NeoHookean { lambda: 1.0, mu: 1.0 }, 1.0, 1.0).unwrap();
+    let n = mesh.element.nodes();
+    let volumes = |cell| {
+        let mut volumes = vec![0.0; n];
+        body.cell_volumes(cell, &mut volumes);
+        volumes.iter().sum::<f64>()
+    };
+    (0..mesh.cell_count()).map(volumes).sum()
+}
+
+/// Places of the nodes of every cell, and of every side in its order: what does not depend on numbering.
+fn geometry(mesh: &Mesh<2>) -> (Vec<Vec<[f64; 2]>>, Vec<(String, Vec<[f64; 2]>)>) {
+    let mut cells: Vec<Vec<_>> =
+        (0..mesh.cell_count()).map(|c| mesh.cell(c).iter().map(|&n| mesh.nodes[n]).collect()).collect();
+    cells.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    let places = |side: &String| mesh.side_nodes(side).unwrap().into_iter().map(|n| mesh.nodes[n]).collect();
+    (cells, mesh.sides.keys().map(|side| (side.clone(), places(side))).collect())
+}
+
+fn near(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-14)
+}
+
+#[test]
+fn versions_and_encodings_give_the_same_bodies() {
+    for order in 1..=3 {
+        for surface in ["cylinder", "prism"] {
+            let bodies: Vec<_> = variants(order).map(|v| fixture(&v).body(surface).unwrap()).collect();
+            // Binary files hold every bit, texts of Gmsh 16 digits.
+            assert_eq!(geometry(&bodies[0]), geometry(&bodies[2]));
+            let (cells, sides) = geometry(&bodies[0]);
+            for body in &bodies {
+                assert_eq!(body.element, ELEMENTS[order - 1]);
+                let (other_cells, other_sides) = geometry(body);
+                assert!(cells.iter().all(|a| other_cells.iter().any(|b| near(a, b))));
+                assert_eq!(cells.len(), other_cells.len());
+                assert_eq!(sides.len(), other_sides.len());
+                for (a, b) in sides.iter().zip(&other_sides) {
+                    assert!(a.0 == b.0 && near(&a.1, &b.1), "{a:?}\n{b:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn areas_and_arcs_are_exact() {
+    for order in 1..=3 {
+        for variant in variants(order) {
+            let file = fixture(&variant);
+            let (disc, prism) = (file.body("cylinder").unwrap(), file.body("prism").unwrap());
+            assert!((area(&prism) - 0.5).abs() < 1e-13, "{}", area(&prism));
+            // An arc of angle 2φ between nodes: the chord's error is R²(φ − sin φ cos φ) a facet, φ = π/2/n; curved ones far less.
+            let miss = PI / 8.0 - area(&disc);
+            let arcs = disc.sides["arc"].len() as f64;
+            let half = PI / 2.0 / arcs;
+            let chord = 0.25 * (half - half.sin() * half.cos()) * arcs;
+            match order {
+                1 => assert!((miss / chord - 1.0).abs() < 1e-9, "{miss} {chord}"),
+                2 => assert!(miss.abs() < 4e-3 * chord, "{miss} {chord}"),
+                _ => assert!(miss.abs() < 1e-3 * chord, "{miss} {chord}"),
+            }
+            for n in disc.side_nodes("arc").unwrap() {
+                let radius = disc.nodes[n][0].hypot(disc.nodes[n][1] - 1.0);
+                assert!((radius - 0.5).abs() < 1e-12, "{variant}: {:e}", radius - 0.5);
+            }
+        }
+    }
+}
+
+/// Facets follow each other with the body on the left; names belong to the bodies they touch.
+#[test]
+fn sides_are_walked_with_the_body_on_the_left() {
+    for order in 1..=3 {
+        for variant in variants(order) {
+            let file = fixture(&variant);
+            assert_eq!(file.names(2), ["cylinder", "prism"]);
+            let (disc, prism) = (file.body("cylinder").unwrap(), file.body("prism").unwrap());
+            assert_eq!(disc.sides.keys().collect::<Vec<_>>(), ["arc", "axis"]);
+            assert_eq!(prism.sides.keys().collect::<Vec<_>>(), ["axis", "bottom", "right", "top"]);
+            for (mesh, middle) in [(&disc, [0.2, 1.0]), (&prism, [0.5, -0.25])] {
+                for (side, facets) in &mesh.sides {
+                    assert!(facets.windows(2).all(|f| f[0].nodes[1] == f[1].nodes[0]), "{side}");
+                    for facet in facets {
+                        assert!(facet.nodes.iter().all(|n| mesh.cell(facet.cell).contains(n)));
+                        let (a, b) = (mesh.nodes[facet.nodes[0]], mesh.nodes[facet.nodes[1]]);
+                        let (t, m) = ([b[0] - a[0], b[1] - a[1]], [middle[0] - a[0], middle[1] - a[1]]);
+                        assert!(t[0] * m[1] - t[1] * m[0] > 0.0, "{side}");
+                        let along: Vec<f64> = [facet.nodes[0]]
+                            .iter()
+                            .chain(&facet.nodes[2..])
+                            .chain(&facet.nodes[1..2])
+                            .map(|&n| (mesh.nodes[n][0] - a[0]) * t[0] + (mesh.nodes[n][1] - a[1]) * t[1])
+                            .collect();
+                        assert!(along.windows(2).all(|w| w[1] > w[0]), "{along:?}");
+                    }
+                }
+            }
+            let ends = |mesh: &Mesh<2>, side: &str| {
+                let nodes = mesh.side_nodes(side).unwrap();
+                [mesh.nodes[nodes[0]], mesh.nodes[nodes[nodes.len() - 1]]]
+            };
+            assert!(near(&ends(&disc, "arc"), &[[0.0, 0.5], [0.0, 1.5]]));
+            assert!(near(&ends(&prism, "top"), &[[1.0, 0.0], [0.0, 0.0]]));
+        }
+    }
+}
+
+/// Everything saved, with the centre of the arcs and parameters of the nodes: the same body, and the lost node is told.
+#[test]
+fn parameters_are_read_past() {
+    for name in ["parametric_41_ascii.msh", "parametric_41_binary.msh"] {
+        let file = fixture(name);
+        let disc = file.body("cylinder").unwrap();
+        assert_eq!(disc.element, Element::T6);
+        assert!((area(&disc) - PI / 8.0).abs() < 1e-3);
+        assert_eq!(disc.repairs, ["nodes of the file that belong to no cell were dropped: 1"]);
+    }
+}
+
+#[test]
+fn quadrangles_concern_their_body_alone() {
+    let file = fixture("quadrangles.msh");
+    assert!(file.body("cylinder").is_ok());
+    let error = file.body("prism").unwrap_err();
+    assert!(error.to_string().contains("is a quadrangle of 4 nodes"), "{error}");
+    assert!(error.to_string().starts_with("line "), "{error}");
+}
+
+#[test]
+fn bars() {
+    for name in ["bar.msh", "bar_22.msh"] {
+        let bar = fixture(name).bar("bar").unwrap();
+        assert_eq!((bar.element, bar.cell_count(), bar.nodes.len()), (Element::L4, 4, 13));
+        let at = |side: &str| bar.nodes[bar.sides[side][0].nodes[0]][0];
+        assert_eq!((at("left"), at("right")), (0.0, 2.0));
+        assert!(bar.repairs.is_empty());
+    }
+}
+
+/// Two triangles on the unit square in a binary file of either byte order, written here by the format's description.
+fn square(version: f64, big_endian: bool) -> Vec<u8> {
+    let int = |n: i32| if big_endian { n.to_be_bytes() } else { n.to_le_bytes() }.to_vec();
+    let size = |n: i64| if big_endian { n.to_be_bytes() } else { n.to_le_bytes() }.to_vec();
+    let double = |x: f64| if big_endian { x.to_be_bytes() } else { x.to_le_bytes() }.to_vec();
+    let ints = |all: &[i32]| all.iter().flat_map(|n| int(*n)).collect::<Vec<_>>();
+    let sizes = |all: &[i64]| all.iter().flat_map(|n| size(*n)).collect::<Vec<_>>();
+    let doubles = |all: &[f64]| all.iter().flat_map(|x| double(*x)).collect::<Vec<_>>();
+    let nodes = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let box_of = [0.0, 0.0, 0.0, 1.0, 1.0, 0.0];
+    let names = b"\n$EndMeshFormat\n$PhysicalNames\n2\n1 7 \"low\"\n2 8 \"plate\"\n$EndPhysicalNames\n".to_vec();
+    let start = [format!("$MeshFormat\n{version} 1 8\n").into_bytes(), int(1), names].concat();
+    let nodes = if version == 4.1 {
+        [
+            b"$Entities\n".to_vec(),
+            sizes(&[0, 1, 1, 0]),
+            [int(1), doubles(&box_of), size(1), int(7), size(2), ints(&[1, -2])].concat(),
+            [int(5), doubles(&box_of), size(1), int(-8), size(0)].concat(),
+            b"\n$EndEntities\n$Nodes\n".to_vec(),
+            sizes(&[1, 4, 1, 4]),
+            [ints(&[2, 5, 0]), sizes(&[4, 1, 2, 3, 4]), doubles(nodes.as_flattened())].concat(),
+            b"\n$EndNodes\n$Elements\n".to_vec(),
+            sizes(&[2, 3, 1, 3]),
+            [ints(&[1, 1, 1]), sizes(&[1, 1, 2, 1])].concat(),
+            [ints(&[2, 5, 2]), sizes(&[2, 2, 1, 2, 3, 3, 1, 3, 4])].concat(),
+        ]
+        .concat()
+    } else {
+        let rows: Vec<u8> = (1..).zip(&nodes).flat_map(|(n, x)| [int(n), doubles(x)].concat()).collect();
+        [
+            [b"$Nodes\n4\n".to_vec(), rows, b"\n$EndNodes\n$Elements\n3\n".to_vec()].concat(),
+            ints(&[1, 1, 2, 1, 7, 1, 2, 1]),
+            ints(&[2, 2, 2, 2, 8, 1, 1, 2, 3, 3, 8, 1, 1, 3, 4]),
+        ]
+        .concat()
+    };
+    [start, nodes, b"\n$EndElements\n".to_vec()].concat()
+}
+
+#[test]
+fn byte_orders() {
+    for version in [2.2, 4.1] {
+        for big_endian in [false, true] {
+            let mesh = gmsh::read(&square(version, big_endian)).unwrap().body("plate").unwrap();
+            assert_eq!(mesh.nodes, [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+            assert_eq!(
+                (mesh.cells.as_slice(), mesh.sides["low"][0].nodes.as_slice()),
+                (&[0, 1, 2, 0, 2, 3][..], &[0, 1][..])
+            );
+        }
+    }
+}

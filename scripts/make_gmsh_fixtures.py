@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""Makes the .msh files that tests read and the mesh of cases/gmsh, with Gmsh itself.
+
+    pip install gmsh==4.15.2        (its wheel needs libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1)
+    python3 scripts/make_gmsh_fixtures.py
+
+The half-model of the impact: a half-disc `cylinder` (radius 0.5, centre (0, 1)) above a prism (1 x 0.5) whose top is y = 0. The curve
+`axis` touches both bodies. Cells of order 3 go through Gmsh's high-order optimisation.
+"""
+
+from pathlib import Path
+
+import gmsh
+
+ROOT = Path(__file__).resolve().parent.parent
+TESTS = ROOT / "crates/carom-solid/tests/msh"
+
+
+def start(name):
+    gmsh.clear()
+    gmsh.model.add(name)
+    for option in ("Mesh.Binary", "Mesh.SaveAll", "Mesh.SaveParametric", "Mesh.RecombineAll"):
+        gmsh.option.setNumber(option, 0)
+
+
+def impact(disc_size, prism_size, square=False):
+    geo = gmsh.model.geo
+    start("impact")
+
+    def point(x, y, size):
+        return geo.addPoint(x, y, 0, size)
+
+    center = point(0, 1, disc_size)
+    low, right, high = point(0, 0.5, disc_size), point(0.5, 1, disc_size), point(0, 1.5, disc_size)
+    arcs = [geo.addCircleArc(low, center, right), geo.addCircleArc(right, center, high)]
+    axis = geo.addLine(high, low)
+    disc = geo.addPlaneSurface([geo.addCurveLoop([*arcs, axis])])
+    corners = [point(x, y, prism_size) for x, y in ((0, -0.5), (1, -0.5), (1, 0), (0, 0))]
+    lines = [geo.addLine(corners[i], corners[(i + 1) % 4]) for i in range(4)]
+    prism = geo.addPlaneSurface([geo.addCurveLoop(lines)])
+    geo.synchronize()
+    group = gmsh.model.addPhysicalGroup
+    group(2, [disc], name="cylinder")
+    group(2, [prism], name="prism")
+    group(1, arcs, name="arc")
+    group(1, [axis, lines[3]], name="axis")
+    for name, line in zip(("bottom", "right", "top"), lines):
+        group(1, [line], name=name)
+    if square:
+        gmsh.model.mesh.setRecombine(2, prism)
+
+
+def mesh(order, dimension=2):
+    gmsh.model.mesh.generate(dimension)
+    gmsh.model.mesh.setOrder(order)
+    if order == 3:
+        gmsh.model.mesh.optimize("HighOrder")
+
+
+def write(path, version=4.1, binary=False):
+    gmsh.option.setNumber("Mesh.MshFileVersion", version)
+    gmsh.option.setNumber("Mesh.Binary", binary)
+    gmsh.write(str(path))
+    print(f"{path.relative_to(ROOT)}: {path.stat().st_size} bytes, {len(gmsh.model.mesh.getNodes()[0])} nodes")
+
+
+def main():
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("General.NumThreads", 1)
+    TESTS.mkdir(parents=True, exist_ok=True)
+    for order in (1, 2, 3):
+        impact(0.2, 0.25)
+        mesh(order)
+        for version, label in ((2.2, "22"), (4.1, "41")):
+            for binary, encoding in ((False, "ascii"), (True, "binary")):
+                write(TESTS / f"impact_order{order}_{label}_{encoding}.msh", version, binary)
+
+    # Everything saved, with parameters on curves and surfaces: what Carom must read past.
+    impact(0.3, 0.4)
+    mesh(2)
+    gmsh.option.setNumber("Mesh.SaveAll", 1)
+    gmsh.option.setNumber("Mesh.SaveParametric", 1)
+    write(TESTS / "parametric_41_ascii.msh")
+    write(TESTS / "parametric_41_binary.msh", binary=True)
+
+    impact(0.3, 0.4, square=True)
+    mesh(1)
+    write(TESTS / "quadrangles.msh")
+
+    start("bar")
+    ends = [gmsh.model.geo.addPoint(x, 0, 0, 0.5) for x in (0, 2)]
+    line = gmsh.model.geo.addLine(*ends)
+    gmsh.model.geo.synchronize()
+    gmsh.model.addPhysicalGroup(1, [line], name="bar")
+    for end, name in zip(ends, ("left", "right")):
+        gmsh.model.addPhysicalGroup(0, [end], name=name)
+    mesh(3, 1)
+    write(TESTS / "bar.msh")
+    write(TESTS / "bar_22.msh", 2.2)
+
+    impact(0.1, 0.125)
+    mesh(3)
+    write(ROOT / "cases/gmsh/impact.msh")
+    gmsh.finalize()
+
+
+if __name__ == "__main__":
+    main()
