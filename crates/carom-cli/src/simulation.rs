@@ -139,9 +139,10 @@ pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
     match carom_report::report(directory) {
         Ok(made) => Ok(made.page),
         Err(error) if error.exit_code() == 4 => Err(Failure::Refused { what: error.to_string() }),
-        Err(error) => {
-            Err(Failure::Argument { what: error.to_string(), help: "run the case again, or go on with carom resume".into() })
-        }
+        Err(error) => Err(Failure::Argument {
+            what: error.to_string(),
+            help: "run the case again, or go on with carom resume".into(),
+        }),
     }
 }
 
@@ -196,7 +197,11 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
         expectations: expectations
             .map(|e| Expectation { what: e.what.clone(), wanted: e.expected.clone(), got: e.got, met: e.pass })
             .collect(),
-        profile: if options.profile { run.manifest.timings.iter().map(|(k, v)| (k.clone(), *v)).collect() } else { Vec::new() },
+        profile: if options.profile {
+            run.manifest.timings.iter().map(|(k, v)| (k.clone(), *v)).collect()
+        } else {
+            Vec::new()
+        },
         report: page,
         remarks: done.remarks,
     })
@@ -221,7 +226,9 @@ fn extremes(run: &carom_record::Run) -> Vec<Extreme> {
     columns
         .filter_map(|column| {
             let values = run.column(&column.name)?;
-            let place = |beats: fn(&f64, &f64) -> std::cmp::Ordering| (0..values.len()).min_by(|a, b| beats(&values[*a], &values[*b]));
+            let place = |beats: fn(&f64, &f64) -> std::cmp::Ordering| {
+                (0..values.len()).min_by(|a, b| beats(&values[*a], &values[*b]))
+            };
             let (low, high) = (place(f64::total_cmp)?, place(|a, b| b.total_cmp(a))?);
             Some(Extreme {
                 column: column.name.clone(),
