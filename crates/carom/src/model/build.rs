@@ -63,6 +63,8 @@ where
     let contacts = contacts(case, &parts, &massless, &mut problems);
     let probes = probes(case, &parts, &mut problems);
 
+    problems.extend(massless_refusals(case, &parts));
+
     let free: Vec<usize> = (0..dofs).filter(|&i| !fixed[i]).collect();
     let mut unknown = vec![usize::MAX; dofs];
     for (place, &dof) in free.iter().enumerate() {
@@ -244,6 +246,29 @@ where
         contacts.push(contact);
     }
     contacts
+}
+
+/// A body without mass balances at s + 1 alone; rules that act inside the step have no meaning for it.
+fn massless_refusals<const D: usize>(case: &Case, parts: &[Part<D>]) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    let Some(part) = parts.iter().find(|p| p.massless) else { return problems };
+    let what = |rule: &str| format!("body \"{}\" has no mass, and {rule} needs it", part.name);
+    if case.time.scheme.forces == carom_time::ForceRule::AverageState {
+        let why = "its balance holds at the end of the step, not at the averaged state";
+        let help = "forces = \"average-forces\", or a small density";
+        problems.push(Problem::new("time.scheme.forces", what("forces = \"average-state\""), why, help));
+    }
+    let touches =
+        |name: &str| name.split_once('.').is_some_and(|(body, _)| parts.iter().any(|p| p.massless && p.name == body));
+    for (k, contact) in case.contacts.iter().enumerate() {
+        let primary = matches!(&contact.primary, PrimarySpec::Side(name) if touches(name));
+        if contact.force == crate::case::ForceTime::End && (primary || touches(&contact.secondary)) {
+            let why = "the share of the contact force on a massless side is that of its internal forces";
+            let help = "force = \"alpha_f\", or a small density";
+            problems.push(Problem::new(format!("contact[{k}].force"), what("force = \"end\""), why, help));
+        }
+    }
+    problems
 }
 
 fn probes<const D: usize>(case: &Case, parts: &[Part<D>], problems: &mut Vec<Problem>) -> Vec<Probe> {
