@@ -139,9 +139,10 @@ pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
     match carom_report::report(directory) {
         Ok(made) => Ok(made.page),
         Err(error) if error.exit_code() == 4 => Err(Failure::Refused { what: error.to_string() }),
-        Err(error) => {
-            Err(Failure::Argument { what: error.to_string(), help: "run the case again, or go on with carom resume".into() })
-        }
+        Err(error) => Err(Failure::Argument {
+            what: error.to_string(),
+            help: "run the case again, or go on with carom resume".into(),
+        }),
     }
 }
 
@@ -196,7 +197,11 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
         expectations: expectations
             .map(|e| Expectation { what: e.what.clone(), wanted: e.expected.clone(), got: e.got, met: e.pass })
             .collect(),
-        profile: if options.profile { run.manifest.timings.iter().map(|(k, v)| (k.clone(), *v)).collect() } else { Vec::new() },
+        profile: if options.profile {
+            run.manifest.timings.iter().map(|(k, v)| (k.clone(), *v)).collect()
+        } else {
+            Vec::new()
+        },
         report: page,
         remarks: done.remarks,
     })
@@ -205,11 +210,8 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
 /// The page of a run: made, unless nobody wants it or nothing was computed since it was made.
 fn page(done: &recording::Outcome, options: Options) -> Result<Option<PathBuf>, Failure> {
     let made = done.directory.join("report.html");
-    let computed = done.wall > 0.0;
-    match options.report {
-        true if computed || !made.exists() => report(&done.directory).map(Some),
-        _ => Ok((!computed && made.exists()).then_some(made)),
-    }
+    let kept = done.wall == 0.0 && made.exists();
+    if options.report && !kept { report(&done.directory).map(Some) } else { Ok(kept.then_some(made)) }
 }
 
 fn stopped_help(reason: &carom::Stopped) -> String {

@@ -181,7 +181,8 @@ fn threads_and_outputs_change_no_bit() {
     ended(&mut place.run("two", &["--threads", "2"]), 0);
     assert_same(&expected, &place.record("two"), "--threads 2");
 
-    let sparse = ["--set", "output.fields_every=0", "--set", "output.history_every=3", "--set", "output.checkpoint_every=50"];
+    let sparse =
+        ["--set", "output.fields_every=0", "--set", "output.history_every=3", "--set", "output.checkpoint_every=50"];
     ended(&mut place.run("sparse", &sparse), 0);
     let sparse = place.record("sparse");
     assert!(!sparse.keys().any(|name| name.starts_with("fields/")));

@@ -121,7 +121,13 @@ mod tests {
     #[test]
     fn penetration_closes_tension_opens_and_ties_stay() {
         let mut set = ActiveSet::new(1e-12, true);
-        let state = [pair(false, -1e-3, 0.0), pair(true, 0.0, 0.5), pair(true, 0.0, -5.0), pair(true, 0.0, 1e-11), pair(false, -1e-13, 0.0)];
+        let state = [
+            pair(false, -1e-3, 0.0),
+            pair(true, 0.0, 0.5),
+            pair(true, 0.0, -5.0),
+            pair(true, 0.0, 1e-11),
+            pair(false, -1e-13, 0.0),
+        ];
         assert_eq!(set.changes(&state, false).unwrap(), [0, 1]);
     }
 

@@ -44,13 +44,7 @@ impl ContactMethod<1> for NodeToNode {
         Ok(false)
     }
 
-    fn linearise(
-        &self,
-        _: &mut Pair,
-        y: &[[f64; 1]],
-        _: f64,
-        out: &mut Linearised<1>,
-    ) -> Result<(), ContactError> {
+    fn linearise(&self, _: &mut Pair, y: &[[f64; 1]], _: f64, out: &mut Linearised<1>) -> Result<(), ContactError> {
         out.count = 2;
         out.nodes[..2].copy_from_slice(&[self.secondary[0], self.primary[0]]);
         out.gap = self.outward * (y[self.secondary[0]][0] - y[self.primary[0]][0]);

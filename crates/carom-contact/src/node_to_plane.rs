@@ -44,13 +44,7 @@ impl<const D: usize> ContactMethod<D> for NodeToPlane<D> {
         Ok(false)
     }
 
-    fn linearise(
-        &self,
-        pair: &mut Pair,
-        y: &[[f64; D]],
-        _: f64,
-        out: &mut Linearised<D>,
-    ) -> Result<(), ContactError> {
+    fn linearise(&self, pair: &mut Pair, y: &[[f64; D]], _: f64, out: &mut Linearised<D>) -> Result<(), ContactError> {
         let node = self.secondary[pair.node];
         out.count = 1;
         out.nodes[0] = node;

@@ -78,8 +78,8 @@ impl NodeToSegment {
         }
         let (_, facet, xi) = closest?;
         let start = closest_point(self.primary.facet(facet), before, Vector(before[node]), REACH);
-        let came_from_behind = start
-            .is_some_and(|s| self.gap(node, facet, s, before) < -BEHIND * self.primary.length(facet, before));
+        let came_from_behind =
+            start.is_some_and(|s| self.gap(node, facet, s, before) < -BEHIND * self.primary.length(facet, before));
         (!came_from_behind).then_some((facet, xi, false))
     }
 
@@ -129,7 +129,9 @@ impl ContactMethod<2> for NodeToSegment {
     fn signed_distance(&self, node: usize, y: &[[f64; 2]]) -> Option<f64> {
         let node = self.secondary[node];
         (0..self.primary.facets())
-            .filter_map(|f| closest_point(self.primary.facet(f), y, Vector(y[node]), 1.0 + 1e-9).map(|xi| self.gap(node, f, xi, y)))
+            .filter_map(|f| {
+                closest_point(self.primary.facet(f), y, Vector(y[node]), 1.0 + 1e-9).map(|xi| self.gap(node, f, xi, y))
+            })
             .min_by(|a, b| a.abs().total_cmp(&b.abs()))
     }
 

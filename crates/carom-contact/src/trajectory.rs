@@ -66,13 +66,7 @@ fn linear_cross_roots(e0: Vector<2>, e1: Vector<2>, p0: Vector<2>, p1: Vector<2>
 }
 
 /// Newton on the curve from a chord's root. Only crossings inwards count: the node's velocity relative to the surface points against its normal.
-fn polished(
-    nodes: &[usize],
-    before: &[[f64; 2]],
-    now: &[[f64; 2]],
-    node: usize,
-    start: Crossing,
-) -> Option<Crossing> {
+fn polished(nodes: &[usize], before: &[[f64; 2]], now: &[[f64; 2]], node: usize, start: Crossing) -> Option<Crossing> {
     let Crossing { mut theta, mut xi } = start;
     for _ in 0..20 {
         let shape = line_shape(nodes.len(), xi);

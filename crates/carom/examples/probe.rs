@@ -1,4 +1,6 @@
 //! Scratch driver.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use carom::case::{Document, read};
 use carom::{GridReport, Simulation};
 fn main() {
@@ -26,7 +28,7 @@ where
     carom::model::Space: carom::model::Dimension<D>,
 {
     let t = std::time::Instant::now();
-    let mut sim = match Simulation::<D>::new(case) {
+    let mut sim = match Simulation::<D>::new(case, 1) {
         Ok(s) => s,
         Err(p) => {
             println!("{}", doc.diagnose_all(&p));
