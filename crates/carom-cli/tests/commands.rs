@@ -192,6 +192,17 @@ fn explain_and_schema_and_help() {
     assert!(place.entries().is_empty());
 }
 
+/// The case that the README shows is a case.
+#[test]
+fn the_case_of_the_readme() {
+    let readme = include_str!("../../../README.md");
+    let case = readme.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    let place = Place::new("readme");
+    place.file("case.toml", case);
+    let done = place.carom(&["check", "case.toml"]);
+    assert_eq!((done.status.code(), text(&done.stderr)), (Some(0), String::new()));
+}
+
 /// `carom schema | head -1` closes the pipe long before the schema ends.
 #[test]
 fn closed_output_is_no_panic() {
