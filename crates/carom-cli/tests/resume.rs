@@ -3,62 +3,37 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// The impact of the paper on a coarse mesh: 400 steps, about half a second.
-const CASE: &str = include_str!("../../../cases/impact/impact.toml");
-const COARSE: [&str; 4] = [
-    "body.cylinder.mesh.size=0.25",
-    "body.prism.mesh.cells=[4,2]",
-    "output.checkpoint_every=7",
-    "output.fields_every=10",
-];
+use common::{COARSE, IMPACT, Place, text};
 
-/// A directory of its own per test, removed when it ends.
-struct Place(PathBuf);
-
-impl Place {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("carom-resume-{}-{name}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        std::fs::write(path.join("case.toml"), CASE).unwrap();
-        Self(path)
-    }
-
-    fn carom(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_carom"));
-        command.current_dir(&self.0).args(arguments).stdin(Stdio::null());
-        command
-    }
-
-    /// `carom run` of the coarse impact into `out`.
-    fn run(&self, out: &str, more: &[&str]) -> Command {
-        let mut command = self.carom(&["run", "case.toml", "--no-report", "--out", out]);
-        for set in COARSE {
-            command.args(["--set", set]);
-        }
-        command.args(more);
-        command
-    }
-
-    fn resume(&self, out: &str) -> Command {
-        self.carom(&["resume", out, "--no-report"])
-    }
-
-    fn record(&self, out: &str) -> Files {
-        let kept = |name: &String| name.starts_with("fields") || !name.contains('/') && !name.ends_with(".json");
-        files(&self.0.join(out)).into_iter().filter(|(name, _)| kept(name)).collect()
-    }
+fn place(name: &str) -> Place {
+    let place = Place::new(name);
+    place.file("case.toml", IMPACT);
+    place
 }
 
-impl Drop for Place {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
+/// `carom run` of the coarse impact into `out`.
+fn run(place: &Place, out: &str, more: &[&str]) -> Command {
+    let mut command = place.command(&["run", "case.toml", "--no-report", "--out", out]);
+    command.args(COARSE).args(["--set", "output.checkpoint_every=7", "--set", "output.fields_every=10"]).args(more);
+    command
+}
+
+fn resume(place: &Place, out: &str) -> Command {
+    place.command(&["resume", out, "--no-report"])
+}
+
+/// What must be the same: rows, events, fields. The manifest has wall times, checkpoints of an interrupted run fall elsewhere.
+fn record(place: &Place, out: &str) -> Files {
+    let kept = |name: &String| name.starts_with("fields") || !name.contains('/') && name != "manifest.json";
+    files(&place.0.join(out)).into_iter().filter(|(name, _)| kept(name)).collect()
 }
 
 /// Bytes by path.
@@ -101,8 +76,8 @@ fn random(seed: &mut u64) -> f64 {
 /// What every other run must equal, and how long it took.
 fn whole(place: &Place) -> (Files, Duration) {
     let began = Instant::now();
-    ended(&mut place.run("whole", &[]), 0);
-    let record = place.record("whole");
+    ended(&mut run(place, "whole", &[]), 0);
+    let record = record(place, "whole");
     for name in ["history.csv", "contact.csv", "log.jsonl", "fields.pvd"] {
         assert!(record[name].len() > 200, "{name} is nearly empty");
     }
@@ -112,14 +87,14 @@ fn whole(place: &Place) -> (Files, Duration) {
 
 #[test]
 fn twenty_kills_leave_the_same_bytes() {
-    let place = Place::new("kills");
+    let place = place("kills");
     let (expected, wall) = whole(&place);
     let (mut seed, mut kills, mut resumed) = (2, 0, 0);
     for life in 0.. {
         let out = format!("killed-{life}");
         loop {
             let exists = place.0.join(&out).exists();
-            let mut command = if exists { place.resume(&out) } else { place.run(&out, &[]) };
+            let mut command = if exists { resume(&place, &out) } else { run(&place, &out, &[]) };
             resumed += u32::from(exists);
             if kills == 20 {
                 ended(&mut command, 0);
@@ -137,7 +112,7 @@ fn twenty_kills_leave_the_same_bytes() {
             child.wait().unwrap();
             kills += 1;
         }
-        assert_same(&expected, &place.record(&out), &out);
+        assert_same(&expected, &record(&place, &out), &out);
         if kills == 20 {
             break;
         }
@@ -147,9 +122,9 @@ fn twenty_kills_leave_the_same_bytes() {
 
 #[test]
 fn interrupted_runs_exit_130_and_go_on() {
-    let place = Place::new("interrupt");
+    let place = place("interrupt");
     let (expected, _) = whole(&place);
-    let mut child = place.run("stopped", &["--json"]).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    let mut child = run(&place, "stopped", &["--json"]).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
     assert!(lines.any(|line| line.contains("\"progress\"")));
     let kill = format!("kill -INT {}", child.id());
@@ -158,36 +133,36 @@ fn interrupted_runs_exit_130_and_go_on() {
     assert_eq!((child.wait().unwrap().code(), &last["event"]), (Some(130), &"interrupted".into()));
     assert!(last["steps"].as_u64().unwrap() < 400);
 
-    let told = ended(&mut place.resume("stopped"), 0).stdout;
-    assert!(String::from_utf8(told).unwrap().starts_with("400 steps to t = 0.75"));
-    assert_same(&expected, &place.record("stopped"), "interrupted");
+    let told = ended(&mut resume(&place, "stopped"), 0).stdout;
+    assert!(text(&told).starts_with("400 steps to t = 0.75"));
+    assert_same(&expected, &record(&place, "stopped"), "interrupted");
 }
 
 #[test]
 fn a_finished_run_is_left_alone() {
-    let place = Place::new("finished");
-    ended(&mut place.run("done", &["--set", "time.end=0.05625"]), 0);
-    ended(&mut place.carom(&["report", "done"]), 0);
+    let place = place("finished");
+    ended(&mut run(&place, "done", &["--set", "time.end=0.05625"]), 0);
+    ended(&mut place.command(&["report", "done"]), 0);
     let before = files(&place.0.join("done"));
-    let told = ended(&mut place.carom(&["resume", "done"]), 0).stdout;
-    assert!(String::from_utf8(told).unwrap().contains("nothing was computed"));
+    let told = ended(&mut place.command(&["resume", "done"]), 0).stdout;
+    assert!(text(&told).contains("nothing was computed"));
     assert_same(&before, &files(&place.0.join("done")), "finished");
 }
 
 #[test]
 fn threads_and_outputs_change_no_bit() {
-    let place = Place::new("threads");
+    let place = place("threads");
     let (expected, _) = whole(&place);
-    ended(&mut place.run("two", &["--threads", "2"]), 0);
-    assert_same(&expected, &place.record("two"), "--threads 2");
+    ended(&mut run(&place, "two", &["--threads", "2"]), 0);
+    assert_same(&expected, &record(&place, "two"), "--threads 2");
 
     let sparse =
         ["--set", "output.fields_every=0", "--set", "output.history_every=3", "--set", "output.checkpoint_every=50"];
-    ended(&mut place.run("sparse", &sparse), 0);
-    let sparse = place.record("sparse");
+    ended(&mut run(&place, "sparse", &sparse), 0);
+    let sparse = record(&place, "sparse");
     assert!(!sparse.keys().any(|name| name.starts_with("fields/")));
     let steps = |record: &Files| -> BTreeMap<String, String> {
-        let text = String::from_utf8(record["history.csv"].clone()).unwrap();
+        let text = text(&record["history.csv"]);
         text.lines().map(|line| (line.split(',').next().unwrap().to_owned(), line.to_owned())).collect()
     };
     let (all, some) = (steps(&expected), steps(&sparse));
@@ -200,13 +175,13 @@ fn threads_and_outputs_change_no_bit() {
 /// Trapezoidal rule without dissipation: contact creates energy unless velocities are projected where it begins.
 #[test]
 fn created_energy_stops_the_run_with_exit_3() {
-    let place = Place::new("guard");
+    let place = place("guard");
     let trapezoidal = ["--set", "time.scheme={kind=\"newmark\",beta=0.25,gamma=0.5}"];
-    ended(&mut place.run("projected", &trapezoidal), 0);
+    ended(&mut run(&place, "projected", &trapezoidal), 0);
 
     let plain = [&trapezoidal[..], &["--set", "contact.strike.persistency=none"]].concat();
-    let done = ended(&mut place.run("plain", &plain), 3);
-    let told = String::from_utf8(done.stderr).unwrap();
+    let done = ended(&mut run(&place, "plain", &plain), 3);
+    let told = text(&done.stderr);
     for part in ["energy was created", "the last good state is kept in plain", "persistency = \"project\""] {
         assert!(told.contains(part), "{part:?} not in\n{told}");
     }
@@ -217,8 +192,8 @@ fn created_energy_stops_the_run_with_exit_3() {
 
 #[test]
 fn a_place_that_cannot_be_written_exits_4() {
-    let place = Place::new("refused");
-    let done = ended(&mut place.run("case.toml/below/a/file", &[]), 4);
-    assert!(String::from_utf8(done.stderr).unwrap().contains("case.toml/below"));
+    let place = place("refused");
+    let done = ended(&mut run(&place, "case.toml/below/a/file", &[]), 4);
+    assert!(text(&done.stderr).contains("case.toml/below"));
     assert_eq!(files(&place.0).keys().collect::<Vec<_>>(), ["case.toml"]);
 }
