@@ -26,7 +26,8 @@ pub(crate) fn tell(outcome: &Outcome, json: bool) -> Result<Exit, Failure> {
 
 fn text(outcome: &Outcome) -> String {
     let directory = outcome.directory.display();
-    let mut lines = vec![format!("{} steps to t = {} in {}", outcome.steps, outcome.time, duration(outcome.wall))];
+    let wall = if outcome.wall > 0.0 { format!(" in {}", duration(outcome.wall)) } else { String::new() };
+    let mut lines = vec![format!("{} steps to t = {}{wall}", outcome.steps, outcome.time)];
     let width = outcome.extremes.iter().map(|e| e.column.chars().count()).max().unwrap_or(0);
     for e in &outcome.extremes {
         lines.push(format!(
