@@ -179,8 +179,10 @@ fn created_energy_stops_the_run_with_exit_3() {
     let trapezoidal = ["--set", "time.scheme={kind=\"newmark\",beta=0.25,gamma=0.5}"];
     ended(&mut run(&place, "projected", &trapezoidal), 0);
 
-    let plain = [&trapezoidal[..], &["--set", "contact.strike.persistency=none"]].concat();
+    let plain = [&trapezoidal[..], &["--set", "contact.strike.persistency=none", "--json"]].concat();
     let done = ended(&mut run(&place, "plain", &plain), 3);
+    let last: serde_json::Value = serde_json::from_str(text(&done.stdout).lines().last().unwrap()).unwrap();
+    assert_eq!((&last["event"], &last["directory"]), (&"stopped".into(), &"plain".into()));
     let told = text(&done.stderr);
     for part in ["energy was created", "the last good state is kept in plain", "persistency = \"project\""] {
         assert!(told.contains(part), "{part:?} not in\n{told}");
