@@ -29,7 +29,6 @@ pub(crate) enum Failure {
     #[error("{what}")]
     Argument { what: String, help: String },
     /// The simulation stopped.
-    #[allow(dead_code)]
     #[error("{reason}")]
     Stopped { reason: String, help: String, directory: PathBuf },
     /// The machine refused.

@@ -176,7 +176,7 @@ fn failure(error: RunError, document: Option<&Document>) -> Failure {
 
 /// The report, the extremes of the probes and the expectations of a run that ended.
 fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failure> {
-    let page = if options.report { Some(report(&done.directory)?) } else { None };
+    let page = page(&done, options)?;
     if let recording::End::Stopped(reason) = &done.end {
         return Err(Failure::Stopped {
             reason: reason.to_string(),
@@ -207,6 +207,13 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
     })
 }
 
+/// The page of a run: made, unless nobody wants it or nothing was computed since it was made.
+fn page(done: &recording::Outcome, options: Options) -> Result<Option<PathBuf>, Failure> {
+    let made = done.directory.join("report.html");
+    let kept = done.wall == 0.0 && made.exists();
+    if options.report && !kept { report(&done.directory).map(Some) } else { Ok(kept.then_some(made)) }
+}
+
 fn stopped_help(reason: &carom::Stopped) -> String {
     match reason {
         carom::Stopped::EnergyGuard { .. } => {
@@ -226,10 +233,10 @@ fn extremes(run: &carom_record::Run) -> Vec<Extreme> {
     columns
         .filter_map(|column| {
             let values = run.column(&column.name)?;
-            let place = |beats: fn(&f64, &f64) -> std::cmp::Ordering| {
-                (0..values.len()).min_by(|a, b| beats(&values[*a], &values[*b]))
-            };
-            let (low, high) = (place(f64::total_cmp)?, place(|a, b| b.total_cmp(a))?);
+            // An inverted cell has no stress: its rows are not numbers.
+            let rows = (0..values.len()).filter(|&row| !values[row].is_nan());
+            let low = rows.clone().min_by(|&a, &b| values[a].total_cmp(&values[b]))?;
+            let high = rows.min_by(|&a, &b| values[b].total_cmp(&values[a]))?;
             Some(Extreme {
                 column: column.name.clone(),
                 unit: column.unit.clone(),

@@ -14,19 +14,25 @@ struct Event<'a> {
     outcome: &'a Outcome,
 }
 
-/// Tells the outcome on standard output; a missed expectation is told, not punished.
-pub(crate) fn tell(outcome: &Outcome, json: bool) -> Result<Exit, Failure> {
+/// Tells the outcome on standard output; a missed expectation is told, not punished. A run that stopped is an event, too.
+pub(crate) fn tell(done: Result<Outcome, Failure>, json: bool) -> Result<Exit, Failure> {
+    if json && let Err(Failure::Stopped { reason, directory, .. }) = &done {
+        out::event(&serde_json::json!({ "event": "stopped", "reason": reason, "directory": directory }))?;
+    }
+    let outcome = done?;
     if json {
-        out::event(&Event { event: if outcome.interrupted { "interrupted" } else { "done" }, outcome })?;
+        let event = if outcome.interrupted { "interrupted" } else { "done" };
+        out::event(&Event { event, outcome: &outcome })?;
     } else {
-        out::line(&text(outcome))?;
+        out::line(&text(&outcome))?;
     }
     Ok(if outcome.interrupted { Exit::Interrupted } else { Exit::Done })
 }
 
 fn text(outcome: &Outcome) -> String {
     let directory = outcome.directory.display();
-    let mut lines = vec![format!("{} steps to t = {} in {}", outcome.steps, outcome.time, duration(outcome.wall))];
+    let wall = if outcome.wall > 0.0 { format!(" in {}", duration(outcome.wall)) } else { String::new() };
+    let mut lines = vec![format!("{} steps to t = {}{wall}", outcome.steps, outcome.time)];
     let width = outcome.extremes.iter().map(|e| e.column.chars().count()).max().unwrap_or(0);
     for e in &outcome.extremes {
         lines.push(format!(

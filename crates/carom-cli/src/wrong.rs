@@ -12,10 +12,10 @@ use crate::exit::{Exit, Failure};
 pub(crate) fn tell(failure: &Failure) -> Exit {
     let text = match failure {
         Failure::Case(CaseError::Wrong(found)) => found.iter().map(rendered).collect::<Vec<_>>().join("\n\n"),
-        Failure::Argument { help, .. } => plain(&failure.to_string(), &[("help", help)]),
+        Failure::Argument { help, .. } => plain(&failure.to_string(), &[("try", help)]),
         Failure::Stopped { help, directory, .. } => {
             let kept = format!("the last good state is kept in {}", directory.display());
-            plain(&failure.to_string(), &[("note", &kept), ("help", help)])
+            plain(&failure.to_string(), &[("note", &kept), ("try", help)])
         }
         Failure::Case(CaseError::Refused { .. }) | Failure::Refused { .. } => plain(&failure.to_string(), &[]),
     };

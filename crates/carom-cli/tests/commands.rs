@@ -2,53 +2,11 @@
 
 #![allow(clippy::unwrap_used)]
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+mod common;
 
-const IMPACT: &str = include_str!("../../../cases/impact/impact.toml");
+use std::process::Stdio;
 
-/// A directory of its own per test, removed when it ends.
-struct Place(PathBuf);
-
-impl Place {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("carom-cli-{}-{name}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn file(&self, name: &str, bytes: impl AsRef<[u8]>) -> &Self {
-        std::fs::write(self.0.join(name), bytes).unwrap();
-        self
-    }
-
-    fn carom(&self, arguments: &[&str]) -> Output {
-        command(&self.0).args(arguments).output().unwrap()
-    }
-
-    fn entries(&self) -> Vec<String> {
-        let names = std::fs::read_dir(&self.0).unwrap().map(|e| e.unwrap().file_name().to_string_lossy().into_owned());
-        let mut names: Vec<_> = names.collect();
-        names.sort();
-        names
-    }
-}
-
-impl Drop for Place {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-fn command(place: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_carom"));
-    command.current_dir(place);
-    command
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
-}
+use common::{IMPACT, Place, text};
 
 #[test]
 fn wrong_cases_exit_2_say_where_and_write_nothing() {
@@ -192,11 +150,22 @@ fn explain_and_schema_and_help() {
     assert!(place.entries().is_empty());
 }
 
+/// The case that the README shows is a case.
+#[test]
+fn the_case_of_the_readme() {
+    let readme = include_str!("../../../README.md");
+    let case = readme.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    let place = Place::new("readme");
+    place.file("case.toml", case);
+    let done = place.carom(&["check", "case.toml"]);
+    assert_eq!((done.status.code(), text(&done.stderr)), (Some(0), String::new()));
+}
+
 /// `carom schema | head -1` closes the pipe long before the schema ends.
 #[test]
 fn closed_output_is_no_panic() {
     let place = Place::new("pipe");
-    let mut child = command(&place.0).arg("schema").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child = place.command(&["schema"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     drop(child.stdout.take());
     let done = child.wait_with_output().unwrap();
     assert_eq!((done.status.code(), text(&done.stderr)), (Some(0), String::new()));

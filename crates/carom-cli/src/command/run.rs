@@ -56,5 +56,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut live = Live::new(arguments.json);
     let done = simulation::run(&case, &document, &directory, options, &mut |p| live.show(p), &stop);
     drop(live);
-    summary::tell(&done?, arguments.json)
+    summary::tell(done, arguments.json)
 }

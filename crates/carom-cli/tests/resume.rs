@@ -1,0 +1,201 @@
+//! A run that is killed, interrupted or run differently leaves the same record, byte for byte.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use common::{COARSE, IMPACT, Place, text};
+
+fn place(name: &str) -> Place {
+    let place = Place::new(name);
+    place.file("case.toml", IMPACT);
+    place
+}
+
+/// `carom run` of the coarse impact into `out`.
+fn run(place: &Place, out: &str, more: &[&str]) -> Command {
+    let mut command = place.command(&["run", "case.toml", "--no-report", "--out", out]);
+    command.args(COARSE).args(["--set", "output.checkpoint_every=7", "--set", "output.fields_every=10"]).args(more);
+    command
+}
+
+fn resume(place: &Place, out: &str) -> Command {
+    place.command(&["resume", out, "--no-report"])
+}
+
+/// What must be the same: rows, events, fields. The manifest has wall times, checkpoints of an interrupted run fall elsewhere.
+fn record(place: &Place, out: &str) -> Files {
+    let kept = |name: &String| name.starts_with("fields") || !name.contains('/') && name != "manifest.json";
+    files(&place.0.join(out)).into_iter().filter(|(name, _)| kept(name)).collect()
+}
+
+/// Bytes by path.
+type Files = BTreeMap<String, Vec<u8>>;
+
+fn files(directory: &Path) -> Files {
+    let mut found = Files::new();
+    for entry in std::fs::read_dir(directory).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.is_dir() {
+            found.extend(files(&path).into_iter().map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)));
+        } else {
+            found.insert(name, std::fs::read(path).unwrap());
+        }
+    }
+    found
+}
+
+/// Equal names and bytes; says which file differs, not how.
+fn assert_same(a: &Files, b: &Files, when: &str) {
+    assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>(), "{when}");
+    for (name, bytes) in a {
+        assert!(bytes == &b[name], "{when}: {name} differs ({} and {} bytes)", bytes.len(), b[name].len());
+    }
+}
+
+fn ended(command: &mut Command, code: i32) -> Output {
+    let done = command.output().unwrap();
+    assert_eq!(done.status.code(), Some(code), "{}", String::from_utf8_lossy(&done.stderr));
+    done
+}
+
+/// Numbers in [0, 1) that are the same in every run of the test (Knuth's MMIX generator).
+fn random(seed: &mut u64) -> f64 {
+    *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*seed >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// What every other run must equal, and how long it took.
+fn whole(place: &Place) -> (Files, Duration) {
+    let began = Instant::now();
+    ended(&mut run(place, "whole", &[]), 0);
+    let record = record(place, "whole");
+    for name in ["history.csv", "contact.csv", "log.jsonl", "fields.pvd"] {
+        assert!(record[name].len() > 200, "{name} is nearly empty");
+    }
+    assert_eq!(record.keys().filter(|name| name.starts_with("fields/")).count(), 41);
+    (record, began.elapsed())
+}
+
+#[test]
+fn twenty_kills_leave_the_same_bytes() {
+    let place = place("kills");
+    let (expected, wall) = whole(&place);
+    let (mut seed, mut kills, mut resumed) = (2, 0, 0);
+    for life in 0.. {
+        let out = format!("killed-{life}");
+        loop {
+            let exists = place.0.join(&out).exists();
+            let mut command = if exists { resume(&place, &out) } else { run(&place, &out, &[]) };
+            resumed += u32::from(exists);
+            if kills == 20 {
+                ended(&mut command, 0);
+                break;
+            }
+            // The first one falls at once; the others are spread so that about twenty fit into one run.
+            let delay = if kills == 0 { Duration::ZERO } else { wall.mul_f64(0.15 * random(&mut seed)) };
+            let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+            std::thread::sleep(delay);
+            if let Some(status) = child.try_wait().unwrap() {
+                assert_eq!(status.code(), Some(0));
+                break;
+            }
+            child.kill().unwrap();
+            child.wait().unwrap();
+            kills += 1;
+        }
+        assert_same(&expected, &record(&place, &out), &out);
+        if kills == 20 {
+            break;
+        }
+    }
+    assert!(resumed >= 10, "only {resumed} of 20 kills fell after the directory was made");
+}
+
+#[test]
+fn interrupted_runs_exit_130_and_go_on() {
+    let place = place("interrupt");
+    let (expected, _) = whole(&place);
+    let mut child = run(&place, "stopped", &["--json"]).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
+    assert!(lines.any(|line| line.contains("\"progress\"")));
+    let kill = format!("kill -INT {}", child.id());
+    assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+    let last: serde_json::Value = serde_json::from_str(&lines.last().unwrap()).unwrap();
+    assert_eq!((child.wait().unwrap().code(), &last["event"]), (Some(130), &"interrupted".into()));
+    assert!(last["steps"].as_u64().unwrap() < 400);
+
+    let told = ended(&mut resume(&place, "stopped"), 0).stdout;
+    assert!(text(&told).starts_with("400 steps to t = 0.75"));
+    assert_same(&expected, &record(&place, "stopped"), "interrupted");
+}
+
+#[test]
+fn a_finished_run_is_left_alone() {
+    let place = place("finished");
+    ended(&mut run(&place, "done", &["--set", "time.end=0.05625"]), 0);
+    ended(&mut place.command(&["report", "done"]), 0);
+    let before = files(&place.0.join("done"));
+    let told = ended(&mut place.command(&["resume", "done"]), 0).stdout;
+    assert!(text(&told).contains("nothing was computed"));
+    assert_same(&before, &files(&place.0.join("done")), "finished");
+}
+
+#[test]
+fn threads_and_outputs_change_no_bit() {
+    let place = place("threads");
+    let (expected, _) = whole(&place);
+    ended(&mut run(&place, "two", &["--threads", "2"]), 0);
+    assert_same(&expected, &record(&place, "two"), "--threads 2");
+
+    let sparse =
+        ["--set", "output.fields_every=0", "--set", "output.history_every=3", "--set", "output.checkpoint_every=50"];
+    ended(&mut run(&place, "sparse", &sparse), 0);
+    let sparse = record(&place, "sparse");
+    assert!(!sparse.keys().any(|name| name.starts_with("fields/")));
+    let steps = |record: &Files| -> BTreeMap<String, String> {
+        let text = text(&record["history.csv"]);
+        text.lines().map(|line| (line.split(',').next().unwrap().to_owned(), line.to_owned())).collect()
+    };
+    let (all, some) = (steps(&expected), steps(&sparse));
+    assert_eq!((all.len(), some.len()), (402, 1 + 134 + 1), "heading, every third of 0..=400, the last");
+    for (step, line) in some {
+        assert_eq!(line, all[&step]);
+    }
+}
+
+/// Trapezoidal rule without dissipation: contact creates energy unless velocities are projected where it begins.
+#[test]
+fn created_energy_stops_the_run_with_exit_3() {
+    let place = place("guard");
+    let trapezoidal = ["--set", "time.scheme={kind=\"newmark\",beta=0.25,gamma=0.5}"];
+    ended(&mut run(&place, "projected", &trapezoidal), 0);
+
+    let plain = [&trapezoidal[..], &["--set", "contact.strike.persistency=none", "--json"]].concat();
+    let done = ended(&mut run(&place, "plain", &plain), 3);
+    let last: serde_json::Value = serde_json::from_str(text(&done.stdout).lines().last().unwrap()).unwrap();
+    assert_eq!((&last["event"], &last["directory"]), (&"stopped".into(), &"plain".into()));
+    let told = text(&done.stderr);
+    for part in ["energy was created", "the last good state is kept in plain", "persistency = \"project\""] {
+        assert!(told.contains(part), "{part:?} not in\n{told}");
+    }
+    let manifest: serde_json::Value = serde_json::from_slice(&files(&place.0.join("plain"))["manifest.json"]).unwrap();
+    assert_eq!(manifest["status"], "failed");
+    assert!(manifest["reason"].as_str().unwrap().contains("energy was created"));
+}
+
+#[test]
+fn a_place_that_cannot_be_written_exits_4() {
+    let place = place("refused");
+    let done = ended(&mut run(&place, "case.toml/below/a/file", &[]), 4);
+    assert!(text(&done.stderr).contains("case.toml/below"));
+    assert_eq!(files(&place.0).keys().collect::<Vec<_>>(), ["case.toml"]);
+}
