@@ -2,10 +2,12 @@
 
 use carom_record::{Cell, FieldEntry, Run, metrics};
 
+use crate::bands::Bands;
 use crate::bodies::{self, Instant};
-use crate::chart::{Chart, Panel, Series};
+use crate::chart::{Chart, Options, Panel, Series};
 use crate::labels::{symbol, with_unit, words};
 use crate::palette::{LINES, sequence};
+use crate::{animation, setup};
 
 /// A figure of a report.
 #[derive(Clone, Debug)]
@@ -18,16 +20,39 @@ pub struct Figure {
     pub svg: String,
 }
 
+/// All a record allows to show.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Shown {
+    pub(crate) figures: Vec<Figure>,
+    /// The animation, as HTML.
+    pub(crate) animation: Option<String>,
+    /// What could not be drawn.
+    pub(crate) notes: Vec<String>,
+}
+
 /// All figures a record allows, and what could not be drawn.
-pub(crate) fn all(run: &Run) -> (Vec<Figure>, Vec<String>) {
-    let mut notes = Vec::new();
+pub(crate) fn all(run: &Run) -> Shown {
+    let mut shown = Shown::default();
     if run.times().is_empty() {
-        notes.push("The history has no rows yet: nothing to draw.".to_string());
-        return (Vec::new(), notes);
+        shown.notes.push("The history has no rows yet: nothing to draw.".to_string());
+        return shown;
     }
-    let bodies = instants(run, &mut notes);
-    let charts = [probes(run), force(run), energy(run), solver(run)];
-    (bodies.into_iter().chain(charts.into_iter().flatten()).collect(), notes)
+    shown.figures.extend(setup(run));
+    let place = shown.figures.len() + 1;
+    if let Some((bodies, bands, cut)) = instants(run, &mut shown.notes) {
+        shown.figures.push(bodies);
+        shown.animation = animation::html_of(run, (&bands, cut), shades(run), place);
+    }
+    shown.figures.extend([probes(run), force(run), energy(run), solver(run)].into_iter().flatten());
+    shown
+}
+
+/// The case drawn.
+fn setup(run: &Run) -> Option<Figure> {
+    let svg = setup::figure(run, &run.field(run.fields.first()?).ok()?)?;
+    let caption = "The case as it starts: bodies with their mesh, supports, loads, contact sides and probes. \
+                   Data: the first field file; case and sides in manifest.json.";
+    Some(Figure { name: "setup", caption: caption.into(), svg })
 }
 
 /// Contact intervals to shade.
@@ -40,7 +65,11 @@ fn shades(run: &Run) -> Vec<(f64, f64)> {
 fn chart<'a>(run: &Run, title: &'a str, panels: Vec<Panel<'a>>) -> Option<String> {
     let panels: Vec<Panel> = panels.into_iter().filter(|p| !p.series.is_empty()).collect();
     let x_label = with_unit("time t", run.history.unit("time"));
-    (!panels.is_empty()).then(|| Chart { title, x_label, shades: shades(run), panels }.svg())
+    (!panels.is_empty()).then(|| {
+        let tracks = if title == "Solver" { animation::tracks(run) } else { Vec::new() };
+        let options = Options { tracks: &tracks, time: true, ..Options::default() };
+        Chart { title, x_label, shades: shades(run), panels }.draw(&options)
+    })
 }
 
 /// Curves of columns with their labels; those without a column, or zero throughout compared with `size`, are left out.
@@ -109,11 +138,12 @@ fn force(run: &Run) -> Option<Figure> {
 /// The energy ledger.
 fn energy(run: &Run) -> Option<Figure> {
     let unit = run.history.unit("total");
+    let size = run.column("total").into_iter().chain(run.column("kinetic")).flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
     let energies = [("total", "total"), ("kinetic", "kinetic"), ("strain", "strain"), ("potential", "potential")];
     let works = [("dissipation", "dissipation"), ("external_work", "external work"), ("contact_work", "contact work")];
     let panels = vec![
-        panel("energy", unit, 200.0, curves(run, &energies, 0.0)),
-        panel("work, dissipation", unit, 150.0, curves(run, &works, 0.0)),
+        panel("energy", unit, 200.0, curves(run, &energies, size)),
+        panel("work, dissipation", unit, 150.0, curves(run, &works, 1e-3 * size)),
     ];
     let caption = "Energy ledger: energies above, work done so far and dissipation below. \
                    Dissipation = external work + contact work − change of the total; where it is negative, energy was created.";
@@ -152,7 +182,8 @@ fn five(run: &Run) -> (Vec<&FieldEntry>, bool) {
     }
 }
 
-fn instants(run: &Run, notes: &mut Vec<String>) -> Option<Figure> {
+/// The bodies at instants, with the colours of their stress.
+fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands, [bool; 2])> {
     let (entries, contact) = five(run);
     if entries.is_empty() {
         notes.push("No field files were written (output.fields_every = 0): no picture of the bodies.".into());
@@ -168,20 +199,24 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<Figure> {
     let during = if contact { "of the first contact" } else { "of the run, which had no contact" };
     let unit = run.history.unit("time");
     if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
-        return bars(run, &sets, during);
+        let strips: Vec<Instant> = sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
+        let (bands, cut) = bodies::colors(&strips);
+        return Some((bars(run, &sets, during)?, bands, cut));
     }
     let stress = first.array("stress")?.unit.clone();
     let length = first.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();
     let instant = |(time, set): &_| Instant::new(set, "stress", 1, format!("t = {time:.4} {unit}"));
     let list: Vec<Instant> = sets.iter().filter_map(instant).collect();
-    let (svg, cut) = bodies::figure(&list, "Deformed bodies with vertical Cauchy stress", "σ_{yy}", &stress, &length);
+    let (bands, cut) = bodies::colors(&list);
+    let title = "Deformed bodies with vertical Cauchy stress";
+    let svg = bodies::figure(&list, (&bands, cut), title, ("σ_{yy}", &stress), &length);
     let arrow =
-        if cut { " Arrows at the colour bar: the outermost half per cent of the values lies beyond." } else { "" };
+        if cut[0] || cut[1] { " Arrows at the colour bar: the outermost half per cent of the values lies beyond." } else { "" };
     let caption = format!(
         "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal means) at instants {during}, all at one scale, displacements as \
          they are. Blue presses, red pulls.{arrow}"
     );
-    Some(Figure { name: "bodies", caption, svg })
+    Some((Figure { name: "bodies", caption, svg }, bands, cut))
 }
 
 /// Dimension 1: displacement along the bars at the instants.

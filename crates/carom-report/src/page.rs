@@ -6,13 +6,14 @@ use std::fmt::Write as _;
 use carom_record::{Run, Status, metrics};
 
 use crate::figures::Figure;
+use crate::labels::number;
 use crate::text::{escape, html};
 
 /// Log events shown; all are counted.
 const EVENTS: usize = 50;
 
 /// The page.
-pub(crate) fn page(run: &Run, figures: &[Figure], notes: &[String]) -> String {
+pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&str>, notes: &[String]) -> String {
     let title = run.manifest.case.get("title").and_then(|t| t.as_str()).unwrap_or("Carom run");
     let mut out = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
@@ -36,23 +37,15 @@ pub(crate) fn page(run: &Run, figures: &[Figure], notes: &[String]) -> String {
             figure.svg,
             i + 1
         );
+        if name == "setup" || (i == 0 && figures.iter().all(|f| f.name != "setup")) {
+            out.push_str(animation.unwrap_or_default());
+        }
     }
     events(&mut out, run);
     work(&mut out, run);
     reproduce(&mut out, run);
     out.push_str("</body>\n</html>\n");
     out
-}
-
-/// A number as people read it: six digits, an exponent when far from one.
-fn number(x: f64) -> String {
-    if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) {
-        return format!("{x:.5e}").replace('-', "−");
-    }
-    let decimals = if x == 0.0 { 0 } else { (5 - x.abs().log10().floor() as i32).clamp(0, 9) as usize };
-    let text = format!("{x:.decimals$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    text.replace('-', "−")
 }
 
 fn header(out: &mut String, run: &Run) {
@@ -198,25 +191,4 @@ fn reproduce(out: &mut String, run: &Run) {
     }
     let links: Vec<String> = files.iter().map(|f| format!("<a href=\"{f}\">{f}</a>")).collect();
     let _ = writeln!(out, "{}.</p>", links.join(", "));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::number;
-
-    #[test]
-    fn numbers() {
-        let cases = [
-            (0.0, "0"),
-            (-0.7827, "−0.7827"),
-            (400.0, "400"),
-            (1.0 / 3.0, "0.333333"),
-            (123456.7, "123457"),
-            (1.5e-7, "1.50000e−7"),
-            (2e6, "2.00000e6"),
-        ];
-        for (x, text) in cases {
-            assert_eq!(number(x), text);
-        }
-    }
 }
