@@ -67,17 +67,17 @@
     return out;
   };
   const arrow = (x, y, fx, fy) => {
-    const size = Math.hypot(fx, fy), length = 70 * size / data.largest, dx = fx / size, dy = -fy / size;
+    const size = Math.hypot(fx, fy), length = 62 * size / data.largest, dx = fx / size, dy = -fy / size;
     if (length < 2) return;
-    const head = Math.min(9, 0.6 * length), ex = x + dx * length, ey = y + dy * length;
+    const head = Math.min(6, 0.6 * length), ex = x + dx * length, ey = y + dy * length;
     g.beginPath();
     g.moveTo(x, y); g.lineTo(ex - dx * head, ey - dy * head);
     g.moveTo(ex, ey);
     g.lineTo(ex - dx * head - dy * head * 0.42, ey - dy * head + dx * head * 0.42);
     g.lineTo(ex - dx * head + dy * head * 0.42, ey - dy * head - dx * head * 0.42);
     g.closePath();
-    g.lineWidth = 3.6; g.strokeStyle = "#fff"; g.stroke();
-    g.lineWidth = 1.6; g.strokeStyle = g.fillStyle = "#000"; g.stroke(); g.fill();
+    g.lineWidth = 2.8; g.strokeStyle = "#fff"; g.stroke();
+    g.lineWidth = 1.1; g.strokeStyle = g.fillStyle = "#000"; g.stroke(); g.fill();
   };
   const draw = k => {
     const base = k * data.points, paths = colors.map(() => new Path2D());

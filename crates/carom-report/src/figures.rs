@@ -98,11 +98,13 @@ fn names<'a>(run: &'a Run, list: &str) -> Vec<&'a str> {
 fn probes(run: &Run) -> Option<Figure> {
     let probes = names(run, "probes");
     let mut panels: Vec<(String, Panel)> = Vec::new();
+    let mut columns: Vec<&str> = Vec::new();
     for column in &run.history.columns {
         let Some((probe, quantity)) = column.name.rsplit_once('.').filter(|(p, _)| probes.contains(p)) else {
             continue;
         };
         let Some(values) = run.column(&column.name) else { continue };
+        columns.push(&column.name);
         let at = panels.iter().position(|(q, _)| q == quantity).unwrap_or_else(|| {
             panels.push((quantity.to_string(), panel(&symbol(quantity), &column.unit, 190.0, Vec::new())));
             panels.len() - 1
@@ -114,7 +116,7 @@ fn probes(run: &Run) -> Option<Figure> {
     let mut list: Vec<String> = panels.iter().map(|(q, _)| format!("{} {}", words(q), symbol(q))).collect();
     list.dedup();
     let svg = chart(run, "Probes against time", panels.into_iter().map(|(_, p)| p).collect())?;
-    let caption = format!("Probes against time: {}. Shaded: contact.", list.join(", "));
+    let caption = format!("Probes against time: {}. Shaded: contact. Data: history.csv, columns {}.", list.join(", "), columns.join(", "));
     Some(Figure { name: "probes", caption, svg })
 }
 
@@ -131,7 +133,8 @@ fn force(run: &Run) -> Option<Figure> {
         panel("impulse P", h.unit("contact_impulse_x"), 130.0, impulses),
     ];
     let caption = "Contact force on the secondary side at the end of each step, and its impulse so far. Shaded: contact. \
-                   Single peaks of the force depend on the time step; impulse, duration and restitution do not.";
+                   Single peaks of the force depend on the time step; impulse, duration and restitution do not. \
+                   Data: history.csv, columns contact_force_… and contact_impulse_….";
     Some(Figure { name: "force", caption: caption.into(), svg: chart(run, "Contact force and impulse", panels)? })
 }
 
@@ -146,7 +149,8 @@ fn energy(run: &Run) -> Option<Figure> {
         panel("work, dissipation", unit, 150.0, curves(run, &works, 1e-3 * size)),
     ];
     let caption = "Energy ledger: energies above, work done so far and dissipation below. \
-                   Dissipation = external work + contact work − change of the total; where it is negative, energy was created.";
+                   Dissipation = external work + contact work − change of the total; where it is negative, energy was created. What stays zero is left \
+                   out. Data: history.csv, columns of these names.";
     Some(Figure { name: "energy", caption: caption.into(), svg: chart(run, "Energy ledger", panels)? })
 }
 
@@ -159,7 +163,8 @@ fn solver(run: &Run) -> Option<Figure> {
     }
     let quiet = if panels.len() == 2 { " No step was rejected." } else { "" };
     let caption =
-        format!("Newton iterations and active contact nodes of each step, and attempts rejected in it.{quiet}");
+        format!("Newton iterations and active contact nodes of each step, and attempts rejected in it.{quiet} Ticks: events by kind. Data: \
+                          history.csv, columns newton, active and rejected; log.jsonl.");
     Some(Figure { name: "solver", caption, svg: chart(run, "Solver", panels)? })
 }
 
@@ -214,40 +219,54 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands, [bool;
         if cut[0] || cut[1] { " Arrows at the colour bar: the outermost half per cent of the values lies beyond." } else { "" };
     let caption = format!(
         "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal means) at instants {during}, all at one scale, displacements as \
-         they are. Blue presses, red pulls.{arrow}"
+         they are. Blue presses, red pulls.{arrow} Data: stress and displacement of the field files."
     );
     Some((Figure { name: "bodies", caption, svg }, bands, cut))
 }
 
-/// Dimension 1: displacement along the bars at the instants.
+/// Dimension 1: displacement and stress along the bars at the instants.
 fn bars(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Option<Figure> {
-    let positions: Vec<Vec<(f64, f64)>> = sets
-        .iter()
-        .map(|(_, set)| {
-            let u = set.array("displacement").filter(|a| a.components == 3);
-            let mut list = Vec::new();
-            for block in &set.blocks {
-                let mut nodes = block.connectivity.clone();
-                nodes.sort_by(|&a, &b| set.points[a][0].total_cmp(&set.points[b][0]));
-                nodes.dedup();
-                list.extend(nodes.iter().map(|&k| (set.points[k][0], u.map_or(f64::NAN, |u| u.values[3 * k]))));
-                // A gap between bodies.
-                list.push((set.points[*nodes.last()?][0], f64::NAN));
-            }
-            Some(list)
-        })
-        .collect::<Option<_>>()?;
-    let x: Vec<Vec<f64>> = positions.iter().map(|l| l.iter().map(|p| p.0).collect()).collect();
+    // Places and values of an array's component along the bars, with a gap after each.
+    let along = |set: &carom_record::FieldSet, array: &str, component: usize| -> Option<(Vec<f64>, Vec<f64>)> {
+        let values = set.array(array).filter(|a| component < a.components)?;
+        let (mut x, mut y) = (Vec::new(), Vec::new());
+        for block in &set.blocks {
+            let mut nodes = block.connectivity.clone();
+            nodes.sort_by(|&a, &b| set.points[a][0].total_cmp(&set.points[b][0]));
+            nodes.dedup();
+            x.extend(nodes.iter().map(|&k| set.points[k][0]));
+            y.extend(nodes.iter().map(|&k| values.values[values.components * k + component]));
+            x.push(set.points[*nodes.last()?][0]);
+            y.push(f64::NAN);
+        }
+        Some((x, y))
+    };
+    let lines = |array: &str, component| -> Vec<_> {
+        let line = |(t, set): &(f64, _)| along(set, array, component).map(|(x, y)| (*t, x, y));
+        sets.iter().filter_map(line).collect()
+    };
+    let (u, stress) = (lines("displacement", 0), lines("stress", 0));
     let time = run.history.unit("time");
-    let series = positions.iter().zip(&x).zip(sets).enumerate().map(|(i, ((list, x), (t, _)))| Series {
-        label: format!("t = {t:.4} {time}"),
-        color: sequence(i, sets.len()),
-        x,
-        y: list.iter().map(|p| p.1).collect(),
-    });
-    let length = sets.first()?.1.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();
-    let panels = vec![panel("u_{x}", &length, 230.0, series.collect())];
-    let x_label = with_unit("reference position X", &length);
-    let svg = Chart { title: "Displacement along the bars", x_label, shades: Vec::new(), panels }.svg();
-    Some(Figure { name: "bodies", caption: format!("Displacement along the bars at instants {during}."), svg })
+    let unit = |array: &str| sets.first().and_then(|s| s.1.array(array)).map(|a| a.unit.clone()).unwrap_or_default();
+    let mut panels = Vec::new();
+    for (label, array, lines) in [("u_{x}", "displacement", &u), ("σ_{xx}", "stress", &stress)] {
+        let series = lines.iter().enumerate().map(|(i, (t, x, y))| Series {
+            // The legend stands once.
+            label: if panels.is_empty() { format!("t = {t:.4} {time}") } else { String::new() },
+            color: sequence(i, sets.len()),
+            x,
+            y: y.clone(),
+        });
+        let series: Vec<Series> = series.collect();
+        if !series.is_empty() {
+            panels.push(panel(label, &unit(array), 200.0, series));
+        }
+    }
+    let x_label = with_unit("reference position X", &unit("displacement"));
+    let svg = Chart { title: "Displacement and stress along the bars", x_label, shades: Vec::new(), panels }.svg();
+    let caption = format!(
+        "Displacement u_{{x}} and Cauchy stress σ_{{xx}} (nodal means) along the bars at instants {during}. \
+         Data: displacement and stress of the field files."
+    );
+    Some(Figure { name: "bodies", caption, svg })
 }

@@ -25,9 +25,22 @@ pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&str>, notes
     for note in notes {
         let _ = writeln!(out, "<p class=\"small\">{}</p>", escape(note));
     }
+    let case = figures.iter().take_while(|f| f.name == "setup").count();
+    show(&mut out, &figures[..case], 1);
+    out.push_str(animation.unwrap_or_default());
     results(&mut out, run);
     expectations(&mut out, run);
     out.push_str("<h2>Figures</h2>\n");
+    show(&mut out, &figures[case..], case + 1);
+    events(&mut out, run);
+    work(&mut out, run);
+    reproduce(&mut out, run);
+    out.push_str("</body>\n</html>\n");
+    out
+}
+
+/// Figures with captions, numbered from `first`.
+fn show(out: &mut String, figures: &[Figure], first: usize) {
     for (i, figure) in figures.iter().enumerate() {
         let (caption, name) = (html(&figure.caption), figure.name);
         let link = format!("<a href=\"figures/{name}.svg\">figures/{name}.svg</a>");
@@ -35,17 +48,9 @@ pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&str>, notes
             out,
             "<figure>\n{}<figcaption><b>Figure {}.</b> {caption} <span class=\"small\">({link})</span></figcaption>\n</figure>",
             figure.svg,
-            i + 1
+            first + i
         );
-        if name == "setup" || (i == 0 && figures.iter().all(|f| f.name != "setup")) {
-            out.push_str(animation.unwrap_or_default());
-        }
     }
-    events(&mut out, run);
-    work(&mut out, run);
-    reproduce(&mut out, run);
-    out.push_str("</body>\n</html>\n");
-    out
 }
 
 fn header(out: &mut String, run: &Run) {
@@ -63,6 +68,10 @@ fn header(out: &mut String, run: &Run) {
     let mut row = |name: &str, value: String| {
         let _ = writeln!(out, "<tr><th>{name}</th><td>{value}</td></tr>");
     };
+    let names: Vec<&str> = m.case.get("bodies").and_then(|b| b.as_array()).into_iter().flatten().filter_map(|b| b.get("name")?.as_str()).collect();
+    if !names.is_empty() {
+        row("Bodies", escape(&names.join(", ")));
+    }
     row("Carom", escape(&m.version));
     row("Input hash", format!("<code class=\"hash\">{}</code>", escape(&m.input_hash)));
     row("Recorded", format!("{rows} rows to t = {} {}", number(last), html(run.history.unit("time"))));
@@ -82,7 +91,7 @@ fn header(out: &mut String, run: &Run) {
     row("Machine", escape(&format!("{} cores, {} {}; threads: {}", machine.cpus, machine.os, machine.arch, m.threads)));
     row("Wall time", format!("{} s", number(wall)));
     row("Started", escape(&m.started));
-    out.push_str("</table>\n");
+    out.push_str("</table>\n<p class=\"small\">From manifest.json: version, input_hash, case, machine, threads, timings.total, started. The hash is BLAKE3 of the case file and the options given with it. Rows and times: history.csv.</p>\n");
 }
 
 fn results(out: &mut String, run: &Run) {
@@ -103,7 +112,9 @@ fn results(out: &mut String, run: &Run) {
     if let Some(body) = metrics::striker(&run.history) {
         let _ = writeln!(
             out,
-            "<p class=\"small\">Striker: {}. All values are computed from history.csv alone.</p>",
+            "<p class=\"small\">Striker: {}. All values are computed from history.csv alone: times from <code>time</code> and <code>active</code>, forces from \
+             <code>contact_force_…</code>, impulses from <code>contact_impulse_…</code>, energies from <code>dissipation</code>, \
+             <code>kinetic</code> and <code>strain</code>, motion from <code>center_…</code> and <code>velocity_…</code> of the striker.</p>",
             escape(body)
         );
     }
@@ -133,7 +144,7 @@ fn events(out: &mut String, run: &Run) {
     for event in &run.log {
         *kinds.entry(&event.kind).or_default() += 1;
     }
-    out.push_str("<h2>Events</h2>\n");
+    out.push_str("<h2>Events</h2>\n<p class=\"small\">log.jsonl, one event per line.</p>\n");
     if kinds.is_empty() {
         out.push_str("<p>None.</p>\n");
         return;
@@ -160,7 +171,7 @@ fn events(out: &mut String, run: &Run) {
 
 fn work(out: &mut String, run: &Run) {
     let m = &run.manifest;
-    out.push_str("<h2>Work</h2>\n<table>\n");
+    out.push_str("<h2>Work</h2>\n<p class=\"small\">manifest.json: counters and timings (wall seconds).</p>\n<table>\n");
     for (name, count) in &m.counters {
         let _ =
             writeln!(out, "<tr><td>{}</td><td class=\"n\">{count}</td><td></td></tr>", escape(&name.replace('_', " ")));

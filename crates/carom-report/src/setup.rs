@@ -17,9 +17,9 @@ use crate::palette::LINES;
 use crate::pen::{Pen, open_grid};
 use crate::symbols::{arrow, direction, guides, plus, rollers, wall};
 
-const WIDTH: f64 = 940.0;
-/// Where the key begins.
-const KEY: f64 = 600.0;
+/// Widest picture, and the width of its key.
+const ROOM: f64 = 470.0;
+const KEY: f64 = 320.0;
 const SECONDARY: &str = LINES[2];
 const PRIMARY: &str = LINES[1];
 const BODIES: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
@@ -74,20 +74,20 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
         return None;
     }
     let margin = 46.0;
-    let (room, tall) = (KEY - 40.0 - 60.0 - 2.0 * margin, 430.0);
-    let scale = if flat { room / (x1 - x0) } else { (room / (x1 - x0)).min(tall / (y1 - y0)) };
+    let scale = if flat { ROOM / (x1 - x0) } else { (ROOM / (x1 - x0)).min(430.0 / (y1 - y0)) };
     let picture = if flat { BAR } else { (y1 - y0) * scale };
-    let left = 60.0 + margin + 0.5 * (room - (x1 - x0) * scale);
-    let top = if flat { 70.0 } else { 14.0 + margin };
+    let left = 60.0 + margin;
+    let right = left + (x1 - x0) * scale;
+    let top = if flat { 84.0 } else { 14.0 + margin };
     let origin = [left - x0 * scale, if flat { top + 0.5 * BAR } else { top + y1 * scale }];
     let mut setup = Setup { run, fields, flat, scale, origin, inside: HashMap::new() };
     let mut key = String::new();
-    let lines = setup.key(&mut key);
+    let lines = setup.key(&mut key, right + margin + 36.0);
     let bottom = (top + picture + margin).max(if flat { 0.0 } else { lines - 60.0 });
-    let mut out = open("The case", WIDTH, (bottom + 44.0).max(lines + 8.0));
-    setup.axes(&mut out, [left - margin, left + (x1 - x0) * scale + margin, top - margin, bottom]);
+    let mut out = open("The case", right + margin + 36.0 + KEY, (bottom + 44.0).max(lines + 8.0));
+    setup.axes(&mut out, [left - margin, right + margin, top - margin, bottom]);
     setup.bodies(&mut out);
-    setup.planes(&mut out, [left - 0.6 * margin, left + (x1 - x0) * scale + 0.6 * margin]);
+    setup.planes(&mut out, [left - 0.6 * margin, right + 0.6 * margin]);
     setup.supports(&mut out);
     setup.contacts(&mut out);
     setup.loads(&mut out);
@@ -293,7 +293,7 @@ impl Setup<'_> {
             let [x, y] = if self.flat { [center[0], center[1] + 0.5 * BAR + 20.0] } else { [center[0], center[1] - 6.0] };
             let halo = "text-anchor=\"middle\" font-style=\"italic\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
             write_text(out, x, y, halo, text(body, "name"));
-            let mut at = if self.flat { [center[0], center[1] - 0.5 * BAR - 14.0] } else { plus(center, 8.0, [0.0, 1.0]) };
+            let mut at = if self.flat { [center[0], center[1] - 0.5 * BAR - 30.0] } else { plus(center, 8.0, [0.0, 1.0]) };
             for (key, symbol) in [("gravity", "g"), ("velocity", "v_{0}")] {
                 let v = vector(body.get(key));
                 let d = direction([0.0; 2], [v.first().copied().unwrap_or(0.0), -v.get(1).copied().unwrap_or(0.0)]);
@@ -315,22 +315,23 @@ impl Setup<'_> {
             let p = self.to([at.first().copied().unwrap_or(0.0), at.get(1).copied().unwrap_or(0.0)]);
             let _ = writeln!(out, "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.8\"/>", p[0], p[1]);
             let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
-            write_text(out, p[0] + 8.0, p[1] - 7.0, bold, text(probe, "name"));
+            let [x, y] = if self.flat { [p[0] - 4.0, p[1] - 0.5 * BAR - 7.0] } else { [p[0] + 8.0, p[1] - 7.0] };
+            write_text(out, x, y, bold, text(probe, "name"));
         }
     }
 
     /// What the picture's colours and symbols mean, with the numbers; the height it needs.
-    fn key(&self, out: &mut String) -> f64 {
-        let mut y = 26.0;
+    fn key(&self, out: &mut String, left: f64) -> f64 {
+        let mut y = 8.0;
         let unit = |key: &str| self.case().pointer(&format!("/units/{key}")).and_then(Value::as_str).unwrap_or_default();
         let (length, time) = (unit("length"), unit("time"));
         let mut line = |swatch: &str, content: &str, bold: bool| {
+            y += if bold { 7.0 } else { 0.0 } + 18.0;
             if !swatch.is_empty() {
-                let _ = writeln!(out, "<g transform=\"translate({KEY} {:.1})\">{swatch}</g>", y - 4.5);
+                let _ = writeln!(out, "<g transform=\"translate({left:.1} {:.1})\">{swatch}</g>", y - 4.5);
             }
-            let (x, extra) = (if bold { KEY } else { KEY + 30.0 }, if bold { "font-weight=\"bold\"" } else { "" });
+            let (x, extra) = (if bold { left } else { left + 30.0 }, if bold { "font-weight=\"bold\"" } else { "" });
             write_text(out, x, y, extra, content);
-            y += if bold { 19.0 } else { 18.0 };
         };
         line("", "Bodies", true);
         for (k, body) in list(self.case(), "bodies").iter().enumerate() {
@@ -381,6 +382,6 @@ impl Setup<'_> {
             let dot = "<circle cx=\"10\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.8\"/>";
             line(dot, &format!("{} at {} {length} of {}", text(probe, "name"), tuple(&at), text(probe, "body")), false);
         }
-        y
+        y + 12.0
     }
 }
