@@ -114,6 +114,10 @@ pub struct Manifest {
     pub threads: usize,
     /// Columns of `history.csv`, in order.
     pub columns: Vec<Column>,
+    /// Named sides, `body.side`: chains of point numbers of the field files in the order in which the boundary is walked, facet after
+    /// facet with the facets' interior points between their ends.
+    #[serde(default)]
+    pub sides: BTreeMap<String, Vec<Vec<usize>>>,
     /// Wall seconds per phase.
     pub timings: BTreeMap<String, f64>,
     /// Counts: steps, newton, factorisations, rejected, …
@@ -140,6 +144,7 @@ impl Manifest {
             machine: Machine::current(),
             threads,
             columns,
+            sides: BTreeMap::new(),
             timings: BTreeMap::new(),
             counters: BTreeMap::new(),
             expectations: Vec::new(),

@@ -32,11 +32,14 @@ pub struct ContactRow<'a> {
     pub multiplier: f64,
     /// −multiplier / consistent weight of the node.
     pub pressure: f64,
+    /// Unit normal out of the primary: the force on the node is −multiplier · normal.
+    pub normal: [f64; 2],
 }
 
 /// Header of `contact.csv`.
-pub(crate) const CONTACT_COLUMNS: [&str; 11] =
-    ["step", "time", "contact", "node", "x", "y", "facet", "xi", "gap", "multiplier", "pressure"];
+pub(crate) const CONTACT_COLUMNS: [&str; 13] = [
+    "step", "time", "contact", "node", "x", "y", "facet", "xi", "gap", "multiplier", "pressure", "normal_x", "normal_y",
+];
 
 /// Something worth knowing that happened in a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -112,7 +115,7 @@ impl Table {
         self.number(row.point[0])?;
         self.number(row.point[1])?;
         self.integer(row.facet)?;
-        for value in [row.xi, row.gap, row.multiplier, row.pressure] {
+        for value in [row.xi, row.gap, row.multiplier, row.pressure, row.normal[0], row.normal[1]] {
             self.number(value)?;
         }
         self.end_row()

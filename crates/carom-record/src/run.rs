@@ -160,6 +160,7 @@ fn contact(path: &Path) -> Result<Vec<ContactRow<'static>>, RecordError> {
             gap: real(8)?,
             multiplier: real(9)?,
             pressure: real(10)?,
+            normal: [real(11)?, real(12)?],
         });
         Ok(())
     })?;

@@ -46,6 +46,7 @@ fn record(writer: &mut RunWriter, step: u64) -> Result<(), RecordError> {
             gap,
             multiplier,
             pressure: f64::NAN,
+            normal: [0.6, 0.8],
         };
         writer.contact(&row)?;
     }
@@ -178,6 +179,7 @@ fn what_is_read_is_what_was_written() {
         gap: 1e-18,
         multiplier: -7.5,
         pressure: 75.0,
+        normal: [-0.0, 1.0],
     };
     writer.contact(&row).unwrap();
     let event = Event::new(3, 0.1, "cycle", "line\nbreak").with("nodes", vec![1, 2]);

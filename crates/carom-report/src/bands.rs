@@ -3,10 +3,9 @@
 //! A small triangle, on which the quantity is taken as linear, is cut along the levels between bands: every band's part is a convex
 //! polygon and together they are the triangle.
 
-use std::fmt::Write as _;
-
 use crate::axis::round_step;
 use crate::palette::diverging;
+use crate::pen::Pen;
 
 pub(crate) type Point = [f64; 2];
 
@@ -85,7 +84,7 @@ pub(crate) fn color_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool; 2
 }
 
 /// Adds a triangle's parts to the path of each band.
-pub(crate) fn band_polygons(triangle: &[(Point, f64); 3], bands: &Bands, paths: &mut [String]) {
+pub(crate) fn band_polygons(triangle: &[(Point, f64); 3], bands: &Bands, paths: &mut [Pen]) {
     if triangle.iter().any(|(_, f)| !f.is_finite()) {
         return;
     }
@@ -100,10 +99,9 @@ pub(crate) fn band_polygons(triangle: &[(Point, f64); 3], bands: &Bands, paths: 
             polygon = clip(&polygon, bands.level(band + 1), -1.0);
         }
         if polygon.len() > 2 {
-            for (i, (p, _)) in polygon.iter().enumerate() {
-                let _ = write!(paths[band], "{}{:.2} {:.2}", if i == 0 { 'M' } else { 'L' }, p[0], p[1]);
-            }
-            paths[band].push('Z');
+            paths[band].go(polygon[0].0);
+            polygon[1..].iter().for_each(|(p, _)| paths[band].draw(&[*p]));
+            paths[band].close();
         }
     }
 }
@@ -111,6 +109,7 @@ pub(crate) fn band_polygons(triangle: &[(Point, f64); 3], bands: &Bands, paths: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pen::GRID;
 
     /// Nodes of the reference triangle in VTK's order.
     fn nodes(degree: usize) -> Vec<[f64; 3]> {
@@ -142,18 +141,23 @@ mod tests {
     #[test]
     fn bands_cover_a_triangle_exactly_once() {
         let bands = Bands { low: -1.0, high: 2.0, count: 6 };
-        let mut paths = vec![String::new(); 6];
+        let mut paths = vec![Pen::default(); 6];
         band_polygons(&[([0.0, 0.0], -3.0), ([100.0, 0.0], 0.25), ([0.0, 100.0], 9.0)], &bands, &mut paths);
-        let area = |d: &String| -> f64 {
+        let area = |pen: &Pen| -> f64 {
             let polygon = |p: &str| {
-                let p: Vec<f64> = p.replace(['M', 'L'], " ").split_whitespace().map(|x| x.parse().unwrap()).collect();
-                let n = p.len() / 2;
-                (0..n)
-                    .map(|i| p[2 * i] * p[(2 * i + 3) % (2 * n)] - p[(2 * i + 2) % (2 * n)] * p[2 * i + 1])
-                    .sum::<f64>()
-                    / 2.0
+                let steps: Vec<f64> =
+                    p.replace(['m', 'l'], " ").replace('-', " -").split_whitespace().map(|x| x.parse().unwrap()).collect();
+                // Relative to the first corner.
+                let (mut at, mut corners) = ([0.0; 2], vec![[0.0; 2]]);
+                for step in steps.as_chunks::<2>().0.iter().skip(1) {
+                    at = [at[0] + step[0], at[1] + step[1]];
+                    corners.push(at);
+                }
+                let next = |i: usize| corners[(i + 1) % corners.len()];
+                let twice = (0..corners.len()).map(|i| corners[i][0] * next(i)[1] - next(i)[0] * corners[i][1]);
+                twice.sum::<f64>() / (2.0 * GRID * GRID)
             };
-            d.split_terminator('Z').map(polygon).sum()
+            pen.data().split_terminator('z').map(polygon).sum()
         };
         assert!(paths.iter().all(|d| !d.is_empty()));
         assert!((paths.iter().map(area).sum::<f64>() - 5000.0).abs() < 2.0);

@@ -6,20 +6,21 @@
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-use carom_record::{Cell, FieldSet};
+use carom_record::{Block, Cell, FieldSet};
 
 use crate::axis::{Axis, round_step};
 use crate::bands::{Bands, Point, band_polygons, color_bands, shape};
 use crate::chart::{open, scaled, write_text};
 use crate::labels::with_unit;
+use crate::pen::{Pen, open_grid};
 
 /// One instant: deformed nodes, the quantity at them, and the cells.
 pub(crate) struct Instant {
     pub(crate) time: String,
-    points: Vec<Point>,
-    values: Vec<f64>,
+    pub(crate) points: Vec<Point>,
+    pub(crate) values: Vec<f64>,
     /// Degree and node numbers.
-    cells: Vec<(usize, Vec<usize>)>,
+    pub(crate) cells: Vec<(usize, Vec<usize>)>,
 }
 
 impl Instant {
@@ -37,11 +38,21 @@ impl Instant {
         })
         .filter(|instant| !instant.cells.is_empty())
     }
+
+    /// The cells of one block at their reference positions, without a quantity.
+    pub(crate) fn of_block(fields: &FieldSet, block: &Block) -> Self {
+        Self {
+            time: String::new(),
+            points: fields.points.iter().map(|p| [p[0], p[1]]).collect(),
+            values: Vec::new(),
+            cells: block.cells().map(|c| (block.degree, c.to_vec())).collect(),
+        }
+    }
 }
 
 /// Filled bands of all cells: one path per colour.
 fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -> Point) {
-    let mut paths: Vec<String> = vec![String::new(); bands.count];
+    let mut paths = vec![Pen::default(); bands.count];
     let (mut n, mut corner) = (Vec::new(), Vec::new());
     for (degree, nodes) in &instant.cells {
         let m = [1, 4, 5][degree.saturating_sub(1).min(2)];
@@ -61,8 +72,8 @@ fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -
         let band = bands.of(corner[0].1);
         if corner.iter().all(|(_, f)| f.is_finite() && bands.of(*f) == band) {
             let edge = |e: usize| edge_nodes(*degree, nodes, e).map(|k| to(instant.points[k])).collect::<Vec<_>>();
-            (0..3).for_each(|e| paths[band].push_str(&bezier(&edge(e), e == 0)));
-            paths[band].push('Z');
+            (0..3).for_each(|e| bezier(&mut paths[band], &edge(e), e == 0));
+            paths[band].close();
             continue;
         }
         for j in 0..m {
@@ -77,39 +88,39 @@ fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -
             }
         }
     }
-    for (band, d) in paths.iter().enumerate().filter(|(_, d)| !d.is_empty()) {
-        let color = bands.color(band);
+    for (band, pen) in paths.iter().enumerate().filter(|(_, pen)| !pen.is_empty()) {
+        let (d, color) = (pen.data(), bands.color(band));
         // The stroke in the fill's own colour closes the hairlines between neighbours.
         let _ = writeln!(
             out,
-            "<path d=\"{d}\" fill=\"{color}\" stroke=\"{color}\" stroke-width=\"0.5\" stroke-linejoin=\"round\"/>"
+            "<path d=\"{d}\" fill=\"{color}\" stroke=\"{color}\" stroke-width=\"10\" stroke-linejoin=\"round\"/>"
         );
     }
 }
 
 /// Nodes of an edge in order from end to end.
-fn edge_nodes(degree: usize, nodes: &[usize], edge: usize) -> impl Iterator<Item = usize> {
+pub(crate) fn edge_nodes(degree: usize, nodes: &[usize], edge: usize) -> impl Iterator<Item = usize> {
     let inner = degree - 1;
     let between = &nodes[3 + edge * inner..3 + (edge + 1) * inner];
     std::iter::once(nodes[edge]).chain(between.iter().copied()).chain([nodes[(edge + 1) % 3]])
 }
 
 /// Bézier of an edge's nodes in order from end to end; `moved`: the pen goes to its start first.
-fn bezier(nodes: &[Point], moved: bool) -> String {
+pub(crate) fn bezier(pen: &mut Pen, nodes: &[Point], moved: bool) {
     let mix = |weights: &[f64]| [0, 1].map(|d| weights.iter().zip(nodes).map(|(w, p)| w * p[d]).sum::<f64>());
     let controls: &[&[f64]] = match nodes.len() {
         2 => &[&[0.0, 1.0]],
         3 => &[&[-0.5, 2.0, -0.5], &[0.0, 0.0, 1.0]],
         _ => &[&[-5.0 / 6.0, 3.0, -1.5, 1.0 / 3.0], &[1.0 / 3.0, -1.5, 3.0, -5.0 / 6.0], &[0.0, 0.0, 0.0, 1.0]],
     };
-    let points: Vec<String> = controls.iter().map(|w| mix(w)).map(|p| format!("{:.2} {:.2}", p[0], p[1])).collect();
-    let command = ["L", "Q", "C"][controls.len() - 1];
-    let start = if moved { format!("M{:.2} {:.2}", nodes[0][0], nodes[0][1]) } else { String::new() };
-    format!("{start}{command}{}", points.join(" "))
+    if moved {
+        pen.go(nodes[0]);
+    }
+    pen.draw(&controls.iter().map(|w| mix(w)).collect::<Vec<_>>());
 }
 
-/// Edges of all cells: those of one cell only are the outline.
-fn edges(out: &mut String, instant: &Instant, to: &dyn Fn(Point) -> Point) {
+/// Edges of all cells: inner ones and the outline, which are those of one cell only.
+pub(crate) fn edges(instant: &Instant, to: &dyn Fn(Point) -> Point) -> [Pen; 2] {
     let mut found: HashMap<[usize; 2], (usize, Vec<usize>)> = HashMap::new();
     let mut order = Vec::new();
     for (degree, nodes) in &instant.cells {
@@ -123,33 +134,40 @@ fn edges(out: &mut String, instant: &Instant, to: &dyn Fn(Point) -> Point) {
             entry.0 += 1;
         }
     }
-    let (mut inside, mut outline) = (String::new(), String::new());
+    let [mut inside, mut outline] = [Pen::default(), Pen::default()];
     for (count, nodes) in order.iter().filter_map(|key| found.get(key)) {
         let points: Vec<Point> = nodes.iter().map(|&k| to(instant.points[k])).collect();
-        if *count == 1 { &mut outline } else { &mut inside }.push_str(&bezier(&points, true));
+        bezier(if *count == 1 { &mut outline } else { &mut inside }, &points, true);
     }
-    let _ = writeln!(
-        out,
-        "<path d=\"{inside}\" fill=\"none\" stroke=\"#000\" stroke-opacity=\"0.28\" stroke-width=\"0.4\"/>"
-    );
-    let _ = writeln!(
-        out,
-        "<path d=\"{outline}\" fill=\"none\" stroke=\"#000\" stroke-width=\"0.9\" stroke-linecap=\"round\"/>"
-    );
+    [inside, outline]
 }
 
-/// The figure; `label` and `unit` stand at the colour bar. The second value says whether colours are cut off.
-pub(crate) fn figure(instants: &[Instant], title: &str, label: &str, unit: &str, length: &str) -> (String, bool) {
-    let used = |i: &Instant| {
-        i.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| (i.points[k], i.values[k]))).collect::<Vec<_>>()
-    };
-    let used: Vec<(Point, f64)> = instants.iter().flat_map(used).collect();
-    let (bands, cut) = color_bands(used.iter().map(|(_, f)| *f));
+/// Box of the cells' points: left, right, low, high.
+pub(crate) fn frame<'a>(instants: impl IntoIterator<Item = &'a Instant>) -> [f64; 4] {
     let mut frame = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
-    for ([x, y], _) in &used {
-        frame = [frame[0].min(*x), frame[1].max(*x), frame[2].min(*y), frame[3].max(*y)];
+    for instant in instants {
+        for [x, y] in instant.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| instant.points[k])) {
+            frame = [frame[0].min(x), frame[1].max(x), frame[2].min(y), frame[3].max(y)];
+        }
     }
-    let [x0, x1, y0, y1] = frame;
+    frame
+}
+
+/// Colours for the values of some instants.
+pub(crate) fn colors(instants: &[Instant]) -> (Bands, [bool; 2]) {
+    let used = |i: &Instant| i.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| i.values[k])).collect::<Vec<_>>();
+    color_bands(instants.iter().flat_map(used))
+}
+
+/// The figure; `label` and `unit` stand at the colour bar.
+pub(crate) fn figure(
+    instants: &[Instant],
+    (bands, cut): (&Bands, [bool; 2]),
+    title: &str,
+    (label, unit): (&str, &str),
+    length: &str,
+) -> String {
+    let [x0, x1, y0, y1] = frame(instants);
     let aspect = (x1 - x0) / (y1 - y0).max(1e-12 * (x1 - x0).abs()).max(f64::MIN_POSITIVE);
     let columns = instants
         .len()
@@ -180,8 +198,14 @@ pub(crate) fn figure(instants: &[Instant], title: &str, label: &str, unit: &str,
             top - 11.0,
             crate::text::svg(&instant.time)
         );
-        fill(&mut out, instant, &bands, &to);
-        edges(&mut out, instant, &to);
+        out.push_str(&open_grid());
+        fill(&mut out, instant, bands, &to);
+        let [inside, outline] = edges(instant, &to).map(|pen| pen.data().to_string());
+        let _ = writeln!(
+            out,
+            "<path d=\"{inside}\" fill=\"none\" stroke=\"#000\" stroke-opacity=\"0.28\" stroke-width=\"8\"/>\n\
+             <path d=\"{outline}\" fill=\"none\" stroke=\"#000\" stroke-width=\"18\" stroke-linecap=\"round\"/>\n</g>"
+        );
     }
     // A bar of a round length under the first picture.
     let size = round_step(x1 - x0, 3.0);
@@ -193,13 +217,13 @@ pub(crate) fn figure(instants: &[Instant], title: &str, label: &str, unit: &str,
         size * scale
     );
     write_text(&mut out, 8.0 + size * scale + 8.0, y + 4.0, "", format!("{size} {length}").trim());
-    color_bar(&mut out, &bands, cut, width - bar + 18.0, (line, height - 50.0), (label, unit));
+    color_bar(&mut out, bands, cut, width - bar + 18.0, (line, height - 50.0), (label, unit));
     out.push_str("</svg>\n");
-    (out, cut[0] || cut[1])
+    out
 }
 
 /// Vertical bar of the bands with ticks; an arrow at an end beyond which values were cut off.
-fn color_bar(
+pub(crate) fn color_bar(
     out: &mut String,
     bands: &Bands,
     cut: [bool; 2],
@@ -253,11 +277,13 @@ mod tests {
     #[test]
     fn beziers_pass_through_the_nodes() {
         let on = |s: f64| [s * 30.0, s * s * 90.0];
-        assert_eq!(bezier(&[on(0.0), on(1.0)], true), "M0.00 0.00L30.00 90.00");
-        assert_eq!(bezier(&[on(0.0), on(0.5), on(1.0)], true), "M0.00 0.00Q15.00 0.00 30.00 90.00");
-        assert_eq!(
-            bezier(&[0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(on), true),
-            "M0.00 0.00C10.00 0.00 20.00 30.00 30.00 90.00"
-        );
+        let drawn = |nodes: &[f64]| {
+            let mut pen = Pen::default();
+            bezier(&mut pen, &nodes.iter().map(|s| on(*s)).collect::<Vec<_>>(), true);
+            pen.data().to_string()
+        };
+        assert_eq!(drawn(&[0.0, 1.0]), "m0 0 600 1800");
+        assert_eq!(drawn(&[0.0, 0.5, 1.0]), "m0 0q300 0 600 1800");
+        assert_eq!(drawn(&[0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0]), "m0 0c200 0 400 600 600 1800");
     }
 }

@@ -36,6 +36,28 @@ pub(crate) struct Chart<'a> {
     pub(crate) panels: Vec<Panel<'a>>,
 }
 
+/// Times of events of one kind, drawn as ticks.
+pub(crate) struct Track {
+    pub(crate) label: String,
+    pub(crate) times: Vec<f64>,
+}
+
+/// How a chart is drawn when not as usual.
+pub(crate) struct Options<'a> {
+    /// Width in pixels.
+    pub(crate) width: f64,
+    /// Events under the panels.
+    pub(crate) tracks: &'a [Track],
+    /// Whether x is the time of the run: the animation's cursor moves along it.
+    pub(crate) time: bool,
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Self { width: WIDTH, tracks: &[], time: false }
+    }
+}
+
 /// Opening of a figure. It names its own fonts and is legible on its own.
 pub(crate) fn open(title: &str, width: f64, height: f64) -> String {
     format!(
@@ -88,13 +110,21 @@ fn path(points: impl Iterator<Item = (f64, f64)>) -> String {
 impl Chart<'_> {
     /// The figure.
     pub(crate) fn svg(&self) -> String {
+        self.draw(&Options::default())
+    }
+
+    /// The figure with events and at any width.
+    pub(crate) fn draw(&self, options: &Options) -> String {
         const GAP: f64 = 16.0;
-        let plot = WIDTH - LEFT - RIGHT;
-        let x_axis = Axis::new(range(self.panels.iter().flat_map(|p| &p.series).flat_map(|s| s.x)), 8.0, true);
+        const ROW: f64 = 15.0;
+        let width = options.width;
+        let plot = width - LEFT - RIGHT;
+        let below = if options.tracks.is_empty() { 0.0 } else { 10.0 + ROW * options.tracks.len() as f64 };
+        let x_axis = Axis::new(range(self.panels.iter().flat_map(|p| &p.series).flat_map(|s| s.x)), plot / 78.0, true);
         let rows: Vec<Vec<Vec<usize>>> = self.panels.iter().map(|p| legend_rows(p, plot)).collect();
         let tops = rows.iter().map(|r| GAP + r.len() as f64 * 18.0);
-        let height = tops.zip(&self.panels).map(|(top, p)| top + p.height).sum::<f64>() + 48.0;
-        let mut out = open(self.title, WIDTH, height);
+        let height = tops.zip(&self.panels).map(|(top, p)| top + p.height).sum::<f64>() + 48.0 + below;
+        let mut out = open(self.title, width, height);
         let to_x = |x: f64| LEFT + plot * x_axis.position(x);
         let mut y0 = 0.0;
         for (i, (panel, rows)) in self.panels.iter().zip(&rows).enumerate() {
@@ -153,10 +183,29 @@ impl Chart<'_> {
             );
             y0 = bottom;
         }
+        y0 += 23.0;
+        for track in options.tracks {
+            y0 += ROW;
+            let at = |t: &f64| format!("M{:.1} {:.1}v9", to_x(*t), y0 - 4.5);
+            let mut d: Vec<String> = track.times.iter().filter(|t| t.is_finite()).map(at).collect();
+            d.dedup();
+            let _ = writeln!(
+                out,
+                "<path d=\"M{LEFT} {y0:.1}h{plot}\" stroke=\"#d8d8d8\" stroke-width=\"0.6\"/>\n<path d=\"{}\" stroke=\"#000\" stroke-width=\"0.8\"/>",
+                d.concat()
+            );
+            write_text(&mut out, LEFT - 6.0, y0 + 3.6, "text-anchor=\"end\" font-size=\"11\"", &track.label);
+        }
+        y0 += if options.tracks.is_empty() { 0.0 } else { 10.0 };
+        if options.time {
+            let (left, right) = (to_x(x_axis.low), to_x(x_axis.high));
+            let (low, high) = (x_axis.low, x_axis.high);
+            let _ = writeln!(out, "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} 8 {:.1}\"/>", y0 - 12.0);
+        }
         let exponent = x_axis.exponent;
         let x_label =
             if exponent == 0 { self.x_label.clone() } else { format!("{} × 10^{{{exponent}}}", self.x_label) };
-        write_text(&mut out, LEFT + 0.5 * plot, y0 + 39.0, "text-anchor=\"middle\"", &x_label);
+        write_text(&mut out, LEFT + 0.5 * plot, y0 + 16.0, "text-anchor=\"middle\"", &x_label);
         out.push_str("</svg>\n");
         out
     }

@@ -2,10 +2,12 @@
 
 use carom_record::{Cell, FieldEntry, Run, metrics};
 
+use crate::bands::Bands;
 use crate::bodies::{self, Instant};
-use crate::chart::{Chart, Panel, Series};
+use crate::chart::{Chart, Options, Panel, Series};
 use crate::labels::{symbol, with_unit, words};
 use crate::palette::{LINES, sequence};
+use crate::{animation, setup};
 
 /// A figure of a report.
 #[derive(Clone, Debug)]
@@ -18,16 +20,39 @@ pub struct Figure {
     pub svg: String,
 }
 
+/// All a record allows to show.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Shown {
+    pub(crate) figures: Vec<Figure>,
+    /// The animation, as HTML.
+    pub(crate) animation: Option<String>,
+    /// What could not be drawn.
+    pub(crate) notes: Vec<String>,
+}
+
 /// All figures a record allows, and what could not be drawn.
-pub(crate) fn all(run: &Run) -> (Vec<Figure>, Vec<String>) {
-    let mut notes = Vec::new();
+pub(crate) fn all(run: &Run) -> Shown {
+    let mut shown = Shown::default();
     if run.times().is_empty() {
-        notes.push("The history has no rows yet: nothing to draw.".to_string());
-        return (Vec::new(), notes);
+        shown.notes.push("The history has no rows yet: nothing to draw.".to_string());
+        return shown;
     }
-    let bodies = instants(run, &mut notes);
-    let charts = [probes(run), force(run), energy(run), solver(run)];
-    (bodies.into_iter().chain(charts.into_iter().flatten()).collect(), notes)
+    shown.figures.extend(setup(run));
+    let place = shown.figures.len() + 1;
+    if let Some((bodies, bands, cut)) = instants(run, &mut shown.notes) {
+        shown.figures.push(bodies);
+        shown.animation = animation::html_of(run, (&bands, cut), shades(run), place);
+    }
+    shown.figures.extend([probes(run), force(run), energy(run), solver(run)].into_iter().flatten());
+    shown
+}
+
+/// The case drawn.
+fn setup(run: &Run) -> Option<Figure> {
+    let svg = setup::figure(run, &run.field(run.fields.first()?).ok()?)?;
+    let caption = "The case as it starts: bodies with their mesh, supports, loads, contact sides and probes. \
+                   Data: the first field file; case and sides in manifest.json.";
+    Some(Figure { name: "setup", caption: caption.into(), svg })
 }
 
 /// Contact intervals to shade.
@@ -40,7 +65,11 @@ fn shades(run: &Run) -> Vec<(f64, f64)> {
 fn chart<'a>(run: &Run, title: &'a str, panels: Vec<Panel<'a>>) -> Option<String> {
     let panels: Vec<Panel> = panels.into_iter().filter(|p| !p.series.is_empty()).collect();
     let x_label = with_unit("time t", run.history.unit("time"));
-    (!panels.is_empty()).then(|| Chart { title, x_label, shades: shades(run), panels }.svg())
+    (!panels.is_empty()).then(|| {
+        let tracks = if title == "Solver" { animation::tracks(run) } else { Vec::new() };
+        let options = Options { tracks: &tracks, time: true, ..Options::default() };
+        Chart { title, x_label, shades: shades(run), panels }.draw(&options)
+    })
 }
 
 /// Curves of columns with their labels; those without a column, or zero throughout compared with `size`, are left out.
@@ -69,11 +98,13 @@ fn names<'a>(run: &'a Run, list: &str) -> Vec<&'a str> {
 fn probes(run: &Run) -> Option<Figure> {
     let probes = names(run, "probes");
     let mut panels: Vec<(String, Panel)> = Vec::new();
+    let mut columns: Vec<&str> = Vec::new();
     for column in &run.history.columns {
         let Some((probe, quantity)) = column.name.rsplit_once('.').filter(|(p, _)| probes.contains(p)) else {
             continue;
         };
         let Some(values) = run.column(&column.name) else { continue };
+        columns.push(&column.name);
         let at = panels.iter().position(|(q, _)| q == quantity).unwrap_or_else(|| {
             panels.push((quantity.to_string(), panel(&symbol(quantity), &column.unit, 190.0, Vec::new())));
             panels.len() - 1
@@ -85,7 +116,7 @@ fn probes(run: &Run) -> Option<Figure> {
     let mut list: Vec<String> = panels.iter().map(|(q, _)| format!("{} {}", words(q), symbol(q))).collect();
     list.dedup();
     let svg = chart(run, "Probes against time", panels.into_iter().map(|(_, p)| p).collect())?;
-    let caption = format!("Probes against time: {}. Shaded: contact.", list.join(", "));
+    let caption = format!("Probes against time: {}. Shaded: contact. Data: history.csv, columns {}.", list.join(", "), columns.join(", "));
     Some(Figure { name: "probes", caption, svg })
 }
 
@@ -102,21 +133,24 @@ fn force(run: &Run) -> Option<Figure> {
         panel("impulse P", h.unit("contact_impulse_x"), 130.0, impulses),
     ];
     let caption = "Contact force on the secondary side at the end of each step, and its impulse so far. Shaded: contact. \
-                   Single peaks of the force depend on the time step; impulse, duration and restitution do not.";
+                   Single peaks of the force depend on the time step; impulse, duration and restitution do not. \
+                   Data: history.csv, columns contact_force_… and contact_impulse_….";
     Some(Figure { name: "force", caption: caption.into(), svg: chart(run, "Contact force and impulse", panels)? })
 }
 
 /// The energy ledger.
 fn energy(run: &Run) -> Option<Figure> {
     let unit = run.history.unit("total");
+    let size = run.column("total").into_iter().chain(run.column("kinetic")).flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
     let energies = [("total", "total"), ("kinetic", "kinetic"), ("strain", "strain"), ("potential", "potential")];
     let works = [("dissipation", "dissipation"), ("external_work", "external work"), ("contact_work", "contact work")];
     let panels = vec![
-        panel("energy", unit, 200.0, curves(run, &energies, 0.0)),
-        panel("work, dissipation", unit, 150.0, curves(run, &works, 0.0)),
+        panel("energy", unit, 200.0, curves(run, &energies, size)),
+        panel("work, dissipation", unit, 150.0, curves(run, &works, 1e-3 * size)),
     ];
     let caption = "Energy ledger: energies above, work done so far and dissipation below. \
-                   Dissipation = external work + contact work − change of the total; where it is negative, energy was created.";
+                   Dissipation = external work + contact work − change of the total; where it is negative, energy was created. What stays zero is left \
+                   out. Data: history.csv, columns of these names.";
     Some(Figure { name: "energy", caption: caption.into(), svg: chart(run, "Energy ledger", panels)? })
 }
 
@@ -129,7 +163,8 @@ fn solver(run: &Run) -> Option<Figure> {
     }
     let quiet = if panels.len() == 2 { " No step was rejected." } else { "" };
     let caption =
-        format!("Newton iterations and active contact nodes of each step, and attempts rejected in it.{quiet}");
+        format!("Newton iterations and active contact nodes of each step, and attempts rejected in it.{quiet} Ticks: events by kind. Data: \
+                          history.csv, columns newton, active and rejected; log.jsonl.");
     Some(Figure { name: "solver", caption, svg: chart(run, "Solver", panels)? })
 }
 
@@ -152,7 +187,8 @@ fn five(run: &Run) -> (Vec<&FieldEntry>, bool) {
     }
 }
 
-fn instants(run: &Run, notes: &mut Vec<String>) -> Option<Figure> {
+/// The bodies at instants, with the colours of their stress.
+fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands, [bool; 2])> {
     let (entries, contact) = five(run);
     if entries.is_empty() {
         notes.push("No field files were written (output.fields_every = 0): no picture of the bodies.".into());
@@ -168,51 +204,69 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<Figure> {
     let during = if contact { "of the first contact" } else { "of the run, which had no contact" };
     let unit = run.history.unit("time");
     if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
-        return bars(run, &sets, during);
+        let strips: Vec<Instant> = sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
+        let (bands, cut) = bodies::colors(&strips);
+        return Some((bars(run, &sets, during)?, bands, cut));
     }
     let stress = first.array("stress")?.unit.clone();
     let length = first.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();
     let instant = |(time, set): &_| Instant::new(set, "stress", 1, format!("t = {time:.4} {unit}"));
     let list: Vec<Instant> = sets.iter().filter_map(instant).collect();
-    let (svg, cut) = bodies::figure(&list, "Deformed bodies with vertical Cauchy stress", "σ_{yy}", &stress, &length);
+    let (bands, cut) = bodies::colors(&list);
+    let title = "Deformed bodies with vertical Cauchy stress";
+    let svg = bodies::figure(&list, (&bands, cut), title, ("σ_{yy}", &stress), &length);
     let arrow =
-        if cut { " Arrows at the colour bar: the outermost half per cent of the values lies beyond." } else { "" };
+        if cut[0] || cut[1] { " Arrows at the colour bar: the outermost half per cent of the values lies beyond." } else { "" };
     let caption = format!(
         "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal means) at instants {during}, all at one scale, displacements as \
-         they are. Blue presses, red pulls.{arrow}"
+         they are. Blue presses, red pulls.{arrow} Data: stress and displacement of the field files."
     );
-    Some(Figure { name: "bodies", caption, svg })
+    Some((Figure { name: "bodies", caption, svg }, bands, cut))
 }
 
-/// Dimension 1: displacement along the bars at the instants.
+/// Dimension 1: displacement and stress along the bars at the instants.
 fn bars(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Option<Figure> {
-    let positions: Vec<Vec<(f64, f64)>> = sets
-        .iter()
-        .map(|(_, set)| {
-            let u = set.array("displacement").filter(|a| a.components == 3);
-            let mut list = Vec::new();
-            for block in &set.blocks {
-                let mut nodes = block.connectivity.clone();
-                nodes.sort_by(|&a, &b| set.points[a][0].total_cmp(&set.points[b][0]));
-                nodes.dedup();
-                list.extend(nodes.iter().map(|&k| (set.points[k][0], u.map_or(f64::NAN, |u| u.values[3 * k]))));
-                // A gap between bodies.
-                list.push((set.points[*nodes.last()?][0], f64::NAN));
-            }
-            Some(list)
-        })
-        .collect::<Option<_>>()?;
-    let x: Vec<Vec<f64>> = positions.iter().map(|l| l.iter().map(|p| p.0).collect()).collect();
+    // Places and values of an array's component along the bars, with a gap after each.
+    let along = |set: &carom_record::FieldSet, array: &str, component: usize| -> Option<(Vec<f64>, Vec<f64>)> {
+        let values = set.array(array).filter(|a| component < a.components)?;
+        let (mut x, mut y) = (Vec::new(), Vec::new());
+        for block in &set.blocks {
+            let mut nodes = block.connectivity.clone();
+            nodes.sort_by(|&a, &b| set.points[a][0].total_cmp(&set.points[b][0]));
+            nodes.dedup();
+            x.extend(nodes.iter().map(|&k| set.points[k][0]));
+            y.extend(nodes.iter().map(|&k| values.values[values.components * k + component]));
+            x.push(set.points[*nodes.last()?][0]);
+            y.push(f64::NAN);
+        }
+        Some((x, y))
+    };
+    let lines = |array: &str, component| -> Vec<_> {
+        let line = |(t, set): &(f64, _)| along(set, array, component).map(|(x, y)| (*t, x, y));
+        sets.iter().filter_map(line).collect()
+    };
+    let (u, stress) = (lines("displacement", 0), lines("stress", 0));
     let time = run.history.unit("time");
-    let series = positions.iter().zip(&x).zip(sets).enumerate().map(|(i, ((list, x), (t, _)))| Series {
-        label: format!("t = {t:.4} {time}"),
-        color: sequence(i, sets.len()),
-        x,
-        y: list.iter().map(|p| p.1).collect(),
-    });
-    let length = sets.first()?.1.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();
-    let panels = vec![panel("u_{x}", &length, 230.0, series.collect())];
-    let x_label = with_unit("reference position X", &length);
-    let svg = Chart { title: "Displacement along the bars", x_label, shades: Vec::new(), panels }.svg();
-    Some(Figure { name: "bodies", caption: format!("Displacement along the bars at instants {during}."), svg })
+    let unit = |array: &str| sets.first().and_then(|s| s.1.array(array)).map(|a| a.unit.clone()).unwrap_or_default();
+    let mut panels = Vec::new();
+    for (label, array, lines) in [("u_{x}", "displacement", &u), ("σ_{xx}", "stress", &stress)] {
+        let series = lines.iter().enumerate().map(|(i, (t, x, y))| Series {
+            // The legend stands once.
+            label: if panels.is_empty() { format!("t = {t:.4} {time}") } else { String::new() },
+            color: sequence(i, sets.len()),
+            x,
+            y: y.clone(),
+        });
+        let series: Vec<Series> = series.collect();
+        if !series.is_empty() {
+            panels.push(panel(label, &unit(array), 200.0, series));
+        }
+    }
+    let x_label = with_unit("reference position X", &unit("displacement"));
+    let svg = Chart { title: "Displacement and stress along the bars", x_label, shades: Vec::new(), panels }.svg();
+    let caption = format!(
+        "Displacement u_{{x}} and Cauchy stress σ_{{xx}} (nodal means) along the bars at instants {during}. \
+         Data: displacement and stress of the field files."
+    );
+    Some(Figure { name: "bodies", caption, svg })
 }

@@ -31,3 +31,35 @@ pub(crate) fn words(quantity: &str) -> String {
 pub(crate) fn with_unit(label: &str, unit: &str) -> String {
     if unit.is_empty() || unit == "1" { label.to_string() } else { format!("{label} ({unit})") }
 }
+
+/// A number as people read it: six digits, an exponent when far from one.
+pub(crate) fn number(x: f64) -> String {
+    if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) {
+        return format!("{x:.5e}").replace('-', "−");
+    }
+    let decimals = if x == 0.0 { 0 } else { (5 - x.abs().log10().floor() as i32).clamp(0, 9) as usize };
+    let text = format!("{x:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    text.replace('-', "−")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number;
+
+    #[test]
+    fn numbers() {
+        let cases = [
+            (0.0, "0"),
+            (-0.7827, "−0.7827"),
+            (400.0, "400"),
+            (1.0 / 3.0, "0.333333"),
+            (123456.7, "123457"),
+            (1.5e-7, "1.50000e−7"),
+            (2e6, "2.00000e6"),
+        ];
+        for (x, text) in cases {
+            assert_eq!(number(x), text);
+        }
+    }
+}

@@ -1,8 +1,9 @@
 //! Figures and a page from a run directory alone; nothing here runs anything.
 //!
-//! `report` writes `figures/*.svg` and a self-contained `report.html` beside the record: no script, no request to anywhere, every
-//! text that came from a user escaped.
+//! `report` writes `figures/*.svg` and a self-contained `report.html` beside the record: no request to anywhere, every text that came
+//! from a user escaped, one small script for the animation without which, as on paper, the figures remain.
 
+mod animation;
 mod axis;
 mod bands;
 mod bodies;
@@ -11,6 +12,9 @@ mod figures;
 mod labels;
 mod page;
 mod palette;
+mod pen;
+mod setup;
+mod symbols;
 mod text;
 
 use std::fs;
@@ -60,7 +64,7 @@ impl ReportError {
 /// Makes figures and page of a run directory, from the record alone.
 pub fn report(directory: &Path) -> Result<ReportSummary, ReportError> {
     let run = Run::open(directory)?;
-    let (figures, notes) = figures::all(&run);
+    let figures::Shown { figures, animation, notes } = figures::all(&run);
     let write = |path: PathBuf, text: &str| match fs::write(&path, text) {
         Ok(()) => Ok(path),
         Err(source) => Err(ReportError::Write { path, source }),
@@ -69,6 +73,6 @@ pub fn report(directory: &Path) -> Result<ReportSummary, ReportError> {
     fs::create_dir_all(&folder).map_err(|source| ReportError::Write { path: folder.clone(), source })?;
     let written = figures.iter().map(|f| write(folder.join(format!("{}.svg", f.name)), &f.svg));
     let written = written.collect::<Result<Vec<_>, _>>()?;
-    let page = write(directory.join("report.html"), &page::page(&run, &figures, &notes))?;
+    let page = write(directory.join("report.html"), &page::page(&run, &figures, animation.as_deref(), &notes))?;
     Ok(ReportSummary { page, figures: written, notes })
 }

@@ -6,13 +6,14 @@ use std::fmt::Write as _;
 use carom_record::{Run, Status, metrics};
 
 use crate::figures::Figure;
+use crate::labels::number;
 use crate::text::{escape, html};
 
 /// Log events shown; all are counted.
 const EVENTS: usize = 50;
 
 /// The page.
-pub(crate) fn page(run: &Run, figures: &[Figure], notes: &[String]) -> String {
+pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&str>, notes: &[String]) -> String {
     let title = run.manifest.case.get("title").and_then(|t| t.as_str()).unwrap_or("Carom run");
     let mut out = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
@@ -24,19 +25,13 @@ pub(crate) fn page(run: &Run, figures: &[Figure], notes: &[String]) -> String {
     for note in notes {
         let _ = writeln!(out, "<p class=\"small\">{}</p>", escape(note));
     }
+    let case = figures.iter().take_while(|f| f.name == "setup").count();
+    show(&mut out, &figures[..case], 1);
+    out.push_str(animation.unwrap_or_default());
     results(&mut out, run);
     expectations(&mut out, run);
     out.push_str("<h2>Figures</h2>\n");
-    for (i, figure) in figures.iter().enumerate() {
-        let (caption, name) = (html(&figure.caption), figure.name);
-        let link = format!("<a href=\"figures/{name}.svg\">figures/{name}.svg</a>");
-        let _ = writeln!(
-            out,
-            "<figure>\n{}<figcaption><b>Figure {}.</b> {caption} <span class=\"small\">({link})</span></figcaption>\n</figure>",
-            figure.svg,
-            i + 1
-        );
-    }
+    show(&mut out, &figures[case..], case + 1);
     events(&mut out, run);
     work(&mut out, run);
     reproduce(&mut out, run);
@@ -44,15 +39,18 @@ pub(crate) fn page(run: &Run, figures: &[Figure], notes: &[String]) -> String {
     out
 }
 
-/// A number as people read it: six digits, an exponent when far from one.
-fn number(x: f64) -> String {
-    if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) {
-        return format!("{x:.5e}").replace('-', "−");
+/// Figures with captions, numbered from `first`.
+fn show(out: &mut String, figures: &[Figure], first: usize) {
+    for (i, figure) in figures.iter().enumerate() {
+        let (caption, name) = (html(&figure.caption), figure.name);
+        let link = format!("<a href=\"figures/{name}.svg\">figures/{name}.svg</a>");
+        let _ = writeln!(
+            out,
+            "<figure>\n{}<figcaption><b>Figure {}.</b> {caption} <span class=\"small\">({link})</span></figcaption>\n</figure>",
+            figure.svg,
+            first + i
+        );
     }
-    let decimals = if x == 0.0 { 0 } else { (5 - x.abs().log10().floor() as i32).clamp(0, 9) as usize };
-    let text = format!("{x:.decimals$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    text.replace('-', "−")
 }
 
 fn header(out: &mut String, run: &Run) {
@@ -70,6 +68,10 @@ fn header(out: &mut String, run: &Run) {
     let mut row = |name: &str, value: String| {
         let _ = writeln!(out, "<tr><th>{name}</th><td>{value}</td></tr>");
     };
+    let names: Vec<&str> = m.case.get("bodies").and_then(|b| b.as_array()).into_iter().flatten().filter_map(|b| b.get("name")?.as_str()).collect();
+    if !names.is_empty() {
+        row("Bodies", escape(&names.join(", ")));
+    }
     row("Carom", escape(&m.version));
     row("Input hash", format!("<code class=\"hash\">{}</code>", escape(&m.input_hash)));
     row("Recorded", format!("{rows} rows to t = {} {}", number(last), html(run.history.unit("time"))));
@@ -89,7 +91,7 @@ fn header(out: &mut String, run: &Run) {
     row("Machine", escape(&format!("{} cores, {} {}; threads: {}", machine.cpus, machine.os, machine.arch, m.threads)));
     row("Wall time", format!("{} s", number(wall)));
     row("Started", escape(&m.started));
-    out.push_str("</table>\n");
+    out.push_str("</table>\n<p class=\"small\">From manifest.json: version, input_hash, case, machine, threads, timings.total, started. The hash is BLAKE3 of the case file and the options given with it. Rows and times: history.csv.</p>\n");
 }
 
 fn results(out: &mut String, run: &Run) {
@@ -110,7 +112,9 @@ fn results(out: &mut String, run: &Run) {
     if let Some(body) = metrics::striker(&run.history) {
         let _ = writeln!(
             out,
-            "<p class=\"small\">Striker: {}. All values are computed from history.csv alone.</p>",
+            "<p class=\"small\">Striker: {}. All values are computed from history.csv alone: times from <code>time</code> and <code>active</code>, forces from \
+             <code>contact_force_…</code>, impulses from <code>contact_impulse_…</code>, energies from <code>dissipation</code>, \
+             <code>kinetic</code> and <code>strain</code>, motion from <code>center_…</code> and <code>velocity_…</code> of the striker.</p>",
             escape(body)
         );
     }
@@ -140,7 +144,7 @@ fn events(out: &mut String, run: &Run) {
     for event in &run.log {
         *kinds.entry(&event.kind).or_default() += 1;
     }
-    out.push_str("<h2>Events</h2>\n");
+    out.push_str("<h2>Events</h2>\n<p class=\"small\">log.jsonl, one event per line.</p>\n");
     if kinds.is_empty() {
         out.push_str("<p>None.</p>\n");
         return;
@@ -167,7 +171,7 @@ fn events(out: &mut String, run: &Run) {
 
 fn work(out: &mut String, run: &Run) {
     let m = &run.manifest;
-    out.push_str("<h2>Work</h2>\n<table>\n");
+    out.push_str("<h2>Work</h2>\n<p class=\"small\">manifest.json: counters and timings (wall seconds).</p>\n<table>\n");
     for (name, count) in &m.counters {
         let _ =
             writeln!(out, "<tr><td>{}</td><td class=\"n\">{count}</td><td></td></tr>", escape(&name.replace('_', " ")));
@@ -198,25 +202,4 @@ fn reproduce(out: &mut String, run: &Run) {
     }
     let links: Vec<String> = files.iter().map(|f| format!("<a href=\"{f}\">{f}</a>")).collect();
     let _ = writeln!(out, "{}.</p>", links.join(", "));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::number;
-
-    #[test]
-    fn numbers() {
-        let cases = [
-            (0.0, "0"),
-            (-0.7827, "−0.7827"),
-            (400.0, "400"),
-            (1.0 / 3.0, "0.333333"),
-            (123456.7, "123457"),
-            (1.5e-7, "1.50000e−7"),
-            (2e6, "2.00000e6"),
-        ];
-        for (x, text) in cases {
-            assert_eq!(number(x), text);
-        }
-    }
 }

@@ -26,7 +26,10 @@ fn elements(text: &str) -> usize {
 fn check_page(directory: &Path) -> String {
     let page = fs::read_to_string(directory.join("report.html")).unwrap();
     let without_namespace = page.replace("http://www.w3.org/2000/svg", "");
-    for outside in ["http:", "https:", "src=", "url(", "@import", "<script", "<link"] {
+    // One script and its data, nothing from a user among them.
+    let scripts = without_namespace.matches("<script").count();
+    assert!(scripts == if page.contains("id=\"animation\"") { 2 } else { 0 }, "{scripts}");
+    for outside in ["http:", "https:", "src=", "url(", "@import", "<script>alert", "<link", "import("] {
         assert!(!without_namespace.contains(outside), "{outside}");
     }
     page
@@ -39,14 +42,14 @@ fn figures_and_page() {
     common::write(&directory, "</title><script>alert(1)</script> & \"more\"", Some("energy <created>: 3 %"));
     let summary = report(&directory).unwrap();
     let names: Vec<_> = summary.figures.iter().map(|f| f.file_stem().unwrap().to_str().unwrap().to_string()).collect();
-    assert_eq!(names, ["bodies", "probes", "force", "energy", "solver"]);
+    assert_eq!(names, ["setup", "bodies", "probes", "force", "energy", "solver"]);
     assert!(summary.notes.is_empty());
     for figure in &summary.figures {
         let text = fs::read_to_string(figure).unwrap();
         assert!(elements(&text) > 20);
         assert!(!text.contains("NaN") && !text.contains("inf"), "{figure:?}");
     }
-    let bodies = fs::read_to_string(&summary.figures[0]).unwrap();
+    let bodies = fs::read_to_string(&summary.figures[1]).unwrap();
     for part in ["(B)", "(F)", "t = 0.3150 s", "t = 0.5550 s", ">yy</tspan>", "0.5 m"] {
         assert!(bodies.contains(part), "{part}");
     }
@@ -103,7 +106,7 @@ fn dimension_one_shows_displacement_along_the_bar() {
     let directory = scratch.path().join("run");
     bar(&directory, 9, true);
     let summary = report(&directory).unwrap();
-    let text = fs::read_to_string(&summary.figures[0]).unwrap();
+    let text = fs::read_to_string(&summary.figures[1]).unwrap();
     assert!(text.contains("reference position X (m)") && elements(&text) > 20);
 }
 

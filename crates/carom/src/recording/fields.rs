@@ -1,5 +1,7 @@
 //! A state as fields for viewers: displacement, velocity, stress (nodal mean within each body) and contact pressure.
 
+use std::collections::BTreeMap;
+
 use carom_contact::Linearised;
 use carom_record::{Block, Cell, FieldSet, PointArray};
 use carom_solid::line_shape;
@@ -105,9 +107,31 @@ pub(super) fn consistent_weights<const D: usize>(contact: &Contact<D>, state: &S
     weights
 }
 
-/// Gap of a pair in a state; NaN where it has none.
-pub(super) fn gap_of<const D: usize>(contact: &Contact<D>, pair: &carom_contact::Pair, state: &State) -> f64 {
+/// Gap of a pair in a state and the unit normal ∂g/∂y of its secondary node; NaN where it has none.
+pub(super) fn gap_of<const D: usize>(contact: &Contact<D>, pair: &carom_contact::Pair, state: &State) -> (f64, [f64; 2]) {
     let mut gap = Linearised::default();
     let known = contact.method.linearise(&mut pair.clone(), state.y.as_chunks::<D>().0, 0.0, &mut gap);
-    known.map_or(f64::NAN, |()| gap.gap)
+    known.map_or((f64::NAN, [f64::NAN; 2]), |()| {
+        (gap.gap, std::array::from_fn(|i| if i < D { gap.gradient[0][i] } else { 0.0 }))
+    })
+}
+
+/// Chains of point numbers of every named side, in the order in which the boundary is walked.
+pub(super) fn sides<const D: usize>(model: &Model<D>) -> BTreeMap<String, Vec<Vec<usize>>> {
+    let mut named = BTreeMap::new();
+    for part in &model.parts {
+        for (side, facets) in &part.body.mesh().sides {
+            let mut chains: Vec<Vec<usize>> = Vec::new();
+            for facet in facets {
+                let (ends, interior) = facet.nodes.split_at(facet.nodes.len().min(2));
+                let walk = ends.iter().take(1).chain(interior).chain(ends.iter().skip(1)).map(|n| n + part.first_node);
+                match chains.last_mut() {
+                    Some(chain) if chain.last() == Some(&(facet.nodes[0] + part.first_node)) => chain.extend(walk.skip(1)),
+                    _ => chains.push(walk.collect()),
+                }
+            }
+            named.insert(format!("{}.{side}", part.name), chains);
+        }
+    }
+    named
 }

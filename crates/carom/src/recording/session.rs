@@ -7,7 +7,7 @@ use std::time::Instant;
 use carom_record::{ContactRow, Event, Manifest, RecordError, Run, RunWriter, Source, Status};
 
 use super::columns::{center_weights, columns, row};
-use super::fields::{consistent_weights, field_set, gap_of};
+use super::fields::{consistent_weights, field_set, gap_of, sides};
 use super::log::entry;
 use crate::case::{Bound, Case, ExpectSpec, Problem};
 use crate::model::{Dimension, Space};
@@ -160,7 +160,8 @@ where
     let simulation = Simulation::<D>::new(case, options.threads).map_err(RunError::Case)?;
     let resolved = serde_json::to_value(case).map_err(|e| RunError::Incompatible { what: e.to_string() })?;
     let version = env!("CARGO_PKG_VERSION");
-    let manifest = Manifest::new(version, resolved, source, columns(case, &simulation.model), options.threads);
+    let mut manifest = Manifest::new(version, resolved, source, columns(case, &simulation.model), options.threads);
+    manifest.sides = sides(&simulation.model);
     let writer = RunWriter::create(directory, &manifest, &bytes(&simulation.state)?)?;
     let mut session = Session::new(case, simulation, writer, manifest);
     session.write_start()?;
@@ -305,6 +306,7 @@ where
             for pair in pairs.iter().filter(|p| p.active) {
                 let node = contact.method.secondary()[pair.node];
                 let y = state.y.as_chunks::<D>().0[node];
+                let (gap, normal) = gap_of(contact, pair, state);
                 self.writer.contact(&ContactRow {
                     step: state.step,
                     time: state.time,
@@ -313,9 +315,10 @@ where
                     point: std::array::from_fn(|i| if i < D { y[i] } else { 0.0 }),
                     facet: pair.facet as u64,
                     xi: pair.xi,
-                    gap: gap_of(contact, pair, state),
+                    gap,
                     multiplier: pair.lambda,
                     pressure: -pair.lambda / weights[pair.node],
+                    normal,
                 })?;
             }
         }

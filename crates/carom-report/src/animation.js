@@ -1,0 +1,200 @@
+"use strict";
+(() => {
+  const data = JSON.parse(document.getElementById("animation-data").textContent);
+  const root = document.getElementById("animation");
+  const [canvas, button, slider, shown, speed] = ["canvas", "button", "input", "output", "select"].map(s => root.querySelector(s));
+  const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
+  const [left, right, low, high] = data.box;
+  const unpack = (text, from, to) => Float32Array.from(new Int16Array(bytes(text)),
+    i => i === -32768 ? NaN : from + (to - from) * (i + 32767) / 65534);
+  const X = unpack(data.x, left, right), Y = unpack(data.y, low, high), S = unpack(data.s, ...data.range);
+  const frames = data.frames, colors = data.bands.colors, width = (data.bands.high - data.bands.low) / colors.length;
+  const band = s => Math.min(colors.length - 1, Math.max(0, Math.floor((s - data.bands.low) / width)));
+
+  // Cells, and of every degree the shape functions at the points of a subdivision.
+  const numbers = new Uint32Array(bytes(data.cells));
+  const cells = [], edges = new Map();
+  let next = 0;
+  for (const c of data.degrees) {
+    const d = +c, nodes = numbers.subarray(next, next += (d + 1) * (d + 2) / 2);
+    cells.push([d, nodes]);
+    for (let e = 0; e < 3; e++) {
+      const a = nodes[e], b = nodes[(e + 1) % 3], key = Math.min(a, b) + "," + Math.max(a, b);
+      const walk = [a, ...nodes.subarray(3 + e * (d - 1), 3 + (e + 1) * (d - 1)), b];
+      edges.set(key, edges.has(key) ? null : walk);
+    }
+  }
+  const outline = [...edges.values()].filter(Boolean);
+  const shape = (degree, a, b, c) => {
+    const l = [a, b, c], pairs = [[a, b], [b, c], [c, a]];
+    if (degree === 1) return l;
+    if (degree === 2) return [...l.map(x => x * (2 * x - 1)), ...pairs.map(([x, y]) => 4 * x * y)];
+    return [...l.map(x => x * (3 * x - 1) * (3 * x - 2) / 2),
+      ...pairs.flatMap(([x, y]) => [4.5 * x * y * (3 * x - 1), 4.5 * x * y * (3 * y - 1)]), 27 * a * b * c];
+  };
+  const fine = cells.length > 1500 ? [0, 1, 2, 2] : [0, 1, 4, 5];
+  const grids = [1, 2, 3].map(d => {
+    const m = fine[d], points = [], triangles = [], at = (i, j) => j * (m + 1) - j * (j - 1) / 2 + i;
+    for (let j = 0; j <= m; j++) for (let i = 0; i <= m - j; i++) {
+      points.push(shape(d, 1 - (i + j) / m, i / m, j / m));
+      if (i + j < m) triangles.push([at(i, j), at(i + 1, j), at(i, j + 1)]);
+      if (i + j < m - 1) triangles.push([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+    }
+    return { points, triangles };
+  });
+
+  // Picture: room for arrows around the box.
+  const aspect = (high - low) / (right - left);
+  const W = data.flat || aspect < 0.5 ? 900 : Math.min(380, Math.max(220, 440 / aspect)), pad = 18;
+  root.classList.toggle("wide", W > 400);
+  const scale = (W - 2 * pad) / (right - left), H = Math.max(data.flat ? 110 : 0, (high - low) * scale + 2 * pad);
+  const ratio = Math.max(2, window.devicePixelRatio || 1);
+  canvas.width = W * ratio; canvas.height = H * ratio;
+  canvas.style.width = W + "px"; canvas.style.aspectRatio = W + " / " + H;
+  const g = canvas.getContext("2d");
+  const px = x => pad + (x - left) * scale, py = y => H / 2 - (y - (low + high) / 2) * scale;
+
+  const clip = (polygon, level, sign) => {
+    const out = [];
+    polygon.forEach((p, i) => {
+      const q = polygon[(i + 1) % polygon.length], inside = sign * (p[2] - level) >= 0;
+      if (inside) out.push(p);
+      if (inside !== sign * (q[2] - level) >= 0) {
+        const t = (level - p[2]) / (q[2] - p[2]);
+        out.push([p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1]), level]);
+      }
+    });
+    return out;
+  };
+  const arrow = (x, y, fx, fy) => {
+    const size = Math.hypot(fx, fy), length = 62 * size / data.largest, dx = fx / size, dy = -fy / size;
+    if (length < 2) return;
+    const head = Math.min(6, 0.6 * length), ex = x + dx * length, ey = y + dy * length;
+    g.beginPath();
+    g.moveTo(x, y); g.lineTo(ex - dx * head, ey - dy * head);
+    g.moveTo(ex, ey);
+    g.lineTo(ex - dx * head - dy * head * 0.42, ey - dy * head + dx * head * 0.42);
+    g.lineTo(ex - dx * head + dy * head * 0.42, ey - dy * head - dx * head * 0.42);
+    g.closePath();
+    g.lineWidth = 2.8; g.strokeStyle = "#fff"; g.stroke();
+    g.lineWidth = 1.1; g.strokeStyle = g.fillStyle = "#000"; g.stroke(); g.fill();
+  };
+  const draw = k => {
+    const base = k * data.points, paths = colors.map(() => new Path2D());
+    const fill = (b, polygon) => {
+      polygon.forEach((p, i) => i ? paths[b].lineTo(p[0], p[1]) : paths[b].moveTo(p[0], p[1]));
+      paths[b].closePath();
+    };
+    for (const [degree, nodes] of cells) {
+      const grid = grids[degree - 1];
+      const points = grid.points.map(n => {
+        let x = 0, y = 0, s = 0;
+        for (let i = 0; i < n.length; i++) {
+          const j = base + nodes[i];
+          x += n[i] * X[j]; y += n[i] * Y[j]; s += n[i] * S[j];
+        }
+        return [px(x), py(y), s];
+      });
+      for (const t of grid.triangles) {
+        const corners = t.map(i => points[i]), of = corners.map(p => band(p[2]));
+        if (of.some(Number.isNaN)) continue;
+        const first = Math.min(...of), last = Math.max(...of);
+        for (let b = first; b <= last; b++) {
+          let polygon = corners;
+          if (b > first) polygon = clip(polygon, data.bands.low + b * width, 1);
+          if (b < last) polygon = clip(polygon, data.bands.low + (b + 1) * width, -1);
+          if (polygon.length > 2) fill(b, polygon);
+        }
+      }
+    }
+    g.setTransform(ratio, 0, 0, ratio, 0, 0);
+    g.fillStyle = "#fff"; g.fillRect(0, 0, W, H);
+    g.lineJoin = "round";
+    paths.forEach((path, b) => {
+      g.fillStyle = g.strokeStyle = colors[b];
+      g.fill(path); g.lineWidth = 0.6; g.stroke(path);
+    });
+    g.strokeStyle = "#000"; g.lineWidth = 1.1; g.beginPath();
+    for (const walk of outline) {
+      const n = walk.length, at = i => [px(X[base + walk[i]]), py(Y[base + walk[i]])];
+      const p = Array.from({ length: n }, (_, i) => at(i)), mix = w => [0, 1].map(d => w.reduce((s, v, i) => s + v * p[i][d], 0));
+      g.moveTo(...p[0]);
+      if (n === 2) g.lineTo(...p[1]);
+      else if (n === 3) g.quadraticCurveTo(...mix([-0.5, 2, -0.5]), ...p[2]);
+      else g.bezierCurveTo(...mix([-5 / 6, 3, -1.5, 1 / 3]), ...mix([1 / 3, -1.5, 3, -5 / 6]), ...p[3]);
+    }
+    g.stroke();
+    for (const [p, n] of data.planes) {
+      const l = Math.hypot(...n), t = [n[1] / l, n[0] / l], c = [px(p[0]), py(p[1])], r = data.flat ? 46 : W;
+      g.lineWidth = 1.6; g.strokeStyle = "#222"; g.beginPath();
+      g.moveTo(c[0] - r * t[0], c[1] - r * t[1]); g.lineTo(c[0] + r * t[0], c[1] + r * t[1]);
+      for (let s = -r; s <= r; s += 7) {
+        const x = c[0] + s * t[0], y = c[1] + s * t[1];
+        g.moveTo(x, y); g.lineTo(x - 6 * n[0] / l - 6 * t[0], y + 6 * n[1] / l - 6 * t[1]);
+      }
+      g.stroke();
+    }
+    const f = frames[k].forces;
+    for (let i = 0; i < f.length; i += 4) arrow(px(f[i]), py(f[i + 1]), f[i + 2], f[i + 3]);
+  };
+
+  // Cursors in every time history of the page.
+  const axes = [...document.querySelectorAll("svg g.time")].map(axis => {
+    const [x0, x1, t0, t1, top, bottom] = axis.dataset.axis.split(" ").map(Number);
+    const line = document.createElementNS("http://www.w3.org/2000/svg", "path");
+    for (const [key, value] of [["stroke", "#c0267e"], ["stroke-width", "1.2"], ["class", "cursor"]]) line.setAttribute(key, value);
+    axis.append(line);
+    const svg = axis.ownerSVGElement;
+    svg.addEventListener("click", event => {
+      const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+      if (p.x >= x0 && p.x <= x1) { pause(); show(t0 + (t1 - t0) * (p.x - x0) / (x1 - x0)); }
+    });
+    svg.style.cursor = "crosshair";
+    return t => {
+      const x = (x0 + (x1 - x0) * (t - t0) / (t1 - t0)).toFixed(2);
+      line.setAttribute("d", `M${x} ${top}V${bottom}`);
+    };
+  });
+
+  const start = frames[0].time, end = frames[frames.length - 1].time;
+  let frame = -1, now = start, playing = null;
+  const show = t => {
+    now = Math.min(end, Math.max(start, t));
+    let k = 0;
+    frames.forEach((f, i) => { if (Math.abs(f.time - now) <= Math.abs(frames[k].time - now)) k = i; });
+    if (playing === null) now = frames[k].time;
+    slider.value = (now - start) / (end - start);
+    if (k === frame) return;
+    frame = k;
+    draw(k);
+    axes.forEach(move => move(frames[k].time));
+    shown.textContent = `t = ${frames[k].time.toPrecision(4)} ${data.unit} · step ${frames[k].step} · ${frames[k].file}`;
+  };
+  const pause = () => { cancelAnimationFrame(playing); playing = null; button.textContent = "▶"; };
+  const play = () => {
+    if (now >= end) now = start;
+    button.textContent = "❚❚";
+    let last = performance.now();
+    // The whole run in eight seconds at speed 1.
+    const tick = at => {
+      playing = requestAnimationFrame(tick);
+      show(now + (at - last) / 8000 * (end - start) * speed.value);
+      last = at;
+      if (now >= end) pause();
+    };
+    playing = requestAnimationFrame(tick);
+  };
+  button.addEventListener("click", () => playing === null ? play() : pause());
+  slider.addEventListener("input", () => { pause(); show(start + slider.value * (end - start)); });
+  root.tabIndex = 0;
+  root.addEventListener("keydown", event => {
+    if (event.target === speed) return;
+    const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (by) { pause(); show((frames[frame + by] || frames[frame]).time); event.preventDefault(); }
+    if (event.key === " " && event.target !== button) { playing === null ? play() : pause(); event.preventDefault(); }
+  });
+  root.hidden = false;
+  // The frame with the largest force says most.
+  const force = f => f.forces.reduce((s, v, i) => i % 4 > 1 ? s + Math.abs(v) : s, 0);
+  show(frames.reduce((a, b) => force(b) > force(a) ? b : a).time);
+})();

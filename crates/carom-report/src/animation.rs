@@ -1,0 +1,237 @@
+//! The motion, to be played offline: deformed bodies with the stress in colour and contact forces as arrows, frame by frame beside the
+//! time histories.
+//!
+//! Frames are the field files and nothing between them. Positions and stresses travel as 16-bit integers over their range (a
+//! 65 000th of the picture's width), the mesh once; `animation.js` draws them with the colours of the figure `bodies`.
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use carom_record::{Cell, FieldEntry, FieldSet, Run};
+use serde_json::json;
+
+use crate::bands::{Bands, Point};
+use crate::bodies::{Instant, color_bar, frame};
+use crate::chart::{Chart, Options, Panel, Series, Track, open};
+use crate::labels::{number, symbol, with_unit};
+use crate::palette::LINES;
+use crate::text::html;
+
+/// Bytes of positions and stresses in the page, at most; beyond, field files are left out evenly.
+const BUDGET: usize = 2_400_000;
+const FRAMES: usize = 300;
+/// Kinds of events drawn, the most frequent last.
+const KINDS: usize = 6;
+
+/// One frame's instant, and the bodies of dimension 1 as strips.
+pub(crate) fn instant(fields: &FieldSet, time: String) -> Option<Instant> {
+    if fields.blocks.iter().all(|b| b.cell == Cell::Curve) { strip(fields, time) } else { Instant::new(fields, "stress", 1, time) }
+}
+
+/// Bars as strips of triangles around the x axis, coloured by σ_xx.
+fn strip(fields: &FieldSet, time: String) -> Option<Instant> {
+    let stress = fields.array("stress").filter(|a| a.components == 6)?;
+    let u = fields.array("displacement").filter(|a| a.components == 3)?;
+    let reference = |k: usize| fields.points[k][0];
+    let xs: Vec<f64> = (0..fields.points.len()).map(reference).collect();
+    let (low, high) = crate::axis::range(&xs);
+    let half = 0.03 * (high - low);
+    let n = fields.points.len();
+    let side = |s: f64| (0..n).map(move |k| [reference(k) + u.values[3 * k], s * half]);
+    let values: Vec<f64> = (0..n).map(|k| stress.values[6 * k]).collect();
+    let mut cells = Vec::new();
+    for cell in fields.blocks.iter().flat_map(|b| b.cells()) {
+        let mut walk = cell.to_vec();
+        walk.sort_by(|&a, &b| reference(a).total_cmp(&reference(b)));
+        for w in walk.windows(2) {
+            cells.extend([(1, vec![w[0], w[1], w[1] + n]), (1, vec![w[0], w[1] + n, w[0] + n])]);
+        }
+    }
+    Some(Instant { time, points: side(-1.0).chain(side(1.0)).collect(), values: [&values[..], &values].concat(), cells })
+        .filter(|i| !i.cells.is_empty())
+}
+
+/// Integers over a range; what is not finite becomes the smallest one.
+fn packed<'a>(values: impl Iterator<Item = &'a f64>, (low, high): (f64, f64)) -> String {
+    let scale = if high > low { 65534.0 / (high - low) } else { 0.0 };
+    let integer = |x: &f64| if x.is_finite() { ((x - low) * scale - 32767.0).round() as i16 } else { i16::MIN };
+    STANDARD.encode(values.flat_map(|x| integer(x).to_le_bytes()).collect::<Vec<u8>>())
+}
+
+/// Forces −λn on secondary nodes by step: x, y, fx, fy.
+fn forces(run: &Run) -> HashMap<u64, Vec<[f64; 4]>> {
+    let mut found: HashMap<u64, Vec<[f64; 4]>> = HashMap::new();
+    for row in &run.contact {
+        let f = row.normal.map(|n| -row.multiplier * n);
+        if f.iter().all(|f| f.is_finite()) {
+            found.entry(row.step).or_default().push([row.point[0], row.point[1], f[0], f[1]]);
+        }
+    }
+    found
+}
+
+/// Kinds of events with their times, the rarest first.
+pub(crate) fn tracks(run: &Run) -> Vec<Track> {
+    let mut tracks: Vec<Track> = Vec::new();
+    for event in &run.log {
+        match tracks.iter_mut().find(|t| t.label == event.kind) {
+            Some(track) => track.times.push(event.time),
+            None => tracks.push(Track { label: event.kind.clone(), times: vec![event.time] }),
+        }
+    }
+    tracks.sort_by_key(|t| t.times.len());
+    tracks.truncate(KINDS);
+    tracks
+}
+
+/// Histories beside the picture: contact force, then the probes.
+fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
+    let h = &run.history;
+    let series = |name: &str, label: String, k: usize| {
+        let y = h.column(name)?.to_vec();
+        Some(Series { label, color: LINES[k % LINES.len()], x: run.times(), y })
+    };
+    let flat = h.column("contact_force_y").is_none();
+    let force = if flat { "contact_force_x" } else { "contact_force_y" };
+    let mut panels: Vec<Panel> = Vec::new();
+    let label = if flat { "f_{x}" } else { "f_{y}" };
+    if let Some(s) = series(force, String::new(), 0) {
+        panels.push(Panel { label: format!("contact force {label}"), unit: h.unit(force).into(), height: 96.0, series: vec![s] });
+    }
+    for column in &h.columns {
+        let Some((probe, quantity)) = column.name.rsplit_once('.') else { continue };
+        let probes = run.manifest.case.get("probes").and_then(|p| p.as_array());
+        let known = |p: &serde_json::Value| p.get("name").and_then(|n| n.as_str()) == Some(probe);
+        let Some(k) = probes.and_then(|list| list.iter().position(known)) else { continue };
+        let Some(s) = series(&column.name, format!("{} at {probe}", symbol(quantity)), k) else { continue };
+        match panels.iter().position(|p| p.label == symbol(quantity)) {
+            Some(i) => panels[i].series.push(s),
+            None if panels.len() < 5 => {
+                panels.push(Panel { label: symbol(quantity), unit: column.unit.clone(), height: 96.0, series: vec![s] });
+            }
+            None => {}
+        }
+    }
+    let x_label = with_unit("time t", h.unit("time"));
+    let chart = Chart { title: "Histories beside the animation", x_label, shades, panels };
+    chart.draw(&Options { width: 470.0, tracks: &tracks(run), time: true })
+}
+
+/// Rigid planes: a point and the direction out of the solid.
+fn planes(run: &Run, flat: bool) -> Vec<[Point; 2]> {
+    let contacts = run.manifest.case.get("contacts").and_then(|c| c.as_array()).into_iter().flatten();
+    let vector = |v: &serde_json::Value, key: &str| {
+        let list = v.get(key).and_then(|v| v.as_array()).cloned().unwrap_or_default();
+        [0, 1].map(|i| list.get(i).and_then(serde_json::Value::as_f64).unwrap_or(0.0))
+    };
+    let plane = |c: &serde_json::Value| c.pointer("/primary/plane").map(|p| [vector(p, "point"), vector(p, "normal")]);
+    contacts.filter_map(plane).map(|[p, n]| if flat { [[p[0], 0.0], [n[0], 0.0]] } else { [p, n] }).collect()
+}
+
+/// Field files that become frames.
+fn chosen(run: &Run, points: usize) -> Vec<&FieldEntry> {
+    let most = (BUDGET / (8 * points.max(1))).clamp(2, FRAMES);
+    let stride = run.fields.len().div_ceil(most).max(1);
+    let last = run.fields.len().saturating_sub(1);
+    run.fields.iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last).map(|(_, e)| e).collect()
+}
+
+/// The animation as a part of the page, hidden until its script runs; nothing for fewer than two field files.
+pub(crate) fn html_of(
+    run: &Run,
+    (bands, cut): (&Bands, [bool; 2]),
+    shades: Vec<(f64, f64)>,
+    figure: usize,
+) -> Option<String> {
+    let first = run.field(run.fields.first()?).ok()?;
+    let flat = first.blocks.iter().all(|b| b.cell == Cell::Curve);
+    let entries = chosen(run, if flat { 2 * first.points.len() } else { first.points.len() });
+    let read = |entry: &FieldEntry| Some((entry.clone(), instant(&run.field(entry).ok()?, String::new())?));
+    let frames: Vec<(FieldEntry, Instant)> = entries.iter().filter_map(|e| read(e)).collect();
+    let cells = &frames.first()?.1.cells;
+    if frames.len() < 2 || frames.iter().any(|(_, i)| i.points.len() != frames[0].1.points.len()) {
+        return None;
+    }
+    let [mut x0, mut x1, y0, y1] = frame(frames.iter().map(|f| &f.1));
+    let planes = planes(run, flat);
+    for p in planes.iter().filter(|_| flat) {
+        (x0, x1) = (x0.min(p[0][0]), x1.max(p[0][0]));
+    }
+    let values: Vec<f64> = frames.iter().flat_map(|(_, i)| i.values.iter().copied()).collect();
+    let range = crate::axis::range(&values);
+    let coordinates = |d: usize| frames.iter().flat_map(move |(_, i)| i.points.iter().map(move |p| &p[d]));
+    let forces = forces(run);
+    let largest = forces.values().flatten().map(|f| f[2].hypot(f[3])).fold(0.0, f64::max);
+    let frame_of = |(entry, _): &(FieldEntry, Instant)| {
+        let list: Vec<f64> = forces.get(&entry.step).into_iter().flatten().flatten().copied().collect();
+        let rounded: Vec<f64> = list.iter().map(|x| format!("{x:.5e}").parse().unwrap_or(0.0)).collect();
+        json!({ "time": entry.time, "step": entry.step, "file": entry.file(), "forces": rounded })
+    };
+    let numbers: Vec<u8> = cells.iter().flat_map(|(_, n)| n.iter().flat_map(|k| (*k as u32).to_le_bytes())).collect();
+    let data = json!({
+        "unit": run.history.unit("time"), "box": [x0, x1, y0, y1], "range": [range.0, range.1],
+        "points": frames[0].1.points.len(), "frames": frames.iter().map(frame_of).collect::<Vec<_>>(),
+        "degrees": cells.iter().map(|(d, _)| d.to_string()).collect::<String>(),
+        "cells": STANDARD.encode(numbers),
+        "x": packed(coordinates(0), (x0, x1)), "y": packed(coordinates(1), (y0, y1)), "s": packed(values.iter(), range),
+        "bands": { "low": bands.low, "high": bands.high,
+                   "colors": (0..bands.count).map(|b| bands.color(b)).collect::<Vec<_>>() },
+        "largest": largest, "planes": planes, "flat": flat,
+    });
+    let unit = first.array("stress").map_or("", |a| a.unit.as_str());
+    let label = if flat { "σ_{xx}" } else { "σ_{yy}" };
+    let mut bar = open("Colours of the animation", 92.0, 330.0);
+    color_bar(&mut bar, bands, cut, 8.0, (8.0, 312.0), (label, unit));
+    bar.push_str("</svg>\n");
+    let force_unit = run.history.unit("contact_force_x");
+    let arrows = if largest > 0.0 {
+        format!(
+            " Arrows: contact forces −λn on the secondary nodes (contact.csv), the longest {} {}.",
+            number(largest),
+            html(force_unit)
+        )
+    } else {
+        String::new()
+    };
+    let every = if entries.len() < run.fields.len() {
+        format!("{} of the {} field files", entries.len(), run.fields.len())
+    } else {
+        format!("all {} field files", entries.len())
+    };
+    let mut out = String::new();
+    let _ = write!(
+        out,
+        "<figure class=\"animation\" id=\"animation\" hidden>\n<div class=\"stage\"><canvas></canvas><div>{bar}</div><div>{}</div></div>\n\
+         <div class=\"controls\"><button type=\"button\" aria-label=\"play or pause\">▶</button>\
+         <input type=\"range\" min=\"0\" max=\"1\" step=\"any\" aria-label=\"time\"><output></output>\
+         <label>speed <select><option value=\"0.1\">0.1</option><option value=\"0.25\">0.25</option><option value=\"0.5\">0.5</option>\
+         <option value=\"1\" selected>1</option><option value=\"2\">2</option><option value=\"4\">4</option></select></label></div>\n\
+         <figcaption><b>Animation.</b> {} in colour, as in figure {figure}; frames are {every}, nothing in between is made up.{arrows} \
+         Space plays, ← and → go by one frame, a click into any time history goes there. Ticks under the histories: events of \
+         log.jsonl.</figcaption>\n</figure>\n",
+        histories(run, shades),
+        html(label),
+    );
+    // Inside a script element only `<` could end it.
+    let data = data.to_string().replace('<', "\\u003c");
+    let _ = writeln!(out, "<script type=\"application/json\" id=\"animation-data\">{data}</script>");
+    let _ = writeln!(out, "<script>\n{}</script>", include_str!("animation.js"));
+    Some(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn packing_keeps_five_digits() {
+        let values = [-3.0, 0.25, 5.0, f64::NAN];
+        let bytes = STANDARD.decode(packed(values.iter(), (-3.0, 5.0))).unwrap();
+        let back: Vec<i16> = bytes.as_chunks::<2>().0.iter().map(|b| i16::from_le_bytes(*b)).collect();
+        assert_eq!((back[0], back[2], back[3]), (-32767, 32767, i16::MIN));
+        let x = -3.0 + 8.0 * (f64::from(back[1]) + 32767.0) / 65534.0;
+        assert!((x - 0.25).abs() < 1e-4);
+    }
+}

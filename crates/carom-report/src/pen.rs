@@ -1,0 +1,96 @@
+//! SVG path data on a grid of a twentieth of a pixel: relative whole numbers, short and without drift.
+//!
+//! Such data belong into a group that [`open_grid`] opens; widths of strokes there are in units of the grid.
+
+use crate::bands::Point;
+
+/// Lines of the grid per pixel.
+pub(crate) const GRID: f64 = 20.0;
+
+/// Opens a group whose coordinates are those of a pen; close it with `</g>`.
+pub(crate) fn open_grid() -> String {
+    format!("<g transform=\"scale({})\">\n", 1.0 / GRID)
+}
+
+/// Path data being drawn.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pen {
+    data: String,
+    at: [i64; 2],
+    start: [i64; 2],
+    command: char,
+}
+
+impl Pen {
+    /// Goes to the start of a new part.
+    pub(crate) fn go(&mut self, p: Point) {
+        self.put('m', &[p]);
+        self.start = self.at;
+    }
+
+    /// Draws a line, or with two or three points a Bézier curve of degree two or three.
+    pub(crate) fn draw(&mut self, points: &[Point]) {
+        self.put(['l', 'q', 'c'][points.len().clamp(1, 3) - 1], points);
+    }
+
+    /// Closes the part.
+    pub(crate) fn close(&mut self) {
+        self.data.push('z');
+        self.command = 'z';
+        self.at = self.start;
+    }
+
+    fn put(&mut self, command: char, points: &[Point]) {
+        // A command may be left out where it is the one before, and after `m` an `l`.
+        let implied = command != 'm' && (self.command == command || (self.command == 'm' && command == 'l'));
+        if !implied {
+            self.data.push(command);
+        }
+        self.command = command;
+        let mut first = !implied;
+        let mut end = self.at;
+        for p in points {
+            end = p.map(|x| (x * GRID).round() as i64);
+            for (to, from) in end.iter().zip(&self.at) {
+                let by = to - from;
+                if !first && by >= 0 {
+                    self.data.push(' ');
+                }
+                first = false;
+                self.data.push_str(&by.to_string());
+            }
+        }
+        self.at = end;
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.data.is_empty()
+    }
+
+    /// The content of a path's `d`.
+    pub(crate) fn data(&self) -> &str {
+        &self.data
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn short_and_without_drift() {
+        let mut pen = Pen::default();
+        pen.go([1.0, 2.0]);
+        pen.draw(&[[1.5, 1.0]]);
+        pen.draw(&[[1.5, 3.0]]);
+        pen.close();
+        pen.go([0.0, 0.0]);
+        pen.draw(&[[1.0, 0.0], [2.0, -1.0]]);
+        assert_eq!(pen.data(), "m20 40 10-20 0 40zm-20-40q20 0 40-20");
+        // A thousand steps of a third of the grid end where they should.
+        let mut pen = Pen::default();
+        pen.go([0.0, 0.0]);
+        (1..=1000).for_each(|i| pen.draw(&[[f64::from(i) / 60.0, 0.0]]));
+        assert_eq!(pen.at, [333, 0]);
+    }
+}

@@ -1,0 +1,387 @@
+//! The case drawn: bodies with their mesh, supports, gravity, initial velocities, contact sides, probes and what it is made of.
+//!
+//! From the record alone: positions and cells from the first field file, the rest from `manifest.json` (`case`, `sides`).
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+
+use carom_record::{Block, Cell, FieldSet, Run};
+use serde_json::Value;
+
+use crate::axis::Axis;
+use crate::bands::Point;
+use crate::bodies::{bezier, edges, Instant};
+use crate::chart::{open, write_text};
+use crate::labels::{number, with_unit};
+use crate::palette::LINES;
+use crate::pen::{Pen, open_grid};
+use crate::symbols::{arrow, direction, guides, plus, rollers, wall};
+
+/// Widest picture, and the width of its key.
+const ROOM: f64 = 470.0;
+const KEY: f64 = 320.0;
+const SECONDARY: &str = LINES[2];
+const PRIMARY: &str = LINES[1];
+const BODIES: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
+/// Height of a bar in the picture.
+const BAR: f64 = 26.0;
+
+/// A side's polyline with outward unit vectors, in pixels.
+type Walk = Vec<(Point, Point)>;
+
+struct Setup<'a> {
+    run: &'a Run,
+    fields: &'a FieldSet,
+    flat: bool,
+    scale: f64,
+    origin: Point,
+    /// A point of the body inside an edge, by the numbers of its ends.
+    inside: HashMap<[usize; 2], Point>,
+}
+
+fn list<'a>(value: &'a Value, key: &str) -> &'a [Value] {
+    value.get(key).and_then(Value::as_array).map_or(&[], Vec::as_slice)
+}
+
+fn text<'a>(value: &'a Value, key: &str) -> &'a str {
+    value.get(key).and_then(Value::as_str).unwrap_or_default()
+}
+
+fn vector(value: Option<&Value>) -> Vec<f64> {
+    value.and_then(Value::as_array).map_or(Vec::new(), |v| v.iter().filter_map(Value::as_f64).collect())
+}
+
+/// A vector as people write it.
+fn tuple(v: &[f64]) -> String {
+    let parts: Vec<String> = v.iter().map(|x| number(*x)).collect();
+    if parts.len() == 1 { parts[0].clone() } else { format!("({})", parts.join(", ")) }
+}
+
+/// The figure, from the initial fields; nothing where there are no cells.
+pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
+    let flat = fields.blocks.iter().all(|b| b.cell == Cell::Curve);
+    let mut frame = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
+    for p in fields.blocks.iter().flat_map(|b| &b.connectivity).map(|&k| fields.points[k]) {
+        frame = [frame[0].min(p[0]), frame[1].max(p[0]), frame[2].min(p[1]), frame[3].max(p[1])];
+    }
+    // A wall in dimension 1 belongs into the picture.
+    for point in list(&run.manifest.case, "contacts").iter().filter_map(|c| c.pointer("/primary/plane/point")) {
+        let x = vector(Some(point)).first().copied().filter(|_| flat).unwrap_or(frame[0]);
+        (frame[0], frame[1]) = (frame[0].min(x), frame[1].max(x));
+    }
+    let [x0, x1, y0, y1] = frame;
+    if !(x1 > x0) || !(flat || y1 > y0) {
+        return None;
+    }
+    let margin = 46.0;
+    let scale = if flat { ROOM / (x1 - x0) } else { (ROOM / (x1 - x0)).min(430.0 / (y1 - y0)) };
+    let picture = if flat { BAR } else { (y1 - y0) * scale };
+    let left = 60.0 + margin;
+    let right = left + (x1 - x0) * scale;
+    let top = if flat { 84.0 } else { 14.0 + margin };
+    let origin = [left - x0 * scale, if flat { top + 0.5 * BAR } else { top + y1 * scale }];
+    let mut setup = Setup { run, fields, flat, scale, origin, inside: HashMap::new() };
+    let mut key = String::new();
+    let lines = setup.key(&mut key, right + margin + 36.0);
+    let bottom = (top + picture + margin).max(if flat { 0.0 } else { lines - 60.0 });
+    let mut out = open("The case", right + margin + 36.0 + KEY, (bottom + 44.0).max(lines + 8.0));
+    setup.axes(&mut out, [left - margin, right + margin, top - margin, bottom]);
+    setup.bodies(&mut out);
+    setup.planes(&mut out, [left - 0.6 * margin, right + 0.6 * margin]);
+    setup.supports(&mut out);
+    setup.contacts(&mut out);
+    setup.loads(&mut out);
+    setup.probes(&mut out);
+    out.push_str(&key);
+    out.push_str("</svg>\n");
+    Some(out)
+}
+
+impl Setup<'_> {
+    fn case(&self) -> &Value {
+        &self.run.manifest.case
+    }
+
+    fn to(&self, p: Point) -> Point {
+        [self.origin[0] + p[0] * self.scale, self.origin[1] - p[1] * self.scale]
+    }
+
+    fn node(&self, k: usize) -> Point {
+        self.fields.points.get(k).map_or([f64::NAN; 2], |p| self.to([p[0], p[1]]))
+    }
+
+    /// Coordinates at the edges of the picture.
+    fn axes(&self, out: &mut String, [left, right, top, bottom]: [f64; 4]) {
+        let length = self.case().pointer("/units/length").and_then(Value::as_str).unwrap_or_default();
+        let axis = |low: f64, high: f64, pixels: f64| Axis::new((low, high), (pixels / 80.0).max(2.0), true);
+        let x = axis((left - self.origin[0]) / self.scale, (right - self.origin[0]) / self.scale, right - left);
+        let frame = if self.flat { format!("M{left:.1} {bottom:.1}H{right:.1}") } else { format!("M{left:.1} {top:.1}V{bottom:.1}H{right:.1}") };
+        let _ = writeln!(out, "<path d=\"{frame}\" fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\"/>");
+        for (value, label) in &x.ticks {
+            let at = self.to([*value, 0.0])[0];
+            let _ = writeln!(out, "<path d=\"M{at:.1} {bottom:.1}v5\" stroke=\"#888\" stroke-width=\"0.8\"/>");
+            write_text(out, at, bottom + 19.0, "text-anchor=\"middle\"", label);
+        }
+        let power = |label: &str, axis: &Axis| with_unit(label, &crate::chart::scaled(length, axis.exponent));
+        write_text(out, 0.5 * (left + right), bottom + 38.0, "text-anchor=\"middle\"", &power("x", &x));
+        if self.flat {
+            return;
+        }
+        let y = axis((self.origin[1] - bottom) / self.scale, (self.origin[1] - top) / self.scale, bottom - top);
+        for (value, label) in &y.ticks {
+            let at = self.to([0.0, *value])[1];
+            let _ = writeln!(out, "<path d=\"M{left:.1} {at:.1}h-5\" stroke=\"#888\" stroke-width=\"0.8\"/>");
+            write_text(out, left - 8.0, at + 4.3, "text-anchor=\"end\"", label);
+        }
+        let middle = 0.5 * (top + bottom);
+        let turned = format!("text-anchor=\"middle\" transform=\"translate({:.1} {middle:.1}) rotate(-90)\"", left - 42.0);
+        write_text(out, 0.0, 0.0, &turned, &power("y", &y));
+    }
+
+    fn color(k: usize) -> &'static str {
+        BODIES[k % BODIES.len()]
+    }
+
+    fn bodies(&mut self, out: &mut String) {
+        for (k, block) in self.fields.blocks.iter().enumerate() {
+            let fill = Self::color(k);
+            if block.cell == Cell::Curve {
+                for cell in block.cells() {
+                    let (a, b) = (self.node(cell[0]), self.node(cell[1]));
+                    let _ = writeln!(
+                        out,
+                        "<rect x=\"{:.2}\" y=\"{:.1}\" width=\"{:.2}\" height=\"{BAR}\" fill=\"{fill}\" stroke=\"#98a2ad\" stroke-width=\"0.6\"/>",
+                        a[0].min(b[0]),
+                        a[1] - 0.5 * BAR,
+                        (b[0] - a[0]).abs()
+                    );
+                }
+                continue;
+            }
+            for cell in block.cells() {
+                let corners = [0, 1, 2].map(|e| self.node(cell[e]));
+                for e in 0..3 {
+                    let (a, b) = (cell[e], cell[(e + 1) % 3]);
+                    self.inside.insert([a.min(b), a.max(b)], corners[(e + 2) % 3]);
+                }
+            }
+            let instant = Instant::of_block(self.fields, block);
+            let [inside, outline] = edges(&instant, &|p| self.to(p));
+            let mut cells = Pen::default();
+            for (degree, nodes) in &instant.cells {
+                for e in 0..3 {
+                    let edge: Vec<Point> = crate::bodies::edge_nodes(*degree, nodes, e).map(|n| self.node(n)).collect();
+                    bezier(&mut cells, &edge, e == 0);
+                }
+                cells.close();
+            }
+            let (cells, inside, outline) = (cells.data(), inside.data(), outline.data());
+            let _ = writeln!(
+                out,
+                "{}<path d=\"{cells}\" fill=\"{fill}\" stroke=\"{fill}\" stroke-width=\"10\"/>\n\
+                 <path d=\"{inside}\" fill=\"none\" stroke=\"#98a2ad\" stroke-width=\"11\"/>\n\
+                 <path d=\"{outline}\" fill=\"none\" stroke=\"#222\" stroke-width=\"24\" stroke-linecap=\"round\"/>\n</g>",
+                open_grid()
+            );
+        }
+    }
+
+    /// The chains of a side.
+    fn walks(&self, side: &str) -> Vec<Walk> {
+        let chains = self.run.manifest.sides.get(side).map_or(&[][..], Vec::as_slice);
+        let degree = self.degree(side);
+        chains.iter().map(|chain| self.walk(side, chain, degree)).filter(|walk| walk.len() > 1).collect()
+    }
+
+    fn degree(&self, side: &str) -> usize {
+        let body = side.split_once('.').map_or(side, |s| s.0);
+        self.fields.blocks.iter().find(|b| b.body == body).map_or(1, |b| b.degree)
+    }
+
+    fn walk(&self, side: &str, chain: &[usize], degree: usize) -> Walk {
+        if let (true, [k]) = (self.flat, chain) {
+            // An end of a bar, as a vertical line.
+            let [x, y] = self.node(*k);
+            let middle = self.center(side.split_once('.').map_or(side, |s| s.0)).map_or(x, |c| c[0]);
+            let n = [if x < middle { -1.0 } else { 1.0 }, 0.0];
+            return vec![([x, y - 0.5 * BAR], n), ([x, y + 0.5 * BAR], n)];
+        }
+        let outward = |i: usize| {
+            let facet = (i / degree).min((chain.len() - 2) / degree) * degree;
+            let (a, b) = (chain[facet], chain[(facet + degree).min(chain.len() - 1)]);
+            let t = direction(self.node(a), self.node(b));
+            let within = self.inside.get(&[a.min(b), a.max(b)]).map_or([0.0; 2], |p| direction(self.node(a), *p));
+            let n = [-t[1], t[0]];
+            if n[0] * within[0] + n[1] * within[1] > 0.0 { [t[1], -t[0]] } else { n }
+        };
+        if chain.len() < 2 { Vec::new() } else { (0..chain.len()).map(|i| (self.node(chain[i]), outward(i))).collect() }
+    }
+
+    fn supports(&self, out: &mut String) {
+        for support in list(self.case(), "supports") {
+            let fix = vector(support.get("fix"));
+            for side in list(support, "on").iter().filter_map(Value::as_str) {
+                for walk in self.walks(side) {
+                    if self.flat || fix.len() > 1 {
+                        wall(out, &walk, 0.0);
+                        continue;
+                    }
+                    let held = if fix.first() == Some(&0.0) { [1.0, 0.0] } else { [0.0, 1.0] };
+                    let across = walk.iter().all(|(_, n)| (n[0] * held[0] + n[1] * held[1]).abs() > 0.7);
+                    if across { rollers(out, &walk) } else { guides(out, &walk, held) }
+                }
+            }
+        }
+    }
+
+    /// Rigid planes, hatched on their solid side.
+    fn planes(&self, out: &mut String, [left, right]: [f64; 2]) {
+        for plane in list(self.case(), "contacts").iter().filter_map(|c| c.pointer("/primary/plane")) {
+            let (point, normal) = (vector(plane.get("point")), vector(plane.get("normal")));
+            let [p, n] = [point, normal].map(|v| [v.first().copied().unwrap_or(0.0), v.get(1).copied().unwrap_or(0.0)]);
+            let (p, n) = (self.to(p), direction([0.0; 2], [-n[0], n[1]]));
+            let (tangent, length) = if self.flat { ([0.0, 1.0], BAR + 8.0) } else { ([-n[1], n[0]], 0.5 * (right - left)) };
+            let center = if self.flat { p } else { plus(p, (0.5 * (left + right) - p[0]) * tangent[0], tangent) };
+            let ends = [-length, length].map(|s| (plus(center, s, tangent), n));
+            wall(out, &ends, 0.0);
+            let mut pen = Pen::default();
+            pen.go(ends[0].0);
+            pen.draw(&[ends[1].0]);
+            Self::stroke(out, &pen, PRIMARY);
+        }
+    }
+
+    fn stroke(out: &mut String, pen: &Pen, color: &str) {
+        let d = pen.data();
+        let _ = writeln!(
+            out,
+            "{}<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"64\" stroke-linecap=\"round\"/>\n</g>",
+            open_grid()
+        );
+    }
+
+    fn contacts(&self, out: &mut String) {
+        for contact in list(self.case(), "contacts") {
+            let primary = contact.pointer("/primary/side").and_then(Value::as_str);
+            for (side, color) in [(primary, PRIMARY), (contact.get("secondary").and_then(Value::as_str), SECONDARY)] {
+                let Some(side) = side else { continue };
+                let step = if self.flat { 1 } else { self.degree(side) };
+                for walk in self.walks(side) {
+                    let points: Vec<Point> = walk.iter().map(|w| w.0).collect();
+                    let mut pen = Pen::default();
+                    for k in (0..points.len() - 1).step_by(step) {
+                        bezier(&mut pen, &points[k..=(k + step).min(points.len() - 1)], k == 0);
+                    }
+                    Self::stroke(out, &pen, color);
+                }
+            }
+        }
+    }
+
+    /// Middle of a body's points.
+    fn center(&self, body: &str) -> Option<Point> {
+        let block: &Block = self.fields.blocks.iter().find(|b| b.body == body)?;
+        let mut sum = [0.0; 2];
+        block.connectivity.iter().for_each(|&k| sum = plus(sum, 1.0, self.node(k)));
+        Some(sum.map(|s| s / block.connectivity.len() as f64))
+    }
+
+    /// Names of bodies, gravity and initial velocity.
+    fn loads(&self, out: &mut String) {
+        for body in list(self.case(), "bodies") {
+            let Some(center) = self.center(text(body, "name")) else { continue };
+            let [x, y] = if self.flat { [center[0], center[1] + 0.5 * BAR + 20.0] } else { [center[0], center[1] - 6.0] };
+            let halo = "text-anchor=\"middle\" font-style=\"italic\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
+            write_text(out, x, y, halo, text(body, "name"));
+            let mut at = if self.flat { [center[0], center[1] - 0.5 * BAR - 30.0] } else { plus(center, 8.0, [0.0, 1.0]) };
+            for (key, symbol) in [("gravity", "g"), ("velocity", "v_{0}")] {
+                let v = vector(body.get(key));
+                let d = direction([0.0; 2], [v.first().copied().unwrap_or(0.0), -v.get(1).copied().unwrap_or(0.0)]);
+                if d == [0.0; 2] {
+                    continue;
+                }
+                let end = plus(at, 48.0, d);
+                arrow(out, at, end, "#222");
+                let label = if self.flat { plus(at, 10.0, [-d[0].signum(), 0.5]) } else { plus(plus(at, 30.0, d), 11.0, [-d[1].abs().max(0.4), d[0].abs()]) };
+                write_text(out, label[0], label[1], &halo.replace("15", "14"), symbol);
+                at = plus(at, 22.0, if self.flat { [0.0, -1.0] } else { [1.0, 0.0] });
+            }
+        }
+    }
+
+    fn probes(&self, out: &mut String) {
+        for probe in list(self.case(), "probes") {
+            let at = vector(probe.get("at"));
+            let p = self.to([at.first().copied().unwrap_or(0.0), at.get(1).copied().unwrap_or(0.0)]);
+            let _ = writeln!(out, "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.8\"/>", p[0], p[1]);
+            let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
+            let [x, y] = if self.flat { [p[0] - 4.0, p[1] - 0.5 * BAR - 7.0] } else { [p[0] + 8.0, p[1] - 7.0] };
+            write_text(out, x, y, bold, text(probe, "name"));
+        }
+    }
+
+    /// What the picture's colours and symbols mean, with the numbers; the height it needs.
+    fn key(&self, out: &mut String, left: f64) -> f64 {
+        let mut y = 8.0;
+        let unit = |key: &str| self.case().pointer(&format!("/units/{key}")).and_then(Value::as_str).unwrap_or_default();
+        let (length, time) = (unit("length"), unit("time"));
+        let mut line = |swatch: &str, content: &str, bold: bool| {
+            y += if bold { 7.0 } else { 0.0 } + 18.0;
+            if !swatch.is_empty() {
+                let _ = writeln!(out, "<g transform=\"translate({left:.1} {:.1})\">{swatch}</g>", y - 4.5);
+            }
+            let (x, extra) = (if bold { left } else { left + 30.0 }, if bold { "font-weight=\"bold\"" } else { "" });
+            write_text(out, x, y, extra, content);
+        };
+        line("", "Bodies", true);
+        for (k, body) in list(self.case(), "bodies").iter().enumerate() {
+            let block = self.fields.blocks.iter().find(|b| b.body == text(body, "name"));
+            let nodes = block.map_or(0, |b| b.connectivity.iter().collect::<std::collections::HashSet<_>>().len());
+            let swatch = format!("<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"#222\"/>", Self::color(k));
+            let cells = block.map_or(0, |b| b.cells().count());
+            let element = text(body, "element");
+            line(&swatch, &format!("{}: {}, {cells} {element} cells, {nodes} nodes", text(body, "name"), text(body, "material")), false);
+            for (key, symbol, unit) in [("gravity", "g", format!("{length}/{time}^2")), ("velocity", "v_{0}", format!("{length}/{time}"))] {
+                let v = vector(body.get(key));
+                if v.iter().any(|x| *x != 0.0) {
+                    line("", &format!("{symbol} = {} {unit}", tuple(&v)), false);
+                }
+            }
+        }
+        line("", "Materials", true);
+        for m in list(self.case(), "materials") {
+            let real = |key| m.get(key).and_then(Value::as_f64).map_or(String::new(), number);
+            line("", &format!("{}: {}", text(m, "name"), text(m, "law")), false);
+            line("", &format!("ρ = {}, Λ = {}, μ = {}", real("density"), real("lambda"), real("mu")), false);
+        }
+        for (k, support) in list(self.case(), "supports").iter().enumerate() {
+            if k == 0 {
+                line("", "Supports", true);
+            }
+            let fixed: Vec<&str> = vector(support.get("fix")).iter().map(|i| if *i == 0.0 { "x" } else { "y" }).collect();
+            let on: Vec<&str> = list(support, "on").iter().filter_map(Value::as_str).collect();
+            let mut swatch = String::new();
+            let ends = [([0.0, -3.0], [0.0, 1.0]), ([20.0, -3.0], [0.0, 1.0])];
+            if fixed.len() > 1 || self.flat { wall(&mut swatch, &ends, 0.0) } else { rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n))) }
+            line(&swatch, &format!("{} held: {}", fixed.join(", "), on.join(", ")), false);
+        }
+        for (k, contact) in list(self.case(), "contacts").iter().enumerate() {
+            if k == 0 {
+                line("", "Contact", true);
+            }
+            let bar = |color: &str| format!("<path d=\"M0 0h20\" stroke=\"{color}\" stroke-width=\"3.2\"/>");
+            let primary = contact.pointer("/primary/side").and_then(Value::as_str).unwrap_or("rigid plane");
+            line(&bar(SECONDARY), &format!("{} (secondary)", text(contact, "secondary")), false);
+            line(&bar(PRIMARY), &format!("{primary} (primary)"), false);
+        }
+        for (k, probe) in list(self.case(), "probes").iter().enumerate() {
+            if k == 0 {
+                line("", "Probes", true);
+            }
+            let at = vector(probe.get("at"));
+            let dot = "<circle cx=\"10\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.8\"/>";
+            line(dot, &format!("{} at {} {length} of {}", text(probe, "name"), tuple(&at), text(probe, "body")), false);
+        }
+        y + 12.0
+    }
+}

@@ -1,0 +1,100 @@
+//! Symbols of mechanics: arrows, walls with hatching, rollers.
+
+use std::fmt::Write as _;
+
+use crate::bands::Point;
+
+pub(crate) fn plus(p: Point, s: f64, d: Point) -> Point {
+    [p[0] + s * d[0], p[1] + s * d[1]]
+}
+
+/// Unit vector from `a` to `b`; zero where they coincide.
+pub(crate) fn direction(a: Point, b: Point) -> Point {
+    let d = [b[0] - a[0], b[1] - a[1]];
+    let length = d[0].hypot(d[1]);
+    if length > 0.0 { [d[0] / length, d[1] / length] } else { [0.0; 2] }
+}
+
+/// An arrow with a filled head, on a white halo.
+pub(crate) fn arrow(out: &mut String, from: Point, to: Point, color: &str) {
+    let d = direction(from, to);
+    let side = [-d[1], d[0]];
+    let neck = plus(to, -9.0, d);
+    let [a, b] = [4.0, -4.0].map(|s| plus(neck, s, side));
+    for (stroke, width) in [("#fff", 5.0), (color, 1.8)] {
+        let _ = writeln!(
+            out,
+            "<path d=\"M{:.1} {:.1}L{:.1} {:.1}\" stroke=\"{stroke}\" stroke-width=\"{width}\" fill=\"none\"/>",
+            from[0], from[1], neck[0], neck[1]
+        );
+    }
+    let _ = writeln!(
+        out,
+        "<path d=\"M{:.1} {:.1}L{:.1} {:.1}L{:.1} {:.1}z\" fill=\"{color}\"/>",
+        to[0], to[1], a[0], a[1], b[0], b[1]
+    );
+}
+
+/// Points at about equal distances along a polyline, with the outward direction there; ends included.
+fn along(line: &[(Point, Point)], spacing: f64) -> Vec<(Point, Point)> {
+    let lengths: Vec<f64> = line.windows(2).map(|w| (w[1].0[0] - w[0].0[0]).hypot(w[1].0[1] - w[0].0[1])).collect();
+    let total: f64 = lengths.iter().sum();
+    let count = (total / spacing).round().max(1.0);
+    let mut places = Vec::new();
+    let (mut k, mut before) = (0, 0.0);
+    for i in 0..=count as usize {
+        let s = total * i as f64 / count;
+        while k + 1 < lengths.len() && before + lengths[k] < s {
+            before += lengths[k];
+            k += 1;
+        }
+        let (Some(&(a, n)), Some(&(b, _))) = (line.get(k), line.get(k + 1)) else { break };
+        places.push((plus(a, s - before, direction(a, b)), n));
+    }
+    places
+}
+
+/// A line with hatching on its outer side, `offset` away from `line`: points with outward unit vectors.
+pub(crate) fn wall(out: &mut String, line: &[(Point, Point)], offset: f64) {
+    let shifted: Vec<(Point, Point)> = line.iter().map(|&(p, n)| (plus(p, offset, n), n)).collect();
+    let mut d = String::new();
+    for (k, (p, _)) in shifted.iter().enumerate() {
+        let _ = write!(d, "{}{:.1} {:.1}", if k == 0 { 'M' } else { 'L' }, p[0], p[1]);
+    }
+    let mut hatch = String::new();
+    for (p, n) in along(&shifted, 7.0) {
+        // Outwards, turned by 45 degrees.
+        let q = plus(p, 7.0, [n[0] - n[1], n[1] + n[0]]);
+        let _ = write!(hatch, "M{:.1} {:.1}L{:.1} {:.1}", p[0], p[1], q[0], q[1]);
+    }
+    let _ = writeln!(
+        out,
+        "<path d=\"{hatch}\" stroke=\"#555\" stroke-width=\"0.8\" fill=\"none\"/>\n<path d=\"{d}\" stroke=\"#222\" stroke-width=\"1.5\" fill=\"none\"/>"
+    );
+}
+
+/// Rollers between a side and a wall: free along the side.
+pub(crate) fn rollers(out: &mut String, line: &[(Point, Point)]) {
+    wall(out, line, 9.0);
+    for (p, n) in along(line, 22.0) {
+        let c = plus(p, 4.5, n);
+        let _ = writeln!(
+            out,
+            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"3.8\" fill=\"#fff\" stroke=\"#222\" stroke-width=\"1.1\"/>",
+            c[0], c[1]
+        );
+    }
+}
+
+/// Supports held across the side's normal: bars along the direction that is held.
+pub(crate) fn guides(out: &mut String, line: &[(Point, Point)], held: Point) {
+    for (p, n) in along(line, 22.0) {
+        let c = plus(p, 5.0, n);
+        let [a, b] = [-6.0, 6.0].map(|s| plus(c, s, held));
+        let _ = writeln!(
+            out,
+            "<path d=\"M{:.1} {:.1}L{:.1} {:.1}\" stroke=\"#222\" stroke-width=\"2\"/>",
+            a[0], a[1], b[0], b[1]
+        );
+    }
+}
