@@ -11,6 +11,8 @@ mod figures;
 mod labels;
 mod page;
 mod palette;
+mod study;
+mod study_page;
 mod text;
 
 use std::fs;
@@ -19,6 +21,7 @@ use std::path::{Path, PathBuf};
 use carom_record::{RecordError, Run};
 
 pub use figures::Figure;
+pub use study::study;
 
 /// What a report consists of.
 #[derive(Clone, Debug)]
