@@ -10,7 +10,7 @@ mod summary;
 mod wrong;
 
 use clap::{Parser, Subcommand};
-use command::{check, explain, mesh, report, resume, run, schema};
+use command::{check, explain, mesh, report, resume, run, schema, study};
 
 /// Impact and contact of deformable solids, and the laboratory of its time integrators.
 #[derive(Parser)]
@@ -19,6 +19,7 @@ use command::{check, explain, mesh, report, resume, run, schema};
 Examples:
   carom run cases/impact/impact.toml
   carom check cases/impact/impact.toml --set time.step=1e-3
+  carom study cases/paper/paper.toml
   carom explain chung-hulbert rho_inf=0.1
 
 Exit codes: 0 done · 2 the case is wrong · 3 the simulation stopped · 4 the machine refused · 130 stopped by Ctrl-C")]
@@ -31,6 +32,7 @@ struct Arguments {
 enum Command {
     Run(run::Arguments),
     Resume(resume::Arguments),
+    Study(study::Arguments),
     Check(check::Arguments),
     Explain(explain::Arguments),
     Mesh(mesh::Arguments),
@@ -42,6 +44,7 @@ fn main() -> std::process::ExitCode {
     let done = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Resume(arguments) => resume::run(&arguments),
+        Command::Study(arguments) => study::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Mesh(arguments) => mesh::run(&arguments),

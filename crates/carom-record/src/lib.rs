@@ -21,6 +21,7 @@ pub mod metrics;
 mod pvd;
 mod rows;
 mod run;
+pub mod study;
 mod vtu;
 mod writer;
 

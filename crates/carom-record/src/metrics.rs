@@ -6,13 +6,18 @@
 //! secondary and primary changes no metric. An impulse is a difference of the recorded `contact_impulse`, which the time
 //! integrator accumulated; a mean force over a window w is [P(t + w) − P(t)]/w, not a mean of samples.
 
+mod work;
+
+use std::borrow::Cow;
+
 use crate::History;
+pub use work::{COLUMN_DEFINITIONS, WORK_DEFINITIONS, column_roughness, of_run, probe_columns};
 
 /// A metric of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Metric {
     /// Name, as expectations and studies call it.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Value; none when the record has no such thing (no contact, or it has not ended).
     pub value: Option<f64>,
     /// Unit label.
@@ -230,7 +235,7 @@ pub fn all(history: &History) -> Vec<Metric> {
         _ => "",
     };
     let metric = |&(name, definition): &(&'static str, &'static str)| Metric {
-        name,
+        name: name.into(),
         value: value(name),
         unit: unit(name).to_string(),
         definition,

@@ -14,6 +14,8 @@ mod page;
 mod palette;
 mod pen;
 mod setup;
+mod study;
+mod study_page;
 mod symbols;
 mod text;
 
@@ -23,6 +25,7 @@ use std::path::{Path, PathBuf};
 use carom_record::{RecordError, Run};
 
 pub use figures::Figure;
+pub use study::study;
 
 /// What a report consists of.
 #[derive(Clone, Debug)]

@@ -7,6 +7,7 @@ pub(crate) mod report;
 pub(crate) mod resume;
 pub(crate) mod run;
 pub(crate) mod schema;
+pub(crate) mod study;
 
 use std::path::Path;
 

@@ -2,20 +2,26 @@
 
 use std::path::{Path, PathBuf};
 
+use carom_record::study::StudyManifest;
+
 use crate::exit::{Exit, Failure};
 use crate::{out, simulation};
 
-/// Rebuild the figures and the page of a run from its records alone
+/// Rebuild the figures and the page of a run or a study from its records alone
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  carom report runs/impact")]
 pub(crate) struct Arguments {
-    /// The run directory
+    /// The directory of the run or study
     directory: PathBuf,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    run_directory(&arguments.directory)?;
-    let page = simulation::report(&arguments.directory)?;
+    let page = if StudyManifest::is_in(&arguments.directory) {
+        super::study::report(&arguments.directory)?
+    } else {
+        run_directory(&arguments.directory)?;
+        simulation::report(&arguments.directory)?
+    };
     out::line(&page.display().to_string())?;
     Ok(Exit::Done)
 }

@@ -3,6 +3,7 @@
 use std::num::NonZero;
 use std::path::PathBuf;
 
+use carom_record::study::StudyManifest;
 use serde_json::json;
 
 use crate::exit::{Exit, Failure};
@@ -10,11 +11,11 @@ use crate::live::{Live, stop_on_signal};
 use crate::simulation::{self, Options};
 use crate::{out, summary};
 
-/// Go on with a run that was stopped, bit for bit
+/// Go on with a run or a study that was stopped, bit for bit
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  carom resume runs/impact")]
 pub(crate) struct Arguments {
-    /// The run directory
+    /// The directory of the run or study
     directory: PathBuf,
     /// Threads; the results are the same bits for any number [default: 1]
     #[arg(long, value_name = "N")]
@@ -31,6 +32,9 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    if StudyManifest::is_in(&arguments.directory) {
+        return super::study::resume(&arguments.directory, arguments.json);
+    }
     super::report::run_directory(&arguments.directory)?;
     let options = Options {
         threads: super::threads(arguments.threads),

@@ -1,0 +1,212 @@
+//! `carom study`: many runs of one case, in parallel, and one comparison.
+
+use std::io::{self, IsTerminal, Write};
+use std::num::NonZero;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use carom_record::Status;
+use carom_record::study::{Study, StudyManifest};
+use carom_study::{Event, Outcome, Plan, StudyError};
+use serde_json::json;
+
+use crate::exit::{Exit, Failure};
+use crate::live::{duration, stop_on_signal};
+use crate::summary::short;
+use crate::{directory, out};
+
+/// Metrics of the table that is printed; all are in study.csv.
+const SHOWN: [&str; 6] = ["contact_duration", "impulse_y", "restitution", "energy_lost", "newton_iterations", "wall_time"];
+
+/// Run a case many times with some of its values replaced, and compare
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  carom study cases/paper/paper.toml
+  carom study cases/paper/fair.toml --jobs 4 --out runs/fair
+
+A failed arm is a row of the table, and the study still ends with 0.")]
+pub(crate) struct Arguments {
+    /// The study file
+    study: PathBuf,
+    /// Directory of the study; must not exist yet [default: runs/NAME, runs/NAME-2, …]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Arms computed at the same time; the results are the same bits for any number [default: all cores]
+    #[arg(long, value_name = "N")]
+    jobs: Option<NonZero<usize>>,
+    /// One JSON object per event on standard output, and nothing else there
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let plan = Plan::read(&arguments.study)?;
+    let directory = directory::of_run(&arguments.study, arguments.out.as_deref())?;
+    let mut seen = Seen::new(&plan.manifest, arguments.json);
+    let stop = stop_on_signal()?;
+    if arguments.json {
+        out::event(&json!({ "event": "start", "title": plan.manifest.title, "directory": directory, "arms": seen.names }))?;
+    }
+    let done = carom_study::start(&plan, &directory, jobs(arguments.jobs), &mut |e| seen.event(e), &stop);
+    conclude(done, seen, &directory)
+}
+
+/// Goes on with a study that was stopped.
+pub(crate) fn resume(directory: &Path, json: bool) -> Result<Exit, Failure> {
+    let manifest = StudyManifest::read(directory).map_err(|e| failure(e.into()))?;
+    let mut seen = Seen::new(&manifest, json);
+    let stop = stop_on_signal()?;
+    if json {
+        out::event(&json!({ "event": "resume", "directory": directory, "arms": seen.names }))?;
+    }
+    let done = carom_study::go_on(directory, jobs(None), &mut |e| seen.event(e), &stop);
+    conclude(done, seen, directory)
+}
+
+/// Rebuilds tables, figures and page of a study, and the pages of its arms.
+pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
+    let made = |error: carom_report::ReportError| match error.exit_code() {
+        4 => Failure::Refused { what: error.to_string() },
+        _ => Failure::Argument { what: error.to_string(), help: "go on with carom resume, or run the study again".into() },
+    };
+    let manifest = StudyManifest::read(directory).map_err(|e| failure(e.into()))?;
+    for arm in &manifest.arms {
+        let arm = directory.join(&arm.directory);
+        if arm.join("manifest.json").is_file() {
+            carom_report::report(&arm).map_err(made)?;
+        }
+    }
+    Ok(carom_report::study(directory).map_err(made)?.page)
+}
+
+fn jobs(asked: Option<NonZero<usize>>) -> usize {
+    asked.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get)
+}
+
+fn failure(error: StudyError) -> Failure {
+    match error {
+        StudyError::Record(ref e) if e.exit_code() == 4 => Failure::Refused { what: error.to_string() },
+        StudyError::Arm { source: carom::recording::RunError::Record(ref e), .. } if e.exit_code() == 4 => {
+            Failure::Refused { what: error.to_string() }
+        }
+        error => Failure::Argument { what: error.to_string(), help: "run the study again, into another directory".into() },
+    }
+}
+
+fn conclude(done: Result<Outcome, StudyError>, seen: Seen, directory: &Path) -> Result<Exit, Failure> {
+    let json = seen.json;
+    drop(seen);
+    let outcome = done.map_err(failure)?;
+    let page = report(directory)?;
+    if json {
+        let study = &outcome.study;
+        let claims = study.verdicts.iter().map(|v| json!({ "claim": v.claim.text, "left": v.left, "right": v.right, "verdict": v.word() }));
+        let claims: Vec<_> = claims.collect();
+        let event = if outcome.interrupted { "interrupted" } else { "done" };
+        out::event(&json!({ "event": event, "directory": directory, "report": page, "claims": claims }))?;
+    } else {
+        out::line(&text(&outcome.study))?;
+        if outcome.interrupted {
+            out::line(&format!("stopped by Ctrl-C; go on with: carom resume {}", directory.display()))?;
+        }
+        out::line(&page.display().to_string())?;
+    }
+    Ok(if outcome.interrupted { Exit::Interrupted } else { Exit::Done })
+}
+
+fn text(study: &Study) -> String {
+    let width = study.rows.iter().map(|r| r.name.chars().count()).max().unwrap_or(0);
+    let heads: String = SHOWN.iter().map(|name| format!("  {name:>17}")).collect();
+    let mut lines = vec![format!("{:width$}{heads}", "")];
+    for row in &study.rows {
+        let cells: String = match row.status {
+            Some(Status::Finished) => {
+                SHOWN.iter().map(|name| format!("  {:>17}", row.value(name).map_or("–".into(), short))).collect()
+            }
+            Some(Status::Failed) => format!("  failed: {}", row.reason.as_deref().unwrap_or("?")),
+            Some(_) => "  not finished".to_owned(),
+            None => "  not begun".to_owned(),
+        };
+        lines.push(format!("{:width$}{cells}", row.name));
+    }
+    for v in &study.verdicts {
+        let value = |x: Option<f64>| x.map_or("–".into(), short);
+        lines.push(format!("{:9}  {}  ({} against {})", v.word(), v.claim.text, value(v.left), value(v.right)));
+    }
+    lines.join("\n")
+}
+
+/// What is seen while a study runs.
+struct Seen {
+    names: Vec<String>,
+    steps: Vec<u64>,
+    /// Steps done, by arm.
+    done: Vec<u64>,
+    /// Wall seconds left, by arm that runs.
+    left: Vec<Option<f64>>,
+    ended: usize,
+    json: bool,
+    terminal: bool,
+    last: Option<Instant>,
+}
+
+impl Seen {
+    fn new(manifest: &StudyManifest, json: bool) -> Self {
+        Self {
+            names: manifest.arms.iter().map(|a| a.name.clone()).collect(),
+            steps: manifest.arms.iter().map(|a| a.steps).collect(),
+            done: vec![0; manifest.arms.len()],
+            left: vec![None; manifest.arms.len()],
+            ended: 0,
+            json,
+            terminal: io::stderr().is_terminal(),
+            last: None,
+        }
+    }
+
+    fn event(&mut self, event: &Event) {
+        let told = match event {
+            Event::Kept(i) => {
+                (self.done[*i], self.ended) = (self.steps[*i], self.ended + 1);
+                json!({ "event": "kept", "arm": self.names[*i] })
+            }
+            Event::Began(i) => json!({ "event": "began", "arm": self.names[*i] }),
+            Event::Ended(i, ended) => {
+                (self.done[*i], self.left[*i], self.ended) = (self.steps[*i], None, self.ended + 1);
+                json!({ "event": "ended", "arm": self.names[*i], "status": ended.status, "reason": ended.reason, "wall": ended.wall })
+            }
+            Event::Progress(i, p) => {
+                (self.done[*i], self.left[*i]) = (p.step, Some(p.left));
+                if self.last.is_some_and(|then| then.elapsed() < Duration::from_millis(200)) {
+                    return;
+                }
+                self.last = Some(Instant::now());
+                json!({ "event": "progress", "arm": self.names[*i], "step": p.step, "steps": p.steps, "time": p.time, "left": p.left })
+            }
+        };
+        // A line nobody can see must not stop the study.
+        if self.json {
+            let _ = out::event(&told);
+        }
+        if self.terminal {
+            let _ = write!(io::stderr().lock(), "\r\x1b[K{}", self.line());
+        }
+    }
+
+    /// `  37 %  2 of 4 arms  longest left 3 min 2 s`
+    fn line(&self) -> String {
+        let percent = 100.0 * self.done.iter().sum::<u64>() as f64 / self.steps.iter().sum::<u64>().max(1) as f64;
+        let left = self.left.iter().flatten().copied().reduce(f64::max);
+        let left = left.map_or_else(String::new, |left| format!("  longest left {}", duration(left)));
+        format!("{percent:4.0} %  {} of {} arms{left}", self.ended, self.names.len())
+    }
+}
+
+impl Drop for Seen {
+    fn drop(&mut self) {
+        if self.terminal {
+            let _ = write!(io::stderr().lock(), "\r\x1b[K");
+        }
+    }
+}

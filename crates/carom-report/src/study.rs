@@ -1,0 +1,170 @@
+//! The page of a study: its tables and, for every probe's column, one figure with the curves of all arms.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::{fs, path::PathBuf};
+
+use carom_record::Run;
+use carom_record::metrics::probe_columns;
+use carom_record::study::Study;
+
+use crate::chart::{Chart, Panel, Series};
+use crate::labels::{symbol, with_unit, words};
+use crate::palette::LINES;
+use crate::{ReportError, ReportSummary, study_page};
+
+/// Curves of one figure; more arms make more figures.
+pub(crate) const MOST: usize = 8;
+
+/// Columns shown besides those of the probes: name, label, caption.
+const OTHERS: [(&str, &str, &str); 3] = [
+    ("contact_impulse_x", "P_{x}", "contact impulse along x"),
+    ("contact_impulse_y", "P_{y}", "contact impulse along y"),
+    ("dissipation", "dissipation", "energy dissipated so far; negative: created"),
+];
+
+/// A figure of a study.
+pub(crate) struct Figure {
+    pub(crate) name: String,
+    pub(crate) caption: String,
+    pub(crate) svg: String,
+}
+
+/// A column of all arms, thinned.
+struct Column {
+    name: String,
+    unit: String,
+    curves: Vec<(usize, Vec<f64>, Vec<f64>)>,
+}
+
+/// Makes figures, tables and page of a study directory, from the records alone; arm by arm, so that long histories do not add up.
+///
+/// # Errors
+/// What cannot be read or written.
+pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
+    let mut columns: Vec<Column> = Vec::new();
+    let mut time = String::new();
+    let study = Study::open(directory, &mut |arm, run| {
+        run.history.unit("time").clone_into(&mut time);
+        collect(&mut columns, arm, run);
+    })?;
+    study.write_tables()?;
+    let figures: Vec<Figure> = columns.iter().flat_map(|column| overlays(column, &study, &time)).collect();
+    let write = |path: PathBuf, text: &str| match fs::write(&path, text) {
+        Ok(()) => Ok(path),
+        Err(source) => Err(ReportError::Write { path, source }),
+    };
+    let folder = directory.join("figures");
+    fs::create_dir_all(&folder).map_err(|source| ReportError::Write { path: folder.clone(), source })?;
+    let written = figures.iter().map(|f| write(folder.join(format!("{}.svg", f.name)), &f.svg));
+    let written = written.collect::<Result<Vec<_>, _>>()?;
+    let page = write(directory.join("study.html"), &study_page::page(&study, &figures))?;
+    Ok(ReportSummary { page, figures: written, notes: Vec::new() })
+}
+
+fn collect(columns: &mut Vec<Column>, arm: usize, run: &Run) {
+    let nonzero = |name: &&str| run.column(name).is_some_and(|c| c.iter().any(|x| *x != 0.0));
+    let others = OTHERS.iter().map(|other| other.0).filter(nonzero);
+    for name in probe_columns(run).into_iter().chain(others) {
+        let Some(values) = run.column(name) else { continue };
+        let (x, y) = thinned(run.times(), values);
+        match columns.iter_mut().find(|c| c.name == name) {
+            Some(column) => column.curves.push((arm, x, y)),
+            None => columns.push(Column {
+                name: name.to_owned(),
+                unit: run.history.unit(name).to_owned(),
+                curves: vec![(arm, x, y)],
+            }),
+        }
+    }
+}
+
+/// A curve thinned to the first, lowest, highest and last point of each of 1600 spans of time, more than a figure has pixels.
+fn thinned(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    const SPANS: usize = 1600;
+    if times.len() <= 4 * SPANS {
+        return (times.to_vec(), values.to_vec());
+    }
+    let keep = (0..SPANS).flat_map(|k| {
+        let rows = k * times.len() / SPANS..(k + 1) * times.len() / SPANS;
+        let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
+        let mut keep = [Some(rows.start), rows.clone().min_by(by_value), rows.clone().max_by(by_value), Some(rows.end - 1)];
+        keep.sort_unstable();
+        keep.into_iter().flatten()
+    });
+    let mut keep: Vec<usize> = keep.collect();
+    keep.dedup();
+    (keep.iter().map(|&i| times[i]).collect(), keep.iter().map(|&i| values[i]).collect())
+}
+
+/// Colour and dashes of an arm: the colours of Okabe and Ito and grey, each with dashes of its own for a grey printer.
+pub(crate) fn style(arm: usize) -> (&'static str, &'static str) {
+    const DASHES: [&str; MOST] = ["", "9 3", "3 2", "9 3 2 3", "14 4", "5 2 1.5 2 1.5 2", "1.5 2.5", "6 6"];
+    let i = arm % MOST;
+    (LINES.get(i).copied().unwrap_or("#777777"), DASHES[i])
+}
+
+fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Figure> {
+    let (label, what) = match (OTHERS.iter().find(|o| o.0 == column.name), column.name.rsplit_once('.')) {
+        (Some((_, label, caption)), _) => ((*label).to_string(), (*caption).to_string()),
+        (None, Some((probe, quantity))) => (symbol(quantity), format!("{} {} at {probe}", words(quantity), symbol(quantity))),
+        _ => (column.name.clone(), column.name.clone()),
+    };
+    let groups = study.rows.len().div_ceil(MOST);
+    let figure = |group: usize| {
+        let mine: Vec<_> = column.curves.iter().filter(|(arm, ..)| arm / MOST == group).collect();
+        let series = mine.iter().map(|(arm, x, y)| Series {
+            label: study.rows[*arm].name.clone(),
+            color: style(*arm).0,
+            x,
+            y: y.clone(),
+        });
+        let series: Vec<Series> = series.collect();
+        if series.is_empty() {
+            return None;
+        }
+        let panels = vec![Panel { label: label.clone(), unit: column.unit.clone(), height: 320.0, series }];
+        let x_label = with_unit("time t", time);
+        let svg = dashed(&Chart { title: &column.name, x_label, shades: Vec::new(), panels }.svg());
+        let file: String = column.name.chars().map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' }).collect();
+        let (name, part) = match groups {
+            1 => (file, String::new()),
+            _ => (format!("{file}-{}", group + 1), format!(", arms {} to {}", group * MOST + 1, ((group + 1) * MOST).min(study.rows.len()))),
+        };
+        let first = what.chars().next().map_or(String::new(), |c| c.to_uppercase().collect());
+        let caption = format!("{first}{}{part}.", what.chars().skip(1).collect::<String>());
+        Some(Figure { name, caption, svg })
+    };
+    (0..groups).filter_map(figure).collect()
+}
+
+/// The same figure with every curve, and its sample in the legend, dashed after its colour.
+fn dashed(svg: &str) -> String {
+    let styles: BTreeMap<&str, &str> = (1..MOST).map(style).collect();
+    styles.into_iter().fold(svg.to_owned(), |svg, (color, dashes)| {
+        let stroke = format!("stroke=\"{color}\"");
+        svg.replace(&stroke, &format!("{stroke} stroke-dasharray=\"{dashes}\""))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_extremes() {
+        let times: Vec<f64> = (0..100_000).map(f64::from).collect();
+        let mut values = vec![0.0; times.len()];
+        (values[31_234], values[67_890]) = (9.0, -5.0);
+        let (x, y) = thinned(&times, &values);
+        assert!(x.len() <= 6400 && x.is_sorted() && x[0] == 0.0 && x.last() == Some(&99_999.0));
+        assert!(y.contains(&9.0) && y.contains(&-5.0));
+    }
+
+    #[test]
+    fn styles_differ() {
+        let styles: std::collections::HashSet<_> = (0..MOST).map(style).collect();
+        assert_eq!(styles.len(), MOST);
+        assert_eq!((0..MOST).map(|i| style(i).0).collect::<std::collections::HashSet<_>>().len(), MOST);
+    }
+}

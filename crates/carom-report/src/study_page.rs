@@ -1,0 +1,160 @@
+//! `study.html`: arms, claims, metrics and overlays, in one page that needs nothing but itself.
+
+use std::fmt::Write as _;
+
+use carom_record::Status;
+use carom_record::study::{Study, Verdict};
+
+use crate::study::{Figure, style};
+use crate::text::{escape, html};
+
+/// Arms in one table of metrics; more make more tables.
+const ACROSS: usize = 8;
+
+/// What the page of a run does not need.
+const CSS: &str = "td.undecided { color: #8a5a00; font-weight: 600; } th.n { text-align: right; } \
+table.metrics td, table.metrics th { padding-right: .7rem; } svg.line { vertical-align: middle; } \
+@media print { body { -webkit-print-color-adjust: exact; print-color-adjust: exact; } .metrics { font-size: 8.5pt; } }\n";
+
+/// The page.
+pub(crate) fn page(study: &Study, figures: &[Figure]) -> String {
+    let m = &study.manifest;
+    let mut out = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
+         <title>{title}</title>\n<style>\n{}{CSS}</style>\n</head>\n<body>\n<h1>{title}</h1>\n",
+        include_str!("page.css"),
+        title = escape(&m.title)
+    );
+    let (class, word) = match m.status {
+        Status::Finished => ("finished", "finished"),
+        Status::Running => ("running", "running, or killed: resumable"),
+        Status::Stopped | Status::Failed => ("stopped", "stopped: resumable"),
+    };
+    let _ = writeln!(out, "<p><span class=\"status {class}\">{word}</span></p>");
+    arms(&mut out, study);
+    claims(&mut out, &study.verdicts);
+    out.push_str("<h2>Figures</h2>\n");
+    for (i, figure) in figures.iter().enumerate() {
+        let (caption, name) = (html(&figure.caption), escape(&figure.name));
+        let link = format!("<a href=\"figures/{name}.svg\">figures/{name}.svg</a>");
+        let _ = writeln!(
+            out,
+            "<figure>\n{}<figcaption><b>Figure {}.</b> {caption} <span class=\"small\">({link})</span></figcaption>\n</figure>",
+            figure.svg,
+            i + 1
+        );
+    }
+    metrics(&mut out, study);
+    reproduce(&mut out, study);
+    out.push_str("</body>\n</html>\n");
+    out
+}
+
+/// A number in five digits, an exponent when far from one.
+fn number(x: f64) -> String {
+    let text = if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) {
+        format!("{x:.3e}")
+    } else if x.fract() == 0.0 {
+        format!("{x}")
+    } else {
+        let decimals = (4 - x.abs().log10().floor() as i32).clamp(0, 8) as usize;
+        format!("{x:.decimals$}").trim_end_matches('0').trim_end_matches('.').to_owned()
+    };
+    text.replace('-', "−")
+}
+
+fn arms(out: &mut String, study: &Study) {
+    out.push_str("<h2>Arms</h2>\n<table>\n<thead><tr><th></th><th></th><th>Arm</th><th>Sets</th><th class=\"n\">Steps</th><th></th></tr></thead>\n");
+    for (i, (row, arm)) in study.rows.iter().zip(&study.manifest.arms).enumerate() {
+        let (color, dashes) = style(i);
+        let (class, word) = match row.status {
+            Some(Status::Finished) => ("pass", "finished"),
+            Some(Status::Failed) => ("miss", "failed"),
+            Some(Status::Running | Status::Stopped) => ("undecided", "not finished"),
+            None => ("undecided", "not begun"),
+        };
+        let reason = row.reason.as_ref().map(|r| format!("<br><span class=\"small\">{}</span>", escape(r)));
+        let reference = if study.manifest.reference.as_ref() == Some(&row.name) { " (reference)" } else { "" };
+        let _ = writeln!(
+            out,
+            "<tr><td class=\"n\">{}</td><td><svg class=\"line\" width=\"44\" height=\"10\"><path d=\"M1 5h42\" stroke=\"{color}\" \
+             stroke-width=\"2\" stroke-dasharray=\"{dashes}\"/></svg></td><td><a href=\"{}/report.html\">{}</a>{reference}</td>\
+             <td>{}</td><td class=\"n\">{}</td><td class=\"{class}\">{word}{}</td></tr>",
+            i + 1,
+            escape(&arm.directory),
+            escape(&row.name),
+            arm.sets.iter().map(|s| format!("<code>{}</code>", escape(s))).collect::<Vec<_>>().join("<br>"),
+            arm.steps,
+            reason.unwrap_or_default()
+        );
+    }
+    out.push_str("</table>\n");
+}
+
+fn claims(out: &mut String, verdicts: &[Verdict]) {
+    if verdicts.is_empty() {
+        return;
+    }
+    out.push_str("<h2>Claims</h2>\n<table>\n<thead><tr><th>Claim</th><th class=\"n\">Left</th><th class=\"n\">Right</th><th></th></tr></thead>\n");
+    for v in verdicts {
+        let class = match v.holds {
+            Some(true) => "pass",
+            Some(false) => "miss",
+            None => "undecided",
+        };
+        let _ = writeln!(
+            out,
+            "<tr><td>{}<br><code>{}</code></td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"{class}\">{}</td></tr>",
+            escape(&v.claim.text),
+            escape(&v.claim.compare),
+            v.left.map_or("–".into(), number),
+            v.right.map_or("–".into(), number),
+            v.word()
+        );
+    }
+    out.push_str("</table>\n");
+}
+
+fn metrics(out: &mut String, study: &Study) {
+    out.push_str("<h2>Metrics</h2>\n");
+    let all = study.metrics();
+    let shown: Vec<_> = all.iter().filter(|m| study.rows.iter().any(|r| r.value(&m.name).is_some())).collect();
+    for first in (0..study.rows.len()).step_by(ACROSS) {
+        let rows = &study.rows[first..study.rows.len().min(first + ACROSS)];
+        let heads: String = (0..rows.len()).map(|i| format!("<th class=\"n\">{}</th>", first + i + 1)).collect();
+        let _ = writeln!(out, "<table class=\"metrics\">\n<thead><tr><th>Metric</th><th>Unit</th>{heads}</tr></thead>");
+        for metric in &shown {
+            let cells = rows.iter().map(|r| r.value(&metric.name).map_or("–".into(), number));
+            let cells: String = cells.map(|c| format!("<td class=\"n\">{c}</td>")).collect();
+            let _ = writeln!(out, "<tr><td><code>{}</code></td><td>{}</td>{cells}</tr>", escape(&metric.name), html(&metric.unit));
+        }
+        out.push_str("</table>\n");
+    }
+    out.push_str("<p class=\"small\">Columns are the numbers of the arms. Every value is computed from the arm's own directory alone; the same \
+                  numbers with all digits are in <a href=\"study.csv\">study.csv</a> and <a href=\"study_tidy.csv\">study_tidy.csv</a>.</p>\n\
+                  <details><summary>Definitions</summary>\n<table>\n");
+    for metric in &shown {
+        let _ = writeln!(out, "<tr><td><code>{}</code></td><td>{}</td></tr>", escape(&metric.name), escape(metric.definition));
+    }
+    out.push_str("</table></details>\n");
+}
+
+fn reproduce(out: &mut String, study: &Study) {
+    let m = &study.manifest;
+    let case = escape(&m.source.case_path);
+    let _ = writeln!(
+        out,
+        "<h2>To reproduce</h2>\n<p>Save the study as <code>study.toml</code> and the case as <code>{case}</code> beside it, then with Carom \
+         {}:</p>\n<pre>carom study study.toml</pre>\n<p class=\"small\">Input hash <code class=\"hash\">{}</code>; made {} on {} cores, {} {}. \
+         Results do not depend on the number of jobs; wall times do.</p>\n\
+         <details><summary>The study file</summary>\n<pre>{}</pre></details>\n<details><summary>The case file</summary>\n<pre>{}</pre></details>",
+        escape(&m.version),
+        escape(&m.input_hash),
+        escape(&m.created),
+        m.machine.cpus,
+        escape(&m.machine.os),
+        escape(&m.machine.arch),
+        escape(&m.source.study),
+        escape(&m.source.case)
+    );
+}

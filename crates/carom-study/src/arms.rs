@@ -1,0 +1,117 @@
+//! Arms of a study: those written down, then the product of the grid; and an arm's problems, shown where the arm was written.
+
+use carom::case::{Diagnostic, Document, Problem};
+use toml_edit::Value;
+
+use crate::file::StudyFile;
+
+/// What an arm changes, and where in the study file each change stands.
+pub(crate) struct Draft {
+    pub(crate) name: String,
+    /// Path of the arm.
+    pub(crate) path: String,
+    /// `key=value`, and its path.
+    pub(crate) sets: Vec<(String, String)>,
+}
+
+/// All arms in their order. The last key of the grid varies fastest.
+pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
+    let mut drafts: Vec<Draft> = Vec::new();
+    for (i, arm) in file.arms.iter().enumerate() {
+        let path = format!("arm[{i}]");
+        let sets = arm.set.iter().map(|(key, value)| (assignment(key, value), format!("{path}.set.\"{key}\"")));
+        drafts.push(Draft { name: arm.name.clone(), sets: sets.collect(), path });
+    }
+    let combinations: usize = if file.grid.is_empty() { 0 } else { file.grid.iter().map(|(_, v)| v.len()).product() };
+    for combination in 0..combinations {
+        let mut rest = combination;
+        let mut sets = Vec::new();
+        let mut name = Vec::new();
+        for (key, values) in file.grid.iter().rev() {
+            let i = rest % values.len();
+            rest /= values.len();
+            sets.push((assignment(key, &values[i]), format!("grid.\"{key}\"[{i}]")));
+            name.push(format!("{key}={}", brief(&values[i])));
+        }
+        sets.reverse();
+        name.reverse();
+        drafts.push(Draft { name: name.join(", "), path: "grid".into(), sets });
+    }
+    drafts
+}
+
+fn assignment(key: &str, value: &Value) -> String {
+    format!("{key}={}", one_line(value))
+}
+
+fn one_line(value: &Value) -> String {
+    value.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// A value in a name: a table by its kind and numbers, `chung-hulbert 0.6`.
+fn brief(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.value().clone(),
+        Value::InlineTable(table) => {
+            let parts: Vec<String> = table.iter().map(|(_, v)| brief(v)).collect();
+            parts.join(" ")
+        }
+        other => one_line(other),
+    }
+}
+
+/// Directory names: letters and digits of the name, the rest as single hyphens, at most 40 characters.
+pub(crate) fn slug(name: &str) -> String {
+    let mut slug = String::new();
+    for c in name.chars() {
+        match c {
+            'Δ' => slug.push('d'),
+            'ρ' => slug.push_str("rho"),
+            '∞' => slug.push_str("inf"),
+            '.' => slug.push('.'),
+            c if c.is_ascii_alphanumeric() => slug.push(c.to_ascii_lowercase()),
+            _ if !slug.ends_with('-') => slug.push('-'),
+            _ => {}
+        }
+    }
+    let slug: String = slug.chars().take(40).collect();
+    slug.trim_matches(['-', '.']).to_owned()
+}
+
+/// A diagnostic of an arm's case, placed in the study file; `base` are those of the case without any change.
+pub(crate) fn placed(study: &Document, draft: &Draft, found: &Diagnostic, base: &[Diagnostic]) -> Diagnostic {
+    if base.contains(found) {
+        return found.clone();
+    }
+    let set = draft.sets.iter().find(|(set, _)| found.file == "--set" && found.quoted == *set);
+    let path = set.map_or(&draft.path, |(_, path)| path);
+    let place = match found.line {
+        line if line > 0 && found.file != "--set" => format!(" ({}:{line}:{})", found.file, found.column),
+        _ => String::new(),
+    };
+    let why = format!("arm \"{}\": {}{place}", draft.name, found.why);
+    study.diagnose(&Problem::new(path, &found.what, why, &found.help))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_grid_is_a_product() {
+        let mut file = StudyFile::default();
+        let list = |text: &str| -> Vec<Value> {
+            let parsed: Value = text.parse().unwrap();
+            parsed.as_array().unwrap().iter().cloned().collect()
+        };
+        file.grid.push(("time.scheme".into(), list("[{ kind = \"hu\" }, { kind = \"chung-hulbert\", rho_inf = 0.6 }]")));
+        file.grid.push(("time.step".into(), list("[1e-3, 0.0005]")));
+        let arms = all(&file);
+        let names: Vec<&str> = arms.iter().map(|a| a.name.as_str()).collect();
+        assert_eq!(names[0], "time.scheme=hu, time.step=1e-3");
+        assert_eq!(names[3], "time.scheme=chung-hulbert 0.6, time.step=0.0005");
+        assert_eq!(arms[2].sets[0].0, "time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.6 }");
+        assert_eq!(arms[2].sets[1].1, "grid.\"time.step\"[0]");
+        assert_eq!(slug("Hu, Δt 1.875e-4"), "hu-dt-1.875e-4");
+    }
+}

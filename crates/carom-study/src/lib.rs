@@ -1,0 +1,13 @@
+//! Studies: one case run many times with some of its values replaced, in parallel, and its runs compared.
+//!
+//! [`Plan::read`] reads a study file and checks every arm before anything is written; [`start`] makes the directory and [`go_on`] runs
+//! what is not finished in it, so that a study killed at any moment goes on where it was. Tables and claims are functions of the
+//! records alone: [`carom_record::study`].
+
+mod arms;
+mod file;
+mod plan;
+mod run;
+
+pub use plan::{Plan, PlannedArm};
+pub use run::{Ended, Event, Outcome, StudyError, go_on, start};

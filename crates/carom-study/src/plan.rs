@@ -1,0 +1,159 @@
+//! A study read and checked: every arm's case is resolved and its model built before anything is written.
+
+use std::path::Path;
+
+use carom::Simulation;
+use carom::case::{Case, CaseError, Diagnostic, Document, Problem, read};
+use carom_record::study::{Arm, Comparison, StudyManifest, StudySource};
+use carom_record::{Machine, Source, Status, now};
+
+use crate::arms::{self, Draft};
+use crate::file;
+
+/// A study that can be started.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// What its directory will say of it.
+    pub manifest: StudyManifest,
+    /// Its simulations.
+    pub arms: Vec<PlannedArm>,
+}
+
+/// A simulation of a study.
+#[derive(Clone, Debug)]
+pub struct PlannedArm {
+    /// The case.
+    pub case: Case,
+    /// Text of the case file and changes.
+    pub source: Source,
+}
+
+impl Plan {
+    /// Reads a study file and the case it names.
+    ///
+    /// # Errors
+    /// Everything that is wrong, with its place in the study file; in the case file, where it is wrong without any arm.
+    pub fn read(path: &Path) -> Result<Self, CaseError> {
+        let study = Document::open(path, &[])?;
+        let mut problems = Vec::new();
+        let file = file::read(&study, &mut problems);
+        let drafts = arms::all(&file);
+        names(&file, &drafts, &mut problems);
+        if !problems.is_empty() {
+            return Err(study.diagnose_all(&problems));
+        }
+        let case_path = path.parent().unwrap_or(Path::new("")).join(&file.case);
+        let case = Document::open(&case_path, &[]).map_err(|error| match error {
+            CaseError::Wrong(found) if !case_path.is_file() => {
+                let what = format!("the case `{}` cannot be read: {}", file.case, found[0].what);
+                study.diagnose_all(&[Problem::new("case", what, "the path is relative to the study file", "correct the path")])
+            }
+            error => error,
+        })?;
+        let base = resolved(&case_path, &[]).err().map_or_else(|| Ok(Vec::new()), diagnostics)?;
+
+        let mut found: Vec<Diagnostic> = Vec::new();
+        let mut planned = Vec::new();
+        for draft in &drafts {
+            let sets: Vec<String> = draft.sets.iter().map(|(set, _)| set.clone()).collect();
+            match resolved(&case_path, &sets) {
+                Ok(case) => planned.push((draft, sets, case)),
+                Err(error) => {
+                    for diagnostic in diagnostics(error)? {
+                        let placed = arms::placed(&study, draft, &diagnostic, &base);
+                        if !found.contains(&placed) {
+                            found.push(placed);
+                        }
+                    }
+                }
+            }
+        }
+        if !found.is_empty() {
+            return Err(CaseError::Wrong(found));
+        }
+        let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        let sources = StudySource {
+            study: study.text().to_owned(),
+            case_path: file.case.clone(),
+            case: case.text().to_owned(),
+        };
+        let hash = Source { text: sources.study.clone(), sets: vec![sources.case.clone()] }.hash();
+        let arm = |(i, (draft, sets, case)): (usize, &(&Draft, Vec<String>, Case))| Arm {
+            name: draft.name.clone(),
+            directory: format!("arms/{:02}-{}", i + 1, arms::slug(&draft.name)),
+            sets: sets.clone(),
+            steps: case.time.steps() as u64,
+            case: serde_json::to_value(case).unwrap_or_default(),
+        };
+        let manifest = StudyManifest {
+            status: Status::Running,
+            title: file.title.unwrap_or(stem),
+            version: env!("CARGO_PKG_VERSION").into(),
+            input_hash: hash,
+            created: now(),
+            machine: Machine::current(),
+            reference: file.reference,
+            arms: planned.iter().enumerate().map(arm).collect(),
+            claims: file.claims,
+            source: sources,
+        };
+        let text = case.text();
+        let arm = |(_, sets, case)| PlannedArm { case, source: Source { text: text.to_owned(), sets } };
+        Ok(Self { manifest, arms: planned.into_iter().map(arm).collect() })
+    }
+}
+
+/// Names arms and claims go by: present, different, known.
+fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) {
+    if drafts.is_empty() {
+        problems.push(Problem::new("", "the study has no arms", "there is nothing to compare", "add an [[arm]] or a [grid]"));
+    }
+    for (i, draft) in drafts.iter().enumerate() {
+        if drafts[..i].iter().any(|d| d.name == draft.name) {
+            let what = format!("two arms are named \"{}\"", draft.name);
+            let path = if draft.path == "grid" { draft.path.clone() } else { format!("{}.name", draft.path) };
+            problems.push(Problem::new(path, what, "tables, figures and claims tell them apart by name", "rename one"));
+        }
+    }
+    let known = || drafts.iter().map(|d| format!("\"{}\"", d.name)).collect::<Vec<_>>().join(", ");
+    let exists = |name: &str| drafts.iter().any(|d| d.name == name);
+    if let Some(reference) = file.reference.as_deref().filter(|name| *name != "exact" && !exists(name)) {
+        let what = format!("the reference \"{reference}\" is no arm");
+        problems.push(Problem::new("reference", what, format!("the arms are: {}", known()), "name one of them, or \"exact\""));
+    }
+    for (i, claim) in file.claims.iter().enumerate() {
+        let path = format!("claim[{i}].compare");
+        match Comparison::parse(&claim.compare) {
+            Ok(comparison) => {
+                for arm in comparison.arms().into_iter().filter(|arm| !exists(arm)) {
+                    let what = format!("no arm is named \"{arm}\"");
+                    problems.push(Problem::new(&path, what, format!("the arms are: {}", known()), "name one of them"));
+                }
+            }
+            Err(why) => {
+                let help = "for example 'restitution of \"ARM\" > 1.1 * restitution of \"ARM\"'";
+                problems.push(Problem::new(&path, "this is no comparison", why, help));
+            }
+        }
+    }
+}
+
+/// A case with changes, its model built once to see what only the model shows.
+fn resolved(path: &Path, sets: &[String]) -> Result<Case, CaseError> {
+    let document = Document::open(path, sets)?;
+    let case = read(&document).map_err(|problems| document.diagnose_all(&problems))?;
+    let built = match case.dimension {
+        1 => Simulation::<1>::new(&case, 1).map(drop),
+        _ => Simulation::<2>::new(&case, 1).map(drop),
+    };
+    built.map_err(|problems| document.diagnose_all(&problems))?;
+    Ok(case)
+}
+
+/// The diagnostics of a wrong case; a machine's refusal stays an error.
+fn diagnostics(error: CaseError) -> Result<Vec<Diagnostic>, CaseError> {
+    match error {
+        CaseError::Wrong(found) => Ok(found),
+        refused @ CaseError::Refused { .. } => Err(refused),
+    }
+}
