@@ -27,7 +27,11 @@ const KINDS: usize = 6;
 
 /// One frame's instant, and the bodies of dimension 1 as strips.
 pub(crate) fn instant(fields: &FieldSet, time: String) -> Option<Instant> {
-    if fields.blocks.iter().all(|b| b.cell == Cell::Curve) { strip(fields, time) } else { Instant::new(fields, "stress", 1, time) }
+    if fields.blocks.iter().all(|b| b.cell == Cell::Curve) {
+        strip(fields, time)
+    } else {
+        Instant::new(fields, "stress", 1, time)
+    }
 }
 
 /// Bars as strips of triangles around the x axis, coloured by σ_xx.
@@ -49,8 +53,13 @@ fn strip(fields: &FieldSet, time: String) -> Option<Instant> {
             cells.extend([(1, vec![w[0], w[1], w[1] + n]), (1, vec![w[0], w[1] + n, w[0] + n])]);
         }
     }
-    Some(Instant { time, points: side(-1.0).chain(side(1.0)).collect(), values: [&values[..], &values].concat(), cells })
-        .filter(|i| !i.cells.is_empty())
+    Some(Instant {
+        time,
+        points: side(-1.0).chain(side(1.0)).collect(),
+        values: [&values[..], &values].concat(),
+        cells,
+    })
+    .filter(|i| !i.cells.is_empty())
 }
 
 /// Integers over a range; what is not finite becomes the smallest one.
@@ -98,7 +107,12 @@ fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     let mut panels: Vec<Panel> = Vec::new();
     let label = if flat { "f_{x}" } else { "f_{y}" };
     if let Some(s) = series(force, String::new(), 0) {
-        panels.push(Panel { label: format!("contact force {label}"), unit: h.unit(force).into(), height: 96.0, series: vec![s] });
+        panels.push(Panel {
+            label: format!("contact force {label}"),
+            unit: h.unit(force).into(),
+            height: 96.0,
+            series: vec![s],
+        });
     }
     for column in &h.columns {
         let Some((probe, quantity)) = column.name.rsplit_once('.') else { continue };
@@ -109,7 +123,12 @@ fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
         match panels.iter().position(|p| p.label == symbol(quantity)) {
             Some(i) => panels[i].series.push(s),
             None if panels.len() < 5 => {
-                panels.push(Panel { label: symbol(quantity), unit: column.unit.clone(), height: 96.0, series: vec![s] });
+                panels.push(Panel {
+                    label: symbol(quantity),
+                    unit: column.unit.clone(),
+                    height: 96.0,
+                    series: vec![s],
+                });
             }
             None => {}
         }

@@ -116,7 +116,11 @@ fn probes(run: &Run) -> Option<Figure> {
     let mut list: Vec<String> = panels.iter().map(|(q, _)| format!("{} {}", words(q), symbol(q))).collect();
     list.dedup();
     let svg = chart(run, "Probes against time", panels.into_iter().map(|(_, p)| p).collect())?;
-    let caption = format!("Probes against time: {}. Shaded: contact. Data: history.csv, columns {}.", list.join(", "), columns.join(", "));
+    let caption = format!(
+        "Probes against time: {}. Shaded: contact. Data: history.csv, columns {}.",
+        list.join(", "),
+        columns.join(", ")
+    );
     Some(Figure { name: "probes", caption, svg })
 }
 
@@ -141,7 +145,8 @@ fn force(run: &Run) -> Option<Figure> {
 /// The energy ledger.
 fn energy(run: &Run) -> Option<Figure> {
     let unit = run.history.unit("total");
-    let size = run.column("total").into_iter().chain(run.column("kinetic")).flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let size =
+        run.column("total").into_iter().chain(run.column("kinetic")).flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
     let energies = [("total", "total"), ("kinetic", "kinetic"), ("strain", "strain"), ("potential", "potential")];
     let works = [("dissipation", "dissipation"), ("external_work", "external work"), ("contact_work", "contact work")];
     let panels = vec![
@@ -162,9 +167,10 @@ fn solver(run: &Run) -> Option<Figure> {
         panels.push(one("rejected", "rejected"));
     }
     let quiet = if panels.len() == 2 { " No step was rejected." } else { "" };
-    let caption =
-        format!("Newton iterations and active contact nodes of each step, and attempts rejected in it.{quiet} Ticks: events by kind. Data: \
-                          history.csv, columns newton, active and rejected; log.jsonl.");
+    let caption = format!(
+        "Newton iterations and active contact nodes of each step, and attempts rejected in it.{quiet} Ticks: events by kind. Data: \
+                          history.csv, columns newton, active and rejected; log.jsonl."
+    );
     Some(Figure { name: "solver", caption, svg: chart(run, "Solver", panels)? })
 }
 
@@ -215,8 +221,11 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands, [bool;
     let (bands, cut) = bodies::colors(&list);
     let title = "Deformed bodies with vertical Cauchy stress";
     let svg = bodies::figure(&list, (&bands, cut), title, ("σ_{yy}", &stress), &length);
-    let arrow =
-        if cut[0] || cut[1] { " Arrows at the colour bar: the outermost half per cent of the values lies beyond." } else { "" };
+    let arrow = if cut[0] || cut[1] {
+        " Arrows at the colour bar: the outermost half per cent of the values lies beyond."
+    } else {
+        ""
+    };
     let caption = format!(
         "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal means) at instants {during}, all at one scale, displacements as \
          they are. Blue presses, red pulls.{arrow} Data: stress and displacement of the field files."
