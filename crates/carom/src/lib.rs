@@ -2,6 +2,7 @@
 
 mod balance;
 pub mod case;
+mod cells;
 mod ledger;
 pub mod model;
 mod newton;

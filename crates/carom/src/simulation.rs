@@ -17,7 +17,7 @@ const MOST_HALVINGS: u32 = 12;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Stopped {
     /// No step from here, however small, is accepted.
-    #[error("no step from t = {time} is accepted, not even Δt = {dt:.3e} ({halvings} halvings): {rejected}")]
+    #[error("no step from t = {time:.6} is accepted, not even Δt = {dt:.3e} ({halvings} halvings): {rejected}")]
     NoStep {
         /// Time of the last accepted state.
         time: f64,
@@ -30,7 +30,7 @@ pub enum Stopped {
     },
     /// The scheme created energy.
     #[error(
-        "energy was created at t = {time}: {created:.4e}, more than {share} of the largest kinetic + strain energy so far ({largest:.4e})"
+        "energy was created at t = {time:.6}: {created:.4e}, more than {share} of the largest kinetic + strain energy so far ({largest:.4e})"
     )]
     EnergyGuard {
         /// Time.
@@ -119,7 +119,7 @@ impl<const D: usize> Simulation<D>
 where
     Space: Dimension<D>,
 {
-    /// Builds the model of a case and its state at t = 0.
+    /// Builds the model of a case and its state at t = 0. Cells are computed by this many threads; the result does not depend on it.
     ///
     /// # Errors
     /// Everything wrong with the case that only its meshes show.
@@ -129,8 +129,7 @@ where
         if !problems.is_empty() {
             return Err(problems);
         }
-        let mut work = Workspace::new(&model);
-        let _ = threads;
+        let mut work = Workspace::new(&model, threads);
         let state = start(&model, &mut work).map_err(|rejected| {
             vec![Problem::new(
                 "body",

@@ -12,7 +12,8 @@ use carom_algebra::{FaerSolver, Inertia, LinearError, LinearSolver, Pattern};
 use carom_contact::Linearised;
 use carom_solid::Inverted;
 
-use crate::model::{MAX_CELL_DOFS, Model};
+use crate::cells::Cells;
+use crate::model::Model;
 
 /// Slot of an entry that is not stored: upper triangle, or a held dof.
 const SKIP: u32 = u32::MAX;
@@ -31,7 +32,8 @@ pub(crate) struct System<const D: usize> {
     stiffness: Vec<f64>,
     mass: Vec<f64>,
     /// Slots of each cell's dof pairs, cell after cell through all bodies.
-    cells: Vec<u32>,
+    slots: Vec<u32>,
+    cells: Cells,
     merged: Pattern,
     from_base: Vec<usize>,
     /// Stencils of the rows the merged pattern was made for.
@@ -46,7 +48,7 @@ pub(crate) struct System<const D: usize> {
 
 impl<const D: usize> System<D> {
     /// Pattern and slots of the bodies of a model.
-    pub(crate) fn new(model: &Model<D>) -> Self {
+    pub(crate) fn new(model: &Model<D>, threads: usize) -> Self {
         let n = model.free.len();
         let mut entries = Vec::new();
         for_each_cell_pair(model, |a, b| {
@@ -57,20 +59,22 @@ impl<const D: usize> System<D> {
         entries.sort_unstable();
         entries.dedup();
         let base = Pattern::from_entries(n, entries);
-        let mut cells = Vec::new();
+        let mut slots = Vec::new();
         for_each_cell_pair(model, |a, b| {
             let stored = a != usize::MAX && b != usize::MAX && a >= b;
-            cells.push(if stored { base.slot(a, b).map_or(SKIP, |s| s as u32) } else { SKIP });
+            slots.push(if stored { base.slot(a, b).map_or(SKIP, |s| s as u32) } else { SKIP });
         });
         let mut mass = vec![0.0; base.len()];
         for node in 0..model.mass.nodes() {
             for (other, value) in model.mass.row(node) {
                 for i in 0..D {
                     let (a, b) = (model.unknown[node * D + i], model.unknown[other * D + i]);
-                    if a != usize::MAX && b != usize::MAX && a >= b {
-                        if let Some(slot) = base.slot(a, b) {
-                            mass[slot] += value;
-                        }
+                    if a != usize::MAX
+                        && b != usize::MAX
+                        && a >= b
+                        && let Some(slot) = base.slot(a, b)
+                    {
+                        mass[slot] += value;
                     }
                 }
             }
@@ -78,7 +82,8 @@ impl<const D: usize> System<D> {
         Self {
             stiffness: vec![0.0; base.len()],
             mass,
-            cells,
+            slots,
+            cells: Cells::new(threads),
             merged: Pattern::default(),
             from_base: Vec::new(),
             rows: Vec::new(),
@@ -100,29 +105,26 @@ impl<const D: usize> System<D> {
     ) -> Result<f64, (String, Inverted)> {
         force.fill(0.0);
         self.stiffness.fill(0.0);
-        let mut slots = self.cells.iter();
+        let mut slots = self.slots.iter();
         let mut strain = 0.0;
-        let (mut f, mut k) = ([0.0; MAX_CELL_DOFS], [0.0; MAX_CELL_DOFS * MAX_CELL_DOFS]);
         for part in &model.parts {
             let mesh = part.body.mesh();
             let positions = &y.as_chunks::<D>().0[part.nodes()];
-            let dofs = mesh.element.nodes() * D;
-            for cell in 0..mesh.cell_count() {
-                strain += part
-                    .body
-                    .cell_tangent(cell, positions, &mut f[..dofs], &mut k[..dofs * dofs])
-                    .map_err(|inverted| (part.name.clone(), inverted))?;
-                for (a, &node) in mesh.cell(cell).iter().enumerate() {
+            let stiffness = &mut self.stiffness;
+            let add = |cell: usize, f: &[f64], k: &[f64]| {
+                for (node, f) in mesh.cell(cell).iter().zip(f.as_chunks::<D>().0) {
                     for i in 0..D {
-                        force[(part.first_node + node) * D + i] += f[a * D + i];
+                        force[(part.first_node + node) * D + i] += f[i];
                     }
                 }
-                for (value, slot) in k[..dofs * dofs].iter().zip(slots.by_ref()) {
+                for (value, slot) in k.iter().zip(slots.by_ref()) {
                     if *slot != SKIP {
-                        self.stiffness[*slot as usize] += value;
+                        stiffness[*slot as usize] += value;
                     }
                 }
-            }
+            };
+            strain +=
+                self.cells.for_each(&*part.body, positions, add).map_err(|inverted| (part.name.clone(), inverted))?;
         }
         Ok(strain)
     }
@@ -235,6 +237,14 @@ impl<const D: usize> System<D> {
         multipliers.clear();
         multipliers.extend_from_slice(&self.solution[n..]);
         Ok(())
+    }
+
+    /// The matrix last factored times a vector over free dofs and rows, for tests.
+    #[cfg(test)]
+    pub(crate) fn product(&mut self, x: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; x.len()];
+        self.merged.multiply_add(self.solver.values(), x, &mut out);
+        out
     }
 
     /// Merges the rows into the pattern and orders it anew, unless the rows touch the same dofs as last time.

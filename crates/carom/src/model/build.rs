@@ -59,7 +59,7 @@ where
     let kinds: Vec<_> = case.bodies.iter().map(|b| b.mass).collect();
     let mass = Mass::assemble(&parts, &kinds);
     let massless: Vec<bool> = (0..dofs).map(|dof| mass.is_massless(dof / D)).collect();
-    let gravity = gravity(case, &parts, dofs);
+    let gravity = gravity(case, &parts, &mass, dofs);
     let contacts = contacts(case, &parts, &massless, &mut problems);
     let probes = probes(case, &parts, &mut problems);
 
@@ -134,21 +134,16 @@ where
     if problems.is_empty() { Ok(parts) } else { Err(problems) }
 }
 
-/// Gravity as nodal forces ∫ρ₀ g φᵃ dΩ₀, whatever the mass matrix.
-fn gravity<const D: usize>(case: &Case, parts: &[Part<D>], dofs: usize) -> Vec<f64> {
-    let mut force = vec![0.0; dofs];
+/// Gravity as nodal forces M g with the mass matrix of the case: lumped or not, a free body falls without deforming.
+fn gravity<const D: usize>(case: &Case, parts: &[Part<D>], mass: &Mass, dofs: usize) -> Vec<f64> {
+    let mut acceleration = Vec::with_capacity(dofs);
     for (part, spec) in parts.iter().zip(&case.bodies) {
-        let mesh = part.body.mesh();
-        let mut volumes = vec![0.0; mesh.element.nodes()];
-        for cell in 0..mesh.cell_count() {
-            part.body.cell_volumes(cell, &mut volumes);
-            for (&node, volume) in mesh.cell(cell).iter().zip(&volumes) {
-                for i in 0..D {
-                    force[(part.first_node + node) * D + i] += part.body.density() * volume * spec.gravity[i];
-                }
-            }
+        for _ in part.nodes() {
+            acceleration.extend_from_slice(&spec.gravity);
         }
     }
+    let mut force = vec![0.0; dofs];
+    mass.multiply_into(&acceleration, &mut force);
     force
 }
 

@@ -41,10 +41,20 @@ pub fn columns<const D: usize>(case: &Case, model: &Model<D>) -> Vec<Column> {
         add("angular_momentum".into(), &label.angular_momentum, "moment of momentum about the origin", false);
     }
     for axis in axes {
-        add(format!("contact_force_{axis}"), &label.force, "contact force on the secondary sides, end of the step", false);
+        add(
+            format!("contact_force_{axis}"),
+            &label.force,
+            "contact force on the secondary sides, end of the step",
+            false,
+        );
     }
     for axis in axes {
-        add(format!("contact_impulse_{axis}"), &label.momentum, "its time integral so far, projections included", false);
+        add(
+            format!("contact_impulse_{axis}"),
+            &label.momentum,
+            "its time integral so far, projections included",
+            false,
+        );
     }
     for (name, what) in [
         ("active", "pairs in contact"),
@@ -68,7 +78,12 @@ pub fn columns<const D: usize>(case: &Case, model: &Model<D>) -> Vec<Column> {
     if model.contacts.len() > 1 {
         for contact in &model.contacts {
             for axis in axes {
-                add(format!("{}.force_{axis}", contact.name), &label.force, "contact force on its secondary side", false);
+                add(
+                    format!("{}.force_{axis}", contact.name),
+                    &label.force,
+                    "contact force on its secondary side",
+                    false,
+                );
             }
         }
     }
@@ -164,9 +179,10 @@ pub(super) fn row<const D: usize>(
     if !model.supports.is_empty() {
         let reaction = reactions(model, state);
         for support in &model.supports {
-            row.extend((0..axes).map(|i| {
-                support.dofs.iter().filter(|dof| *dof % D == i).map(|&dof| reaction[dof]).sum::<f64>()
-            }));
+            row.extend(
+                (0..axes)
+                    .map(|i| support.dofs.iter().filter(|dof| *dof % D == i).map(|&dof| reaction[dof]).sum::<f64>()),
+            );
         }
     }
     for probe in &model.probes {

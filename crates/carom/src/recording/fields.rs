@@ -80,7 +80,8 @@ fn pressures<const D: usize>(case: &Case, model: &Model<D>, state: &State) -> Ve
 /// ∫φᴺ ds over the current secondary side, times the thickness: the area a multiplier acts on. One entry per secondary node.
 pub(super) fn consistent_weights<const D: usize>(contact: &Contact<D>, state: &State, thickness: f64) -> Vec<f64> {
     // Gauss–Legendre with three points: exact for |y'| constant and φ of degree 3.
-    const RULE: [(f64, f64); 3] = [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
+    const RULE: [(f64, f64); 3] =
+        [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
     let secondary = contact.method.secondary();
     if D == 1 {
         return vec![thickness; secondary.len()];

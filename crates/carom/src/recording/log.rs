@@ -21,7 +21,8 @@ pub(super) fn entry<const D: usize>(model: &Model<D>, step: u64, event: &LogEven
         }
         LogEvent::ActiveSet { time, contact, node, active } => {
             let verb = if *active { "comes into" } else { "leaves" };
-            let message = format!("node {node} of \"{}\" {verb} contact \"{}\"", body_of(*node), contact_name(*contact));
+            let message =
+                format!("node {node} of \"{}\" {verb} contact \"{}\"", body_of(*node), contact_name(*contact));
             Event::new(step, *time, if *active { "activation" } else { "release" }, message)
                 .with("contact", contact_name(*contact))
                 .with("node", *node)
@@ -32,9 +33,11 @@ pub(super) fn entry<const D: usize>(model: &Model<D>, step: u64, event: &LogEven
                 PairEvent::HandOver { node, from, to } => {
                     ("hand-over", format!("contact \"{name}\": node {node} slides from facet {from} to {to}"), node)
                 }
-                PairEvent::SlidOff { node, facet } => {
-                    ("slid-off", format!("contact \"{name}\": node {node} slides off facet {facet}, the end of the side"), node)
-                }
+                PairEvent::SlidOff { node, facet } => (
+                    "slid-off",
+                    format!("contact \"{name}\": node {node} slides off facet {facet}, the end of the side"),
+                    node,
+                ),
             };
             Event::new(step, *time, kind, message).with("contact", name).with("node", *node)
         }

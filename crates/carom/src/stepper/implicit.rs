@@ -78,7 +78,9 @@ fn guess<const D: usize>(model: &Model<D>, state: &State, dt: f64) -> Trial {
     for pairs in &mut pairs {
         // Open pairs are found afresh, so that they depend on positions alone.
         pairs.retain(|p| p.active);
-        pairs.iter_mut().for_each(|p| p.left = None);
+        for pair in pairs {
+            pair.left = None;
+        }
     }
     Trial { increment, y, pairs, strain: 0.0 }
 }

@@ -1,0 +1,62 @@
+//! Forces and tangents of a body's cells: computed by any number of threads, handed over one by one in the order of the cells, so that sums have the same
+//! bits whatever the number of threads.
+
+use carom_solid::{Body, Inverted};
+use rayon::prelude::*;
+
+use crate::model::MAX_CELL_DOFS;
+
+/// Cells of a block: small enough for the cache, large enough to share among threads.
+const BLOCK: usize = 64;
+const TANGENT: usize = MAX_CELL_DOFS * MAX_CELL_DOFS;
+
+/// What one cell contributes.
+#[derive(Clone)]
+struct Contribution {
+    strain: Result<f64, Inverted>,
+    force: [f64; MAX_CELL_DOFS],
+    tangent: [f64; TANGENT],
+}
+
+/// Threads and buffers for the cells.
+pub(crate) struct Cells {
+    pool: Option<rayon::ThreadPool>,
+    block: Vec<Contribution>,
+}
+
+impl Cells {
+    /// With this many threads; with one, where the machine gives no more.
+    pub(crate) fn new(threads: usize) -> Self {
+        let pool = (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()).flatten();
+        let empty = Contribution { strain: Ok(0.0), force: [0.0; MAX_CELL_DOFS], tangent: [0.0; TANGENT] };
+        Self { pool, block: vec![empty; BLOCK] }
+    }
+
+    /// Calls `add(cell, force, tangent)` for every cell in order; the strain energy of the body is returned.
+    pub(crate) fn for_each<const D: usize>(
+        &mut self,
+        body: &dyn Body<D>,
+        y: &[[f64; D]],
+        mut add: impl FnMut(usize, &[f64], &[f64]),
+    ) -> Result<f64, Inverted> {
+        let (count, dofs) = (body.mesh().cell_count(), body.mesh().element.nodes() * D);
+        let compute = |cell: usize, out: &mut Contribution| {
+            out.strain = body.cell_tangent(cell, y, &mut out.force[..dofs], &mut out.tangent[..dofs * dofs]);
+        };
+        let mut strain = 0.0;
+        for first in (0..count).step_by(BLOCK) {
+            let block = &mut self.block[..BLOCK.min(count - first)];
+            match &self.pool {
+                Some(pool) => {
+                    pool.install(|| block.par_iter_mut().enumerate().for_each(|(k, out)| compute(first + k, out)))
+                }
+                None => block.iter_mut().enumerate().for_each(|(k, out)| compute(first + k, out)),
+            }
+            for (k, out) in block.iter().enumerate() {
+                strain += out.strain?;
+                add(first + k, &out.force[..dofs], &out.tangent[..dofs * dofs]);
+            }
+        }
+        Ok(strain)
+    }
+}

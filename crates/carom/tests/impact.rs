@@ -1,0 +1,161 @@
+//! The impact of cases/impact, step by step: what must hold to round-off in every one of them.
+
+use carom::case::{Case, Document, read};
+use carom::{GridReport, Simulation, State};
+use carom_contact::Linearised;
+
+fn case(sets: &[&str]) -> Case {
+    let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
+    let text = include_str!("../../../cases/impact/impact.toml");
+    let document = Document::parse("impact.toml", text, &sets).unwrap();
+    read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)))
+}
+
+const COARSE: [&str; 2] = ["body.cylinder.mesh.size=0.25", "body.prism.mesh.cells=[4,2]"];
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Krenk's identity for the α family (design.md §5): what the dissipation of a step must be, from its two states.
+fn predicted_dissipation(sim: &Simulation<2>, before: &State, scheme: &carom_time::Scheme) -> f64 {
+    let (dt, now) = (sim.dt, &sim.state);
+    let n = now.y.len();
+    let moved: Vec<f64> = (0..n).map(|i| now.y[i] - before.y[i]).collect();
+    // The algorithmic acceleration before any projection.
+    let a = |i: usize| {
+        (moved[i] - dt * before.v[i] - (0.5 - scheme.beta) * dt * dt * before.a[i]) / (scheme.beta * dt * dt)
+    };
+    let change: Vec<f64> = (0..n).map(|i| a(i) - before.a[i]).collect();
+    let mean: Vec<f64> =
+        (0..n).map(|i| (1.0 - scheme.alpha_f) * now.f_internal[i] + scheme.alpha_f * before.f_internal[i]).collect();
+    let mut m_change = vec![0.0; n];
+    sim.model.mass.multiply_into(&change, &mut m_change);
+    let late: Vec<f64> = (0..n).map(|i| before.a[i] + scheme.gamma * change[i]).collect();
+    let b = scheme.beta - 0.5 * scheme.gamma;
+    dot(&moved, &mean)
+        - (now.ledger.strain - before.ledger.strain)
+        - (scheme.gamma + scheme.alpha_m - 1.0) * dot(&moved, &m_change)
+        + dt * dt * b * dot(&m_change, &late)
+}
+
+#[test]
+fn ledger_balance_and_gaps_hold_in_every_step_of_the_impact() {
+    let case = case(&[]);
+    let scheme = case.time.scheme.scheme().unwrap();
+    let mut sim = Simulation::<2>::new(&case, 1).unwrap();
+    let (mut worst_ledger, mut touched) = (0.0_f64, 0);
+    while !sim.finished() {
+        let before = sim.state.clone();
+        let mut report = GridReport::default();
+        sim.advance(&mut report).unwrap();
+        assert_eq!(report.rejected, 0);
+        let booked = sim.state.ledger.dissipation() - before.ledger.dissipation();
+        let error = (booked - predicted_dissipation(&sim, &before, &scheme)).abs();
+        worst_ledger = worst_ledger.max(error / sim.state.ledger.largest);
+
+        let y = sim.state.y.as_chunks::<2>().0;
+        let mut gap = Linearised::default();
+        let (mut force, mut moment, mut size) = ([0.0; 2], 0.0, 0.0);
+        for pair in sim.state.pairs[0].iter() {
+            sim.model.contacts[0].method.linearise(&mut pair.clone(), y, 0.0, &mut gap).unwrap();
+            assert!(gap.gap > -2e-12, "step {}: gap {:e}", sim.state.step, gap.gap);
+            if !pair.active {
+                continue;
+            }
+            touched += 1;
+            size += pair.lambda.abs();
+            for p in 0..gap.count {
+                let f = gap.gradient[p].0.map(|g| g * pair.lambda);
+                let x = y[gap.nodes[p]];
+                force = [force[0] + f[0], force[1] + f[1]];
+                moment += x[0] * f[1] - x[1] * f[0];
+            }
+        }
+        assert!(force[0].abs() + force[1].abs() + moment.abs() <= 1e-12 * size, "step {}", sim.state.step);
+    }
+    assert!(touched > 500);
+    assert!(worst_ledger < 1e-12, "{worst_ledger:e}");
+}
+
+/// A body that falls, y = X − g t²/2 to 1e-12, whatever the scheme: catches every factor on the inertia (the paper prints a ½).
+#[test]
+fn free_fall_is_exact_for_every_scheme_of_the_family() {
+    let schemes = [
+        r#"{ kind = "newmark", beta = 0.25, gamma = 0.5 }"#,
+        r#"{ kind = "newmark", rho_inf = 0.6 }"#,
+        r#"{ kind = "hu" }"#,
+        r#"{ kind = "hht", alpha = 0.3 }"#,
+        r#"{ kind = "wbz", rho_inf = 0.2 }"#,
+        r#"{ kind = "chung-hulbert", rho_inf = 0.1 }"#,
+        r#"{ kind = "chung-hulbert", rho_inf = 0.9, forces = "average-state" }"#,
+        r#"{ kind = "generalized-alpha", alpha_m = 0.1, alpha_f = 0.3, beta = 0.5, gamma = 0.7 }"#,
+    ];
+    for scheme in schemes {
+        for mass in ["consistent", "lumped"] {
+            let scheme = format!("time.scheme={scheme}");
+            let mass = format!("body.cylinder.mass={mass}");
+            let mut sim =
+                Simulation::<2>::new(&case(&[COARSE[0], COARSE[1], &scheme, &mass, "time.end=0.3"]), 1).unwrap();
+            while !sim.finished() {
+                sim.advance(&mut GridReport::default()).unwrap();
+            }
+            let fallen = 0.5 * 9.81 * sim.state.time * sim.state.time;
+            for node in sim.model.parts[0].nodes() {
+                let [x, y] = [2 * node, 2 * node + 1];
+                let error = (sim.state.y[y] - (sim.model.reference[y] - fallen)).abs();
+                assert!(error < 1e-12, "{scheme}: {error:e}");
+                assert!((sim.state.y[x] - sim.model.reference[x]).abs() < 1e-12);
+            }
+        }
+    }
+}
+
+/// No force of a rigid plane, no dissipation, no gravity: momentum about any point and energy of a free disc are kept by what keeps them.
+#[test]
+fn total_momentum_of_two_free_bodies_is_kept_through_contact() {
+    let text = r#"
+title = "two discs" 
+dimension = 2
+[[material]]
+name = "rubber"
+law = "neo-hookean"
+density = 0.25
+lambda = 20.0
+mu = 15.0
+[[body]]
+name = "left"
+material = "rubber"
+element = "T6"
+mesh = { shape = "disc", radius = 0.5, center = [-0.55, 0.1], size = 0.25 }
+velocity = [1.5, 0.0]
+[[body]]
+name = "right"
+material = "rubber"
+element = "T6"
+mesh = { shape = "disc", radius = 0.5, center = [0.55, -0.1], size = 0.25 }
+velocity = [-1.5, 0.0]
+[[contact]]
+name = "strike"
+secondary = "left.arc"
+primary = "right.arc"
+force = "end"
+[time]
+end = 0.4
+step = 2e-3
+scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
+"#;
+    let document = Document::parse("discs.toml", text, &[]).unwrap();
+    let case = read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)));
+    let mut sim = Simulation::<2>::new(&case, 1).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)));
+    let mut active = 0;
+    while !sim.finished() {
+        sim.advance(&mut GridReport::default()).unwrap();
+        active = active.max(sim.state.pairs[0].iter().filter(|p| p.active).count());
+        let mut p = vec![0.0; sim.state.v.len()];
+        sim.model.mass.multiply_into(&sim.state.v, &mut p);
+        let total = p.as_chunks::<2>().0.iter().fold([0.0, 0.0], |s, p| [s[0] + p[0], s[1] + p[1]]);
+        assert!(total[0].abs() + total[1].abs() < 1e-11, "step {}: {total:?}", sim.state.step);
+    }
+    assert!(active >= 3);
+}
