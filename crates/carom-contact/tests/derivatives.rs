@@ -1,5 +1,7 @@
 //! Gap derivatives of node-to-segment contact on curved facets of every order against differences; balance of force and moment; objectivity.
 
+#![allow(clippy::unwrap_used)]
+
 use carom_algebra::{Vector, jacobian_error};
 use carom_contact::{ContactMethod, Detection, Linearised, NodeToSegment, Pair, Surface};
 

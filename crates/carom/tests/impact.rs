@@ -1,5 +1,7 @@
 //! The impact of cases/impact, step by step: what must hold to round-off in every one of them.
 
+#![allow(clippy::unwrap_used)]
+
 use carom::case::{Case, Document, read};
 use carom::{GridReport, Simulation, State};
 use carom_contact::Linearised;
@@ -57,7 +59,7 @@ fn ledger_balance_and_gaps_hold_in_every_step_of_the_impact() {
         let y = sim.state.y.as_chunks::<2>().0;
         let mut gap = Linearised::default();
         let (mut force, mut moment, mut size) = ([0.0; 2], 0.0, 0.0);
-        for pair in sim.state.pairs[0].iter() {
+        for pair in &sim.state.pairs[0] {
             sim.model.contacts[0].method.linearise(&mut pair.clone(), y, 0.0, &mut gap).unwrap();
             assert!(gap.gap > -2e-12, "step {}: gap {:e}", sim.state.step, gap.gap);
             if !pair.active {
