@@ -48,7 +48,7 @@ impl Cells {
             let block = &mut self.block[..BLOCK.min(count - first)];
             match &self.pool {
                 Some(pool) => {
-                    pool.install(|| block.par_iter_mut().enumerate().for_each(|(k, out)| compute(first + k, out)))
+                    pool.install(|| block.par_iter_mut().enumerate().for_each(|(k, out)| compute(first + k, out)));
                 }
                 None => block.iter_mut().enumerate().for_each(|(k, out)| compute(first + k, out)),
             }

@@ -9,6 +9,7 @@ mod newton;
 mod persistency;
 pub mod recording;
 mod rejected;
+mod rows;
 mod scheme;
 mod simulation;
 mod state;

@@ -3,7 +3,7 @@
 //! Converged means, all at once: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus the round-off the system's diagonal stands for); |g| ≤ 1e-12·L on every active pair;
 //! no pair penetrates, pulls, or has slid off its facet. Nothing less is accepted.
 
-use carom_algebra::{LinearError, Vector};
+use carom_algebra::LinearError;
 use carom_contact::{ActiveSet, Contender, Linearised, Pair, PairEvent};
 use carom_time::Stage;
 
@@ -11,6 +11,7 @@ use crate::balance::{Forces, contact_weights, residual_into};
 use crate::case::NewtonSpec;
 use crate::model::Model;
 use crate::rejected::Rejected;
+use crate::rows::independent_rows;
 use crate::state::State;
 use crate::system::{Row, System};
 
@@ -20,8 +21,6 @@ pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
 const NEARLY_THERE: f64 = 1e-3;
 /// Halvings of a Newton step that inverts a cell or makes the residual much worse.
 const HALVINGS: usize = 8;
-/// Rows shorter than this (their gradient is of order one) say nothing about free dofs.
-const SHORT_ROW: f64 = 1e-8;
 
 /// The unknowns of a stage while they are being found.
 #[derive(Clone, Debug, Default)]
@@ -297,52 +296,6 @@ fn stiffness_of_touch<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> 
     sum / model.free.len().max(1) as f64
 }
 
-/// Active pairs whose rows say something new about the free dofs: (contact, pair). Redundant ones would make the system singular.
-pub(crate) fn independent_rows<const D: usize>(
-    model: &Model<D>,
-    pairs: &[Vec<Pair>],
-    work: &Workspace<D>,
-) -> Vec<(usize, usize)> {
-    let mut rows: Vec<(usize, usize)> = Vec::new();
-    // Orthonormal rows kept so far at each secondary node: only rows that share it can repeat each other.
-    let mut kept: Vec<(usize, Vec<(usize, Vector<D>)>)> = Vec::new();
-    for (k, contact) in model.contacts.iter().enumerate() {
-        for (p, pair) in pairs[k].iter().enumerate().filter(|(_, pair)| pair.active) {
-            let gap = &work.gaps[k][p];
-            let mut row: Vec<(usize, Vector<D>)> = (0..gap.count)
-                .map(|q| {
-                    let held = |i: usize| model.fixed[gap.nodes[q] * D + i];
-                    let free = Vector(std::array::from_fn(|i| if held(i) { 0.0 } else { gap.gradient[q][i] }));
-                    (gap.nodes[q], free)
-                })
-                .collect();
-            let node = contact.method.secondary()[pair.node];
-            for (_, other) in kept.iter().filter(|(n, _)| *n == node) {
-                let overlap: f64 = product(&row, other);
-                for (m, v) in other {
-                    match row.iter_mut().find(|(n, _)| n == m) {
-                        Some((_, r)) => *r -= *v * overlap,
-                        None => row.push((*m, *v * -overlap)),
-                    }
-                }
-            }
-            let length = product(&row, &row).sqrt();
-            if length > SHORT_ROW {
-                for (_, v) in &mut row {
-                    *v = *v * length.recip();
-                }
-                kept.push((node, row));
-                rows.push((k, p));
-            }
-        }
-    }
-    rows
-}
-
-fn product<const D: usize>(a: &[(usize, Vector<D>)], b: &[(usize, Vector<D>)]) -> f64 {
-    a.iter().map(|(n, v)| b.iter().filter(|(m, _)| m == n).map(|(_, w)| v.dot(w)).sum::<f64>()).sum()
-}
-
 /// Names an active pair that no row holds: supports leave it no way out.
 fn stuck<const D: usize>(model: &Model<D>, trial: &Trial, work: &Workspace<D>) -> Result<(), Rejected> {
     let rows = independent_rows(model, &trial.pairs, work);
@@ -438,74 +391,5 @@ fn max_abs(x: &[f64]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::balance::known_into;
-    use crate::case::{Document, read};
-    use crate::simulation::{GridReport, Simulation};
-    use carom_time::{Kernel, Memory};
-
-    /// The whole Newton matrix, contact active and sliding, against differences of the whole residual along random directions; and its symmetry.
-    #[test]
-    fn the_whole_tangent_with_contact_is_the_derivative_of_the_residual() {
-        let text = include_str!("../../../cases/impact/impact.toml");
-        for scheme in [
-            r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#,
-            r#"{ kind = "hht", alpha = 0.2, forces = "average-state" }"#,
-        ] {
-            let sets = ["body.cylinder.mesh.size=0.25", "body.prism.mesh.cells=[4,2]"].map(String::from).to_vec();
-            let sets = [sets, vec![format!("time.scheme={scheme}")]].concat();
-            let case = read(&Document::parse("impact.toml", text, &sets).unwrap()).unwrap();
-            let mut sim = Simulation::<2>::new(&case, 1).unwrap();
-            while sim.state.time < 0.42 {
-                sim.advance(&mut GridReport::default()).unwrap();
-            }
-            let (model, state) = (&sim.model, &sim.state);
-            let mut work = Workspace::new(model, 1);
-            let memory = Memory { states: &[(&state.y, &state.v, &state.a)] };
-            case.time.scheme.scheme().unwrap().stage_into(0, sim.dt, &memory, &mut work.stage);
-            known_into(model, &work.stage, state, &mut work.forces);
-            let wave = |i: usize, seed: f64| ((i as f64 + seed) * 12.9898).sin();
-            let increment: Vec<f64> =
-                (0..model.dofs()).map(|i| if model.fixed[i] { 0.0 } else { 1e-3 * wave(i, 0.3) }).collect();
-            let mut trial =
-                Trial { increment: increment.clone(), y: state.y.clone(), pairs: state.pairs.clone(), strain: 0.0 };
-            evaluate(model, state, &mut trial, &mut work, true).unwrap();
-            let rows = independent_rows(model, &trial.pairs, &work);
-            assert!(rows.len() > 3);
-            linear_step(model, &mut work, &rows).unwrap();
-
-            let size = model.free.len() + rows.len();
-            let direction = |seed: f64| -> Vec<f64> { (0..size).map(|i| wave(i, seed)).collect() };
-            let (u, w) = (direction(0.1), direction(0.7));
-            let (ku, kw) = (work.system.product(&u), work.system.product(&w));
-            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
-            assert!((dot(&ku, &w) - dot(&kw, &u)).abs() < 1e-12 * dot(&ku, &ku).sqrt() * dot(&w, &w).sqrt());
-
-            let base = trial.clone();
-            let mut residual = |e: f64| -> Vec<f64> {
-                let mut at = base.clone();
-                for (place, &dof) in model.free.iter().enumerate() {
-                    at.increment[dof] = increment[dof] + e * u[place];
-                }
-                for (r, &(k, p)) in rows.iter().enumerate() {
-                    at.pairs[k][p].lambda += e * u[model.free.len() + r];
-                }
-                evaluate(model, state, &mut at, &mut work, false).unwrap();
-                let weight = |k: usize| contact_weights(&work.stage, model.contacts[k].force).0;
-                let gaps = rows.iter().map(|&(k, p)| weight(k) * work.gaps[k][p].gap);
-                model.free.iter().map(|&dof| work.residual[dof]).chain(gaps).collect()
-            };
-            let mut slope = |h: f64| -> Vec<f64> {
-                let (plus, minus) = (residual(h), residual(-h));
-                plus.iter().zip(&minus).map(|(p, m)| (p - m) / (2.0 * h)).collect()
-            };
-            let (fine, coarse) = (slope(2.5e-5), slope(5e-5));
-            let size = ku.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-            for i in 0..ku.len() {
-                let numeric = (4.0 * fine[i] - coarse[i]) / 3.0;
-                assert!((numeric - ku[i]).abs() < 1e-7 * size, "{scheme} {i}: {numeric} {}", ku[i]);
-            }
-        }
-    }
-}
+#[path = "newton_tests.rs"]
+mod tests;

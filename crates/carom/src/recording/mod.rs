@@ -5,6 +5,7 @@ mod fields;
 mod log;
 mod session;
 mod units;
+mod verdicts;
 
 pub use columns::columns;
 pub use session::{End, Options, Outcome, Progress, RunError, resume, run};

@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use carom_record::{ContactRow, Event, Manifest, RecordError, Run, RunWriter, Source, Status};
+use carom_record::{ContactRow, Event, Manifest, RecordError, RunWriter, Source, Status};
 
 use super::columns::{center_weights, columns, row};
 use super::fields::{consistent_weights, field_set, gap_of, sides};
 use super::log::entry;
-use crate::case::{Bound, Case, ExpectSpec, Problem};
+use super::verdicts::judge;
+use crate::case::{Case, Problem};
 use crate::model::{Dimension, Space};
 use crate::simulation::{GridReport, Simulation, Stopped};
 use crate::state::State;
@@ -180,6 +181,10 @@ where
 {
     let manifest = Manifest::read(directory)?;
     if manifest.status == Status::Finished {
+        // A kill may have come between the last row and the verdicts.
+        if manifest.expectations.is_empty() {
+            judge(directory, &case.expects, manifest)?;
+        }
         let steps = case.time.steps();
         return Ok(Outcome {
             directory: directory.to_path_buf(),
@@ -394,38 +399,6 @@ where
             judge(&outcome.directory, &self.case.expects, self.manifest)?;
         }
         Ok(outcome)
-    }
-}
-
-/// Holds the record against the case's expectations and writes the verdicts into the manifest.
-fn judge(directory: &Path, expects: &[ExpectSpec], mut manifest: Manifest) -> Result<(), RunError> {
-    if expects.is_empty() {
-        return Ok(());
-    }
-    let run = Run::open(directory)?;
-    manifest.expectations = expects.iter().map(|expect| verdict(&run, expect)).collect();
-    Ok(manifest.replace(directory)?)
-}
-
-fn verdict(run: &Run, expect: &ExpectSpec) -> carom_record::Expectation {
-    let got = carom_record::evaluate(&run.history, &expect.what).ok();
-    let (expected, holds): (String, Box<dyn Fn(f64) -> bool>) = match expect.bound {
-        Bound::Near { value, tolerance } => {
-            (format!("{value} ± {tolerance}"), Box::new(move |x| (x - value).abs() <= tolerance))
-        }
-        Bound::Relative { value, relative } => (
-            format!("{value} ± {} %", relative * 100.0),
-            Box::new(move |x| (x - value).abs() <= relative * value.abs()),
-        ),
-        Bound::AtMost(most) => (format!("≤ {most}"), Box::new(move |x| x <= most)),
-        Bound::AtLeast(least) => (format!("≥ {least}"), Box::new(move |x| x >= least)),
-    };
-    carom_record::Expectation {
-        what: expect.what.clone(),
-        expected,
-        got,
-        pass: got.is_some_and(holds),
-        source: expect.source.clone(),
     }
 }
 
