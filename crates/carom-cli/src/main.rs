@@ -10,13 +10,14 @@ mod summary;
 mod wrong;
 
 use clap::{Parser, Subcommand};
-use command::{check, explain, mesh, report, resume, run, schema};
+use command::{check, explain, mesh, new, report, resume, run, schema};
 
 /// Impact and contact of deformable solids, and the laboratory of its time integrators.
 #[derive(Parser)]
 #[command(name = "carom", version, propagate_version = true, max_term_width = 100)]
 #[command(after_help = "\
 Examples:
+  carom new drop
   carom run cases/impact/impact.toml
   carom check cases/impact/impact.toml --set time.step=1e-3
   carom explain chung-hulbert rho_inf=0.1
@@ -34,6 +35,7 @@ enum Command {
     Check(check::Arguments),
     Explain(explain::Arguments),
     Mesh(mesh::Arguments),
+    New(new::Arguments),
     Report(report::Arguments),
     Schema(schema::Arguments),
 }
@@ -45,6 +47,7 @@ fn main() -> std::process::ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Mesh(arguments) => mesh::run(&arguments),
+        Command::New(arguments) => new::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
     };

@@ -38,7 +38,19 @@ pub struct ContactRow<'a> {
 
 /// Header of `contact.csv`.
 pub(crate) const CONTACT_COLUMNS: [&str; 13] = [
-    "step", "time", "contact", "node", "x", "y", "facet", "xi", "gap", "multiplier", "pressure", "normal_x", "normal_y",
+    "step",
+    "time",
+    "contact",
+    "node",
+    "x",
+    "y",
+    "facet",
+    "xi",
+    "gap",
+    "multiplier",
+    "pressure",
+    "normal_x",
+    "normal_y",
 ];
 
 /// Something worth knowing that happened in a run.

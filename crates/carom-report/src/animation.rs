@@ -12,7 +12,7 @@ use base64::engine::general_purpose::STANDARD;
 use carom_record::{Cell, FieldEntry, FieldSet, Run};
 use serde_json::json;
 
-use crate::bands::{Bands, Point};
+use crate::bands::{Bands, Point, color_bands};
 use crate::bodies::{Instant, color_bar, frame};
 use crate::chart::{Chart, Options, Panel, Series, Track, open};
 use crate::labels::{number, symbol, with_unit};
@@ -27,7 +27,11 @@ const KINDS: usize = 6;
 
 /// One frame's instant, and the bodies of dimension 1 as strips.
 pub(crate) fn instant(fields: &FieldSet, time: String) -> Option<Instant> {
-    if fields.blocks.iter().all(|b| b.cell == Cell::Curve) { strip(fields, time) } else { Instant::new(fields, "stress", 1, time) }
+    if fields.blocks.iter().all(|b| b.cell == Cell::Curve) {
+        strip(fields, time)
+    } else {
+        Instant::new(fields, "stress", 1, time)
+    }
 }
 
 /// Bars as strips of triangles around the x axis, coloured by σ_xx.
@@ -49,8 +53,13 @@ fn strip(fields: &FieldSet, time: String) -> Option<Instant> {
             cells.extend([(1, vec![w[0], w[1], w[1] + n]), (1, vec![w[0], w[1] + n, w[0] + n])]);
         }
     }
-    Some(Instant { time, points: side(-1.0).chain(side(1.0)).collect(), values: [&values[..], &values].concat(), cells })
-        .filter(|i| !i.cells.is_empty())
+    Some(Instant {
+        time,
+        points: side(-1.0).chain(side(1.0)).collect(),
+        values: [&values[..], &values].concat(),
+        cells,
+    })
+    .filter(|i| !i.cells.is_empty())
 }
 
 /// Integers over a range; what is not finite becomes the smallest one.
@@ -98,7 +107,12 @@ fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     let mut panels: Vec<Panel> = Vec::new();
     let label = if flat { "f_{x}" } else { "f_{y}" };
     if let Some(s) = series(force, String::new(), 0) {
-        panels.push(Panel { label: format!("contact force {label}"), unit: h.unit(force).into(), height: 96.0, series: vec![s] });
+        panels.push(Panel {
+            label: format!("contact force {label}"),
+            unit: h.unit(force).into(),
+            height: 96.0,
+            series: vec![s],
+        });
     }
     for column in &h.columns {
         let Some((probe, quantity)) = column.name.rsplit_once('.') else { continue };
@@ -109,7 +123,12 @@ fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
         match panels.iter().position(|p| p.label == symbol(quantity)) {
             Some(i) => panels[i].series.push(s),
             None if panels.len() < 5 => {
-                panels.push(Panel { label: symbol(quantity), unit: column.unit.clone(), height: 96.0, series: vec![s] });
+                panels.push(Panel {
+                    label: symbol(quantity),
+                    unit: column.unit.clone(),
+                    height: 96.0,
+                    series: vec![s],
+                });
             }
             None => {}
         }
@@ -139,12 +158,7 @@ fn chosen(run: &Run, points: usize) -> Vec<&FieldEntry> {
 }
 
 /// The animation as a part of the page, hidden until its script runs; nothing for fewer than two field files.
-pub(crate) fn html_of(
-    run: &Run,
-    (bands, cut): (&Bands, [bool; 2]),
-    shades: Vec<(f64, f64)>,
-    figure: usize,
-) -> Option<String> {
+pub(crate) fn html_of(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<String> {
     let first = run.field(run.fields.first()?).ok()?;
     let flat = first.blocks.iter().all(|b| b.cell == Cell::Curve);
     let entries = chosen(run, if flat { 2 * first.points.len() } else { first.points.len() });
@@ -161,6 +175,9 @@ pub(crate) fn html_of(
     }
     let values: Vec<f64> = frames.iter().flat_map(|(_, i)| i.values.iter().copied()).collect();
     let range = crate::axis::range(&values);
+    let own = color_bands(values.iter().copied()).0;
+    let bands = if flat { &own } else { bands };
+    let cut = [range.0 < bands.low, range.1 > bands.high];
     let coordinates = |d: usize| frames.iter().flat_map(move |(_, i)| i.points.iter().map(move |p| &p[d]));
     let forces = forces(run);
     let largest = forces.values().flatten().map(|f| f[2].hypot(f[3])).fold(0.0, f64::max);
@@ -208,11 +225,15 @@ pub(crate) fn html_of(
          <input type=\"range\" min=\"0\" max=\"1\" step=\"any\" aria-label=\"time\"><output></output>\
          <label>speed <select><option value=\"0.1\">0.1</option><option value=\"0.25\">0.25</option><option value=\"0.5\">0.5</option>\
          <option value=\"1\" selected>1</option><option value=\"2\">2</option><option value=\"4\">4</option></select></label></div>\n\
-         <figcaption><b>Animation.</b> {} in colour, as in figure {figure}; frames are {every}, nothing in between is made up.{arrows} \
+         <figcaption><b>Animation.</b> {}; frames are {every}, nothing in between is made up.{arrows} \
          Space plays, ← and → go by one frame, a click into any time history goes there. Ticks under the histories: events of \
          log.jsonl.</figcaption>\n</figure>\n",
         histories(run, shades),
-        html(label),
+        if flat {
+            format!("{} in colour", html(label))
+        } else {
+            format!("{} in the colours of figure {figure}", html(label))
+        },
     );
     // Inside a script element only `<` could end it.
     let data = data.to_string().replace('<', "\\u003c");

@@ -145,8 +145,12 @@ mod tests {
         band_polygons(&[([0.0, 0.0], -3.0), ([100.0, 0.0], 0.25), ([0.0, 100.0], 9.0)], &bands, &mut paths);
         let area = |pen: &Pen| -> f64 {
             let polygon = |p: &str| {
-                let steps: Vec<f64> =
-                    p.replace(['m', 'l'], " ").replace('-', " -").split_whitespace().map(|x| x.parse().unwrap()).collect();
+                let steps: Vec<f64> = p
+                    .replace(['m', 'l'], " ")
+                    .replace('-', " -")
+                    .split_whitespace()
+                    .map(|x| x.parse().unwrap())
+                    .collect();
                 // Relative to the first corner.
                 let (mut at, mut corners) = ([0.0; 2], vec![[0.0; 2]]);
                 for step in steps.as_chunks::<2>().0.iter().skip(1) {

@@ -155,7 +155,8 @@ pub(crate) fn frame<'a>(instants: impl IntoIterator<Item = &'a Instant>) -> [f64
 
 /// Colours for the values of some instants.
 pub(crate) fn colors(instants: &[Instant]) -> (Bands, [bool; 2]) {
-    let used = |i: &Instant| i.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| i.values[k])).collect::<Vec<_>>();
+    let used =
+        |i: &Instant| i.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| i.values[k])).collect::<Vec<_>>();
     color_bands(instants.iter().flat_map(used))
 }
 

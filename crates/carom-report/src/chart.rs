@@ -200,7 +200,11 @@ impl Chart<'_> {
         if options.time {
             let (left, right) = (to_x(x_axis.low), to_x(x_axis.high));
             let (low, high) = (x_axis.low, x_axis.high);
-            let _ = writeln!(out, "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} 8 {:.1}\"/>", y0 - 12.0);
+            let _ = writeln!(
+                out,
+                "<g class=\"time\" data-axis=\"{left:.2} {right:.2} {low:e} {high:e} 8 {:.1}\"/>",
+                y0 - 12.0
+            );
         }
         let exponent = x_axis.exponent;
         let x_label =

@@ -39,9 +39,9 @@ pub(crate) fn all(run: &Run) -> Shown {
     }
     shown.figures.extend(setup(run));
     let place = shown.figures.len() + 1;
-    if let Some((bodies, bands, cut)) = instants(run, &mut shown.notes) {
+    if let Some((bodies, bands)) = instants(run, &mut shown.notes) {
         shown.figures.push(bodies);
-        shown.animation = animation::html_of(run, (&bands, cut), shades(run), place);
+        shown.animation = animation::html_of(run, &bands, shades(run), place);
     }
     shown.figures.extend([probes(run), force(run), energy(run), solver(run)].into_iter().flatten());
     shown
@@ -116,7 +116,11 @@ fn probes(run: &Run) -> Option<Figure> {
     let mut list: Vec<String> = panels.iter().map(|(q, _)| format!("{} {}", words(q), symbol(q))).collect();
     list.dedup();
     let svg = chart(run, "Probes against time", panels.into_iter().map(|(_, p)| p).collect())?;
-    let caption = format!("Probes against time: {}. Shaded: contact. Data: history.csv, columns {}.", list.join(", "), columns.join(", "));
+    let caption = format!(
+        "Probes against time: {}. Shaded: contact. Data: history.csv, columns {}.",
+        list.join(", "),
+        columns.join(", ")
+    );
     Some(Figure { name: "probes", caption, svg })
 }
 
@@ -141,7 +145,8 @@ fn force(run: &Run) -> Option<Figure> {
 /// The energy ledger.
 fn energy(run: &Run) -> Option<Figure> {
     let unit = run.history.unit("total");
-    let size = run.column("total").into_iter().chain(run.column("kinetic")).flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let size =
+        run.column("total").into_iter().chain(run.column("kinetic")).flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
     let energies = [("total", "total"), ("kinetic", "kinetic"), ("strain", "strain"), ("potential", "potential")];
     let works = [("dissipation", "dissipation"), ("external_work", "external work"), ("contact_work", "contact work")];
     let panels = vec![
@@ -162,9 +167,10 @@ fn solver(run: &Run) -> Option<Figure> {
         panels.push(one("rejected", "rejected"));
     }
     let quiet = if panels.len() == 2 { " No step was rejected." } else { "" };
-    let caption =
-        format!("Newton iterations and active contact nodes of each step, and attempts rejected in it.{quiet} Ticks: events by kind. Data: \
-                          history.csv, columns newton, active and rejected; log.jsonl.");
+    let caption = format!(
+        "Newton iterations and active contact nodes of each step, and attempts rejected in it.{quiet} Ticks: events by kind. Data: \
+                          history.csv, columns newton, active and rejected; log.jsonl."
+    );
     Some(Figure { name: "solver", caption, svg: chart(run, "Solver", panels)? })
 }
 
@@ -188,7 +194,7 @@ fn five(run: &Run) -> (Vec<&FieldEntry>, bool) {
 }
 
 /// The bodies at instants, with the colours of their stress.
-fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands, [bool; 2])> {
+fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
     let (entries, contact) = five(run);
     if entries.is_empty() {
         notes.push("No field files were written (output.fields_every = 0): no picture of the bodies.".into());
@@ -205,8 +211,7 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands, [bool;
     let unit = run.history.unit("time");
     if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
         let strips: Vec<Instant> = sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
-        let (bands, cut) = bodies::colors(&strips);
-        return Some((bars(run, &sets, during)?, bands, cut));
+        return Some((bars(run, &sets, during)?, bodies::colors(&strips).0));
     }
     let stress = first.array("stress")?.unit.clone();
     let length = first.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();
@@ -215,13 +220,16 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands, [bool;
     let (bands, cut) = bodies::colors(&list);
     let title = "Deformed bodies with vertical Cauchy stress";
     let svg = bodies::figure(&list, (&bands, cut), title, ("σ_{yy}", &stress), &length);
-    let arrow =
-        if cut[0] || cut[1] { " Arrows at the colour bar: the outermost half per cent of the values lies beyond." } else { "" };
+    let arrow = if cut[0] || cut[1] {
+        " Arrows at the colour bar: the outermost half per cent of the values lies beyond."
+    } else {
+        ""
+    };
     let caption = format!(
         "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal means) at instants {during}, all at one scale, displacements as \
          they are. Blue presses, red pulls.{arrow} Data: stress and displacement of the field files."
     );
-    Some((Figure { name: "bodies", caption, svg }, bands, cut))
+    Some((Figure { name: "bodies", caption, svg }, bands))
 }
 
 /// Dimension 1: displacement and stress along the bars at the instants.

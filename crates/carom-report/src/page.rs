@@ -68,7 +68,14 @@ fn header(out: &mut String, run: &Run) {
     let mut row = |name: &str, value: String| {
         let _ = writeln!(out, "<tr><th>{name}</th><td>{value}</td></tr>");
     };
-    let names: Vec<&str> = m.case.get("bodies").and_then(|b| b.as_array()).into_iter().flatten().filter_map(|b| b.get("name")?.as_str()).collect();
+    let names: Vec<&str> = m
+        .case
+        .get("bodies")
+        .and_then(|b| b.as_array())
+        .into_iter()
+        .flatten()
+        .filter_map(|b| b.get("name")?.as_str())
+        .collect();
     if !names.is_empty() {
         row("Bodies", escape(&names.join(", ")));
     }
@@ -171,7 +178,9 @@ fn events(out: &mut String, run: &Run) {
 
 fn work(out: &mut String, run: &Run) {
     let m = &run.manifest;
-    out.push_str("<h2>Work</h2>\n<p class=\"small\">manifest.json: counters and timings (wall seconds).</p>\n<table>\n");
+    out.push_str(
+        "<h2>Work</h2>\n<p class=\"small\">manifest.json: counters and timings (wall seconds).</p>\n<table>\n",
+    );
     for (name, count) in &m.counters {
         let _ =
             writeln!(out, "<tr><td>{}</td><td class=\"n\">{count}</td><td></td></tr>", escape(&name.replace('_', " ")));

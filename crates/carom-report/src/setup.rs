@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::axis::Axis;
 use crate::bands::Point;
-use crate::bodies::{bezier, edges, Instant};
+use crate::bodies::{Instant, bezier, edges};
 use crate::chart::{open, write_text};
 use crate::labels::{number, with_unit};
 use crate::palette::LINES;
@@ -115,7 +115,11 @@ impl Setup<'_> {
         let length = self.case().pointer("/units/length").and_then(Value::as_str).unwrap_or_default();
         let axis = |low: f64, high: f64, pixels: f64| Axis::new((low, high), (pixels / 80.0).max(2.0), true);
         let x = axis((left - self.origin[0]) / self.scale, (right - self.origin[0]) / self.scale, right - left);
-        let frame = if self.flat { format!("M{left:.1} {bottom:.1}H{right:.1}") } else { format!("M{left:.1} {top:.1}V{bottom:.1}H{right:.1}") };
+        let frame = if self.flat {
+            format!("M{left:.1} {bottom:.1}H{right:.1}")
+        } else {
+            format!("M{left:.1} {top:.1}V{bottom:.1}H{right:.1}")
+        };
         let _ = writeln!(out, "<path d=\"{frame}\" fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\"/>");
         for (value, label) in &x.ticks {
             let at = self.to([*value, 0.0])[0];
@@ -134,7 +138,8 @@ impl Setup<'_> {
             write_text(out, left - 8.0, at + 4.3, "text-anchor=\"end\"", label);
         }
         let middle = 0.5 * (top + bottom);
-        let turned = format!("text-anchor=\"middle\" transform=\"translate({:.1} {middle:.1}) rotate(-90)\"", left - 42.0);
+        let turned =
+            format!("text-anchor=\"middle\" transform=\"translate({:.1} {middle:.1}) rotate(-90)\"", left - 42.0);
         write_text(out, 0.0, 0.0, &turned, &power("y", &y));
     }
 
@@ -240,7 +245,8 @@ impl Setup<'_> {
             let (point, normal) = (vector(plane.get("point")), vector(plane.get("normal")));
             let [p, n] = [point, normal].map(|v| [v.first().copied().unwrap_or(0.0), v.get(1).copied().unwrap_or(0.0)]);
             let (p, n) = (self.to(p), direction([0.0; 2], [-n[0], n[1]]));
-            let (tangent, length) = if self.flat { ([0.0, 1.0], BAR + 8.0) } else { ([-n[1], n[0]], 0.5 * (right - left)) };
+            let (tangent, length) =
+                if self.flat { ([0.0, 1.0], BAR + 8.0) } else { ([-n[1], n[0]], 0.5 * (right - left)) };
             let center = if self.flat { p } else { plus(p, (0.5 * (left + right) - p[0]) * tangent[0], tangent) };
             let ends = [-length, length].map(|s| (plus(center, s, tangent), n));
             wall(out, &ends, 0.0);
@@ -290,10 +296,12 @@ impl Setup<'_> {
     fn loads(&self, out: &mut String) {
         for body in list(self.case(), "bodies") {
             let Some(center) = self.center(text(body, "name")) else { continue };
-            let [x, y] = if self.flat { [center[0], center[1] + 0.5 * BAR + 20.0] } else { [center[0], center[1] - 6.0] };
+            let [x, y] =
+                if self.flat { [center[0], center[1] + 0.5 * BAR + 20.0] } else { [center[0], center[1] - 6.0] };
             let halo = "text-anchor=\"middle\" font-style=\"italic\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
             write_text(out, x, y, halo, text(body, "name"));
-            let mut at = if self.flat { [center[0], center[1] - 0.5 * BAR - 30.0] } else { plus(center, 8.0, [0.0, 1.0]) };
+            let mut at =
+                if self.flat { [center[0], center[1] - 0.5 * BAR - 30.0] } else { plus(center, 8.0, [0.0, 1.0]) };
             for (key, symbol) in [("gravity", "g"), ("velocity", "v_{0}")] {
                 let v = vector(body.get(key));
                 let d = direction([0.0; 2], [v.first().copied().unwrap_or(0.0), -v.get(1).copied().unwrap_or(0.0)]);
@@ -302,7 +310,11 @@ impl Setup<'_> {
                 }
                 let end = plus(at, 48.0, d);
                 arrow(out, at, end, "#222");
-                let label = if self.flat { plus(at, 10.0, [-d[0].signum(), 0.5]) } else { plus(plus(at, 30.0, d), 11.0, [-d[1].abs().max(0.4), d[0].abs()]) };
+                let label = if self.flat {
+                    plus(at, 10.0, [-d[0].signum(), 0.5])
+                } else {
+                    plus(plus(at, 30.0, d), 11.0, [-d[1].abs().max(0.4), d[0].abs()])
+                };
                 write_text(out, label[0], label[1], &halo.replace("15", "14"), symbol);
                 at = plus(at, 22.0, if self.flat { [0.0, -1.0] } else { [1.0, 0.0] });
             }
@@ -313,7 +325,11 @@ impl Setup<'_> {
         for probe in list(self.case(), "probes") {
             let at = vector(probe.get("at"));
             let p = self.to([at.first().copied().unwrap_or(0.0), at.get(1).copied().unwrap_or(0.0)]);
-            let _ = writeln!(out, "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.8\"/>", p[0], p[1]);
+            let _ = writeln!(
+                out,
+                "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.8\"/>",
+                p[0], p[1]
+            );
             let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
             let [x, y] = if self.flat { [p[0] - 4.0, p[1] - 0.5 * BAR - 7.0] } else { [p[0] + 8.0, p[1] - 7.0] };
             write_text(out, x, y, bold, text(probe, "name"));
@@ -323,8 +339,10 @@ impl Setup<'_> {
     /// What the picture's colours and symbols mean, with the numbers; the height it needs.
     fn key(&self, out: &mut String, left: f64) -> f64 {
         let mut y = 8.0;
-        let unit = |key: &str| self.case().pointer(&format!("/units/{key}")).and_then(Value::as_str).unwrap_or_default();
-        let (length, time) = (unit("length"), unit("time"));
+        let unit =
+            |key: &str| self.case().pointer(&format!("/units/{key}")).and_then(Value::as_str).unwrap_or_default();
+        let (length, time, mass) = (unit("length"), unit("time"), unit("mass"));
+        let stress = self.fields.array("stress").map_or("", |a| a.unit.as_str());
         let mut line = |swatch: &str, content: &str, bold: bool| {
             y += if bold { 7.0 } else { 0.0 } + 18.0;
             if !swatch.is_empty() {
@@ -337,11 +355,18 @@ impl Setup<'_> {
         for (k, body) in list(self.case(), "bodies").iter().enumerate() {
             let block = self.fields.blocks.iter().find(|b| b.body == text(body, "name"));
             let nodes = block.map_or(0, |b| b.connectivity.iter().collect::<std::collections::HashSet<_>>().len());
-            let swatch = format!("<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"#222\"/>", Self::color(k));
+            let swatch =
+                format!("<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"#222\"/>", Self::color(k));
             let cells = block.map_or(0, |b| b.cells().count());
             let element = text(body, "element");
-            line(&swatch, &format!("{}: {}, {cells} {element} cells, {nodes} nodes", text(body, "name"), text(body, "material")), false);
-            for (key, symbol, unit) in [("gravity", "g", format!("{length}/{time}^2")), ("velocity", "v_{0}", format!("{length}/{time}"))] {
+            line(
+                &swatch,
+                &format!("{}: {}, {cells} {element} cells, {nodes} nodes", text(body, "name"), text(body, "material")),
+                false,
+            );
+            for (key, symbol, unit) in
+                [("gravity", "g", format!("{length}/{time}^2")), ("velocity", "v_{0}", format!("{length}/{time}"))]
+            {
                 let v = vector(body.get(key));
                 if v.iter().any(|x| *x != 0.0) {
                     line("", &format!("{symbol} = {} {unit}", tuple(&v)), false);
@@ -352,17 +377,23 @@ impl Setup<'_> {
         for m in list(self.case(), "materials") {
             let real = |key| m.get(key).and_then(Value::as_f64).map_or(String::new(), number);
             line("", &format!("{}: {}", text(m, "name"), text(m, "law")), false);
-            line("", &format!("ρ = {}, Λ = {}, μ = {}", real("density"), real("lambda"), real("mu")), false);
+            let (density, lambda, mu) = (real("density"), real("lambda"), real("mu"));
+            line("", &format!("ρ = {density} {mass}/{length}^3; Λ = {lambda}, μ = {mu} {stress}"), false);
         }
         for (k, support) in list(self.case(), "supports").iter().enumerate() {
             if k == 0 {
                 line("", "Supports", true);
             }
-            let fixed: Vec<&str> = vector(support.get("fix")).iter().map(|i| if *i == 0.0 { "x" } else { "y" }).collect();
+            let fixed: Vec<&str> =
+                vector(support.get("fix")).iter().map(|i| if *i == 0.0 { "x" } else { "y" }).collect();
             let on: Vec<&str> = list(support, "on").iter().filter_map(Value::as_str).collect();
             let mut swatch = String::new();
             let ends = [([0.0, -3.0], [0.0, 1.0]), ([20.0, -3.0], [0.0, 1.0])];
-            if fixed.len() > 1 || self.flat { wall(&mut swatch, &ends, 0.0) } else { rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n))) }
+            if fixed.len() > 1 || self.flat {
+                wall(&mut swatch, &ends, 0.0)
+            } else {
+                rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n)))
+            }
             line(&swatch, &format!("{} held: {}", fixed.join(", "), on.join(", ")), false);
         }
         for (k, contact) in list(self.case(), "contacts").iter().enumerate() {

@@ -82,7 +82,8 @@ fn pressures<const D: usize>(case: &Case, model: &Model<D>, state: &State) -> Ve
 /// ∫φᴺ ds over the current secondary side, times the thickness: the area a multiplier acts on. One entry per secondary node.
 pub(super) fn consistent_weights<const D: usize>(contact: &Contact<D>, state: &State, thickness: f64) -> Vec<f64> {
     // Gauss–Legendre with three points: exact for |y'| constant and φ of degree 3.
-    const RULE: [(f64, f64); 3] = [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
+    const RULE: [(f64, f64); 3] =
+        [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
     let secondary = contact.method.secondary();
     if D == 1 {
         return vec![thickness; secondary.len()];
@@ -107,7 +108,11 @@ pub(super) fn consistent_weights<const D: usize>(contact: &Contact<D>, state: &S
 }
 
 /// Gap of a pair in a state and the unit normal ∂g/∂y of its secondary node; NaN where it has none.
-pub(super) fn gap_of<const D: usize>(contact: &Contact<D>, pair: &carom_contact::Pair, state: &State) -> (f64, [f64; 2]) {
+pub(super) fn gap_of<const D: usize>(
+    contact: &Contact<D>,
+    pair: &carom_contact::Pair,
+    state: &State,
+) -> (f64, [f64; 2]) {
     let mut gap = Linearised::default();
     let known = contact.method.linearise(&mut pair.clone(), state.y.as_chunks::<D>().0, 0.0, &mut gap);
     known.map_or((f64::NAN, [f64::NAN; 2]), |()| {
@@ -125,7 +130,9 @@ pub(super) fn sides<const D: usize>(model: &Model<D>) -> BTreeMap<String, Vec<Ve
                 let (ends, interior) = facet.nodes.split_at(facet.nodes.len().min(2));
                 let walk = ends.iter().take(1).chain(interior).chain(ends.iter().skip(1)).map(|n| n + part.first_node);
                 match chains.last_mut() {
-                    Some(chain) if chain.last() == Some(&(facet.nodes[0] + part.first_node)) => chain.extend(walk.skip(1)),
+                    Some(chain) if chain.last() == Some(&(facet.nodes[0] + part.first_node)) => {
+                        chain.extend(walk.skip(1))
+                    }
                     _ => chains.push(walk.collect()),
                 }
             }

@@ -134,7 +134,11 @@ pub fn resume(
 ) -> Result<Outcome, RunError> {
     let manifest = Manifest::read(directory)?;
     let case: Case = serde_json::from_value(manifest.case.clone()).map_err(|error| RunError::Incompatible {
-        what: format!("the case in {} was resolved by Carom {} and does not fit this version: {error}", directory.join("manifest.json").display(), manifest.version),
+        what: format!(
+            "the case in {} was resolved by Carom {} and does not fit this version: {error}",
+            directory.join("manifest.json").display(),
+            manifest.version
+        ),
     })?;
     match case.dimension {
         1 => resume_in::<1>(&case, directory, options, observe, stop),
@@ -220,7 +224,18 @@ where
         let weights = center_weights(&simulation.model);
         let first_step = simulation.state.step;
         let began = Instant::now();
-        Self { case, simulation, writer, manifest, weights, field_steps, began, first_step, output: 0.0, values: Vec::new() }
+        Self {
+            case,
+            simulation,
+            writer,
+            manifest,
+            weights,
+            field_steps,
+            began,
+            first_step,
+            output: 0.0,
+            values: Vec::new(),
+        }
     }
 
     /// Row and fields of the initial state.
@@ -359,7 +374,9 @@ where
         };
         let spent = self.simulation.timings();
         let phases = [("assembly", spent.assembly), ("contact", spent.contact), ("factor", spent.factor)];
-        for (phase, seconds) in phases.into_iter().chain([("solve", spent.solve), ("output", self.output), ("total", wall)]) {
+        for (phase, seconds) in
+            phases.into_iter().chain([("solve", spent.solve), ("output", self.output), ("total", wall)])
+        {
             *manifest.timings.entry(phase.into()).or_default() += seconds;
         }
         manifest.counters.insert("steps".into(), state.step);
@@ -396,9 +413,10 @@ fn verdict(run: &Run, expect: &ExpectSpec) -> carom_record::Expectation {
         Bound::Near { value, tolerance } => {
             (format!("{value} ± {tolerance}"), Box::new(move |x| (x - value).abs() <= tolerance))
         }
-        Bound::Relative { value, relative } => {
-            (format!("{value} ± {} %", relative * 100.0), Box::new(move |x| (x - value).abs() <= relative * value.abs()))
-        }
+        Bound::Relative { value, relative } => (
+            format!("{value} ± {} %", relative * 100.0),
+            Box::new(move |x| (x - value).abs() <= relative * value.abs()),
+        ),
         Bound::AtMost(most) => (format!("≤ {most}"), Box::new(move |x| x <= most)),
         Bound::AtLeast(least) => (format!("≥ {least}"), Box::new(move |x| x >= least)),
     };
