@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use carom_record::{Cell, FieldEntry, FieldSet, Run};
+use carom_record::{Block, Cell, FieldEntry, FieldSet, Run};
 use serde_json::json;
 
 use crate::bands::{Bands, Point, color_bands};
@@ -46,7 +46,7 @@ fn strip(fields: &FieldSet, time: String) -> Option<Instant> {
     let side = |s: f64| (0..n).map(move |k| [reference(k) + u.values[3 * k], s * half]);
     let values: Vec<f64> = (0..n).map(|k| stress.values[6 * k]).collect();
     let mut cells = Vec::new();
-    for cell in fields.blocks.iter().flat_map(|b| b.cells()) {
+    for cell in fields.blocks.iter().flat_map(Block::cells) {
         let mut walk = cell.to_vec();
         walk.sort_by(|&a, &b| reference(a).total_cmp(&reference(b)));
         for w in walk.windows(2) {

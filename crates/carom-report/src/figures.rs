@@ -211,7 +211,7 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
     let unit = run.history.unit("time");
     if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
         let strips: Vec<Instant> = sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
-        return Some((bars(run, &sets, during)?, bodies::colors(&strips).0));
+        return Some((bars(run, &sets, during), bodies::colors(&strips).0));
     }
     let stress = first.array("stress")?.unit.clone();
     let length = first.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();
@@ -233,7 +233,7 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
 }
 
 /// Dimension 1: displacement and stress along the bars at the instants.
-fn bars(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Option<Figure> {
+fn bars(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Figure {
     // Places and values of an array's component along the bars, with a gap after each.
     let along = |set: &carom_record::FieldSet, array: &str, component: usize| -> Option<(Vec<f64>, Vec<f64>)> {
         let values = set.array(array).filter(|a| component < a.components)?;
@@ -276,5 +276,5 @@ fn bars(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Opti
         "Displacement u_{{x}} and Cauchy stress σ_{{xx}} (nodal means) along the bars at instants {during}. \
          Data: displacement and stress of the field files."
     );
-    Some(Figure { name: "bodies", caption, svg })
+    Figure { name: "bodies", caption, svg }
 }
