@@ -41,6 +41,9 @@ def check(page):
     if "<h1>" not in dom:
         wrong.append("the page has no heading: it was not shown")
     text = page.read_text(encoding="utf-8")
+    outside = re.search(r"""(?:src|href)\s*=\s*["']?(?:https?:)?//|url\(|@import|\bfetch\(|XMLHttpRequest""", text)
+    if outside:
+        wrong.append(f"a request to the outside: {outside.group()}")
     if 'id="animation"' in text:
         opening = re.search(r'<figure[^>]*id="animation"[^>]*>', dom)
         if not opening or "hidden" in opening.group():

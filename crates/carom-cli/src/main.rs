@@ -10,13 +10,14 @@ mod summary;
 mod wrong;
 
 use clap::{Parser, Subcommand};
-use command::{check, explain, mesh, report, resume, run, schema, study};
+use command::{check, explain, mesh, new, report, resume, run, schema, study};
 
 /// Impact and contact of deformable solids, and the laboratory of its time integrators.
 #[derive(Parser)]
 #[command(name = "carom", version, propagate_version = true, max_term_width = 100)]
 #[command(after_help = "\
 Examples:
+  carom new drop
   carom run cases/impact/impact.toml
   carom check cases/impact/impact.toml --set time.step=1e-3
   carom study cases/paper/paper.toml
@@ -36,6 +37,7 @@ enum Command {
     Check(check::Arguments),
     Explain(explain::Arguments),
     Mesh(mesh::Arguments),
+    New(new::Arguments),
     Report(report::Arguments),
     Schema(schema::Arguments),
 }
@@ -48,6 +50,7 @@ fn main() -> std::process::ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Mesh(arguments) => mesh::run(&arguments),
+        Command::New(arguments) => new::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
     };

@@ -9,10 +9,10 @@ use std::fmt::Write as _;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use carom_record::{Cell, FieldEntry, FieldSet, Run};
+use carom_record::{Block, Cell, FieldEntry, FieldSet, Run};
 use serde_json::json;
 
-use crate::bands::{Bands, Point};
+use crate::bands::{Bands, Point, color_bands};
 use crate::bodies::{Instant, color_bar, frame};
 use crate::chart::{Chart, Options, Panel, Series, Track, open};
 use crate::labels::{number, symbol, with_unit};
@@ -46,7 +46,7 @@ fn strip(fields: &FieldSet, time: String) -> Option<Instant> {
     let side = |s: f64| (0..n).map(move |k| [reference(k) + u.values[3 * k], s * half]);
     let values: Vec<f64> = (0..n).map(|k| stress.values[6 * k]).collect();
     let mut cells = Vec::new();
-    for cell in fields.blocks.iter().flat_map(|b| b.cells()) {
+    for cell in fields.blocks.iter().flat_map(Block::cells) {
         let mut walk = cell.to_vec();
         walk.sort_by(|&a, &b| reference(a).total_cmp(&reference(b)));
         for w in walk.windows(2) {
@@ -158,12 +158,7 @@ fn chosen(run: &Run, points: usize) -> Vec<&FieldEntry> {
 }
 
 /// The animation as a part of the page, hidden until its script runs; nothing for fewer than two field files.
-pub(crate) fn html_of(
-    run: &Run,
-    (bands, cut): (&Bands, [bool; 2]),
-    shades: Vec<(f64, f64)>,
-    figure: usize,
-) -> Option<String> {
+pub(crate) fn html_of(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<String> {
     let first = run.field(run.fields.first()?).ok()?;
     let flat = first.blocks.iter().all(|b| b.cell == Cell::Curve);
     let entries = chosen(run, if flat { 2 * first.points.len() } else { first.points.len() });
@@ -180,6 +175,9 @@ pub(crate) fn html_of(
     }
     let values: Vec<f64> = frames.iter().flat_map(|(_, i)| i.values.iter().copied()).collect();
     let range = crate::axis::range(&values);
+    let own = color_bands(values.iter().copied()).0;
+    let bands = if flat { &own } else { bands };
+    let cut = [range.0 < bands.low, range.1 > bands.high];
     let coordinates = |d: usize| frames.iter().flat_map(move |(_, i)| i.points.iter().map(move |p| &p[d]));
     let forces = forces(run);
     let largest = forces.values().flatten().map(|f| f[2].hypot(f[3])).fold(0.0, f64::max);
@@ -227,11 +225,15 @@ pub(crate) fn html_of(
          <input type=\"range\" min=\"0\" max=\"1\" step=\"any\" aria-label=\"time\"><output></output>\
          <label>speed <select><option value=\"0.1\">0.1</option><option value=\"0.25\">0.25</option><option value=\"0.5\">0.5</option>\
          <option value=\"1\" selected>1</option><option value=\"2\">2</option><option value=\"4\">4</option></select></label></div>\n\
-         <figcaption><b>Animation.</b> {} in colour, as in figure {figure}; frames are {every}, nothing in between is made up.{arrows} \
+         <figcaption><b>Animation.</b> {}; frames are {every}, nothing in between is made up.{arrows} \
          Space plays, ← and → go by one frame, a click into any time history goes there. Ticks under the histories: events of \
          log.jsonl.</figcaption>\n</figure>\n",
         histories(run, shades),
-        html(label),
+        if flat {
+            format!("{} in colour", html(label))
+        } else {
+            format!("{} in the colours of figure {figure}", html(label))
+        },
     );
     // Inside a script element only `<` could end it.
     let data = data.to_string().replace('<', "\\u003c");

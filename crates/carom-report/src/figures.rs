@@ -39,9 +39,9 @@ pub(crate) fn all(run: &Run) -> Shown {
     }
     shown.figures.extend(setup(run));
     let place = shown.figures.len() + 1;
-    if let Some((bodies, bands, cut)) = instants(run, &mut shown.notes) {
+    if let Some((bodies, bands)) = instants(run, &mut shown.notes) {
         shown.figures.push(bodies);
-        shown.animation = animation::html_of(run, (&bands, cut), shades(run), place);
+        shown.animation = animation::html_of(run, &bands, shades(run), place);
     }
     shown.figures.extend([probes(run), force(run), energy(run), solver(run)].into_iter().flatten());
     shown
@@ -194,7 +194,7 @@ fn five(run: &Run) -> (Vec<&FieldEntry>, bool) {
 }
 
 /// The bodies at instants, with the colours of their stress.
-fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands, [bool; 2])> {
+fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
     let (entries, contact) = five(run);
     if entries.is_empty() {
         notes.push("No field files were written (output.fields_every = 0): no picture of the bodies.".into());
@@ -211,8 +211,7 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands, [bool;
     let unit = run.history.unit("time");
     if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
         let strips: Vec<Instant> = sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
-        let (bands, cut) = bodies::colors(&strips);
-        return Some((bars(run, &sets, during)?, bands, cut));
+        return Some((bars(run, &sets, during), bodies::colors(&strips).0));
     }
     let stress = first.array("stress")?.unit.clone();
     let length = first.array("displacement").map(|a| a.unit.clone()).unwrap_or_default();
@@ -230,11 +229,11 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands, [bool;
         "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal means) at instants {during}, all at one scale, displacements as \
          they are. Blue presses, red pulls.{arrow} Data: stress and displacement of the field files."
     );
-    Some((Figure { name: "bodies", caption, svg }, bands, cut))
+    Some((Figure { name: "bodies", caption, svg }, bands))
 }
 
 /// Dimension 1: displacement and stress along the bars at the instants.
-fn bars(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Option<Figure> {
+fn bars(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Figure {
     // Places and values of an array's component along the bars, with a gap after each.
     let along = |set: &carom_record::FieldSet, array: &str, component: usize| -> Option<(Vec<f64>, Vec<f64>)> {
         let values = set.array(array).filter(|a| component < a.components)?;
@@ -277,5 +276,5 @@ fn bars(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Opti
         "Displacement u_{{x}} and Cauchy stress σ_{{xx}} (nodal means) along the bars at instants {during}. \
          Data: displacement and stress of the field files."
     );
-    Some(Figure { name: "bodies", caption, svg })
+    Figure { name: "bodies", caption, svg }
 }

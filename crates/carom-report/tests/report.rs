@@ -49,6 +49,17 @@ fn figures_and_page() {
         assert!(elements(&text) > 20);
         assert!(!text.contains("NaN") && !text.contains("inf"), "{figure:?}");
     }
+    let setup = fs::read_to_string(&summary.figures[0]).unwrap();
+    // The key, gravity, the primary side in its colour, rollers on the left side.
+    for part in [
+        "cylinder: rubber, 196 T10 cells",
+        "g = (0, −9.81) m/s",
+        "x, y held: prism.bottom",
+        "stroke=\"#0072b2\"",
+        "<circle",
+    ] {
+        assert!(setup.contains(part), "{part}");
+    }
     let bodies = fs::read_to_string(&summary.figures[1]).unwrap();
     for part in ["(B)", "(F)", "t = 0.3150 s", "t = 0.5550 s", ">yy</tspan>", "0.5 m"] {
         assert!(bodies.contains(part), "{part}");
@@ -64,6 +75,7 @@ fn figures_and_page() {
     ] {
         assert!(page.contains(part), "{part}");
     }
+    assert!(page.contains("id=\"animation\" hidden") && page.contains("fields/00000168.vtu"));
     // From the record alone, a second report is the same report.
     report(&directory).unwrap();
     assert_eq!(fs::read_to_string(directory.join("report.html")).unwrap(), page);

@@ -3,6 +3,7 @@
 pub(crate) mod check;
 pub(crate) mod explain;
 pub(crate) mod mesh;
+pub(crate) mod new;
 pub(crate) mod report;
 pub(crate) mod resume;
 pub(crate) mod run;

@@ -131,7 +131,12 @@ pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
         integer: matches!(name, "step" | "active" | "newton" | "rejected"),
     });
     let case = serde_json::json!({
-        "title": title, "dimension": 2, "probes": [{"name": "A"}, {"name": "B"}],
+        "title": title, "dimension": 2, "units": {"length": "m", "time": "s", "mass": "kg"},
+        "materials": [{"name": "rubber", "law": "neo-hookean", "density": 0.25, "lambda": 200.0, "mu": 15.0}],
+        "bodies": [{"name": "cylinder", "material": "rubber", "element": "T10", "gravity": [0.0, -9.81]}, {"name": "prism"}],
+        "supports": [{"on": ["prism.bottom"], "fix": [0, 1]}, {"on": ["prism.left"], "fix": [0]}],
+        "contacts": [{"name": "strike", "secondary": "cylinder.arc", "primary": {"side": "prism.top"}}],
+        "probes": [{"name": "A", "at": [0.0, 1.5], "body": "cylinder"}, {"name": "B", "at": [0.0, 0.0], "body": "prism"}],
         "time": {"step": 1.875e-3, "scheme": {"kind": "chung-hulbert", "rho_inf": 0.1, "forces": "average-forces"}},
     });
     let source = Source {
@@ -139,6 +144,14 @@ pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
         sets: vec!["time.end=0.75".into(), "title='x'".into()],
     };
     let mut manifest = Manifest::new("0.1.0", case, source, columns.to_vec(), 1);
+    // Points of the prism follow the disc's; its lattice has 25 by 13.
+    let first = (3 * N + 1) * (6 * N + 1);
+    let sides: [(&str, Vec<usize>); 3] = [
+        ("prism.bottom", (first..first + 25).collect()),
+        ("prism.top", (0..25).map(|i| first + 12 * 25 + 24 - i).collect()),
+        ("prism.left", (0..13).map(|j| first + 25 * (12 - j)).collect()),
+    ];
+    manifest.sides = sides.map(|(name, chain)| (name.into(), vec![chain])).into();
     let mut writer = RunWriter::create(directory, &manifest, b"").unwrap();
     let (dt, mut impulse) = (1.875e-3, 0.0);
     let noise = |i: usize| ((i * 7919 % 101) as f64 / 101.0 - 0.5) * 2.0;

@@ -1,0 +1,94 @@
+//! `carom new`: a commented case to begin with, in a folder of its own.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use crate::exit::{Exit, Failure};
+use crate::out;
+
+/// Make a folder with a commented case to begin with
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  carom new drop
+  carom new drop --template gmsh
+  carom new studies/bar --template bar-1d")]
+pub(crate) struct Arguments {
+    /// Folder to make; the case in it has the same name. Must not exist yet
+    name: PathBuf,
+    /// What the case is about
+    #[arg(long, value_enum, default_value = "impact-2d")]
+    template: Template,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Template {
+    /// A disc strikes a block
+    #[value(name = "impact-2d")]
+    Impact2d,
+    /// A bar strikes a rigid wall, with its exact solution
+    #[value(name = "bar-1d")]
+    Bar1d,
+    /// Bodies and sides from a mesh that Gmsh made
+    Gmsh,
+}
+
+impl Template {
+    fn case(self) -> &'static str {
+        match self {
+            Self::Impact2d => include_str!("../../templates/impact-2d.toml"),
+            Self::Bar1d => include_str!("../../templates/bar-1d.toml"),
+            Self::Gmsh => include_str!("../../templates/gmsh.toml"),
+        }
+    }
+
+    /// Files besides the case.
+    fn files(self) -> &'static [(&'static str, &'static [u8])] {
+        match self {
+            Self::Gmsh => &[
+                ("mesh.geo", include_bytes!("../../templates/mesh.geo")),
+                ("mesh.msh", include_bytes!("../../templates/mesh.msh")),
+            ],
+            _ => &[],
+        }
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let folder = &arguments.name;
+    let argument = |what: String, help: &str| Failure::Argument { what, help: help.to_owned() };
+    let Some(name) = folder.file_name().and_then(|n| n.to_str()) else {
+        return Err(argument(format!("{} names no folder", folder.display()), "give a name such as `carom new drop`"));
+    };
+    if let Some(parent) = folder.parent().filter(|p| !p.as_os_str().is_empty()) {
+        std::fs::create_dir_all(parent).map_err(|e| refused("make", parent, &e))?;
+    }
+    std::fs::create_dir(folder).map_err(|error| match error.kind() {
+        ErrorKind::AlreadyExists => {
+            argument(format!("{} exists already and is not overwritten", folder.display()), "choose another name")
+        }
+        _ => refused("make", folder, &error),
+    })?;
+    let schema = serde_json::to_string_pretty(&carom::case::schema()).map_err(std::io::Error::from)?;
+    let case = format!("{name}.toml");
+    let mut files = vec![(case.as_str(), arguments.template.case().as_bytes()), ("schema.json", schema.as_bytes())];
+    files.extend(arguments.template.files());
+    for (file, bytes) in files {
+        let path = folder.join(file);
+        std::fs::write(&path, bytes).map_err(|e| refused("write", &path, &e))?;
+    }
+    let case = folder.join(case);
+    let quoted =
+        if case.to_string_lossy().contains(' ') { format!("'{}'", case.display()) } else { case.display().to_string() };
+    out::line(&format!(
+        "{}\n\nnext:\n  carom check {quoted}\n  carom run {quoted}\n\n\
+         An editor that knows TOML schemas (Taplo, Even Better TOML) completes and explains keys by {}.",
+        case.display(),
+        folder.join("schema.json").display()
+    ))?;
+    Ok(Exit::Done)
+}
+
+fn refused(verb: &str, path: &Path, error: &std::io::Error) -> Failure {
+    Failure::Refused { what: format!("cannot {verb} {}: {error}", path.display()) }
+}

@@ -1,0 +1,93 @@
+//! The key beside the drawn case: what colours and symbols mean, and the numbers.
+
+use std::collections::HashSet;
+use std::fmt::Write as _;
+
+use serde_json::Value;
+
+use super::{PRIMARY, SECONDARY, Setup, list, text, tuple, vector};
+use crate::chart::write_text;
+use crate::labels::number;
+use crate::symbols::{plus, rollers, wall};
+
+impl Setup<'_> {
+    /// What the picture's colours and symbols mean, with the numbers; the height it needs.
+    pub(super) fn key(&self, out: &mut String, left: f64) -> f64 {
+        let mut y = 8.0;
+        let unit =
+            |key: &str| self.case().pointer(&format!("/units/{key}")).and_then(Value::as_str).unwrap_or_default();
+        let (length, time, mass) = (unit("length"), unit("time"), unit("mass"));
+        let stress = self.fields.array("stress").map_or("", |a| a.unit.as_str());
+        let mut line = |swatch: &str, content: &str, bold: bool| {
+            y += if bold { 7.0 } else { 0.0 } + 18.0;
+            if !swatch.is_empty() {
+                let _ = writeln!(out, "<g transform=\"translate({left:.1} {:.1})\">{swatch}</g>", y - 4.5);
+            }
+            let (x, extra) = (if bold { left } else { left + 30.0 }, if bold { "font-weight=\"bold\"" } else { "" });
+            write_text(out, x, y, extra, content);
+        };
+        line("", "Bodies", true);
+        for (k, body) in list(self.case(), "bodies").iter().enumerate() {
+            let block = self.fields.blocks.iter().find(|b| b.body == text(body, "name"));
+            let nodes = block.map_or(0, |b| b.connectivity.iter().collect::<HashSet<_>>().len());
+            let swatch =
+                format!("<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"#222\"/>", Self::color(k));
+            let cells = block.map_or(0, |b| b.cells().count());
+            let element = text(body, "element");
+            line(
+                &swatch,
+                &format!("{}: {}, {cells} {element} cells, {nodes} nodes", text(body, "name"), text(body, "material")),
+                false,
+            );
+            for (key, symbol, unit) in
+                [("gravity", "g", format!("{length}/{time}^2")), ("velocity", "v_{0}", format!("{length}/{time}"))]
+            {
+                let v = vector(body.get(key));
+                if v.iter().any(|x| *x != 0.0) {
+                    line("", &format!("{symbol} = {} {unit}", tuple(&v)), false);
+                }
+            }
+        }
+        line("", "Materials", true);
+        for m in list(self.case(), "materials") {
+            let real = |key| m.get(key).and_then(Value::as_f64).map_or(String::new(), number);
+            line("", &format!("{}: {}", text(m, "name"), text(m, "law")), false);
+            let (density, lambda, mu) = (real("density"), real("lambda"), real("mu"));
+            line("", &format!("ρ = {density} {mass}/{length}^3; Λ = {lambda}, μ = {mu} {stress}"), false);
+        }
+        for (k, support) in list(self.case(), "supports").iter().enumerate() {
+            if k == 0 {
+                line("", "Supports", true);
+            }
+            let fixed: Vec<&str> =
+                vector(support.get("fix")).iter().map(|i| if *i == 0.0 { "x" } else { "y" }).collect();
+            let on: Vec<&str> = list(support, "on").iter().filter_map(Value::as_str).collect();
+            let mut swatch = String::new();
+            let ends = [([0.0, -3.0], [0.0, 1.0]), ([20.0, -3.0], [0.0, 1.0])];
+            if fixed.len() > 1 || self.flat {
+                wall(&mut swatch, &ends, 0.0);
+            } else {
+                rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n)));
+            }
+            line(&swatch, &format!("{} held: {}", fixed.join(", "), on.join(", ")), false);
+        }
+        for (k, contact) in list(self.case(), "contacts").iter().enumerate() {
+            if k == 0 {
+                line("", "Contact", true);
+            }
+            let bar = |color: &str| format!("<path d=\"M0 0h20\" stroke=\"{color}\" stroke-width=\"3.2\"/>");
+            let primary = contact.pointer("/primary/side").and_then(Value::as_str).unwrap_or("rigid plane");
+            line(&bar(SECONDARY), &format!("{} (secondary)", text(contact, "secondary")), false);
+            line(&bar(PRIMARY), &format!("{primary} (primary)"), false);
+        }
+        for (k, probe) in list(self.case(), "probes").iter().enumerate() {
+            if k == 0 {
+                line("", "Probes", true);
+            }
+            let at = vector(probe.get("at"));
+            let dot = "<circle cx=\"10\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.8\"/>";
+            line(dot, &format!("{} at {} {length} of {}", text(probe, "name"), tuple(&at), text(probe, "body")), false);
+        }
+        y + 12.0
+    }
+}
