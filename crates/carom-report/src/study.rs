@@ -88,7 +88,8 @@ fn thinned(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let keep = (0..SPANS).flat_map(|k| {
         let rows = k * times.len() / SPANS..(k + 1) * times.len() / SPANS;
         let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
-        let mut keep = [Some(rows.start), rows.clone().min_by(by_value), rows.clone().max_by(by_value), Some(rows.end - 1)];
+        let mut keep =
+            [Some(rows.start), rows.clone().min_by(by_value), rows.clone().max_by(by_value), Some(rows.end - 1)];
         keep.sort_unstable();
         keep.into_iter().flatten()
     });
@@ -107,7 +108,9 @@ pub(crate) fn style(arm: usize) -> (&'static str, &'static str) {
 fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Figure> {
     let (label, what) = match (OTHERS.iter().find(|o| o.0 == column.name), column.name.rsplit_once('.')) {
         (Some((_, label, caption)), _) => ((*label).to_string(), (*caption).to_string()),
-        (None, Some((probe, quantity))) => (symbol(quantity), format!("{} {} at {probe}", words(quantity), symbol(quantity))),
+        (None, Some((probe, quantity))) => {
+            (symbol(quantity), format!("{} {} at {probe}", words(quantity), symbol(quantity)))
+        }
         _ => (column.name.clone(), column.name.clone()),
     };
     let groups = study.rows.len().div_ceil(MOST);
@@ -126,10 +129,14 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Figure> {
         let panels = vec![Panel { label: label.clone(), unit: column.unit.clone(), height: 320.0, series }];
         let x_label = with_unit("time t", time);
         let svg = dashed(&Chart { title: &column.name, x_label, shades: Vec::new(), panels }.svg());
-        let file: String = column.name.chars().map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' }).collect();
+        let file: String =
+            column.name.chars().map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' }).collect();
         let (name, part) = match groups {
             1 => (file, String::new()),
-            _ => (format!("{file}-{}", group + 1), format!(", arms {} to {}", group * MOST + 1, ((group + 1) * MOST).min(study.rows.len()))),
+            _ => (
+                format!("{file}-{}", group + 1),
+                format!(", arms {} to {}", group * MOST + 1, ((group + 1) * MOST).min(study.rows.len())),
+            ),
         };
         let first = what.chars().next().map_or(String::new(), |c| c.to_uppercase().collect());
         let caption = format!("{first}{}{part}.", what.chars().skip(1).collect::<String>());

@@ -126,7 +126,12 @@ fn metrics(out: &mut String, study: &Study) {
         for metric in &shown {
             let cells = rows.iter().map(|r| r.value(&metric.name).map_or("–".into(), number));
             let cells: String = cells.map(|c| format!("<td class=\"n\">{c}</td>")).collect();
-            let _ = writeln!(out, "<tr><td><code>{}</code></td><td>{}</td>{cells}</tr>", escape(&metric.name), html(&metric.unit));
+            let _ = writeln!(
+                out,
+                "<tr><td><code>{}</code></td><td>{}</td>{cells}</tr>",
+                escape(&metric.name),
+                html(&metric.unit)
+            );
         }
         out.push_str("</table>\n");
     }
@@ -134,7 +139,12 @@ fn metrics(out: &mut String, study: &Study) {
                   numbers with all digits are in <a href=\"study.csv\">study.csv</a> and <a href=\"study_tidy.csv\">study_tidy.csv</a>.</p>\n\
                   <details><summary>Definitions</summary>\n<table>\n");
     for metric in &shown {
-        let _ = writeln!(out, "<tr><td><code>{}</code></td><td>{}</td></tr>", escape(&metric.name), escape(metric.definition));
+        let _ = writeln!(
+            out,
+            "<tr><td><code>{}</code></td><td>{}</td></tr>",
+            escape(&metric.name),
+            escape(metric.definition)
+        );
     }
     out.push_str("</table></details>\n");
 }

@@ -104,7 +104,8 @@ mod tests {
             let parsed: Value = text.parse().unwrap();
             parsed.as_array().unwrap().iter().cloned().collect()
         };
-        file.grid.push(("time.scheme".into(), list("[{ kind = \"hu\" }, { kind = \"chung-hulbert\", rho_inf = 0.6 }]")));
+        file.grid
+            .push(("time.scheme".into(), list("[{ kind = \"hu\" }, { kind = \"chung-hulbert\", rho_inf = 0.6 }]")));
         file.grid.push(("time.step".into(), list("[1e-3, 0.0005]")));
         let arms = all(&file);
         let names: Vec<&str> = arms.iter().map(|a| a.name.as_str()).collect();

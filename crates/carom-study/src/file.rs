@@ -37,7 +37,12 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
     match text(root, "case", "", problems) {
         Some(case) => file.case = case,
         None if root.contains_key("case") => {}
-        None => problems.push(Problem::new("", "the study has no `case`", "a study compares runs of one case", "add `case = \"impact.toml\"`, relative to this file")),
+        None => problems.push(Problem::new(
+            "",
+            "the study has no `case`",
+            "a study compares runs of one case",
+            "add `case = \"impact.toml\"`, relative to this file",
+        )),
     }
     for (i, table) in tables(root, "arm", problems).into_iter().enumerate() {
         let path = format!("arm[{i}]");
@@ -45,13 +50,23 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
         let mut set = Vec::new();
         match table.get("set").and_then(Item::as_table_like) {
             Some(values) => flatten(values, "", &mut set),
-            None if table.contains_key("set") => problems.push(not(&format!("{path}.set"), "a table", "set = { \"time.step\" = 1e-3 }")),
+            None if table.contains_key("set") => {
+                problems.push(not(&format!("{path}.set"), "a table", "set = { \"time.step\" = 1e-3 }"))
+            }
             None => {}
         }
         match text(table, "name", &path, problems) {
             Some(name) => file.arms.push(ArmEntry { name, set }),
             None if table.contains_key("name") => {}
-            None => problems.push(Problem::new(&path, "the arm has no `name`", "tables and figures call it by its name", "add `name = \"fine\"`").at_key()),
+            None => problems.push(
+                Problem::new(
+                    &path,
+                    "the arm has no `name`",
+                    "tables and figures call it by its name",
+                    "add `name = \"fine\"`",
+                )
+                .at_key(),
+            ),
         }
     }
     match root.get("grid").map(Item::as_table_like) {
@@ -61,7 +76,11 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
             for (key, value) in entries {
                 match value.as_array().filter(|list| !list.is_empty()) {
                     Some(list) => file.grid.push((key, list.iter().cloned().collect())),
-                    None => problems.push(not(&format!("grid.\"{key}\""), "a list of values", "\"time.step\" = [1e-3, 5e-4]")),
+                    None => problems.push(not(
+                        &format!("grid.\"{key}\""),
+                        "a list of values",
+                        "\"time.step\" = [1e-3, 5e-4]",
+                    )),
                 }
             }
         }
@@ -121,7 +140,12 @@ fn text(table: &dyn TableLike, key: &str, path: &str, problems: &mut Vec<Problem
 
 fn not(path: &str, what: &str, example: &str) -> Problem {
     let key = path.rsplit('.').next().unwrap_or(path);
-    Problem::new(path, format!("`{key}` is not {what}"), format!("it must be {what}"), format!("write it as `{example}`"))
+    Problem::new(
+        path,
+        format!("`{key}` is not {what}"),
+        format!("it must be {what}"),
+        format!("write it as `{example}`"),
+    )
 }
 
 fn known(table: &dyn TableLike, keys: &[&str], name: &str, path: &str, problems: &mut Vec<Problem>) {

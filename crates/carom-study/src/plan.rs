@@ -46,7 +46,12 @@ impl Plan {
         let case = Document::open(&case_path, &[]).map_err(|error| match error {
             CaseError::Wrong(found) if !case_path.is_file() => {
                 let what = format!("the case `{}` cannot be read: {}", file.case, found[0].what);
-                study.diagnose_all(&[Problem::new("case", what, "the path is relative to the study file", "correct the path")])
+                study.diagnose_all(&[Problem::new(
+                    "case",
+                    what,
+                    "the path is relative to the study file",
+                    "correct the path",
+                )])
             }
             error => error,
         })?;
@@ -72,11 +77,8 @@ impl Plan {
             return Err(CaseError::Wrong(found));
         }
         let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        let sources = StudySource {
-            study: study.text().to_owned(),
-            case_path: file.case.clone(),
-            case: case.text().to_owned(),
-        };
+        let sources =
+            StudySource { study: study.text().to_owned(), case_path: file.case.clone(), case: case.text().to_owned() };
         let hash = Source { text: sources.study.clone(), sets: vec![sources.case.clone()] }.hash();
         let arm = |(i, (draft, sets, case)): (usize, &(&Draft, Vec<String>, Case))| Arm {
             name: draft.name.clone(),
@@ -106,7 +108,12 @@ impl Plan {
 /// Names arms and claims go by: present, different, known.
 fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) {
     if drafts.is_empty() {
-        problems.push(Problem::new("", "the study has no arms", "there is nothing to compare", "add an [[arm]] or a [grid]"));
+        problems.push(Problem::new(
+            "",
+            "the study has no arms",
+            "there is nothing to compare",
+            "add an [[arm]] or a [grid]",
+        ));
     }
     for (i, draft) in drafts.iter().enumerate() {
         if drafts[..i].iter().any(|d| d.name == draft.name) {
@@ -119,7 +126,12 @@ fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) 
     let exists = |name: &str| drafts.iter().any(|d| d.name == name);
     if let Some(reference) = file.reference.as_deref().filter(|name| *name != "exact" && !exists(name)) {
         let what = format!("the reference \"{reference}\" is no arm");
-        problems.push(Problem::new("reference", what, format!("the arms are: {}", known()), "name one of them, or \"exact\""));
+        problems.push(Problem::new(
+            "reference",
+            what,
+            format!("the arms are: {}", known()),
+            "name one of them, or \"exact\"",
+        ));
     }
     for (i, claim) in file.claims.iter().enumerate() {
         let path = format!("claim[{i}].compare");

@@ -16,7 +16,8 @@ use crate::summary::short;
 use crate::{directory, out};
 
 /// Metrics of the table that is printed; all are in study.csv.
-const SHOWN: [&str; 6] = ["contact_duration", "impulse_y", "restitution", "energy_lost", "newton_iterations", "wall_time"];
+const SHOWN: [&str; 6] =
+    ["contact_duration", "impulse_y", "restitution", "energy_lost", "newton_iterations", "wall_time"];
 
 /// Run a case many times with some of its values replaced, and compare
 #[derive(clap::Args)]
@@ -46,7 +47,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut seen = Seen::new(&plan.manifest, arguments.json);
     let stop = stop_on_signal()?;
     if arguments.json {
-        out::event(&json!({ "event": "start", "title": plan.manifest.title, "directory": directory, "arms": seen.names }))?;
+        out::event(
+            &json!({ "event": "start", "title": plan.manifest.title, "directory": directory, "arms": seen.names }),
+        )?;
     }
     let done = carom_study::start(&plan, &directory, jobs(arguments.jobs), &mut |e| seen.event(e), &stop);
     conclude(done, seen, &directory)
@@ -68,7 +71,10 @@ pub(crate) fn resume(directory: &Path, json: bool) -> Result<Exit, Failure> {
 pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
     let made = |error: carom_report::ReportError| match error.exit_code() {
         4 => Failure::Refused { what: error.to_string() },
-        _ => Failure::Argument { what: error.to_string(), help: "go on with carom resume, or run the study again".into() },
+        _ => Failure::Argument {
+            what: error.to_string(),
+            help: "go on with carom resume, or run the study again".into(),
+        },
     };
     let manifest = StudyManifest::read(directory).map_err(|e| failure(e.into()))?;
     for arm in &manifest.arms {
@@ -90,7 +96,9 @@ fn failure(error: StudyError) -> Failure {
         StudyError::Arm { source: carom::recording::RunError::Record(ref e), .. } if e.exit_code() == 4 => {
             Failure::Refused { what: error.to_string() }
         }
-        error => Failure::Argument { what: error.to_string(), help: "run the study again, into another directory".into() },
+        error => {
+            Failure::Argument { what: error.to_string(), help: "run the study again, into another directory".into() }
+        }
     }
 }
 
@@ -101,7 +109,10 @@ fn conclude(done: Result<Outcome, StudyError>, seen: Seen, directory: &Path) -> 
     let page = report(directory)?;
     if json {
         let study = &outcome.study;
-        let claims = study.verdicts.iter().map(|v| json!({ "claim": v.claim.text, "left": v.left, "right": v.right, "verdict": v.word() }));
+        let claims = study
+            .verdicts
+            .iter()
+            .map(|v| json!({ "claim": v.claim.text, "left": v.left, "right": v.right, "verdict": v.word() }));
         let claims: Vec<_> = claims.collect();
         let event = if outcome.interrupted { "interrupted" } else { "done" };
         out::event(&json!({ "event": event, "directory": directory, "report": page, "claims": claims }))?;

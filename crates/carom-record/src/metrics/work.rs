@@ -75,12 +75,8 @@ mod tests {
     fn history(probe: Vec<f64>) -> History {
         let rows = probe.len();
         let active = (0..rows).map(|i| f64::from(i > 0 && i + 1 < rows)).collect();
-        let column = |name: &str| Column {
-            name: name.into(),
-            unit: String::new(),
-            description: String::new(),
-            integer: false,
-        };
+        let column =
+            |name: &str| Column { name: name.into(), unit: String::new(), description: String::new(), integer: false };
         let names = ["time", "active", "B.s"].map(column).to_vec();
         History::new(names, vec![(0..rows).map(|i| i as f64).collect(), active, probe])
     }

@@ -191,9 +191,7 @@ fn expression(tokens: &[Token]) -> Result<Expression, String> {
 
 fn value(words: &[&str], arm: Option<String>) -> Result<Value, String> {
     match (words, arm) {
-        ([what @ .., "of"], Some(arm)) if !what.is_empty() => {
-            Ok(Value::Of { what: what.join(" "), arm, found: None })
-        }
+        ([what @ .., "of"], Some(arm)) if !what.is_empty() => Ok(Value::Of { what: what.join(" "), arm, found: None }),
         ([number], None) => number
             .parse()
             .map(Value::Number)
