@@ -121,11 +121,12 @@ fn metrics(out: &mut String, study: &Study) {
     let shown: Vec<_> = all.iter().filter(|m| study.rows.iter().any(|r| r.value(&m.name).is_some())).collect();
     for first in (0..study.rows.len()).step_by(ACROSS) {
         let rows = &study.rows[first..study.rows.len().min(first + ACROSS)];
-        let heads: String = (0..rows.len()).map(|i| format!("<th class=\"n\">{}</th>", first + i + 1)).collect();
+        let heads =
+            (0..rows.len()).fold(String::new(), |row, i| row + &format!("<th class=\"n\">{}</th>", first + i + 1));
         let _ = writeln!(out, "<table class=\"metrics\">\n<thead><tr><th>Metric</th><th>Unit</th>{heads}</tr></thead>");
         for metric in &shown {
             let cells = rows.iter().map(|r| r.value(&metric.name).map_or("–".into(), number));
-            let cells: String = cells.map(|c| format!("<td class=\"n\">{c}</td>")).collect();
+            let cells = cells.fold(String::new(), |row, c| row + &format!("<td class=\"n\">{c}</td>"));
             let _ = writeln!(
                 out,
                 "<tr><td><code>{}</code></td><td>{}</td>{cells}</tr>",

@@ -38,7 +38,10 @@ impl Plan {
         let mut problems = Vec::new();
         let file = file::read(&study, &mut problems);
         let drafts = arms::all(&file);
-        names(&file, &drafts, &mut problems);
+        // Names of what could not be read would be missed for no reason of theirs.
+        if problems.is_empty() {
+            names(&file, &drafts, &mut problems);
+        }
         if !problems.is_empty() {
             return Err(study.diagnose_all(&problems));
         }

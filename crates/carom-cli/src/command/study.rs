@@ -128,13 +128,13 @@ fn conclude(done: Result<Outcome, StudyError>, seen: Seen, directory: &Path) -> 
 
 fn text(study: &Study) -> String {
     let width = study.rows.iter().map(|r| r.name.chars().count()).max().unwrap_or(0);
-    let heads: String = SHOWN.iter().map(|name| format!("  {name:>17}")).collect();
+    let heads = SHOWN.iter().fold(String::new(), |row, name| row + &format!("  {name:>17}"));
     let mut lines = vec![format!("{:width$}{heads}", "")];
     for row in &study.rows {
         let cells: String = match row.status {
-            Some(Status::Finished) => {
-                SHOWN.iter().map(|name| format!("  {:>17}", row.value(name).map_or("–".into(), short))).collect()
-            }
+            Some(Status::Finished) => SHOWN.iter().fold(String::new(), |line, name| {
+                line + &format!("  {:>17}", row.value(name).map_or("–".into(), short))
+            }),
             Some(Status::Failed) => format!("  failed: {}", row.reason.as_deref().unwrap_or("?")),
             Some(_) => "  not finished".to_owned(),
             None => "  not begun".to_owned(),

@@ -1,0 +1,175 @@
+//! Studies of a bar that falls on a plane: rows, failure, stop and resume, what is wrong with a study file.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use carom::case::{CaseError, Diagnostic};
+use carom_record::Status;
+use carom_study::{Event, Plan, go_on, start};
+
+const CASE: &str = r#"
+dimension = 1
+[[material]]
+name = "steel"
+law = "linear-elastic"
+density = 1.0
+young = 100.0
+poisson = 0.0
+[[body]]
+name = "bar"
+material = "steel"
+element = "L2"
+mesh = { shape = "interval", min = 0.05, max = 1.05, cells = 10 }
+velocity = [-1.0]
+[[contact]]
+name = "wall"
+secondary = "bar.left"
+primary = { plane = { point = [0.0], normal = [1.0] } }
+[time]
+end = 0.4
+step = 0.01
+scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
+[[probe]]
+name = "A"
+body = "bar"
+at = [1.05]
+record = ["ux"]
+[output]
+fields_every = 0
+"#;
+
+/// A folder with the case and a study of it.
+fn folder(study: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("bar.toml"), CASE).unwrap();
+    let path = folder.path().join("study.toml");
+    fs::write(&path, format!("case = \"bar.toml\"\n{study}")).unwrap();
+    (folder, path)
+}
+
+fn wrong(study: &str) -> Vec<Diagnostic> {
+    let (_folder, path) = folder(study);
+    match Plan::read(&path) {
+        Err(CaseError::Wrong(found)) => found,
+        other => panic!("{other:?}"),
+    }
+}
+
+const THREE: &str = r#"
+[[arm]]
+name = "damped"
+[[arm]]
+name = "guarded"
+set = { "time.scheme" = { kind = "newmark", beta = 0.25, gamma = 0.5 }, "contact.wall.persistency" = "none", "time.energy_guard" = 1e-3 }
+[grid]
+"time.step" = [0.005]
+"time.scheme" = [{ kind = "hu" }]
+[[claim]]
+text = "Hu dissipates more"
+compare = 'energy_lost of "time.step=0.005, time.scheme=hu" > energy_lost of "damped"'
+[[claim]]
+text = "The trapezoidal rule keeps its energy"
+compare = 'energy_lost of "guarded" < 1e-6'
+"#;
+
+#[test]
+fn rows_failures_and_claims() {
+    let (folder, path) = folder(THREE);
+    let plan = Plan::read(&path).unwrap();
+    let directory = folder.path().join("runs/study");
+    let mut ended = 0;
+    let mut count = |e: &Event| ended += usize::from(matches!(e, Event::Ended(..)));
+    let outcome = start(&plan, &directory, 2, &mut count, &AtomicBool::new(false)).unwrap();
+    assert!(!outcome.interrupted);
+    assert_eq!(ended, 3);
+    let rows = &outcome.study.rows;
+    assert_eq!(
+        rows.iter().map(|r| r.status.unwrap()).collect::<Vec<_>>(),
+        [Status::Finished, Status::Failed, Status::Finished]
+    );
+    assert!(rows[1].reason.is_some() && rows[1].metrics.is_empty());
+    assert_eq!(rows[0].value("steps"), Some(40.0));
+    assert_eq!(rows[2].value("steps"), Some(80.0));
+    assert!(rows[0].value("A.ux:min").unwrap() < -0.05);
+    let words: Vec<_> = outcome.study.verdicts.iter().map(|v| v.word()).collect();
+    assert_eq!(words, ["confirmed", "undecided"]);
+
+    let table = fs::read_to_string(directory.join("study.csv")).unwrap();
+    assert!(table.starts_with("arm,status,reason,contact_start,"));
+    assert_eq!(table.lines().count(), 4);
+    assert!(table.lines().nth(2).unwrap().starts_with("guarded,failed,"));
+    let tidy = fs::read_to_string(directory.join("study_tidy.csv")).unwrap();
+    assert!(tidy.contains("damped,steps,40.0,\n"));
+    assert!(fs::read_to_string(directory.join("claims.csv")).unwrap().contains("confirmed"));
+    // Nothing is computed twice, and nothing is overwritten.
+    let mut kept = 0;
+    go_on(&directory, 1, &mut |e| kept += usize::from(matches!(e, Event::Kept(_))), &AtomicBool::new(false)).unwrap();
+    assert_eq!(kept, 3);
+    assert!(start(&plan, &directory, 1, &mut |_| (), &AtomicBool::new(false)).is_err());
+}
+
+fn histories(directory: &Path) -> Vec<Vec<u8>> {
+    let manifest = carom_record::study::StudyManifest::read(directory).unwrap();
+    manifest.arms.iter().map(|arm| fs::read(directory.join(&arm.directory).join("history.csv")).unwrap()).collect()
+}
+
+/// Stopped in the middle of an arm, with another not begun, and the files it was made from gone: the same bytes in the end.
+#[test]
+fn goes_on_where_it_was_stopped() {
+    let (folder, path) = folder(THREE);
+    let plan = Plan::read(&path).unwrap();
+    let (whole, parts) = (folder.path().join("whole"), folder.path().join("parts"));
+    start(&plan, &whole, 1, &mut |_| (), &AtomicBool::new(false)).unwrap();
+
+    let stop = AtomicBool::new(false);
+    let mut halt = |e: &Event| {
+        if matches!(e, Event::Progress(2, p) if p.step >= 1) {
+            stop.store(true, Ordering::Relaxed);
+        }
+    };
+    let outcome = start(&plan, &parts, 1, &mut halt, &stop).unwrap();
+    assert!(outcome.interrupted);
+    assert_eq!(outcome.study.manifest.status, Status::Stopped);
+    fs::remove_file(&path).unwrap();
+    fs::remove_file(folder.path().join("bar.toml")).unwrap();
+    let outcome = go_on(&parts, 2, &mut |_| (), &AtomicBool::new(false)).unwrap();
+    assert!(!outcome.interrupted);
+    assert_eq!(histories(&parts), histories(&whole));
+}
+
+#[test]
+fn wrong_arms_are_shown_in_the_study_file() {
+    let found = wrong("[[arm]]\nname = \"a\"\nset = { \"time.schem\" = 1, \"body.bra.element\" = \"L3\" }\n");
+    assert!(found[0].file.ends_with("study.toml"));
+    assert_eq!((found[0].line, found[0].quoted.starts_with("set =")), (4, true));
+    // A step that does not divide the end: shown at the arm, not in the case.
+    let found = wrong("[[arm]]\nname = \"a\"\nset = { \"time.step\" = 0.03 }\n");
+    assert_eq!((found.len(), found[0].line), (1, 2), "{found:?}");
+    assert!(found[0].why.contains("arm \"a\""));
+    let found = wrong("[grid]\n\"time.step\" = [0.01, -1.0]\n");
+    assert_eq!((found[0].line, found[0].column), (3, 22), "{found:?}");
+    // A model that cannot be built.
+    let found = wrong(
+        "[[arm]]\nname = \"a\"\nset = { \"contact.wall.primary\" = { plane = { point = [0.5], normal = [1.0] } } }\n",
+    );
+    assert!(found[0].file.ends_with("study.toml") && found[0].line > 0, "{found:?}");
+}
+
+#[test]
+fn wrong_study_files() {
+    let first = |study: &str| wrong(study)[0].clone();
+    let found = first("[[arm]]\nname = \"a\"\nsett = {}\n");
+    assert_eq!((found.line, found.help.as_str()), (4, "did you mean `set`?"));
+    assert!(first("reference = \"fine\"\n[[arm]]\nname = \"a\"\n").what.contains("no arm"));
+    assert!(first("[[arm]]\nname = \"a\"\n[[arm]]\nname = \"a\"\n").what.contains("two arms"));
+    assert!(first("").what.contains("no arms"));
+    assert!(first("[[arm]]\nname = 3\n").what.contains("`name` is not a text"));
+    assert!(first("[grid]\n\"time.step\" = 1e-3\n").what.contains("list"));
+    let found = first("[[arm]]\nname = \"a\"\n[[claim]]\ntext = \"t\"\ncompare = 'apex of \"b\" > 1'\n");
+    assert_eq!((found.line, found.what.as_str()), (6, "no arm is named \"b\""));
+    let (_folder, path) = folder("[[arm]]\nname = \"a\"\n");
+    fs::write(&path, "case = \"none.toml\"\n[[arm]]\nname = \"a\"\n").unwrap();
+    let told = Plan::read(&path).unwrap_err().to_string();
+    assert!(told.contains("study.toml:1:8") && told.contains("none.toml"), "{told}");
+}
