@@ -131,7 +131,7 @@ pub(super) fn sides<const D: usize>(model: &Model<D>) -> BTreeMap<String, Vec<Ve
                 let walk = ends.iter().take(1).chain(interior).chain(ends.iter().skip(1)).map(|n| n + part.first_node);
                 match chains.last_mut() {
                     Some(chain) if chain.last() == Some(&(facet.nodes[0] + part.first_node)) => {
-                        chain.extend(walk.skip(1))
+                        chain.extend(walk.skip(1));
                     }
                     _ => chains.push(walk.collect()),
                 }
