@@ -51,7 +51,7 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
         match table.get("set").and_then(Item::as_table_like) {
             Some(values) => flatten(values, "", &mut set),
             None if table.contains_key("set") => {
-                problems.push(not(&format!("{path}.set"), "a table", "set = { \"time.step\" = 1e-3 }"))
+                problems.push(not(&format!("{path}.set"), "a table", "set = { \"time.step\" = 1e-3 }"));
             }
             None => {}
         }

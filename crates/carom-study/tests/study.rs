@@ -1,5 +1,7 @@
 //! Studies of a bar that falls on a plane: rows, failure, stop and resume, what is wrong with a study file.
 
+#![allow(clippy::unwrap_used)]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -92,7 +94,7 @@ fn rows_failures_and_claims() {
     assert_eq!(rows[0].value("steps"), Some(40.0));
     assert_eq!(rows[2].value("steps"), Some(80.0));
     assert!(rows[0].value("A.ux:min").unwrap() < -0.05);
-    let words: Vec<_> = outcome.study.verdicts.iter().map(|v| v.word()).collect();
+    let words: Vec<_> = outcome.study.verdicts.iter().map(carom_record::study::Verdict::word).collect();
     assert_eq!(words, ["confirmed", "undecided"]);
 
     let table = fs::read_to_string(directory.join("study.csv")).unwrap();
