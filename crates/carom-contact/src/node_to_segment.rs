@@ -184,7 +184,9 @@ impl ContactMethod<2> for NodeToSegment {
                             found.push(pair);
                         }
                         Detection::Trajectory => {
-                            if crossed && self.gap(node, facet, xi, now) <= 0.0 {
+                            // Eq. (8) decides at the crossing. A node that was already in by round-off crosses nothing: its closest point decides.
+                            let gap = self.gap(node, facet, xi, now);
+                            if gap < 0.0 || (crossed && gap == 0.0) {
                                 changed = true;
                                 found.push(Pair { active: true, ..pair });
                             }

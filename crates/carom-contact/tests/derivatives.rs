@@ -143,3 +143,20 @@ fn a_node_behind_a_plate_that_never_crossed_its_upper_side_is_left_alone() {
     assert!(!contact.detect(&y, &now, &mut pairs, &mut Vec::new()).unwrap());
     assert!(pairs.is_empty());
 }
+
+/// A node that round-off left inside crosses no surface any more; missing it once would be missing it for ever.
+#[test]
+fn a_node_inside_by_round_off_is_found_under_both_rules() {
+    for detection in [Detection::ClosestPoint, Detection::Trajectory] {
+        for depth in [1e-16, 1e-12, 1e-9] {
+            let (surface, mut y) = chain(0.0);
+            y.push([0.5, -depth]);
+            let contact = NodeToSegment::new(vec![3], surface, detection);
+            let mut now = y.clone();
+            now[3][1] = -depth - 1e-7;
+            let mut pairs = Vec::new();
+            assert!(contact.detect(&y, &now, &mut pairs, &mut Vec::new()).unwrap(), "{detection:?} {depth:e}");
+            assert_eq!(pairs.len(), 1);
+        }
+    }
+}
