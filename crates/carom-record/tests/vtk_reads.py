@@ -1,7 +1,7 @@
 """VTK itself reads our field files: cell types, points, the cubic between the nodes, units, body names.
 
-    cargo run -p carom-record --example lagrange_vtu -- /tmp/cells.vtu
-    python crates/carom-record/tests/vtk_reads.py /tmp/cells.vtu        (needs: pip install vtk)
+    cargo run -p carom-record --example lagrange_vtu -- cells.vtu
+    python crates/carom-record/tests/vtk_reads.py cells.vtu        (needs: pip install vtk)
 """
 
 import sys
