@@ -1,5 +1,7 @@
 //! A bar on a rigid wall: the published side-by-side table of schemes (Doyen, Ern, Piperno 2011; recomputed from the formulas alone), to its digits.
 
+#![allow(clippy::unwrap_used)]
+
 use carom::case::{Document, read};
 use carom::{GridReport, Simulation};
 
