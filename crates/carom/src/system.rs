@@ -270,7 +270,7 @@ impl<const D: usize> System<D> {
         // A multiplier is eliminated right after the dofs of a node its row really depends on.
         let mut groups: Vec<usize> = model.free.iter().map(|dof| dof / D).collect();
         for row in rows {
-            groups.push(self.anchor(model, row));
+            groups.push(anchor(model, row));
         }
         let mut names = groups.clone();
         names.sort_unstable();
@@ -282,19 +282,6 @@ impl<const D: usize> System<D> {
         self.rows = stencils;
         self.analysed = true;
         Ok(())
-    }
-
-    /// The node whose dofs a row leans on: the secondary one unless supports hold it along the normal.
-    #[allow(clippy::unused_self)]
-    fn anchor(&self, model: &Model<D>, row: &Row<D>) -> usize {
-        let freedom = |p: usize| -> f64 {
-            (0..D)
-                .filter(|i| model.unknown[row.gap.nodes[p] * D + i] != usize::MAX)
-                .map(|i| row.gap.gradient[p][i].powi(2))
-                .sum()
-        };
-        let best = (1..row.gap.count).fold(0, |best, p| if freedom(p) > 10.0 * freedom(best) { p } else { best });
-        row.gap.nodes[best]
     }
 
     fn merge(&mut self, contact: &Pattern) {
@@ -316,6 +303,18 @@ impl<const D: usize> System<D> {
             self.merged.starts.push(self.merged.rows.len());
         }
     }
+}
+
+/// The node whose dofs a row leans on: the secondary one unless supports hold it along the normal.
+fn anchor<const D: usize>(model: &Model<D>, row: &Row<D>) -> usize {
+    let freedom = |p: usize| -> f64 {
+        (0..D)
+            .filter(|i| model.unknown[row.gap.nodes[p] * D + i] != usize::MAX)
+            .map(|i| row.gap.gradient[p][i].powi(2))
+            .sum()
+    };
+    let best = (1..row.gap.count).fold(0, |best, p| if freedom(p) > 10.0 * freedom(best) { p } else { best });
+    row.gap.nodes[best]
 }
 
 /// Calls `visit(a, b)` with the unknowns of every two dofs of every cell, in the order of the cells' tangents.
