@@ -68,14 +68,25 @@ impl ReportError {
 pub fn report(directory: &Path) -> Result<ReportSummary, ReportError> {
     let run = Run::open(directory)?;
     let figures::Shown { figures, animation, notes } = figures::all(&run);
+    let page = page::page(&run, &figures, animation.as_deref(), &notes);
+    publish(directory, "report.html", &page, figures.iter().map(|f| (f.name, f.svg.as_str())), notes)
+}
+
+/// Writes figures (name, SVG) and a page into a run or study directory.
+fn publish<'a>(
+    directory: &Path,
+    name: &str,
+    page: &str,
+    figures: impl Iterator<Item = (&'a str, &'a str)>,
+    notes: Vec<String>,
+) -> Result<ReportSummary, ReportError> {
     let write = |path: PathBuf, text: &str| match fs::write(&path, text) {
         Ok(()) => Ok(path),
         Err(source) => Err(ReportError::Write { path, source }),
     };
     let folder = directory.join("figures");
     fs::create_dir_all(&folder).map_err(|source| ReportError::Write { path: folder.clone(), source })?;
-    let written = figures.iter().map(|f| write(folder.join(format!("{}.svg", f.name)), &f.svg));
+    let written = figures.map(|(name, svg)| write(folder.join(format!("{name}.svg")), svg));
     let written = written.collect::<Result<Vec<_>, _>>()?;
-    let page = write(directory.join("report.html"), &page::page(&run, &figures, animation.as_deref(), &notes))?;
-    Ok(ReportSummary { page, figures: written, notes })
+    Ok(ReportSummary { page: write(directory.join(name), page)?, figures: written, notes })
 }

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::{fs, path::PathBuf};
 
 use carom_record::Run;
 use carom_record::metrics::probe_columns;
@@ -11,7 +10,7 @@ use carom_record::study::Study;
 use crate::chart::{Chart, Panel, Series};
 use crate::labels::{symbol, with_unit, words};
 use crate::palette::LINES;
-use crate::{ReportError, ReportSummary, study_page};
+use crate::{ReportError, ReportSummary, publish, study_page};
 
 /// Curves of one figure; more arms make more figures.
 pub(crate) const MOST: usize = 8;
@@ -50,16 +49,8 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     })?;
     study.write_tables()?;
     let figures: Vec<Figure> = columns.iter().flat_map(|column| overlays(column, &study, &time)).collect();
-    let write = |path: PathBuf, text: &str| match fs::write(&path, text) {
-        Ok(()) => Ok(path),
-        Err(source) => Err(ReportError::Write { path, source }),
-    };
-    let folder = directory.join("figures");
-    fs::create_dir_all(&folder).map_err(|source| ReportError::Write { path: folder.clone(), source })?;
-    let written = figures.iter().map(|f| write(folder.join(format!("{}.svg", f.name)), &f.svg));
-    let written = written.collect::<Result<Vec<_>, _>>()?;
-    let page = write(directory.join("study.html"), &study_page::page(&study, &figures))?;
-    Ok(ReportSummary { page, figures: written, notes: Vec::new() })
+    let page = study_page::page(&study, &figures);
+    publish(directory, "study.html", &page, figures.iter().map(|f| (f.name.as_str(), f.svg.as_str())), Vec::new())
 }
 
 fn collect(columns: &mut Vec<Column>, arm: usize, run: &Run) {
