@@ -1,55 +1,247 @@
-//! What `[[expect]] what = "…"` asks for, as a number of the record.
+//! An expected value, and a record held against it.
 //!
 //! ```text
-//! min C · max C · first C · last C · at T C (linear between rows) · time of min C · time of max C · the name of a metric
+//! got = question                                                 without `formula`
+//! got = ‖c(t) − formula(t)‖ / scale                              with it; c is the column, or [ columns ], of the question
+//!       max: largest |·|;  rms: √ of the mean of the squares     over the rows with after < t < before
 //! ```
 
-use crate::History;
-use crate::metrics::{self, DEFINITIONS};
+use carom_formula::Formula;
+use serde::{Deserialize, Serialize};
 
-/// Value of an expectation.
-///
-/// # Errors
-/// In words: what is not there, or why it cannot be told.
-pub fn evaluate(history: &History, what: &str) -> Result<f64, String> {
-    let words: Vec<&str> = what.split_whitespace().collect();
-    let times = history.times();
-    let column = |name: &str| {
-        let values = history.column(name).ok_or_else(|| format!("there is no column `{name}` in the history"))?;
-        if values.is_empty() {
-            return Err("the history has no rows".to_string());
+use crate::question::{Form, Question, Records, Series, Window};
+use crate::{Expectation, Run, Status};
+
+/// An expected value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Expect {
+    /// What is asked: [`crate::question`].
+    pub what: String,
+    /// Bound on the value.
+    pub bound: Bound,
+    /// Where the expected value comes from.
+    pub source: Option<String>,
+    /// What the column should be; then the deviation from it is what is bounded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deviation: Option<Deviation>,
+    /// Only rows after this time count.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub after: Option<f64>,
+    /// Only rows before this time count.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub before: Option<f64>,
+    /// The order of convergence that is asked for, in a study.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub order: Option<OrderOf>,
+    /// How deviations are measured, if that was said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub norm: Option<Norm>,
+    /// Left out by `carom verify --fast`.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub slow: bool,
+}
+
+/// Which order of convergence is asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OrderOf {
+    /// A question, or a column.
+    pub of: String,
+    /// Key of the case that is refined.
+    pub against: String,
+    /// Only arms whose names contain this.
+    pub arms: Option<String>,
+    /// The exact value of a question.
+    pub exact: Option<f64>,
+}
+
+/// A column's deviation from a formula.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Deviation {
+    /// Formula in `t`.
+    pub formula: String,
+    /// How the deviation is measured.
+    pub norm: Norm,
+    /// What divides it.
+    pub scale: f64,
+}
+
+/// Size of a function of time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Norm {
+    /// Largest absolute value.
+    Max,
+    /// Root of the mean of the squares over the rows.
+    Rms,
+}
+
+/// Bound an expectation sets.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Bound {
+    /// |got − value| ≤ tolerance.
+    Near {
+        /// Expected value.
+        value: f64,
+        /// Absolute tolerance.
+        tolerance: f64,
+    },
+    /// |got − value| ≤ relative·|value|.
+    Relative {
+        /// Expected value.
+        value: f64,
+        /// Relative tolerance.
+        relative: f64,
+    },
+    /// got ≤ value.
+    AtMost(f64),
+    /// got ≥ value.
+    AtLeast(f64),
+}
+
+impl Bound {
+    /// What is asked for, in words.
+    pub fn words(self) -> String {
+        match self {
+            Self::Near { value, tolerance } => format!("{value} ± {tolerance}"),
+            Self::Relative { value, relative } => format!("{value} ± {} %", relative * 100.0),
+            Self::AtMost(most) => format!("≤ {most}"),
+            Self::AtLeast(least) => format!("≥ {least}"),
         }
-        match values.iter().position(|x| x.is_nan()) {
-            Some(row) => Err(format!("column `{name}` is not a number at time {}", times.get(row).unwrap_or(&0.0))),
-            None => Ok(values),
+    }
+
+    /// Whether a number keeps it.
+    pub fn holds(self, got: f64) -> bool {
+        match self {
+            Self::Near { value, tolerance } => (got - value).abs() <= tolerance,
+            Self::Relative { value, relative } => (got - value).abs() <= relative * value.abs(),
+            Self::AtMost(most) => got <= most,
+            Self::AtLeast(least) => got >= least,
         }
-    };
-    let extreme = |name: &str, which: &str| {
-        let beats = if which == "min" { f64::lt } else { f64::gt };
-        metrics::extreme(column(name)?, beats).ok_or_else(|| format!("column `{name}` is empty"))
-    };
-    match words[..] {
-        [which @ ("min" | "max"), name] => extreme(name, which).map(|(_, value)| value),
-        ["time", "of", which @ ("min" | "max"), name] => extreme(name, which).map(|(row, _)| times[row]),
-        ["first", name] => Ok(column(name)?[0]),
-        ["last", name] => column(name).map(|values| values[values.len() - 1]),
-        ["at", time, name] => {
-            let values = column(name)?;
-            let time: f64 = time.parse().map_err(|_| format!("`{time}` is not a time"))?;
-            let range = || format!("time {time} is outside the record, {} to {}", times[0], times[times.len() - 1]);
-            metrics::at(times, values, time).ok_or_else(range)
+    }
+
+    /// The expected value; that of a bound is the bound.
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Near { value, .. } | Self::Relative { value, .. } | Self::AtMost(value) | Self::AtLeast(value) => {
+                value
+            }
         }
-        [name] => match metrics::all(history).into_iter().find(|m| m.name == name) {
-            Some(metric) => metric.value.ok_or_else(|| format!("this record has no {}", metric.definition)),
-            None => Err(unknown(what)),
-        },
-        _ => Err(unknown(what)),
+    }
+
+    /// How far from the expected value a number may be, as an absolute number; none for a bound.
+    pub fn tolerance(self) -> Option<f64> {
+        match self {
+            Self::Near { tolerance, .. } => Some(tolerance),
+            Self::Relative { value, relative } => Some(relative * value.abs()),
+            Self::AtMost(_) | Self::AtLeast(_) => None,
+        }
     }
 }
 
-fn unknown(what: &str) -> String {
-    let names = DEFINITIONS.map(|(name, _)| name).join(", ");
-    format!(
-        "`{what}` is not an expectation: min, max, first, last, at T, time of min or time of max and a column, or one of {names}"
-    )
+impl Norm {
+    /// Size of a column; 0 without rows.
+    pub fn of(self, values: &[f64]) -> f64 {
+        match self {
+            Self::Max => values.iter().fold(0.0, |most, x| f64::max(most, x.abs())),
+            Self::Rms if values.is_empty() => 0.0,
+            Self::Rms => Form::Rms.of(&[], values).unwrap_or_default(),
+        }
+    }
 }
+
+impl Deviation {
+    /// Deviation of a column.
+    ///
+    /// # Errors
+    /// A formula that is none, or not a number at a time of a row.
+    pub fn of(&self, times: &[f64], values: &[f64]) -> Result<f64, String> {
+        let formula = Formula::parse(&self.formula, &["t"]).map_err(|e| format!("`{}`: {e}", self.formula))?;
+        let difference = |(t, c): (&f64, &f64)| {
+            let expected = formula.value(&[*t]);
+            if expected.is_finite() {
+                Ok(c - expected)
+            } else {
+                Err(format!("`{}` is {expected} at t = {t}", self.formula))
+            }
+        };
+        let differences = times.iter().zip(values).map(difference).collect::<Result<Vec<_>, _>>()?;
+        Ok(self.norm.of(&differences) / self.scale)
+    }
+}
+
+impl Expect {
+    /// Rows it sees.
+    pub fn window(&self) -> Window {
+        Window { after: self.after, before: self.before }
+    }
+
+    /// The number it is about.
+    ///
+    /// # Errors
+    /// In words, why there is none.
+    pub fn got(&self, records: &dyn Records) -> Result<f64, String> {
+        match &self.deviation {
+            _ if self.order.is_some() => Err("an order of convergence is asked of a study".to_owned()),
+            None => Question::parse(&self.what)?.answer(records, self.window()),
+            Some(deviation) => {
+                let (times, values) = Series::parse(&self.what)?.rows(records, self.window())?;
+                deviation.of(&times, &values)
+            }
+        }
+    }
+
+    /// What it is about, in words.
+    pub fn words(&self) -> String {
+        let mut words = match &self.deviation {
+            None => self.what.clone(),
+            Some(Deviation { formula, norm, scale }) => {
+                let norm = if *norm == Norm::Rms { "rms" } else { "max" };
+                let scale = if *scale == 1.0 { String::new() } else { format!(" / {scale}") };
+                format!("{norm} |{} − ({formula})|{scale}", self.what)
+            }
+        };
+        if let Some(after) = self.after {
+            words += &format!(", t > {after}");
+        }
+        if let Some(before) = self.before {
+            words += &format!(", t < {before}");
+        }
+        words
+    }
+
+    /// The verdict on a number, or on the lack of one.
+    pub fn verdict(&self, got: Result<f64, String>) -> Expectation {
+        let (got, why) = match got {
+            Ok(got) => (Some(got), None),
+            Err(why) => (None, Some(why)),
+        };
+        Expectation {
+            what: self.words(),
+            expected: self.bound.words(),
+            value: Some(self.bound.value()),
+            tolerance: self.bound.tolerance(),
+            got,
+            pass: got.is_some_and(|x| self.bound.holds(x)),
+            why,
+            source: self.source.clone(),
+            slow: self.slow,
+        }
+    }
+
+    /// Whether it asks if the run stopped.
+    pub fn asks_whether_stopped(&self) -> bool {
+        self.deviation.is_none() && Question::parse(&self.what).is_ok_and(|q| q.asks_whether_stopped())
+    }
+}
+
+/// A record held against expectations. Half a run is judged only where one of them asks whether it stopped.
+pub fn judge(run: &Run, expects: &[Expect]) -> Vec<Expectation> {
+    let whole = run.manifest.status == Status::Finished || expects.iter().any(Expect::asks_whether_stopped);
+    let reason = || run.manifest.reason.clone().unwrap_or_else(|| "it has not ended".to_owned());
+    let got = |e: &Expect| if whole { e.got(run) } else { Err(format!("the run stopped: {}", reason())) };
+    expects.iter().map(|e| e.verdict(got(e))).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -15,10 +15,12 @@
 mod checkpoint;
 mod error;
 mod expectation;
+mod expression;
 mod files;
 mod manifest;
 pub mod metrics;
 mod pvd;
+pub mod question;
 mod rows;
 mod run;
 pub mod study;
@@ -26,7 +28,8 @@ mod vtu;
 mod writer;
 
 pub use error::RecordError;
-pub use expectation::evaluate;
+pub use expectation::{Bound, Deviation, Expect, Norm, OrderOf, judge};
+pub use expression::{Expression, Sign};
 pub use manifest::{Column, Expectation, Machine, Manifest, Source, Status, now};
 pub use pvd::FieldEntry;
 pub use rows::{ContactRow, Event};

@@ -85,12 +85,24 @@ pub struct Expectation {
     pub what: String,
     /// What was asked for, in words: `-0.7827 ± 0.004`.
     pub expected: String,
+    /// The expected value, or the bound.
+    #[serde(default)]
+    pub value: Option<f64>,
+    /// How far from it the number may be, absolute; none for a bound.
+    #[serde(default)]
+    pub tolerance: Option<f64>,
     /// What the record gives; none when it cannot be evaluated.
     pub got: Option<f64>,
     /// Whether it holds.
     pub pass: bool,
+    /// Why there is no number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
     /// Where the expected value comes from.
     pub source: Option<String>,
+    /// Left out by `carom verify --fast`.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub slow: bool,
 }
 
 /// The whole manifest.

@@ -9,6 +9,7 @@
 //!            study.html figures/     the page
 //! ```
 
+mod arms;
 mod claim;
 mod tables;
 
@@ -18,6 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::metrics::{self, Metric};
 use crate::{Machine, Manifest, RecordError, Run, Status, files};
+pub use arms::ArmRecords;
 pub use claim::{Comparison, Verdict};
 
 /// The files a study was made from.
@@ -163,7 +165,9 @@ impl Study {
     /// What the machine refused, or where a record is damaged.
     pub fn open(directory: &Path, visit: &mut dyn FnMut(usize, &Run)) -> Result<Self, RecordError> {
         let manifest = StudyManifest::read(directory)?;
-        let mut comparisons: Vec<_> = manifest.claims.iter().map(|c| Comparison::parse(&c.compare)).collect();
+        let comparisons: Vec<_> = manifest.claims.iter().map(|c| Comparison::parse(&c.compare).ok()).collect();
+        let questions: Vec<_> = comparisons.iter().flatten().flat_map(Comparison::questions).collect();
+        let mut records = ArmRecords::default();
         let mut rows = Vec::new();
         for (i, arm) in manifest.arms.iter().enumerate() {
             let (status, reason) = manifest.state(directory, arm)?;
@@ -173,14 +177,13 @@ impl Study {
                 visit(i, &run);
                 if status == Some(Status::Finished) {
                     metrics = metrics::of_run(&run);
-                    for comparison in comparisons.iter_mut().flatten() {
-                        comparison.look_up(&arm.name, &run, &metrics);
-                    }
                 }
+                records.gather(&arm.name, &run, &metrics, &questions, &[]);
             }
             rows.push(Row { name: arm.name.clone(), status, reason, metrics });
         }
-        let verdicts = manifest.claims.iter().zip(&comparisons).map(|(claim, c)| Verdict::of(claim, c.as_ref().ok()));
+        let verdicts =
+            manifest.claims.iter().zip(&comparisons).map(|(claim, c)| Verdict::of(claim, c.as_ref(), &records));
         Ok(Self { directory: directory.to_path_buf(), verdicts: verdicts.collect(), rows, manifest })
     }
 

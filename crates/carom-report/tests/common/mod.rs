@@ -214,6 +214,10 @@ pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
         expected: "-0.7827 ± 0.004".into(),
         got,
         pass,
+        value: Some(-0.7827),
+        tolerance: Some(4e-3),
+        why: None,
+        slow: false,
         source: Some("two unrelated codes agree".into()),
     };
     manifest.expectations = vec![expectation("min A.uy", Some(-0.7811), true), expectation("min <B>.uy", None, false)];

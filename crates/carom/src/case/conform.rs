@@ -30,6 +30,14 @@ pub(super) fn variant(table: &Table, variants: &Variants) -> Vec<Problem> {
     check.problems
 }
 
+/// The same for one table of fixed keys.
+pub(super) fn table(table: &Table, keys: &keys::Table, path: &str) -> Vec<Problem> {
+    let mut check = Check { dimension: None, problems: Vec::new() };
+    let spec = Spec { name: keys.name, tag: None, keys: keys.keys.iter().collect(), later: keys.later.to_vec() };
+    check.keys(table, &spec, path);
+    check.problems
+}
+
 struct Check {
     dimension: Option<usize>,
     problems: Vec<Problem>,
@@ -84,7 +92,8 @@ impl Check {
     fn value(&mut self, node: &Node, key: &Key, path: &str) {
         match (&key.kind, &node.value) {
             (Kind::Text | Kind::Side | Kind::SideOr(_), Value::Text(_))
-            | (Kind::NumberOrFalse(_), Value::Flag(false)) => {}
+            | (Kind::NumberOrFalse(_), Value::Flag(false))
+            | (Kind::Truth, Value::Flag(_)) => {}
             (Kind::Name, Value::Text(name)) => self.name(name, key, path),
             (Kind::Choice(now, later), Value::Text(word)) => {
                 self.choice(word, key.name, now, later, &meaning(key), path);

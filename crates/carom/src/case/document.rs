@@ -106,6 +106,15 @@ impl Document {
         CaseError::Wrong(found)
     }
 
+    /// The value at a key path.
+    pub(super) fn at(&self, path: &str) -> Option<&Node> {
+        segments(path).into_iter().try_fold(&self.root, |node, segment| match (&node.value, segment) {
+            (Value::Table(table), Segment::Key(key)) => table.get(&key),
+            (Value::List(list), Segment::Index(i)) => list.get(i),
+            _ => None,
+        })
+    }
+
     fn origin(&self, path: &str, at_key: bool) -> Option<Origin> {
         let mut node = &self.root;
         let mut found = None;

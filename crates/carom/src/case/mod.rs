@@ -4,6 +4,7 @@ mod check;
 mod columns;
 mod conform;
 mod document;
+mod expect;
 pub mod keys;
 mod mesh;
 pub(crate) mod mesh_file;
@@ -22,7 +23,9 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+pub use carom_record::{Bound, Expect as ExpectSpec};
 pub use document::Document;
+pub use expect::{Asked, read_expects};
 pub use problem::{CaseError, Diagnostic, Problem};
 pub use read::{read, read_scheme};
 pub use schema::schema;
@@ -367,39 +370,4 @@ pub struct OutputSpec {
     pub history_every: usize,
     /// Checkpoints every so many steps.
     pub checkpoint_every: usize,
-}
-
-/// An expected value.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ExpectSpec {
-    /// `min A.uy`, `max …`, `at T …`, `first …`, `last …`, or a metric.
-    pub what: String,
-    /// Bound on the value.
-    pub bound: Bound,
-    /// Where the expected value comes from.
-    pub source: Option<String>,
-}
-
-/// Bound an expectation sets.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Bound {
-    /// |got − value| ≤ tolerance.
-    Near {
-        /// Expected value.
-        value: f64,
-        /// Absolute tolerance.
-        tolerance: f64,
-    },
-    /// |got − value| ≤ relative·|value|.
-    Relative {
-        /// Expected value.
-        value: f64,
-        /// Relative tolerance.
-        relative: f64,
-    },
-    /// got ≤ value.
-    AtMost(f64),
-    /// got ≥ value.
-    AtLeast(f64),
 }

@@ -8,6 +8,7 @@ use super::conform;
 use carom_time::SchemeError;
 
 use super::document::{Document, joined};
+use super::expect::{self, Asked};
 use super::keys::{self, Kind};
 use super::mesh;
 use super::problem::{CaseError, Problem};
@@ -15,8 +16,8 @@ use super::suggest;
 use super::tree::{Node, Table};
 use super::view::{View, word};
 use super::{
-    Bound, Case, ContactSpec, ExpectSpec, MaterialSpec, NewtonSpec, OutputSpec, Preset, PrimarySpec, ProbeSpec,
-    SchemeSpec, SupportSpec, TimeSpec, Units,
+    Case, ContactSpec, ExpectSpec, MaterialSpec, NewtonSpec, OutputSpec, Preset, PrimarySpec, ProbeSpec, SchemeSpec,
+    SupportSpec, TimeSpec, Units,
 };
 
 /// Tables read so far: `None` where one of them could not be.
@@ -47,7 +48,7 @@ pub fn read(document: &Document) -> Result<Case, Vec<Problem>> {
     };
     let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
     draft.bodies = reader.each("body", |v, path| body(v, reader.dimension?, folder, path, &mut problems));
-    draft.expects = reader.each("expect", |v, path| expect(v, path, &mut problems));
+    draft.expects = reader.each("expect", |v, path| expect::one(v, path, Asked::OfARun, &mut problems));
     check::problems(document, &draft, &mut problems);
     if !problems.is_empty() {
         return Err(problems);
@@ -267,26 +268,4 @@ fn output(v: View) -> Option<OutputSpec> {
         history_every: v.count("history_every")?,
         checkpoint_every: v.count("checkpoint_every")?,
     })
-}
-
-fn expect(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<ExpectSpec> {
-    let given: Vec<_> =
-        ["value", "tolerance", "relative", "at_most", "at_least"].into_iter().filter(|k| v.has(k)).collect();
-    let bound = match given.as_slice() {
-        ["value", "tolerance"] => Bound::Near { value: v.number("value")?, tolerance: v.number("tolerance")? },
-        ["value", "relative"] => Bound::Relative { value: v.number("value")?, relative: v.number("relative")? },
-        ["at_most"] => Bound::AtMost(v.number("at_most")?),
-        ["at_least"] => Bound::AtLeast(v.number("at_least")?),
-        _ => {
-            let misspelt = v.table.0.iter().any(|e| !v.keys.iter().any(|k| k.name == e.key));
-            if !misspelt {
-                let what = "the expectation does not set one bound";
-                let why = format!("it has {}", if given.is_empty() { "none".into() } else { given.join(", ") });
-                let help = "give `value` and `tolerance`, or `value` and `relative`, or `at_most`, or `at_least`";
-                problems.push(Problem::new(path, what, why, help).at_key());
-            }
-            return None;
-        }
-    };
-    Some(ExpectSpec { what: v.text("what")?, bound, source: v.text("source") })
 }

@@ -395,7 +395,7 @@ where
             end,
         };
         self.writer.finish(&self.manifest)?;
-        if outcome.end == End::Finished {
+        if outcome.end != End::Interrupted {
             judge(&outcome.directory, &self.case.expects, self.manifest)?;
         }
         Ok(outcome)

@@ -1,10 +1,9 @@
 //! What concerns several tables: names and references, sides, dimensions, steps, memory.
 
 mod contact;
+mod expect;
 mod memory;
 mod time;
-
-use carom_record::metrics;
 
 use super::columns;
 use super::document::Document;
@@ -199,62 +198,6 @@ impl<'a> Check<'a> {
                         "leave one of them out",
                     );
                 }
-            }
-        }
-    }
-
-    fn expects(&mut self) {
-        let draft = self.draft;
-        // Columns come from names: with a key unknown or missing somewhere, an unknown column proves nothing.
-        let complete = !self.problems.iter().any(|p| p.at_key)
-            && draft.probes.iter().all(Option::is_some)
-            && draft.bodies.iter().all(Option::is_some)
-            && draft.contacts.iter().all(Option::is_some)
-            && draft.supports.iter().all(Option::is_some);
-        let known =
-            columns::of(draft.dimension.unwrap_or(2), &draft.bodies, &draft.contacts, &draft.supports, &draft.probes);
-        let end = draft.time.as_ref().map_or(f64::INFINITY, |t| t.end);
-        for (i, expect) in draft.expects.iter().enumerate() {
-            let Some(expect) = expect else { continue };
-            let path = format!("expect[{i}].what");
-            let forms =
-                "min | max | first | last COLUMN, at TIME COLUMN, time of min | max COLUMN, or the name of a metric";
-            let words: Vec<_> = expect.what.split_whitespace().collect();
-            let column = match words.as_slice() {
-                ["min" | "max" | "first" | "last", column] | ["time", "of", "min" | "max", column] => column,
-                ["at", time, column] => match time.parse::<f64>() {
-                    Ok(t) if (0.0..=end).contains(&t) => column,
-                    _ => {
-                        let why = format!("the run goes from 0 to {end}");
-                        self.add(
-                            path,
-                            format!("`{time}` is not a time of this run"),
-                            why,
-                            "write for example \"at 0.5 A.uy\"",
-                        );
-                        continue;
-                    }
-                },
-                [metric] if metrics::DEFINITIONS.iter().any(|(name, _)| name == metric) => continue,
-                [word] => {
-                    let names = metrics::DEFINITIONS.iter().map(|(name, _)| *name);
-                    let why = format!("it is {forms}");
-                    self.add(path, format!("there is no metric `{word}`"), why, suggest::help(word, names));
-                    continue;
-                }
-                _ => {
-                    let what = format!("{:?} is not a quantity to expect", expect.what);
-                    self.add(path, what, format!("it is {forms}"), "write for example \"min A.uy\"");
-                    continue;
-                }
-            };
-            if complete && !known.iter().any(|c| c == column) {
-                let why = "columns are those of history.csv; probes add name.quantity";
-                let help = suggest::nearest(column, known.iter().map(String::as_str)).map_or_else(
-                    || format!("use one of: {}", known.join(", ")),
-                    |near| format!("did you mean `{near}`?"),
-                );
-                self.add(path, format!("history.csv will have no column `{column}`"), why, help);
             }
         }
     }

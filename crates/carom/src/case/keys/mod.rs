@@ -3,7 +3,7 @@
 mod tables;
 mod variants;
 
-pub use tables::CASE;
+pub use tables::{CASE, EXPECT};
 pub use variants::{SCHEMES, SHAPES};
 
 /// A table of the case file: its keys, and those of later versions.
@@ -64,6 +64,8 @@ pub enum Kind {
     Number(Range),
     /// A finite number in a range, or `false`.
     NumberOrFalse(Range),
+    /// `true` or `false`.
+    Truth,
     /// A whole number of at least this.
     Count(usize),
     /// A whole number in dimension 1, a pair in dimension 2.
@@ -174,6 +176,7 @@ impl Kind {
             Self::Choice(choices, _) => format!("one of {}", words(choices)),
             Self::Number(range) => range.described(),
             Self::NumberOrFalse(range) => format!("{}, or false", range.described()),
+            Self::Truth => "true or false".into(),
             Self::Count(least) => format!("a whole number ≥ {least}"),
             Self::Counts(least) if dimension == Some(1) => format!("a whole number ≥ {least}"),
             Self::Counts(least) => format!("a list of 2 whole numbers ≥ {least}"),

@@ -1,7 +1,8 @@
 //! Every key of every table: name, values, unit, default, meaning, example.
 
 use super::Kind::{
-    Choice, Choices, Count, Name, Number, NumberOrFalse, Numbers, Side, SideOr, Sides, Tables, Text, Variant, Vector,
+    Choice, Choices, Count, Name, Number, NumberOrFalse, Numbers, Side, SideOr, Sides, Tables, Text, Truth, Variant,
+    Vector,
 };
 use super::{ANY, Kind, NOT_NEGATIVE, POSITIVE, Range, SCHEMES, SHAPES, Table, key};
 
@@ -256,22 +257,46 @@ const OUTPUT: Table = Table {
     later: &[],
 };
 
-const EXPECT: Table = Table {
+/// One expected value, of a case, an arm or a study.
+pub const EXPECT: Table = Table {
     name: "[[expect]]",
-    doc: "An expected value with value and tolerance, value and relative, at_most, or at_least.",
+    doc: "An expected value with value and tolerance, value and relative, at_most, or at_least; with a formula, tolerance alone is enough.",
     keys: &[
         key(
             "what",
             Text,
-            "min | max | first | last | at T | time of min | time of max of a column, or a metric by name.",
+            "min | max | first | last | at T | time of min | time of max | range | drift | peak | rms of a column or of [ columns with + - * / ], a \
+             metric by name, `stopped`, or an expression of these; blanks around every sign.",
         )
         .example("\"min A.uy\""),
+        key("formula", Text, "What the column `what` should be, in t: its largest (norm) deviation from it is what is bounded.")
+            .optional()
+            .example("\"-0.5*9.81*t^2\""),
+        key(
+            "norm",
+            Choice(&["max", "rms"], &[]),
+            "How a deviation is measured: largest value, or root of the mean square over the rows; max if left out, rms for an order.",
+        )
+        .optional()
+        .example("\"rms\""),
+        key("scale", Number(POSITIVE), "What divides the deviation.").default("1.0"),
+        key("after", Number(ANY), "Only rows after this time, strictly, count.").unit("time").optional().example("0.52"),
+        key("before", Number(ANY), "Only rows before this time, strictly, count.").unit("time").optional().example("1.147"),
         key("value", Number(ANY), "Expected value.").optional().example("-0.7827"),
         key("tolerance", Number(NOT_NEGATIVE), "Absolute tolerance.").optional().example("4e-3"),
         key("relative", Number(NOT_NEGATIVE), "Relative tolerance.").optional().example("0.01"),
         key("at_most", Number(ANY), "Upper bound.").optional().example("0.0"),
         key("at_least", Number(ANY), "Lower bound.").optional().example("0.0"),
         key("source", Text, "Where the expected value comes from.").optional().example("\"exact solution\""),
+        key("of", Text, "In a study, with what = \"order\": the question, or column, whose order of convergence is observed.")
+            .optional()
+            .example("\"last A.uy\""),
+        key("against", Text, "With what = \"order\": the key of the case the arms differ in.")
+            .optional()
+            .example("\"time.step\""),
+        key("where", Text, "With what = \"order\": only arms whose names contain this.").optional().example("\"hu\""),
+        key("exact", Number(ANY), "With what = \"order\": the exact value, from which errors are taken.").optional().example("1.0"),
+        key("slow", Truth, "Left out by `carom verify --fast`.").default("false"),
     ],
-    later: &["formula", "of", "against", "slow"],
+    later: &[],
 };

@@ -85,6 +85,21 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["expect=[{ what = \"at 0.9 A.uy\", at_most = 0 }]"], &["`0.9` is not a time of this run"]),
     (&["expect=[{ what = \"lowest A.uy\", at_most = 0 }]"], &["is not a quantity to expect"]),
     (&["expect=[{ what = \"restitutoin\", at_most = 1 }]"], &["there is no metric `restitutoin`", "`restitution`?"]),
+    (&["expect=[{ what = \"rms [ A.uy - A.uz ]\", at_most = 0 }]"], &["no column `A.uz`", "did you mean `A.uy`?"]),
+    (&["expect=[{ what = \"A.uy\", at_most = 0 }]"], &["no metric `A.uy`", "write for example `last A.uy`"]),
+    (&["expect=[{ what = \"last A.uy of 'x'\", at_most = 0 }]"], &["no arm \"x\"", "only a study has arms"]),
+    (
+        &["expect=[{ what = \"A.uy\", formula = \"2*sun(t)\", tolerance = 0 }]"],
+        &["no function `sun`", "did you mean `sin`", "character 3"],
+    ),
+    (&["expect=[{ what = \"last A.uy\", formula = \"t\", tolerance = 0 }]"], &["is not a quantity to expect"]),
+    (&["expect=[{ what = \"last A.uy\", norm = \"rms\", at_most = 0 }]"], &["`norm` without `formula`"]),
+    (
+        &["expect=[{ what = \"order\", of = \"last A.uy\", against = \"time.step\", at_least = 2 }]"],
+        &["no number of one run", "of a study"],
+    ),
+    (&["expect=[{ what = \"last A.uy\", against = \"time.step\", at_most = 0 }]"], &["`against` without an order"]),
+    (&["expect=[{ what = \"min A.uy\", slow = 1, at_most = 0 }]"], &["`slow`", "true or false"]),
     (&["expect=[{ what = \"min A.uy\", value = 0 }]"], &["does not set one bound", "it has value"]),
     // contact without mass
     (&["material.rubber.density=0"], &["nothing that touches in `strike` has mass", "persistency = \"none\""]),

@@ -1,0 +1,230 @@
+//! Arithmetic of quantities written in words.
+//!
+//! ```text
+//! sum     := product { ( + | - ) product }        product := factor { ( * | / ) factor }
+//! factor  := NUMBER | QUANTITY | ( sum )          blanks around every sign and bracket, since names may contain them
+//! ```
+//!
+//! A quantity is a row of words, of texts in quotes (names of arms) and of what stands in square brackets, which may hold signs. What it
+//! means is its own business: [`crate::question`].
+
+/// An expression in quantities `Q`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Expression<Q> {
+    /// A number.
+    Number(f64),
+    /// A quantity.
+    Quantity(Q),
+    /// Two expressions and the sign between them.
+    Binary(Sign, Box<[Expression<Q>; 2]>),
+}
+
+/// A sign of arithmetic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// `+`
+    Plus,
+    /// `-`
+    Minus,
+    /// `*`
+    Times,
+    /// `/`
+    Over,
+}
+
+impl Sign {
+    fn of(word: &str) -> Option<Self> {
+        match word {
+            "+" => Some(Self::Plus),
+            "-" | "−" => Some(Self::Minus),
+            "*" => Some(Self::Times),
+            "/" => Some(Self::Over),
+            _ => None,
+        }
+    }
+
+    fn apply(self, left: f64, right: f64) -> f64 {
+        match self {
+            Self::Plus => left + right,
+            Self::Minus => left - right,
+            Self::Times => left * right,
+            Self::Over => left / right,
+        }
+    }
+}
+
+impl<Q> Expression<Q> {
+    /// Its value, given those of its quantities.
+    ///
+    /// # Errors
+    /// The first of those of its quantities.
+    pub fn value<E>(&self, of: &mut dyn FnMut(&Q) -> Result<f64, E>) -> Result<f64, E> {
+        match self {
+            Self::Number(value) => Ok(*value),
+            Self::Quantity(quantity) => of(quantity),
+            Self::Binary(sign, sides) => {
+                let left = sides[0].value(of)?;
+                Ok(sign.apply(left, sides[1].value(of)?))
+            }
+        }
+    }
+
+    /// Its quantities, from left to right.
+    pub fn quantities(&self) -> Vec<&Q> {
+        match self {
+            Self::Number(_) => Vec::new(),
+            Self::Quantity(quantity) => vec![quantity],
+            Self::Binary(_, sides) => sides.iter().flat_map(Self::quantities).collect(),
+        }
+    }
+}
+
+/// A word, or a text in quotes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Token {
+    Word(String),
+    Quoted(String),
+}
+
+impl Token {
+    pub(crate) fn word(&self) -> Option<&str> {
+        if let Self::Word(word) = self { Some(word) } else { None }
+    }
+
+    fn is(&self, text: &str) -> bool {
+        self.word() == Some(text)
+    }
+}
+
+/// Words and quoted texts of a line.
+pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, String> {
+    let mut found = Vec::new();
+    let mut rest = text.trim_start();
+    while let Some(first) = rest.chars().next() {
+        let end = if matches!(first, '"' | '\'') {
+            let inside = &rest[1..];
+            let length = inside.find(first).ok_or_else(|| format!("the quote at `{rest}` is not closed"))?;
+            found.push(Token::Quoted(inside[..length].to_owned()));
+            length + 2
+        } else {
+            let length = rest.find(char::is_whitespace).unwrap_or(rest.len());
+            found.push(Token::Word(rest[..length].to_owned()));
+            length
+        };
+        rest = rest[end..].trim_start();
+    }
+    Ok(found)
+}
+
+/// Parses a row of tokens; `quantity` makes a quantity of those that belong to one.
+pub(crate) fn parse<Q>(
+    tokens: &[Token],
+    quantity: &dyn Fn(&[Token]) -> Result<Q, String>,
+) -> Result<Expression<Q>, String> {
+    let mut parser = Parser { rest: tokens, quantity };
+    let expression = parser.sum()?;
+    match parser.rest.first() {
+        None => Ok(expression),
+        Some(_) => Err("a bracket `)` was not opened".to_owned()),
+    }
+}
+
+struct Parser<'a, Q> {
+    rest: &'a [Token],
+    quantity: &'a dyn Fn(&[Token]) -> Result<Q, String>,
+}
+
+impl<Q> Parser<'_, Q> {
+    fn sum(&mut self) -> Result<Expression<Q>, String> {
+        self.row(&[Sign::Plus, Sign::Minus], Self::product)
+    }
+
+    fn product(&mut self) -> Result<Expression<Q>, String> {
+        self.row(&[Sign::Times, Sign::Over], Self::factor)
+    }
+
+    fn row(
+        &mut self,
+        signs: &[Sign],
+        part: fn(&mut Self) -> Result<Expression<Q>, String>,
+    ) -> Result<Expression<Q>, String> {
+        let mut left = part(self)?;
+        while let Some(sign) = self.sign().filter(|s| signs.contains(s)) {
+            self.rest = &self.rest[1..];
+            left = Expression::Binary(sign, Box::new([left, part(self)?]));
+        }
+        Ok(left)
+    }
+
+    fn sign(&self) -> Option<Sign> {
+        Sign::of(self.rest.first()?.word()?)
+    }
+
+    fn factor(&mut self) -> Result<Expression<Q>, String> {
+        if self.rest.first().is_some_and(|t| t.is("(")) {
+            self.rest = &self.rest[1..];
+            let inside = self.sum()?;
+            let closed = self.rest.first().is_some_and(|t| t.is(")"));
+            self.rest = self.rest.get(1..).filter(|_| closed).ok_or("a bracket `(` is not closed")?;
+            return Ok(inside);
+        }
+        let mut depth = 0_i32;
+        let ends = |token: &Token| {
+            depth += i32::from(token.is("[")) - i32::from(token.is("]"));
+            depth == 0 && token.word().is_some_and(|w| Sign::of(w).is_some() || w == ")" || w == "(")
+        };
+        let length = self.rest.iter().position(ends).unwrap_or(self.rest.len());
+        let (mine, rest) = self.rest.split_at(length);
+        self.rest = rest;
+        match mine {
+            [] => Err("a value is missing".to_owned()),
+            [Token::Word(word)] if let Ok(number) = word.parse::<f64>() => Ok(Expression::Number(number)),
+            mine => (self.quantity)(mine).map(Expression::Quantity),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Quantities are `x` = 2 and anything in brackets = 10.
+    fn value(text: &str) -> Result<f64, String> {
+        let name = |words: &[Token]| Ok(words[0].word().unwrap_or_default().to_owned());
+        let parsed = parse(&tokens(text)?, &name)?;
+        parsed.value(&mut |q: &String| match q.as_str() {
+            "x" => Ok(2.0),
+            "[" => Ok(10.0),
+            other => Err(format!("no {other}")),
+        })
+    }
+
+    #[test]
+    fn arithmetic() {
+        for (text, expected) in [
+            ("1 - 2 - 3", -4.0),
+            ("12 / x / 3", 2.0),
+            ("1 + 2 * x", 5.0),
+            ("( 1 + 2 ) * x", 6.0),
+            ("-1.5e0 * x", -3.0),
+            ("x - [ a - b ]", -8.0),
+            ("( x - ( 1 - x ) ) / 3", 1.0),
+        ] {
+            assert_eq!(value(text), Ok(expected), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        for (text, part) in [
+            ("", "missing"),
+            ("x +", "missing"),
+            ("( x", "not closed"),
+            ("x )", "not opened"),
+            ("'a", "not closed"),
+            ("y", "no y"),
+        ] {
+            assert!(value(text).unwrap_err().contains(part), "{text}");
+        }
+    }
+}

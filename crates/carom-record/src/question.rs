@@ -1,0 +1,396 @@
+//! What `[[expect]] what = "…"` and claims ask for, as numbers of records.
+//!
+//! ```text
+//! question := FORM column [ of "ARM" ] | FORM [ columns ] [ by step ] | NAME [ of "ARM" ]         in any expression with numbers
+//!             difference COLUMN of "ARM" and "ARM"          = peak [ COLUMN of "ARM" - COLUMN of "ARM" ];  rms difference … likewise
+//! FORM     := min · max · first · last · at T (linear between rows) · time of min · time of max
+//!             range (max − min) · drift (largest |c − c₀|) · peak (largest |c|) · rms (√ of the mean of c² over the rows)
+//! columns  := an expression in columns, each with `of "ARM"` in a study
+//! NAME     := a metric of `metrics`, COLUMN:min, COLUMN:max, COLUMN:roughness, or `stopped` (1 if the run could not go on, 0 if it ended)
+//! ```
+//!
+//! An expression in columns of several arms has the rows whose times all of them recorded (to 1e-9 of the span); `by step` takes rows with
+//! the same step number, where times are in other units. `after < time < before`, strictly, are the rows a question sees.
+
+use std::borrow::Cow;
+
+use crate::expression::{self, Expression, Token, tokens};
+use crate::metrics::{self, DEFINITIONS, WORK_DEFINITIONS};
+use crate::{History, Run, Status};
+
+/// Two times are one if they differ by less than this fraction of the span of the first record.
+const SAME_TIME: f64 = 1e-9;
+
+/// What an expectation or a side of a claim asks for.
+pub type Question = Expression<Quantity>;
+
+/// A number asked of a record.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Quantity {
+    /// A metric by its name, of an arm.
+    Metric(String, Option<String>),
+    /// A number made of columns.
+    Reduced(Form, Series),
+}
+
+/// How a number is made of a column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum Form {
+    Min,
+    Max,
+    First,
+    Last,
+    At(f64),
+    TimeOfMin,
+    TimeOfMax,
+    Range,
+    Drift,
+    Peak,
+    Rms,
+}
+
+/// Columns put together row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// The expression in columns.
+    pub columns: Expression<Asked>,
+    /// Whether rows of several arms are matched by their step instead of their time.
+    pub by_step: bool,
+}
+
+/// A column, of an arm in a study.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Asked {
+    /// Its name.
+    pub column: String,
+    /// The arm.
+    pub arm: Option<String>,
+}
+
+/// A column with the times and steps of its rows.
+#[derive(Clone, Debug)]
+pub struct Rows<'a> {
+    /// Times.
+    pub times: Cow<'a, [f64]>,
+    /// Step numbers.
+    pub steps: Cow<'a, [f64]>,
+    /// Values.
+    pub values: Cow<'a, [f64]>,
+}
+
+/// Rows a question sees: those strictly between two times.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Window {
+    /// Rows after this time.
+    pub after: Option<f64>,
+    /// Rows before this time.
+    pub before: Option<f64>,
+}
+
+impl Window {
+    fn has(self, time: f64) -> bool {
+        self.after.is_none_or(|t| time > t) && self.before.is_none_or(|t| time < t)
+    }
+}
+
+/// Where the numbers come from: one record, or the arms of a study.
+pub trait Records {
+    /// A metric by its name.
+    ///
+    /// # Errors
+    /// In words, why there is none.
+    fn metric(&self, name: &str, arm: Option<&str>) -> Result<f64, String>;
+
+    /// A column.
+    ///
+    /// # Errors
+    /// In words, why there is none.
+    fn column(&self, asked: &Asked) -> Result<Rows<'_>, String>;
+}
+
+impl Question {
+    /// Parses a question.
+    ///
+    /// # Errors
+    /// In words, what is not as it should be.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        Self::of(&tokens(text)?)
+    }
+
+    pub(crate) fn of(tokens: &[Token]) -> Result<Self, String> {
+        expression::parse(tokens, &quantity)
+    }
+
+    /// Its value in these records.
+    ///
+    /// # Errors
+    /// In words: what is not there, or why it cannot be told.
+    pub fn answer(&self, records: &dyn Records, window: Window) -> Result<f64, String> {
+        let value = self.value(&mut |quantity| match quantity {
+            Quantity::Metric(name, arm) => records.metric(name, arm.as_deref()),
+            Quantity::Reduced(form, series) => {
+                let (times, values) = series.rows(records, window)?;
+                form.of(&times, &values)
+            }
+        })?;
+        if value.is_finite() { Ok(value) } else { Err(format!("its value is {value}")) }
+    }
+
+    /// Names of the arms it speaks of; none where a quantity names no arm.
+    pub fn arms(&self) -> Vec<Option<&str>> {
+        let of = |quantity| match quantity {
+            &Quantity::Metric(_, ref arm) => vec![arm.as_deref()],
+            Quantity::Reduced(_, series) => series.columns.quantities().iter().map(|a| a.arm.as_deref()).collect(),
+        };
+        self.quantities().into_iter().flat_map(of).collect()
+    }
+
+    /// Whether it asks if a run stopped, so that what was recorded until then counts.
+    pub fn asks_whether_stopped(&self) -> bool {
+        self.quantities().iter().any(|q| matches!(q, Quantity::Metric(name, _) if name == "stopped"))
+    }
+}
+
+impl Series {
+    /// Parses a column, or an expression in columns.
+    ///
+    /// # Errors
+    /// In words, what is not as it should be.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        series(&tokens(text)?)
+    }
+
+    /// Times and values of the rows it has.
+    ///
+    /// # Errors
+    /// In words: what is not there.
+    pub fn rows(&self, records: &dyn Records, window: Window) -> Result<(Vec<f64>, Vec<f64>), String> {
+        let asked = self.columns.quantities();
+        let columns = asked.iter().map(|a| records.column(a)).collect::<Result<Vec<_>, _>>()?;
+        let Some(first) = columns.first() else { return Err("no column is named".to_owned()) };
+        let key = |rows: &Rows| if self.by_step { rows.steps.to_vec() } else { rows.times.to_vec() };
+        let keys: Vec<Vec<f64>> = columns.iter().map(key).collect();
+        let span = keys[0].last().unwrap_or(&0.0) - keys[0].first().unwrap_or(&0.0);
+        let (mut times, mut values) = (Vec::new(), Vec::new());
+        for (row, (time, here)) in first.times.iter().zip(&keys[0]).enumerate() {
+            if !window.has(*time) {
+                continue;
+            }
+            // The same row of the same record, or the row at the same time of another.
+            let near = |keys: &Vec<f64>| {
+                let i = keys.partition_point(|k| *k < here - SAME_TIME * span);
+                keys.get(i).filter(|k| (*k - here).abs() <= SAME_TIME * span).map(|_| i)
+            };
+            let found = |keys: &Vec<f64>| if keys.get(row) == Some(here) { Some(row) } else { near(keys) };
+            let Some(rows) = keys.iter().map(found).collect::<Option<Vec<_>>>() else { continue };
+            let mut next = 0..;
+            let value = self.columns.value(&mut |a| {
+                let i = next.next().unwrap_or_default();
+                let value = columns[i].values.get(rows[i]).copied().unwrap_or(f64::NAN);
+                if value.is_nan() {
+                    Err(format!("column `{}` is not a number at time {time}", a.column))
+                } else {
+                    Ok(value)
+                }
+            })?;
+            times.push(*time);
+            values.push(value);
+        }
+        match (values.is_empty(), window == Window::default(), columns.len()) {
+            (false, ..) => Ok((times, values)),
+            (true, true, 1) => Err("the history has no rows".to_owned()),
+            (true, true, _) => Err("the records have no common rows".to_owned()),
+            (true, false, _) => Err("there are no rows between `after` and `before`".to_owned()),
+        }
+    }
+}
+
+impl Form {
+    /// The number it makes of a column that has rows.
+    ///
+    /// # Errors
+    /// A time that was not recorded.
+    pub fn of(self, times: &[f64], values: &[f64]) -> Result<f64, String> {
+        let none = || "the history has no rows".to_owned();
+        let least = metrics::extreme(values, f64::lt).ok_or_else(none)?;
+        let most = metrics::extreme(values, f64::gt).ok_or_else(none)?;
+        Ok(match self {
+            Self::Min => least.1,
+            Self::Max => most.1,
+            Self::TimeOfMin => times[least.0],
+            Self::TimeOfMax => times[most.0],
+            Self::Range => most.1 - least.1,
+            Self::First => values[0],
+            Self::Last => values[values.len() - 1],
+            Self::Drift => values.iter().fold(0.0, |drift, x| f64::max(drift, (x - values[0]).abs())),
+            Self::Peak => f64::max(most.1.abs(), least.1.abs()),
+            Self::Rms => (values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64).sqrt(),
+            Self::At(time) => metrics::at(times, values, time).ok_or_else(|| {
+                format!("time {time} is outside the record, {} to {}", times[0], times[times.len() - 1])
+            })?,
+        })
+    }
+}
+
+/// Form, and what follows it.
+fn form(tokens: &[Token]) -> Result<Option<(Form, &[Token])>, String> {
+    let words: Vec<&str> = tokens.iter().map_while(Token::word).take(3).collect();
+    let (form, length) = match words[..] {
+        ["time", "of", "min", ..] => (Form::TimeOfMin, 3),
+        ["time", "of", "max", ..] => (Form::TimeOfMax, 3),
+        ["at", time, ..] => (Form::At(time.parse().map_err(|_| format!("`{time}` is not a time"))?), 2),
+        ["min", ..] => (Form::Min, 1),
+        ["max", ..] => (Form::Max, 1),
+        ["first", ..] => (Form::First, 1),
+        ["last", ..] => (Form::Last, 1),
+        ["range", ..] => (Form::Range, 1),
+        ["drift", ..] => (Form::Drift, 1),
+        ["peak", ..] => (Form::Peak, 1),
+        ["rms", ..] => (Form::Rms, 1),
+        _ => return Ok(None),
+    };
+    Ok(Some((form, &tokens[length..])))
+}
+
+fn quantity(tokens: &[Token]) -> Result<Quantity, String> {
+    let word = |i: usize| tokens.get(i).and_then(Token::word);
+    match (word(0), word(1)) {
+        (Some("difference"), _) => return difference(Form::Peak, &tokens[1..]),
+        (Some("rms"), Some("difference")) => return difference(Form::Rms, &tokens[2..]),
+        _ => {}
+    }
+    if let Some((form, rest)) = form(tokens)? {
+        return Ok(Quantity::Reduced(form, series(rest).map_err(|e| format!("{e} in `{}`", said(tokens)))?));
+    }
+    match tokens {
+        [Token::Word(name)] => Ok(Quantity::Metric(name.clone(), None)),
+        [Token::Word(name), Token::Word(of), Token::Quoted(arm)] if of == "of" => {
+            Ok(Quantity::Metric(name.clone(), Some(arm.clone())))
+        }
+        _ => Err(unknown(&said(tokens))),
+    }
+}
+
+fn series(tokens: &[Token]) -> Result<Series, String> {
+    let bare = |t: &Token, text| t.word() == Some(text);
+    let (inside, by_step) = match tokens {
+        [open, inside @ .., close, by, step]
+            if bare(open, "[") && bare(close, "]") && bare(by, "by") && bare(step, "step") =>
+        {
+            (inside, true)
+        }
+        [open, inside @ .., close] if bare(open, "[") && bare(close, "]") => (inside, false),
+        _ => return asked(tokens).map(|a| Series { columns: Expression::Quantity(a), by_step: false }),
+    };
+    Ok(Series { columns: expression::parse(inside, &asked)?, by_step })
+}
+
+fn asked(tokens: &[Token]) -> Result<Asked, String> {
+    match tokens {
+        [Token::Word(column)] => Ok(Asked { column: column.clone(), arm: None }),
+        [Token::Word(column), Token::Word(of), Token::Quoted(arm)] if of == "of" => {
+            Ok(Asked { column: column.clone(), arm: Some(arm.clone()) })
+        }
+        [] => Err("a column is missing".to_owned()),
+        _ => Err(unknown(&said(tokens))),
+    }
+}
+
+fn difference(form: Form, tokens: &[Token]) -> Result<Quantity, String> {
+    let [Token::Word(column), Token::Word(of), Token::Quoted(one), Token::Word(and), Token::Quoted(other)] = tokens
+    else {
+        return Err(format!("`difference {}` is not difference COLUMN of \"ARM\" and \"ARM\"", said(tokens)));
+    };
+    if (of.as_str(), and.as_str()) != ("of", "and") {
+        return Err(format!("`difference {}` is not difference COLUMN of \"ARM\" and \"ARM\"", said(tokens)));
+    }
+    let side = |arm: &String| Expression::Quantity(Asked { column: column.clone(), arm: Some(arm.clone()) });
+    let columns = Expression::Binary(expression::Sign::Minus, Box::new([side(one), side(other)]));
+    Ok(Quantity::Reduced(form, Series { columns, by_step: false }))
+}
+
+fn said(tokens: &[Token]) -> String {
+    let one = |token: &Token| match token {
+        Token::Word(word) => word.clone(),
+        Token::Quoted(text) => format!("\"{text}\""),
+    };
+    tokens.iter().map(one).collect::<Vec<_>>().join(" ")
+}
+
+fn unknown(what: &str) -> String {
+    format!(
+        "`{what}` is no number of a record: min, max, first, last, at T, time of min, time of max, range, drift, peak or rms and a column, or \
+         one of {}",
+        metric_names().join(", ")
+    )
+}
+
+/// Names of metrics that need no column.
+pub fn metric_names() -> Vec<&'static str> {
+    DEFINITIONS.iter().chain(&WORK_DEFINITIONS).map(|(name, _)| *name).chain(["stopped"]).collect()
+}
+
+fn no_arms(arm: Option<&str>) -> Result<(), String> {
+    arm.map_or(Ok(()), |arm| Err(format!("this is one run; it has no arm \"{arm}\"")))
+}
+
+/// A metric of the history, or of one of its columns.
+pub(crate) fn metric(history: &History, name: &str) -> Result<f64, String> {
+    if let Some((column, what)) = name.rsplit_once(':') {
+        let values = history.column(column).ok_or_else(|| no_column(column))?;
+        let value = match what {
+            "min" => metrics::extreme(values, f64::lt).map(|x| x.1),
+            "max" => metrics::extreme(values, f64::gt).map(|x| x.1),
+            "roughness" => metrics::column_roughness(history, column),
+            _ => return Err(format!("`{what}` is no metric of a column: min, max or roughness")),
+        };
+        return value.ok_or_else(|| format!("this record has no {what} of `{column}`"));
+    }
+    match metrics::all(history).into_iter().find(|m| m.name == name) {
+        Some(metric) => metric.value.ok_or_else(|| format!("this record has no {}", metric.definition)),
+        None => Err(unknown(name)),
+    }
+}
+
+fn no_column(name: &str) -> String {
+    format!("there is no column `{name}` in the history")
+}
+
+/// A column of a history.
+pub(crate) fn rows<'a>(history: &'a History, name: &str) -> Result<Rows<'a>, String> {
+    let values = history.column(name).ok_or_else(|| no_column(name))?;
+    let steps = history.column("step").unwrap_or_default();
+    Ok(Rows { times: history.times().into(), steps: steps.into(), values: values.into() })
+}
+
+impl Records for History {
+    fn metric(&self, name: &str, arm: Option<&str>) -> Result<f64, String> {
+        no_arms(arm)?;
+        metric(self, name)
+    }
+
+    fn column(&self, asked: &Asked) -> Result<Rows<'_>, String> {
+        no_arms(asked.arm.as_deref())?;
+        rows(self, &asked.column)
+    }
+}
+
+impl Records for Run {
+    fn metric(&self, name: &str, arm: Option<&str>) -> Result<f64, String> {
+        no_arms(arm)?;
+        if name == "stopped" {
+            return Ok(f64::from(u8::from(self.manifest.status == Status::Failed)));
+        }
+        if WORK_DEFINITIONS.iter().any(|(work, _)| *work == name) {
+            let found = metrics::of_run(self).into_iter().find(|m| m.name == name).and_then(|m| m.value);
+            return found.ok_or_else(|| format!("the manifest has no {name}"));
+        }
+        metric(&self.history, name)
+    }
+
+    fn column(&self, asked: &Asked) -> Result<Rows<'_>, String> {
+        self.history.column(&asked.column).ok_or_else(|| no_column(&asked.column))?;
+        Records::column(&self.history, asked)
+    }
+}

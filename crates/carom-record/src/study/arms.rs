@@ -1,0 +1,105 @@
+//! What is asked of the arms of a study, gathered arm by arm, so that only one record is in memory at a time: metrics, and the columns
+//! somebody asks for.
+
+use std::collections::BTreeMap;
+
+use crate::metrics::Metric;
+use crate::question::{self, Asked, Quantity, Question, Records, Rows, Series};
+use crate::{Run, Status};
+
+/// Numbers and columns of the arms.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ArmRecords {
+    metrics: BTreeMap<(String, String), Result<f64, String>>,
+    columns: BTreeMap<(String, String), [Vec<f64>; 3]>,
+    /// Why an arm has no numbers.
+    lacking: BTreeMap<String, String>,
+}
+
+impl ArmRecords {
+    /// Takes what the questions and columns ask of an arm from its record.
+    pub(super) fn gather(
+        &mut self,
+        arm: &str,
+        run: &Run,
+        metrics: &[Metric],
+        questions: &[&Question],
+        series: &[&Series],
+    ) {
+        let stopped = f64::from(u8::from(run.manifest.status == Status::Failed));
+        self.put_metric(arm, "stopped", stopped);
+        if run.manifest.status != Status::Finished {
+            let reason = run.manifest.reason.as_deref().unwrap_or("it has not ended");
+            self.lacking.insert(arm.to_owned(), format!("arm \"{arm}\" stopped: {reason}"));
+            return;
+        }
+        let key = |name: &str| (arm.to_owned(), name.to_owned());
+        let columns = |series: &Series| series.columns.quantities().into_iter().cloned().collect::<Vec<_>>();
+        let mut asked: Vec<Asked> = series.iter().copied().flat_map(columns).collect();
+        for quantity in questions.iter().flat_map(|q| q.quantities()) {
+            match quantity {
+                Quantity::Metric(name, of) if of.as_deref() == Some(arm) && name != "stopped" => {
+                    let known = metrics.iter().find(|m| m.name == name.as_str()).and_then(|m| m.value);
+                    let value = known.map_or_else(|| question::metric(&run.history, name), Ok);
+                    self.metrics.insert(key(name), value);
+                }
+                Quantity::Metric(..) => {}
+                Quantity::Reduced(_, series) => asked.extend(columns(series)),
+            }
+        }
+        for asked in asked.iter().filter(|a| a.arm.as_deref() == Some(arm)) {
+            if let Ok(rows) = question::rows(&run.history, &asked.column) {
+                let rows = [rows.times.into_owned(), rows.steps.into_owned(), rows.values.into_owned()];
+                self.columns.insert(key(&asked.column), rows);
+            }
+        }
+    }
+
+    pub(super) fn put_metric(&mut self, arm: &str, name: &str, value: f64) {
+        self.metrics.insert((arm.to_owned(), name.to_owned()), Ok(value));
+    }
+
+    fn none(&self, arm: &str, what: &str) -> String {
+        self.lacking.get(arm).cloned().unwrap_or_else(|| format!("arm \"{arm}\" has no {what}"))
+    }
+}
+
+/// The arm a quantity names; in a study every one must.
+fn named<'a>(arm: Option<&'a str>, what: &str) -> Result<&'a str, String> {
+    arm.ok_or_else(|| format!("of which arm? write `{what} of \"ARM\"`"))
+}
+
+impl Question {
+    /// Whether every quantity names its arm.
+    ///
+    /// # Errors
+    /// In words, which does not.
+    pub fn of_arms(&self) -> Result<(), String> {
+        for quantity in self.quantities() {
+            match quantity {
+                Quantity::Metric(name, arm) => named(arm.as_deref(), name).map(drop)?,
+                Quantity::Reduced(_, series) => {
+                    for asked in series.columns.quantities() {
+                        named(asked.arm.as_deref(), &asked.column)?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Records for ArmRecords {
+    fn metric(&self, name: &str, arm: Option<&str>) -> Result<f64, String> {
+        let arm = named(arm, name)?;
+        let found = self.metrics.get(&(arm.to_owned(), name.to_owned()));
+        found.cloned().unwrap_or_else(|| Err(self.none(arm, name)))
+    }
+
+    fn column(&self, asked: &Asked) -> Result<Rows<'_>, String> {
+        let arm = named(asked.arm.as_deref(), &asked.column)?;
+        let found = self.columns.get(&(arm.to_owned(), asked.column.clone()));
+        let [times, steps, values] = found.ok_or_else(|| self.none(arm, &format!("column `{}`", asked.column)))?;
+        Ok(Rows { times: times.into(), steps: steps.into(), values: values.into() })
+    }
+}

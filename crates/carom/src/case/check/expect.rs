@@ -1,0 +1,81 @@
+//! What expectations ask for must be in the record: columns, metrics, times of the run.
+
+use carom_record::question::{Form, Quantity, Question, Series, metric_names};
+
+use super::super::suggest;
+use super::{Check, columns};
+
+impl Check<'_> {
+    pub(super) fn expects(&mut self) {
+        let draft = self.draft;
+        // Columns come from names: with a key unknown or missing somewhere, an unknown column proves nothing.
+        let complete = !self.problems.iter().any(|p| p.at_key)
+            && draft.probes.iter().all(Option::is_some)
+            && draft.bodies.iter().all(Option::is_some)
+            && draft.contacts.iter().all(Option::is_some)
+            && draft.supports.iter().all(Option::is_some);
+        let known =
+            columns::of(draft.dimension.unwrap_or(2), &draft.bodies, &draft.contacts, &draft.supports, &draft.probes);
+        let end = draft.time.as_ref().map_or(f64::INFINITY, |t| t.end);
+        for (i, expect) in draft.expects.iter().enumerate() {
+            let Some(expect) = expect else { continue };
+            let path = format!("expect[{i}].what");
+            let quantities = if expect.deviation.is_some() {
+                Series::parse(&expect.what).map(|columns| vec![Quantity::Reduced(Form::Last, columns)])
+            } else {
+                Question::parse(&expect.what).map(|q| q.quantities().into_iter().cloned().collect())
+            };
+            let mut wanted: Vec<String> = Vec::new();
+            let mut arms = Vec::new();
+            // What cannot be parsed was told when it was read.
+            for quantity in quantities.unwrap_or_default() {
+                match quantity {
+                    Quantity::Reduced(form, columns) => {
+                        if let Form::At(time) = form
+                            && !(0.0..=end).contains(&time)
+                        {
+                            let why = format!("the run goes from 0 to {end}");
+                            let what = format!("`{time}` is not a time of this run");
+                            self.add(path.clone(), what, why, "write for example \"at 0.5 A.uy\"");
+                        }
+                        arms.extend(columns.columns.quantities().iter().filter_map(|a| a.arm.clone()));
+                        wanted.extend(columns.columns.quantities().iter().map(|a| a.column.clone()));
+                    }
+                    Quantity::Metric(name, arm) => {
+                        arms.extend(arm);
+                        match name.rsplit_once(':') {
+                            Some((column, "min" | "max" | "roughness")) => wanted.push(column.to_owned()),
+                            _ => self.metric(&name, &known, &path),
+                        }
+                    }
+                }
+            }
+            if let Some(arm) = arms.first() {
+                let why = "a case is one run; only a study has arms";
+                self.add(path.clone(), format!("there is no arm \"{arm}\""), why, format!("leave `of \"{arm}\"` out"));
+            }
+            for column in wanted.iter().filter(|_| complete).filter(|c| !known.contains(c)) {
+                let why = "columns are those of history.csv; probes add name.quantity";
+                let help = suggest::nearest(column, known.iter().map(String::as_str)).map_or_else(
+                    || format!("use one of: {}", known.join(", ")),
+                    |near| format!("did you mean `{near}`?"),
+                );
+                self.add(path.clone(), format!("history.csv will have no column `{column}`"), why, help);
+            }
+        }
+    }
+
+    fn metric(&mut self, name: &str, columns: &[String], path: &str) {
+        let names = metric_names();
+        if names.contains(&name) {
+            return;
+        }
+        let why = "it is FORM COLUMN with min, max, first, last, at TIME, time of min, time of max, range, drift, peak or rms, or a metric";
+        let help = if columns.iter().any(|c| c == name) {
+            format!("`{name}` is a column: write for example `last {name}`, or add a `formula`")
+        } else {
+            suggest::help(name, names.iter().copied())
+        };
+        self.add(path.to_owned(), format!("there is no metric `{name}`"), why, help);
+    }
+}
