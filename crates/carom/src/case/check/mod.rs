@@ -120,9 +120,10 @@ impl<'a> Check<'a> {
             return None;
         }
         let body = self.body(name)?;
-        if !body.mesh.sides().contains(&part) {
+        let sides = body.mesh.sides();
+        if !sides.iter().any(|s| s == part) {
             let why = format!("its mesh has the sides: {}", all_sides(body));
-            let help = suggest::nearest(part, body.mesh.sides()).map_or_else(
+            let help = suggest::nearest(part, sides.iter().map(String::as_str)).map_or_else(
                 || format!("use one of: {}", all_sides(body)),
                 |near| format!("did you mean `{name}.{near}`?"),
             );

@@ -96,6 +96,9 @@ const BODY: Table = Table {
         .example("\"T6\""),
         key("mesh", Variant(&SHAPES), "Shape and fineness.")
             .example("{ shape = \"rectangle\", min = [0.0, 0.0], max = [1.0, 1.0], cells = [8, 8] }"),
+        key("place", Kind::Table(&PLACE), "Turns and moves the mesh before anything else sees it.")
+            .optional()
+            .example("{ rotate = 30.0, about = [0.0, 0.0], shift = [0.0, 1.0] }"),
         key("gravity", Vector, "Acceleration by gravity; zero if left out.")
             .unit("length/time²")
             .optional()
@@ -111,6 +114,20 @@ const BODY: Table = Table {
             "Mass matrix: consistent, or diagonal by scaling (HRZ).",
         )
         .default("\"consistent\""),
+    ],
+    later: &[],
+};
+
+const PLACE: Table = Table {
+    name: "place",
+    doc: "Turns and moves a mesh, built in or from a file: first the rotation, then the shift.",
+    keys: &[
+        key("rotate", Number(ANY), "Angle counter-clockwise; dimension 2.").unit("degrees").default("0.0"),
+        key("about", Vector, "Point it turns about; the origin if left out.")
+            .unit("length")
+            .optional()
+            .example("[0.0, 0.0]"),
+        key("shift", Vector, "Distance it is moved by; zero if left out.").unit("length").optional().example("[0.0, 1.0]"),
     ],
     later: &[],
 };
