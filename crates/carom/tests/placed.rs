@@ -65,7 +65,6 @@ fn a_turned_and_moved_case_moves_alike() {
             let moved = turned([here[0] - 1.0, here[1] - 2.0]);
             worst = worst.max((moved[0] - 2.0 - there[0]).hypot(moved[1] + 2.5 - there[1]));
         }
-        println!("{degrees}°: {worst:.1e}");
-        assert!(worst < 1e-8, "{degrees}°: {worst:e}");
+        assert!(worst < 1e-12, "{degrees}°: {worst:e}");
     }
 }

@@ -82,9 +82,9 @@ impl Outline {
         let next = |from: usize| {
             let out = cdt.fixed_vertices().nth(from).map(|v| cdt.vertex(v));
             out.and_then(|v| {
-                let on = v.out_edges().find(|e| {
-                    e.is_constraint_edge() && e.face().as_inner().is_some_and(|f| within[f.fix().index()])
-                });
+                let on = v
+                    .out_edges()
+                    .find(|e| e.is_constraint_edge() && e.face().as_inner().is_some_and(|f| within[f.fix().index()]));
                 on.map(|e| e.to().fix().index())
             })
         };
@@ -92,8 +92,7 @@ impl Outline {
         let mut at = 0;
         for k in 0..n {
             // Clockwise outlines are walked backwards: the last side first.
-            let (side, end) =
-                if self.clockwise { (n - 1 - k, (n - 1 - k) % n) } else { (k, (k + 1) % n) };
+            let (side, end) = if self.clockwise { (n - 1 - k, (n - 1 - k) % n) } else { (k, (k + 1) % n) };
             while let Some(to) = next(at) {
                 sides[side].push([at, to]);
                 at = to;
@@ -210,10 +209,7 @@ fn positions(cdt: &Cdt) -> Vec<[f64; 2]> {
 /// Corners of the faces inside, counter-clockwise.
 fn inside(cdt: &Cdt) -> Vec<[usize; 3]> {
     let within = faces_inside(cdt);
-    cdt.inner_faces()
-        .filter(|f| within[f.fix().index()])
-        .map(|f| f.vertices().map(|v| v.fix().index()))
-        .collect()
+    cdt.inner_faces().filter(|f| within[f.fix().index()]).map(|f| f.vertices().map(|v| v.fix().index())).collect()
 }
 
 /// Moves every node that is not held to the mean of its neighbours, unless a triangle would turn over.

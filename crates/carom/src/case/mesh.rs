@@ -86,8 +86,7 @@ pub(super) fn read(
     if wanted != dimension {
         let what = format!("the shape \"{shape}\" is of dimension {wanted}");
         let why = format!("the case has dimension = {dimension}");
-        let help =
-            if dimension == 1 { "use shape = \"interval\"" } else { "use for example shape = \"rectangle\"" };
+        let help = if dimension == 1 { "use shape = \"interval\"" } else { "use for example shape = \"rectangle\"" };
         problems.push(Problem::new(format!("{path}.shape"), what, why, help));
         return None;
     }

@@ -18,6 +18,7 @@ mod suggest;
 mod tests;
 mod tree;
 mod view;
+mod warnings;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -72,6 +73,8 @@ pub struct Case {
 pub enum Plane {
     /// No strain out of the plane.
     Strain,
+    /// No stress out of the plane.
+    Stress,
 }
 
 /// Labels of the units the case's numbers are in.

@@ -2,9 +2,9 @@
 
 use carom_solid::Mesh;
 
+use super::PlaceSpec;
 use super::problem::Problem;
 use super::view::View;
-use super::PlaceSpec;
 
 /// Reads the table `place` of a body.
 pub(super) fn read(v: View, dimension: usize, path: &str, problems: &mut Vec<Problem>) -> Option<PlaceSpec> {

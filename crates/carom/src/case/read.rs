@@ -175,7 +175,9 @@ fn body(v: View, dimension: usize, folder: &Path, path: &str, problems: &mut Vec
         mesh,
         place: match v.table.get("place") {
             Some(node) => {
-                let Some(Kind::Table(spec)) = v.keys.iter().find(|k| k.name == "place").map(|k| k.kind) else { return None };
+                let Some(Kind::Table(spec)) = v.keys.iter().find(|k| k.name == "place").map(|k| k.kind) else {
+                    return None;
+                };
                 let v = View { table: node.table()?, keys: spec.keys, preset: v.preset };
                 Some(place::read(v, dimension, &format!("{path}.place"), problems)?)
             }

@@ -6,7 +6,7 @@ use carom_solid::generate::{self, Refinement};
 use carom_solid::{Body, Law, Mesh, SolidError};
 
 use crate::case::mesh_file;
-use crate::case::{BodySpec, ContactSpec, Detection, MeshSpec, RefineSpec};
+use crate::case::{BodySpec, ContactSpec, Detection, MeshSpec, Plane, RefineSpec};
 
 /// A space of dimension `D` that cases can be computed in.
 pub trait Dimension<const D: usize> {
@@ -22,8 +22,14 @@ pub trait Dimension<const D: usize> {
     /// Mesh of a body as its shape or file has it.
     fn unplaced(spec: &BodySpec) -> Result<Mesh<D>, String>;
 
-    /// Body of a mesh.
-    fn body(mesh: Mesh<D>, law: Law, density: f64, thickness: f64) -> Result<Box<dyn Body<D>>, SolidError>;
+    /// Body of a mesh; the plane state is that of dimension 2.
+    fn body(
+        mesh: Mesh<D>,
+        law: Law,
+        plane: Plane,
+        density: f64,
+        thickness: f64,
+    ) -> Result<Box<dyn Body<D>>, SolidError>;
 
     /// Contact of two sides: secondary nodes, primary facets, and in dimension 1 the direction out of the primary.
     fn between(
@@ -48,7 +54,7 @@ impl Dimension<1> for Space {
         }
     }
 
-    fn body(mesh: Mesh<1>, law: Law, density: f64, thickness: f64) -> Result<Box<dyn Body<1>>, SolidError> {
+    fn body(mesh: Mesh<1>, law: Law, _: Plane, density: f64, thickness: f64) -> Result<Box<dyn Body<1>>, SolidError> {
         carom_solid::body(mesh, law, density, thickness)
     }
 
@@ -79,8 +85,17 @@ impl Dimension<2> for Space {
         .map_err(|e| e.to_string())
     }
 
-    fn body(mesh: Mesh<2>, law: Law, density: f64, thickness: f64) -> Result<Box<dyn Body<2>>, SolidError> {
-        carom_solid::body(mesh, law, density, thickness)
+    fn body(
+        mesh: Mesh<2>,
+        law: Law,
+        plane: Plane,
+        density: f64,
+        thickness: f64,
+    ) -> Result<Box<dyn Body<2>>, SolidError> {
+        match plane {
+            Plane::Strain => carom_solid::body(mesh, law, density, thickness),
+            Plane::Stress => carom_solid::plane_stress_body(mesh, law, density, thickness),
+        }
     }
 
     fn between(spec: &ContactSpec, secondary: &[usize], primary: &[Vec<usize>], _: f64) -> Box<dyn ContactMethod<2>> {

@@ -26,9 +26,8 @@ fn area(mesh: &Mesh<2>) -> f64 {
 
 fn mean_edge(mesh: &Mesh<2>) -> f64 {
     let all = mesh.cells.chunks(mesh.element.nodes()).flat_map(|c| [[c[0], c[1]], [c[1], c[2]], [c[2], c[0]]]);
-    let lengths: Vec<f64> = all
-        .map(|[a, b]| (mesh.nodes[a][0] - mesh.nodes[b][0]).hypot(mesh.nodes[a][1] - mesh.nodes[b][1]))
-        .collect();
+    let lengths: Vec<f64> =
+        all.map(|[a, b]| (mesh.nodes[a][0] - mesh.nodes[b][0]).hypot(mesh.nodes[a][1] - mesh.nodes[b][1])).collect();
     lengths.iter().sum::<f64>() / lengths.len() as f64
 }
 
@@ -37,7 +36,9 @@ fn rings() {
     let center = [0.25, -1.0];
     for element in TRIANGLES {
         let k = element.degree();
-        for (inner, outer, size) in [(0.5, 1.0, 0.1), (0.9, 1.0, 0.1), (0.9, 1.0, 1.0), (0.02, 1.0, 0.2), (0.5, 1.0, 9.0)] {
+        for (inner, outer, size) in
+            [(0.5, 1.0, 0.1), (0.9, 1.0, 0.1), (0.9, 1.0, 1.0), (0.02, 1.0, 0.2), (0.5, 1.0, 9.0)]
+        {
             let mesh = ring(element, inner, outer, center, size).unwrap();
             all_nodes_used_and_none_twice(&mesh);
             assert!(area(&mesh) > 0.0);
@@ -66,7 +67,9 @@ fn enclosed(mesh: &Mesh<2>, side: &str) -> f64 {
     for facet in &mesh.sides[side] {
         for (xi, w) in [(-0.6_f64.sqrt(), 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.6_f64.sqrt(), 5.0 / 9.0)] {
             let shape = crate::line_shape(facet.nodes.len(), xi);
-            let at = |values: &[f64], i: usize| facet.nodes.iter().zip(values).map(|(&n, v)| mesh.nodes[n][i] * v).sum::<f64>();
+            let at = |values: &[f64], i: usize| {
+                facet.nodes.iter().zip(values).map(|(&n, v)| mesh.nodes[n][i] * v).sum::<f64>()
+            };
             let (x, t) = ([0, 1].map(|i| at(&shape.values, i)), [0, 1].map(|i| at(&shape.first, i)));
             twice += w * (x[0] * t[1] - x[1] * t[0]);
         }
@@ -112,9 +115,8 @@ const THIN: [[f64; 2]; 6] = [[0.0, 0.0], [3.0, 0.0], [3.0, 0.1], [0.1, 0.1], [0.
 
 fn shoelace(points: &[[f64; 2]]) -> f64 {
     let n = points.len();
-    let twice: f64 = (0..n)
-        .map(|i| points[i][0] * points[(i + 1) % n][1] - points[i][1] * points[(i + 1) % n][0])
-        .sum();
+    let twice: f64 =
+        (0..n).map(|i| points[i][0] * points[(i + 1) % n][1] - points[i][1] * points[(i + 1) % n][0]).sum();
     0.5 * twice
 }
 
@@ -157,20 +159,23 @@ fn polygons() {
 #[test]
 fn edges_of_a_polygon_have_the_size() {
     let mesh = polygon(Element::T3, &STAR, 0.1, &[]).unwrap();
-    println!("mean {} least angle {}", mean_edge(&mesh), smallest_angle(&mesh));
-    assert!((mean_edge(&mesh) / 0.1 - 1.0).abs() < 0.1, "{}", mean_edge(&mesh));
+    assert!(smallest_angle(&mesh) > 30.0, "{}", smallest_angle(&mesh));
+    assert!((mean_edge(&mesh) / 0.1 - 1.0).abs() < 0.02, "{}", mean_edge(&mesh));
 }
 
 #[test]
 fn a_refined_place_has_its_size_and_the_rest_its_own() {
     let place = Refinement { near: [2.0, 0.7], radius: 0.1, size: 0.02 };
     let mesh = polygon(Element::T3, &NOTCHED, 0.3, &[place]).unwrap();
-    println!("{} cells, least angle {}", mesh.cell_count(), smallest_angle(&mesh));
-    assert!(smallest_angle(&mesh) > 26.0, "{}", smallest_angle(&mesh));
+    assert!(smallest_angle(&mesh) > 30.0, "{}", smallest_angle(&mesh));
     assert!((area(&mesh) / shoelace(&NOTCHED) - 1.0).abs() < 1e-13);
     let size_at = |near: [f64; 2], radius: f64| {
         let within = |n: &usize| (mesh.nodes[*n][0] - near[0]).hypot(mesh.nodes[*n][1] - near[1]) < radius;
-        let cells = mesh.cells.chunks(3).filter(|c| c.iter().all(within)).flat_map(|c| [[c[0], c[1]], [c[1], c[2]], [c[2], c[0]]]);
+        let cells = mesh
+            .cells
+            .chunks(3)
+            .filter(|c| c.iter().all(within))
+            .flat_map(|c| [[c[0], c[1]], [c[1], c[2]], [c[2], c[0]]]);
         let lengths: Vec<f64> = cells
             .map(|[a, b]| (mesh.nodes[a][0] - mesh.nodes[b][0]).hypot(mesh.nodes[a][1] - mesh.nodes[b][1]))
             .collect();

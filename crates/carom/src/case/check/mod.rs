@@ -73,6 +73,11 @@ impl<'a> Check<'a> {
             };
             self.add("dimension", format!("this version has no dimension {d}"), why, "use dimension = 1 or 2");
         }
+        let plane = self.document.root().get("plane").and_then(Node::text);
+        if given == Some(1) && plane == Some("stress") {
+            let why = "a bar has no plane; it is strained along x alone";
+            self.add("plane", "plane = \"stress\" needs dimension = 2", why, "leave it out");
+        }
     }
 
     fn unique_names(&mut self, list: &str) {

@@ -15,7 +15,11 @@ pub const CASE: Table = Table {
             .optional()
             .example("\"Two bars\""),
         key("dimension", Kind::Count(1), "Space dimension: 1 (bars) or 2.").example("2"),
-        key("plane", Choice(&["strain"], &["stress", "axisymmetric"]), "Plane state in dimension 2.")
+        key(
+            "plane",
+            Choice(&["strain", "stress"], &["axisymmetric"]),
+            "Plane state in dimension 2: no strain across the plane, or no stress (the thickness is that of the undeformed sheet).",
+        )
             .default("\"strain\""),
         key("thickness", Number(POSITIVE), "Out-of-plane thickness; in dimension 1 the area of the cross-section.")
             .unit("length, or length² in dimension 1")
@@ -127,7 +131,10 @@ const PLACE: Table = Table {
             .unit("length")
             .optional()
             .example("[0.0, 0.0]"),
-        key("shift", Vector, "Distance it is moved by; zero if left out.").unit("length").optional().example("[0.0, 1.0]"),
+        key("shift", Vector, "Distance it is moved by; zero if left out.")
+            .unit("length")
+            .optional()
+            .example("[0.0, 1.0]"),
     ],
     later: &[],
 };

@@ -104,7 +104,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     // contact without mass
     (&["material.rubber.density=0"], &["nothing that touches in `strike` has mass", "persistency = \"none\""]),
     // later versions
-    (&["plane=stress"], &["this version does not have `plane = \"stress\"` yet"]),
+    (&["plane=axisymmetric"], &["this version does not have `plane = \"axisymmetric\"` yet"]),
     (&["contact.strike.method=mortar"], &["does not have `method = \"mortar\"` yet"]),
     (&["contact.strike.enforcement=penalty"], &["use one of: multiplier"]),
     (&["contact.strike.restitution=0.5"], &["this version does not have `restitution` yet"]),
@@ -112,7 +112,10 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["time.step={ initial = 1e-3 }"], &["`step` must be a number > 0, not a table", "A later version"]),
     (&["body.prism.mesh={ file = \"a.msh\", surface = \"prism\" }"], &["the mesh \"a.msh\" cannot be read"]),
     // shapes
-    (&["body.prism.mesh={ shape = \"ring\", inner = 1.0, outer = 1.0, center = [0, 0], size = 1 }"], &["`outer` = 1 is not"]),
+    (
+        &["body.prism.mesh={ shape = \"ring\", inner = 1.0, outer = 1.0, center = [0, 0], size = 1 }"],
+        &["`outer` = 1 is not"],
+    ),
     (&["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 1]], size = 1 }"], &["at least 3 points"]),
     (&["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 1], [2]], size = 1 }"], &["`points` must be"]),
     (
