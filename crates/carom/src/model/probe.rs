@@ -104,7 +104,6 @@ pub(crate) fn von_mises(s: &[[f64; 3]; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::Simulation;
     use crate::case::{Document, read};
 
@@ -134,7 +133,7 @@ probe = [
         assert!(!corner.has_stress(&model, &state) && shared.has_stress(&model, &state));
         let mut values = Vec::new();
         corner.values(&model, &state, &mut values);
-        assert!(values[0].is_nan() && (values[1] + 0.2).abs() < 1e-14 && values[2] == 0.0, "{values:?}");
+        assert!(values[0].is_nan() && (values[1] + 0.2).abs() < 1e-14 && values[2].abs() < 1e-14, "{values:?}");
         values.clear();
         shared.values(&model, &state, &mut values);
         assert!(values[0].is_finite());
