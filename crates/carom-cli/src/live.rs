@@ -34,6 +34,17 @@ impl Live {
         Self { json, terminal: io::stderr().is_terminal(), last: None, shown: false }
     }
 
+    /// Says what the case is warned of, before it runs.
+    pub(crate) fn warn(&self, warnings: &[String]) {
+        for message in warnings {
+            if self.json {
+                let _ = out::event(&serde_json::json!({ "event": "warning", "message": message }));
+            } else {
+                let _ = writeln!(io::stderr().lock(), "warning: {message}");
+            }
+        }
+    }
+
     /// Shows a step, if the last one shown is long enough ago or this is the end.
     pub(crate) fn show(&mut self, progress: &Progress) {
         let last = progress.step == progress.steps;

@@ -265,7 +265,12 @@ where
         if let Some(m) = case.materials.iter().find(|m| m.name == spec.material)
             && m.density > 0.0
         {
-            let speed = ((m.lambda + 2.0 * m.mu) / m.density).sqrt();
+            // In plane stress the thickness gives way: Λ is 2Λμ/(Λ + 2μ).
+            let lambda = match case.plane {
+                carom::case::Plane::Strain => m.lambda,
+                carom::case::Plane::Stress => 2.0 * m.lambda * m.mu / (m.lambda + 2.0 * m.mu),
+            };
+            let speed = ((lambda + 2.0 * m.mu) / m.density).sqrt();
             let least = |i: usize| {
                 let at = mesh.nodes.iter().map(|x| x[i]);
                 at.clone().fold(f64::NEG_INFINITY, f64::max) - at.fold(f64::INFINITY, f64::min)

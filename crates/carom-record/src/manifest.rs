@@ -130,6 +130,9 @@ pub struct Manifest {
     /// facet with the facets' interior points between their ends.
     #[serde(default)]
     pub sides: BTreeMap<String, Vec<Vec<usize>>>,
+    /// What was said about the case before it ran, as sentences.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// Wall seconds per phase.
     pub timings: BTreeMap<String, f64>,
     /// Counts: steps, newton, factorisations, rejected, …
@@ -157,6 +160,7 @@ impl Manifest {
             threads,
             columns,
             sides: BTreeMap::new(),
+            warnings: Vec::new(),
             timings: BTreeMap::new(),
             counters: BTreeMap::new(),
             expectations: Vec::new(),

@@ -22,6 +22,9 @@ pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&str>, notes
         title = escape(title)
     );
     header(&mut out, run);
+    for warning in &run.manifest.warnings {
+        let _ = writeln!(out, "<p><b class=\"miss\">Warning:</b> {}.</p>", escape(warning));
+    }
     for note in notes {
         let _ = writeln!(out, "<p class=\"small\">{}</p>", escape(note));
     }

@@ -1,7 +1,7 @@
 //! From a mesh and a law, known when a case has been read, to a body whose shape and law were known when Carom was compiled.
 
 use crate::body::Body;
-use crate::material::{Law, LinearElastic, Material, NeoHookean, SaintVenantKirchhoff};
+use crate::material::{Law, LinearElastic, Material, NeoHookean, PlaneStress, SaintVenantKirchhoff};
 use crate::mesh::{Element, Mesh};
 use crate::shape::{Line2, Line3, Line4, Shape, Tri3, Tri6, Tri10};
 use crate::solid::{Solid, SolidError};
@@ -31,6 +31,25 @@ where
         Law::NeoHookean { lambda, mu } => mesh.with(NeoHookean { lambda, mu }, density, thickness),
         Law::SaintVenantKirchhoff { lambda, mu } => mesh.with(SaintVenantKirchhoff { lambda, mu }, density, thickness),
         Law::LinearElastic { lambda, mu } => mesh.with(LinearElastic { lambda, mu }, density, thickness),
+    }
+}
+
+/// Body in plane stress; [`body`] makes one in plane strain. `thickness` is that of the undeformed sheet.
+///
+/// # Errors
+/// As [`body`].
+pub fn plane_stress_body(
+    mesh: Mesh<2>,
+    law: Law,
+    density: f64,
+    thickness: f64,
+) -> Result<Box<dyn Body<2>>, SolidError> {
+    match law {
+        Law::NeoHookean { lambda, mu } => mesh.with(PlaneStress(NeoHookean { lambda, mu }), density, thickness),
+        Law::SaintVenantKirchhoff { lambda, mu } => {
+            mesh.with(PlaneStress(SaintVenantKirchhoff { lambda, mu }), density, thickness)
+        }
+        Law::LinearElastic { lambda, mu } => mesh.with(PlaneStress(LinearElastic { lambda, mu }), density, thickness),
     }
 }
 

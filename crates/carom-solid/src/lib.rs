@@ -13,7 +13,7 @@ pub mod shape;
 mod solid;
 
 pub use body::{Body, Inverted, PointState};
-pub use factory::{Cells, body};
+pub use factory::{Cells, body, plane_stress_body};
 pub use lumping::cell_lumped_mass;
 pub use material::Law;
 pub use mesh::{Element, Facet, Mesh};

@@ -14,7 +14,7 @@ use std::marker::PhantomData;
 use carom_algebra::{Mat, Vector};
 
 use crate::body::{Body, Inverted, PointState};
-use crate::material::{Material, NotPositive, excess_det};
+use crate::material::{Material, NotPositive};
 use crate::mesh::{Element, Mesh};
 use crate::quadrature::Rule;
 use crate::reference::{self, Bounds, Degenerate, gradient};
@@ -259,7 +259,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
     fn cell_min_det_f(&self, cell: usize, y: &[[f64; D]]) -> f64 {
         let u = self.displacements(cell, y);
         let points = &self.gradients[self.start[cell]..self.start[cell + 1]];
-        points.iter().map(|g| 1.0 + excess_det(&gradient(&u, g))).fold(f64::INFINITY, f64::min)
+        points.iter().map(|g| self.law.volume_ratio(&gradient(&u, g))).fold(f64::INFINITY, f64::min)
     }
 
     fn point(&self, cell: usize, xi: &[f64], y: &[[f64; D]]) -> Result<PointState, Inverted> {
@@ -277,7 +277,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
                 (false, false) => 0.0,
             })
         });
-        Ok(PointState { det_f: 1.0 + excess_det(&h), cauchy })
+        Ok(PointState { det_f: self.law.volume_ratio(&h), cauchy })
     }
 
     fn shape(&self, xi: &[f64], values: &mut [f64]) {

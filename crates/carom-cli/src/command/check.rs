@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use carom::case::{Case, MeshSpec, PrimarySpec, SchemeSpec};
+use carom::case::{Case, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec};
 
 use crate::exit::{Exit, Failure};
 use crate::out;
@@ -27,7 +27,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let (case, document) = super::case(&arguments.case, &arguments.sets)?;
     let facts = simulation::facts(&case, &document)?;
     if arguments.json {
-        out::event(&serde_json::json!({ "event": "check", "case": case, "model": facts }))?;
+        let event = serde_json::json!({ "event": "check", "case": case, "model": facts, "warnings": case.warnings() });
+        out::event(&event)?;
     } else {
         out::line(&table(&case, &facts))?;
     }
@@ -42,6 +43,9 @@ fn table(case: &Case, facts: &Facts) -> String {
         if let MeshSpec::File { file, repairs, .. } = &body.mesh {
             lines.push(format!("           from {}", file.display()));
             lines.extend(repairs.iter().map(|repair| format!("           repaired: {repair}")));
+        }
+        if let Some(PlaceSpec { rotate, about, shift }) = &body.place {
+            lines.push(format!("           turned by {rotate}° about {about:?}, moved by {shift:?}"));
         }
     }
     for support in &case.supports {
@@ -70,6 +74,7 @@ fn table(case: &Case, facts: &Facts) -> String {
     lines.push(format!("  time     {steps} steps of {} to {}", short(case.time.step), short(case.time.end)));
     let transit = short(facts.transit_steps);
     lines.push(format!("           a pressure wave crosses the smallest body in {transit} steps"));
+    lines.extend(case.warnings().iter().map(|warning| format!("  warning  {warning}")));
     lines.join("\n")
 }
 

@@ -54,6 +54,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         out::event(&json!({ "event": "start", "title": case.title, "directory": directory, "steps": steps }))?;
     }
     let mut live = Live::new(arguments.json);
+    live.warn(&case.warnings());
     let done = simulation::run(&case, &document, &directory, options, &mut |p| live.show(p), &stop);
     drop(live);
     summary::tell(done, arguments.json)

@@ -102,11 +102,11 @@ impl Rings {
         }
         let n = self.n;
         let edges = (0..self.sixths * n).map(|i| [self.node(n, i), self.node(n, i + 1)]).collect();
-        skeleton.sides.push(Side { name: "arc", edges, circle: Some(Circle { center, radius }) });
+        skeleton.sides.push(Side { name: "arc".into(), edges, circle: Some(Circle { center, radius }) });
         if self.sixths == 3 {
             let down = (1..=n).rev().map(|k| [self.node(k, 3 * k), self.node(k - 1, 3 * (k - 1))]);
             let on = (1..=n).map(|k| [self.node(k - 1, 0), self.node(k, 0)]);
-            skeleton.sides.push(Side { name: "axis", edges: down.chain(on).collect(), circle: None });
+            skeleton.sides.push(Side { name: "axis".into(), edges: down.chain(on).collect(), circle: None });
         }
         skeleton
     }

@@ -22,7 +22,7 @@ pub(super) struct Skeleton {
 
 /// Edges of a side in the order of the walk, on a circle or straight.
 pub(super) struct Side {
-    pub(super) name: &'static str,
+    pub(super) name: String,
     pub(super) edges: Vec<[usize; 2]>,
     pub(super) circle: Option<Circle>,
 }
@@ -97,7 +97,7 @@ pub(super) fn elevate(skeleton: Skeleton, element: Element) -> Mesh<2> {
             let inner = directed(&between[&key(edge)], edge);
             Facet { cell: owner[&edge], nodes: edge.into_iter().chain(inner).collect() }
         };
-        (side.name.to_string(), side.edges.iter().map(facet).collect())
+        (side.name, side.edges.iter().map(facet).collect())
     };
     let sides: BTreeMap<_, _> = sides.into_iter().map(facets).collect();
     Mesh { element, nodes, cells, sides, repairs: Vec::new() }

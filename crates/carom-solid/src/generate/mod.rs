@@ -1,15 +1,20 @@
-//! Built-in meshes: interval, rectangle, disc and half-disc. The geometric cells of a shape are the same for every order; see `elevate` for
+//! Built-in meshes: interval, rectangle, disc, half-disc, ring and polygon. The geometric cells of a shape are the same for every order; see `elevate` for
 //! the nodes between corners. `*_nodes` count without building: ask them first whether a mesh fits the
 //! memory.
 
+mod delaunay;
 mod disc;
 mod elevate;
+mod polygon;
 mod rectangle;
+mod ring;
 
 use std::collections::BTreeMap;
 
 pub use disc::{disc, disc_nodes, half_disc, half_disc_nodes};
+pub use polygon::{Refinement, outline, polygon};
 pub use rectangle::{rectangle, rectangle_nodes};
+pub use ring::ring;
 
 use crate::mesh::{Element, Facet, Mesh};
 
@@ -23,6 +28,20 @@ pub enum MeshError {
     Cells { cells: Vec<usize> },
     #[error("radius {radius} and size {size} must be finite and > 0, the centre {center:?} finite")]
     Disc { radius: f64, size: f64, center: [f64; 2] },
+    #[error("inner {inner} < outer {outer} and size {size} must be finite and > 0, the centre {center:?} finite")]
+    Ring { inner: f64, outer: f64, size: f64, center: [f64; 2] },
+    #[error("a polygon has at least 3 points, not {count}")]
+    Points { count: usize },
+    #[error("point {point} of the polygon is not finite or coincides with the one before")]
+    Point { point: usize },
+    #[error("side{first} and side{second} of the polygon cross, touch or fold back onto each other")]
+    Crossing { first: usize, second: usize },
+    #[error("{what} = {value} must be finite and > 0")]
+    Size { what: &'static str, value: f64 },
+    #[error("a refined place must be finite and its radius ≥ 0, not {near:?} and {radius}")]
+    Place { near: [f64; 2], radius: f64 },
+    #[error("the polygon could not be meshed with angles of {angle}° or more")]
+    Angles { angle: f64 },
     #[error("element {element:?} does not fill a shape of dimension {dimension}")]
     Dimension { element: Element, dimension: usize },
 }

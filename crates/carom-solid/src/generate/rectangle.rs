@@ -27,7 +27,7 @@ pub fn rectangle(element: Element, min: [f64; 2], max: [f64; 2], cells: [usize; 
             skeleton.triangles.extend(pair);
         }
     }
-    let mut side = |name, edges| skeleton.sides.push(Side { name, edges, circle: None });
+    let mut side = |name: &str, edges| skeleton.sides.push(Side { name: name.into(), edges, circle: None });
     side("bottom", (0..nx).map(|i| [node(i, 0), node(i + 1, 0)]).collect());
     side("right", (0..ny).map(|j| [node(nx, j), node(nx, j + 1)]).collect());
     side("top", (0..nx).rev().map(|i| [node(i + 1, ny), node(i, ny)]).collect());

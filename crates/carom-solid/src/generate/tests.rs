@@ -7,7 +7,9 @@ use carom_algebra::Vector;
 use super::*;
 use crate::quadrature::triangle;
 use crate::reference::gradient;
-use crate::shape::{Shape, Tri6, Tri10};
+use crate::shape::{Shape, Tri3, Tri6, Tri10};
+
+mod free;
 
 const TRIANGLES: [Element; 3] = [Element::T3, Element::T6, Element::T10];
 

@@ -1,7 +1,7 @@
 //! Hyperelastic laws Ψ(H), H = F − I, with first Piola–Kirchhoff stress P = ∂Ψ/∂F and tangent ∂P/∂F.
 //!
 //! A law is written once for every dimension `D`: in the `3 − D` directions a body does not extend in there is no strain (H is padded with
-//! zeros). `D = 2` is plane strain; `D = 1` is uniaxial *strain*, so that a linear-elastic bar has the modulus Λ + 2μ, which is Young's
+//! zeros). `D = 2` is plane strain, or wrapped in [`PlaneStress`] plane stress; `D = 1` is uniaxial *strain*, so that a linear-elastic bar has the modulus Λ + 2μ, which is Young's
 //! modulus when Poisson's ratio is 0 (Λ = 0, μ = E/2).
 //!
 //! Laws take H rather than F, and no formula subtracts nearly equal numbers when H is small: a motion of 1e-9 keeps its digits.
@@ -9,6 +9,7 @@
 mod kinematics;
 mod linear_elastic;
 mod neo_hookean;
+mod plane_stress;
 mod saint_venant_kirchhoff;
 
 use carom_algebra::{Mat, Vector};
@@ -16,6 +17,7 @@ use carom_algebra::{Mat, Vector};
 pub use kinematics::{excess_cofactor, excess_det};
 pub use linear_elastic::LinearElastic;
 pub use neo_hookean::NeoHookean;
+pub use plane_stress::{PlaneStress, Thickness};
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 
 /// A determinant J of the deformation gradient that is not positive.
@@ -46,8 +48,13 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// Cauchy stress within the space of the body.
     fn cauchy(&self, point: &Self::Point) -> Mat<D>;
 
-    /// Cauchy normal stress in the directions without strain.
+    /// Cauchy normal stress in the directions the body does not extend in.
     fn lateral(&self, point: &Self::Point) -> f64;
+
+    /// Determinant J of the three-dimensional deformation gradient, positive or not.
+    fn volume_ratio(&self, h: &Mat<D>) -> f64 {
+        1.0 + excess_det(h)
+    }
 }
 
 /// Choice of a law with Lamé's constants.

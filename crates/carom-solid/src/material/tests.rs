@@ -4,6 +4,8 @@ use proptest::prelude::*;
 
 use super::*;
 
+mod plane_stress;
+
 const LAMBDA: f64 = 2.0;
 const MU: f64 = 1.5;
 

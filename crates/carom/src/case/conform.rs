@@ -127,6 +127,15 @@ impl Check {
                 self.numbers(list, key, path);
             }
             (Kind::Numbers, Value::List(list)) => self.numbers(list, key, path),
+            (Kind::Points(least), Value::List(list)) if list.len() >= *least => {
+                for (i, node) in list.iter().enumerate() {
+                    let path = format!("{path}[{i}]");
+                    match &node.value {
+                        Value::List(point) if point.len() == 2 => self.numbers(point, key, &path),
+                        _ => self.wrong(node, key, &path),
+                    }
+                }
+            }
             (Kind::Sides, Value::List(list)) if !list.is_empty() => {
                 for (i, node) in list.iter().enumerate().filter(|(_, n)| n.text().is_none()) {
                     self.wrong(node, key, &format!("{path}[{i}]"));

@@ -1,33 +1,53 @@
 //! Meshes: built-in shapes and files; read, their sides by name, their size estimated before they are made.
 
+use std::f64::consts::PI;
 use std::path::Path;
 
-use carom_solid::Element;
+use carom_solid::{Element, generate};
 
-use super::keys;
+use super::keys::{self, Kind};
 use super::mesh_file;
 use super::problem::Problem;
 use super::tree::{Node, Table};
 use super::view::View;
-use super::{MeshSpec, Preset};
+use super::{MeshSpec, Preset, RefineSpec};
 
 impl MeshSpec {
     /// Names of the shape's sides, in the order in which its boundary is walked.
-    pub fn sides(&self) -> Vec<&str> {
-        match self {
-            Self::File { sides, .. } => sides.iter().map(String::as_str).collect(),
-            Self::Interval { .. } => vec!["left", "right"],
-            Self::Rectangle { .. } => vec!["bottom", "right", "top", "left"],
-            Self::Disc { .. } => vec!["arc"],
-            Self::HalfDisc { .. } => vec!["arc", "axis"],
-        }
+    pub fn sides(&self) -> Vec<String> {
+        let words: &[&str] = match self {
+            Self::File { sides, .. } => return sides.clone(),
+            Self::Polygon { points, .. } => return (1..=points.len()).map(|k| format!("side{k}")).collect(),
+            Self::Interval { .. } => &["left", "right"],
+            Self::Rectangle { .. } => &["bottom", "right", "top", "left"],
+            Self::Disc { .. } => &["arc"],
+            Self::HalfDisc { .. } => &["arc", "axis"],
+            Self::Ring { .. } => &["inner", "outer"],
+        };
+        words.iter().map(ToString::to_string).collect()
     }
 
     /// Roughly how many cells and nodes the mesh will have, in floating point: nothing overflows.
     pub fn estimate(&self, element: Element) -> (f64, f64) {
         let k = element.degree() as f64;
         let rings = |radius: f64, size: f64| (radius / size).ceil().max(1.0);
+        // Equilateral triangles with the edges h fill an area.
+        let filled = |area: f64, h: f64| area / (0.75_f64.sqrt() / 2.0 * h * h);
+        let nodes = |cells: f64| (cells, 0.5 * k * k * cells * 1.1 + 10.0 * k);
         match *self {
+            Self::Ring { inner, outer, size, .. } => {
+                let h = size.min(outer - inner);
+                // Twelve to the circle near a small inner one.
+                let growing = 24.0 * (outer / inner).ln().max(1.0);
+                nodes(filled(PI * (outer * outer - inner * inner), h) + growing)
+            }
+            Self::Polygon { ref points, size, ref refine } => {
+                let next = points.iter().cycle().skip(1);
+                let twice: f64 = points.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum();
+                let area = twice.abs() / 2.0;
+                let place = |r: &RefineSpec| filled(area.min(PI * (r.radius + 3.0 * r.size).powi(2)), r.size);
+                nodes(filled(area, size) + refine.iter().map(place).sum::<f64>())
+            }
             Self::File { nodes, cells, .. } => (cells as f64, nodes as f64),
             Self::Interval { cells, .. } => (cells as f64, k * cells as f64 + 1.0),
             Self::Rectangle { cells: [nx, ny], .. } => {
@@ -66,8 +86,7 @@ pub(super) fn read(
     if wanted != dimension {
         let what = format!("the shape \"{shape}\" is of dimension {wanted}");
         let why = format!("the case has dimension = {dimension}");
-        let help =
-            if dimension == 1 { "use shape = \"interval\"" } else { "use \"rectangle\", \"disc\" or \"half-disc\"" };
+        let help = if dimension == 1 { "use shape = \"interval\"" } else { "use for example shape = \"rectangle\"" };
         problems.push(Problem::new(format!("{path}.shape"), what, why, help));
         return None;
     }
@@ -87,10 +106,41 @@ pub(super) fn read(
         "disc" => {
             Some(MeshSpec::Disc { radius: v.number("radius")?, center: point("center")?, size: v.number("size")? })
         }
+        "ring" => {
+            let (inner, outer) = (v.number("inner")?, v.number("outer")?);
+            if inner >= outer {
+                let what = format!("`outer` = {outer} is not greater than `inner` = {inner}");
+                let (path, why) = (format!("{path}.outer"), "the ring would have no width");
+                problems.push(Problem::new(path, what, why, "give outer > inner"));
+                return None;
+            }
+            Some(MeshSpec::Ring { inner, outer, center: point("center")?, size: v.number("size")? })
+        }
+        "polygon" => polygon(v, path, problems),
         _ => {
             Some(MeshSpec::HalfDisc { radius: v.number("radius")?, center: point("center")?, size: v.number("size")? })
         }
     }
+}
+
+/// A polygon whose outline can be filled.
+fn polygon(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<MeshSpec> {
+    let pair = |node: &Node| node.list()?.iter().map(Node::number).collect::<Option<Vec<_>>>()?.try_into().ok();
+    let points: Vec<[f64; 2]> = v.value("points")?.list()?.iter().map(pair).collect::<Option<_>>()?;
+    let tables = v.table.get("refine").map_or(Some(&[][..]), Node::list)?;
+    let refine = tables.iter().map(|node| {
+        let Kind::Tables(spec) = v.keys.iter().find(|k| k.name == "refine")?.kind else { return None };
+        let v = View { table: node.table()?, keys: spec.keys, preset: v.preset };
+        let near = v.numbers("near")?.try_into().ok()?;
+        Some(RefineSpec { near, radius: v.number("radius")?, size: v.number("size")? })
+    });
+    let refine = refine.collect::<Option<_>>()?;
+    if let Err(error) = generate::outline(&points) {
+        let why = "a polygon is one closed line that does not meet itself";
+        problems.push(Problem::new(format!("{path}.points"), error.to_string(), why, "list its corners in order"));
+        return None;
+    }
+    Some(MeshSpec::Polygon { points, size: v.number("size")?, refine })
 }
 
 fn rectangle_cells(

@@ -9,6 +9,7 @@ pub mod keys;
 mod mesh;
 pub(crate) mod mesh_file;
 mod overrides;
+mod place;
 mod problem;
 mod read;
 mod schema;
@@ -17,6 +18,7 @@ mod suggest;
 mod tests;
 mod tree;
 mod view;
+mod warnings;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -71,6 +73,8 @@ pub struct Case {
 pub enum Plane {
     /// No strain out of the plane.
     Strain,
+    /// No stress out of the plane.
+    Stress,
 }
 
 /// Labels of the units the case's numbers are in.
@@ -132,12 +136,26 @@ pub struct BodySpec {
     pub element: carom_solid::Element,
     /// Where its mesh comes from.
     pub mesh: MeshSpec,
+    /// Where the mesh is put; as it is made, if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub place: Option<PlaceSpec>,
     /// Acceleration by gravity, one component per dimension.
     pub gravity: Vec<f64>,
     /// Initial velocity, uniform.
     pub velocity: Vec<f64>,
     /// Mass matrix.
     pub mass: MassKind,
+}
+
+/// A rigid motion of a mesh: x ↦ about + R(rotate)(x − about) + shift.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlaceSpec {
+    /// Angle in degrees, counter-clockwise; 0 in dimension 1.
+    pub rotate: f64,
+    /// Point it turns about.
+    pub about: Vec<f64>,
+    /// Distance it is moved by.
+    pub shift: Vec<f64>,
 }
 
 /// How inertia is distributed over the nodes.
@@ -190,6 +208,26 @@ pub enum MeshSpec {
         /// Length of a cell's edge.
         size: f64,
     },
+    /// Between two circles, sides `inner outer`.
+    Ring {
+        /// Radius of the inner circle.
+        inner: f64,
+        /// Radius of the outer circle.
+        outer: f64,
+        /// Centre.
+        center: [f64; 2],
+        /// Length of a cell's edge.
+        size: f64,
+    },
+    /// Any simple polygon, sides `side1`, `side2`, ….
+    Polygon {
+        /// Corners in order, either way round.
+        points: Vec<[f64; 2]>,
+        /// Length of a cell's edge.
+        size: f64,
+        /// Places with finer cells.
+        refine: Vec<RefineSpec>,
+    },
     /// A named physical surface (dimension 1: curve) of a .msh file; sides are its named physical curves (points).
     File {
         /// Absolute path.
@@ -207,6 +245,17 @@ pub enum MeshSpec {
         /// What was put right when the mesh was read.
         repairs: Vec<String>,
     },
+}
+
+/// A place with finer cells.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RefineSpec {
+    /// Its centre.
+    pub near: [f64; 2],
+    /// Edges have the size up to this distance.
+    pub radius: f64,
+    /// Length of a cell's edge there.
+    pub size: f64,
 }
 
 /// Sides held in some directions.

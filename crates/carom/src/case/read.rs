@@ -11,6 +11,7 @@ use super::document::{Document, joined};
 use super::expect::{self, Asked};
 use super::keys::{self, Kind};
 use super::mesh;
+use super::place;
 use super::problem::{CaseError, Problem};
 use super::suggest;
 use super::tree::{Node, Table};
@@ -172,6 +173,16 @@ fn body(v: View, dimension: usize, folder: &Path, path: &str, problems: &mut Vec
         material: v.text("material")?,
         element: v.choice("element")?,
         mesh,
+        place: match v.table.get("place") {
+            Some(node) => {
+                let Some(Kind::Table(spec)) = v.keys.iter().find(|k| k.name == "place").map(|k| k.kind) else {
+                    return None;
+                };
+                let v = View { table: node.table()?, keys: spec.keys, preset: v.preset };
+                Some(place::read(v, dimension, &format!("{path}.place"), problems)?)
+            }
+            None => None,
+        },
         gravity: if v.has("gravity") { v.numbers("gravity")? } else { Vec::new() },
         velocity: if v.has("velocity") { v.numbers("velocity")? } else { Vec::new() },
         mass: v.choice("mass")?,

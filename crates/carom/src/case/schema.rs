@@ -65,6 +65,10 @@ fn values(kind: &Kind) -> Map<String, Value> {
         }
         Kind::Vector => json!({ "type": "array", "minItems": 1, "maxItems": 2, "items": { "type": "number" } }),
         Kind::Numbers => json!({ "type": "array", "items": { "type": "number" } }),
+        Kind::Points(least) => {
+            let point = json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "number" } });
+            json!({ "type": "array", "minItems": least, "items": point })
+        }
         Kind::Side => side,
         Kind::Sides => json!({ "type": "array", "minItems": 1, "items": side }),
         Kind::SideOr(spec) => json!({ "oneOf": [side, table(spec, None)] }),

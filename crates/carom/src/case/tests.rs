@@ -3,6 +3,7 @@
 mod mesh_file;
 mod messages;
 mod misspelt;
+mod shapes;
 
 use super::*;
 

@@ -107,8 +107,9 @@ where
             case::Law::SaintVenantKirchhoff => Law::SaintVenantKirchhoff { lambda, mu },
             case::Law::LinearElastic => Law::LinearElastic { lambda, mu },
         };
-        let made = Space::mesh(spec)
-            .and_then(|mesh| Space::body(mesh, law, material.density, case.thickness).map_err(|e| e.to_string()));
+        let made = Space::mesh(spec).and_then(|mesh| {
+            Space::body(mesh, law, case.plane, material.density, case.thickness).map_err(|e| e.to_string())
+        });
         match made {
             Ok(body) => {
                 let mesh = body.mesh();

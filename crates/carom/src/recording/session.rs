@@ -98,6 +98,8 @@ struct Session<'a, const D: usize> {
     manifest: Manifest,
     weights: Vec<f64>,
     field_steps: Vec<u64>,
+    /// Whether each probe had the stresses it records after the last step.
+    stressed: Vec<bool>,
     began: Instant,
     first_step: u64,
     /// Wall seconds spent on writing.
@@ -163,6 +165,7 @@ where
     let version = env!("CARGO_PKG_VERSION");
     let mut manifest = Manifest::new(version, resolved, source, columns(case, &simulation.model), options.threads);
     manifest.sides = sides(&simulation.model);
+    manifest.warnings = case.warnings();
     let writer = RunWriter::create(directory, &manifest, &bytes(&simulation.state)?)?;
     let mut session = Session::new(case, simulation, writer, manifest);
     session.write_start()?;
@@ -228,6 +231,7 @@ where
         let field_steps = case.output.at_times.iter().map(at).collect();
         let weights = center_weights(&simulation.model);
         let first_step = simulation.state.step;
+        let stressed = stressed(&simulation);
         let began = Instant::now();
         Self {
             case,
@@ -236,6 +240,7 @@ where
             manifest,
             weights,
             field_steps,
+            stressed,
             began,
             first_step,
             output: 0.0,
@@ -243,8 +248,11 @@ where
         }
     }
 
-    /// Row and fields of the initial state.
+    /// Warnings, row and fields of the initial state.
     fn write_start(&mut self) -> Result<(), RunError> {
+        for warning in &self.manifest.warnings {
+            self.writer.log(&Event::new(0, 0.0, "warning", warning.clone()))?;
+        }
         self.write_row(&GridReport::default())?;
         self.write_fields()
     }
@@ -274,12 +282,30 @@ where
                 end = End::Stopped(stopped);
                 break;
             }
+            self.look_for_stress()?;
             let began = Instant::now();
             self.record(&report)?;
             self.output += began.elapsed().as_secs_f64();
             observe(&self.progress(&report));
         }
         self.close(end, remarks)
+    }
+
+    /// Logs where a probe's stress ceases to exist: a function of the states before and after the step, so that a resumed run logs alike.
+    fn look_for_stress(&mut self) -> Result<(), RunError> {
+        let now = stressed(&self.simulation);
+        let Simulation { model, state, .. } = &self.simulation;
+        let ceased = self.stressed.iter().zip(&now).map(|(before, now)| *before && !now);
+        for (probe, _) in model.probes.iter().zip(ceased).filter(|(_, ceased)| *ceased) {
+            let message = format!(
+                "probe \"{}\": J ≤ 0 in every cell at its point, though not at the quadrature points; its stress is NaN from here on until \
+                 J > 0",
+                probe.name
+            );
+            self.writer.log(&Event::new(state.step, state.time, "no-stress", message))?;
+        }
+        self.stressed = now;
+        Ok(())
     }
 
     /// Everything a grid step leaves in the record.
@@ -400,6 +426,11 @@ where
         }
         Ok(outcome)
     }
+}
+
+fn stressed<const D: usize>(simulation: &Simulation<D>) -> Vec<bool> {
+    let Simulation { model, state, .. } = simulation;
+    model.probes.iter().map(|probe| probe.has_stress(model, state)).collect()
 }
 
 fn bytes(state: &State) -> Result<Vec<u8>, RunError> {

@@ -73,6 +73,11 @@ impl<'a> Check<'a> {
             };
             self.add("dimension", format!("this version has no dimension {d}"), why, "use dimension = 1 or 2");
         }
+        let plane = self.document.root().get("plane").and_then(Node::text);
+        if given == Some(1) && plane == Some("stress") {
+            let why = "a bar has no plane; it is strained along x alone";
+            self.add("plane", "plane = \"stress\" needs dimension = 2", why, "leave it out");
+        }
     }
 
     fn unique_names(&mut self, list: &str) {
@@ -120,9 +125,10 @@ impl<'a> Check<'a> {
             return None;
         }
         let body = self.body(name)?;
-        if !body.mesh.sides().contains(&part) {
+        let sides = body.mesh.sides();
+        if !sides.iter().any(|s| s == part) {
             let why = format!("its mesh has the sides: {}", all_sides(body));
-            let help = suggest::nearest(part, body.mesh.sides()).map_or_else(
+            let help = suggest::nearest(part, sides.iter().map(String::as_str)).map_or_else(
                 || format!("use one of: {}", all_sides(body)),
                 |near| format!("did you mean `{name}.{near}`?"),
             );

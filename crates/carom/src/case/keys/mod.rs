@@ -74,6 +74,8 @@ pub enum Kind {
     Vector,
     /// Any number of finite numbers.
     Numbers,
+    /// Points of the plane, at least so many.
+    Points(usize),
     /// A list of words out of these, at least one.
     Choices(&'static [&'static str]),
     /// A side `body.side`.
@@ -182,6 +184,7 @@ impl Kind {
             Self::Counts(least) => format!("a list of 2 whole numbers ≥ {least}"),
             Self::Vector => several(dimension),
             Self::Numbers => "a list of numbers".into(),
+            Self::Points(least) => format!("a list of at least {least} points [x, y]"),
             Self::Choices(choices) => format!("a list out of {}", words(choices)),
             Self::Side => "a side \"body.side\"".into(),
             Self::Sides => "a list of sides [\"body.side\"]".into(),

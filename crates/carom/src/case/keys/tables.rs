@@ -15,7 +15,11 @@ pub const CASE: Table = Table {
             .optional()
             .example("\"Two bars\""),
         key("dimension", Kind::Count(1), "Space dimension: 1 (bars) or 2.").example("2"),
-        key("plane", Choice(&["strain"], &["stress", "axisymmetric"]), "Plane state in dimension 2.")
+        key(
+            "plane",
+            Choice(&["strain", "stress"], &["axisymmetric"]),
+            "Plane state in dimension 2: no strain across the plane, or no stress (the thickness is that of the undeformed sheet).",
+        )
             .default("\"strain\""),
         key("thickness", Number(POSITIVE), "Out-of-plane thickness; in dimension 1 the area of the cross-section.")
             .unit("length, or length² in dimension 1")
@@ -96,6 +100,9 @@ const BODY: Table = Table {
         .example("\"T6\""),
         key("mesh", Variant(&SHAPES), "Shape and fineness.")
             .example("{ shape = \"rectangle\", min = [0.0, 0.0], max = [1.0, 1.0], cells = [8, 8] }"),
+        key("place", Kind::Table(&PLACE), "Turns and moves the mesh before anything else sees it.")
+            .optional()
+            .example("{ rotate = 30.0, about = [0.0, 0.0], shift = [0.0, 1.0] }"),
         key("gravity", Vector, "Acceleration by gravity; zero if left out.")
             .unit("length/time²")
             .optional()
@@ -111,6 +118,23 @@ const BODY: Table = Table {
             "Mass matrix: consistent, or diagonal by scaling (HRZ).",
         )
         .default("\"consistent\""),
+    ],
+    later: &[],
+};
+
+const PLACE: Table = Table {
+    name: "place",
+    doc: "Turns and moves a mesh, built in or from a file: first the rotation, then the shift.",
+    keys: &[
+        key("rotate", Number(ANY), "Angle counter-clockwise; dimension 2.").unit("degrees").default("0.0"),
+        key("about", Vector, "Point it turns about; the origin if left out.")
+            .unit("length")
+            .optional()
+            .example("[0.0, 0.0]"),
+        key("shift", Vector, "Distance it is moved by; zero if left out.")
+            .unit("length")
+            .optional()
+            .example("[0.0, 1.0]"),
     ],
     later: &[],
 };

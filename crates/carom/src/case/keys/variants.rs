@@ -1,7 +1,7 @@
 //! Tables whose keys depend on one of them: shapes of meshes, kinds of schemes.
 
-use super::Kind::{Choice, Count, Counts, Number, Text, Vector};
-use super::{ANY, Key, POSITIVE, Range, Table, Variants, key};
+use super::Kind::{Choice, Count, Counts, Number, Points, Tables, Text, Vector};
+use super::{ANY, Key, NOT_NEGATIVE, POSITIVE, Range, Table, Variants, key};
 
 /// Built-in shapes.
 pub const SHAPES: Variants = Variants {
@@ -51,10 +51,62 @@ pub const SHAPES: Variants = Variants {
                 later: &[],
             },
         ),
+        (
+            "ring",
+            Table {
+                name: "mesh of shape \"ring\"",
+                doc: "What lies between two concentric circles; sides inner, outer.",
+                keys: &[
+                    key("inner", Number(POSITIVE), "Radius of the inner circle.").unit("length").example("0.4"),
+                    key("outer", Number(POSITIVE), "Radius of the outer circle.").unit("length").example("0.5"),
+                    key("center", Vector, "Centre.").unit("length").example("[0.0, 1.0]"),
+                    key(
+                        "size",
+                        Number(POSITIVE),
+                        "Length of a cell's edge; shorter where the ring is thinner than that or the inner circle needs twelve.",
+                    )
+                    .unit("length")
+                    .example("0.05"),
+                ],
+                later: &[],
+            },
+        ),
+        (
+            "polygon",
+            Table {
+                name: "mesh of shape \"polygon\"",
+                doc: "Any simple polygon, convex or not; sides side1 (from the first point to the second), side2, ….",
+                keys: &[
+                    key("points", Points(3), "Corners in order, either way round.")
+                        .unit("length")
+                        .example("[[0.0, 0.0], [48.0, 44.0], [48.0, 60.0], [0.0, 44.0]]"),
+                    key("size", Number(POSITIVE), "Length of a cell's edge; shorter where the outline asks for it.")
+                        .unit("length")
+                        .example("0.1"),
+                    key("refine", Tables(&REFINE), "Places with finer cells.")
+                        .optional()
+                        .example("[{ near = [48.0, 60.0], radius = 2.0, size = 0.02 }]"),
+                ],
+                later: &[],
+            },
+        ),
     ],
     or: Some(&MESH_FILE),
-    later: &["ring", "polygon"],
-    later_keys: &["refine"],
+    later: &[],
+    later_keys: &[],
+};
+
+const REFINE: Table = Table {
+    name: "refine",
+    doc: "A place with finer cells; from its radius on, edges grow by 3/10 of the distance to the mesh's size.",
+    keys: &[
+        key("near", Vector, "Its centre.").unit("length").example("[48.0, 60.0]"),
+        key("radius", Number(NOT_NEGATIVE), "Edges have the size up to this distance from the centre.")
+            .unit("length")
+            .default("0.0"),
+        key("size", Number(POSITIVE), "Length of a cell's edge there.").unit("length").example("0.02"),
+    ],
+    later: &[],
 };
 
 const MESH_FILE: Table = Table {

@@ -104,14 +104,33 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     // contact without mass
     (&["material.rubber.density=0"], &["nothing that touches in `strike` has mass", "persistency = \"none\""]),
     // later versions
-    (&["plane=stress"], &["this version does not have `plane = \"stress\"` yet"]),
+    (&["plane=axisymmetric"], &["this version does not have `plane = \"axisymmetric\"` yet"]),
     (&["contact.strike.method=mortar"], &["does not have `method = \"mortar\"` yet"]),
     (&["contact.strike.enforcement=penalty"], &["use one of: multiplier"]),
     (&["contact.strike.restitution=0.5"], &["this version does not have `restitution` yet"]),
     (&["load=[]"], &["this version does not have `load` yet"]),
     (&["time.step={ initial = 1e-3 }"], &["`step` must be a number > 0, not a table", "A later version"]),
     (&["body.prism.mesh={ file = \"a.msh\", surface = \"prism\" }"], &["the mesh \"a.msh\" cannot be read"]),
-    (&["body.prism.mesh.shape=ring"], &["does not have `shape = \"ring\"` yet"]),
+    // shapes
+    (
+        &["body.prism.mesh={ shape = \"ring\", inner = 1.0, outer = 1.0, center = [0, 0], size = 1 }"],
+        &["`outer` = 1 is not"],
+    ),
+    (&["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 1]], size = 1 }"], &["at least 3 points"]),
+    (&["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 1], [2]], size = 1 }"], &["`points` must be"]),
+    (
+        &["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 1], [1, 0], [0, 1]], size = 1 }"],
+        &["side1 and side3 of the polygon cross", "list its corners in order"],
+    ),
+    (
+        &["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 0], [1, 1]], size = 1e-9 }"],
+        &["the mesh of `prism` is too big"],
+    ),
+    (
+        &["body.cylinder.mesh.refine=[{ near = [0.0, 0.0], size = 0.1 }]"],
+        &["unknown key `refine`", "is a key of mesh of shape \"polygon\""],
+    ),
+    (&["body.cylinder.place={ turn = 30 }"], &["unknown key `turn` in place", "rotate, about, shift"]),
     // keys of other tables
     (&["time.tolerance=1e-9"], &["unknown key `tolerance` in [time]", "is a key of [newton]"]),
     // memory

@@ -1,0 +1,129 @@
+//! Plane stress: the stretch across the plane is what makes the stress across it vanish, at each point for itself,
+//!
+//!   P₃₃(F, F₃₃) = 0,   Aᵢⱼ = Cᵢⱼ − Cᵢ₃ C₃ⱼ / C₃₃,
+//!
+//! (static condensation of the three-dimensional law; Klinkel, Govindjee, Engng. Comput. 19 (2002) 341–354). Ψ is that of the law at the solved
+//! stretch, so that P = ∂Ψ/∂F: what the stretch adds to the derivative is P₃₃ = 0. Cauchy stress is P Fᵀ/J with the J of all three
+//! directions; the force on the deformed, thinner or thicker, sheet is that of P on the undeformed one.
+
+use carom_algebra::{Mat, Vector};
+
+use super::kinematics::excess_det;
+use super::{LinearElastic, Material, NeoHookean, NotPositive, SaintVenantKirchhoff};
+
+/// A law that can be free of stress across a plane.
+pub trait Thickness: Material<3> {
+    /// F₃₃ − 1 at which P₃₃ = 0.
+    ///
+    /// # Errors
+    /// If J of the plane is not positive, or no positive stretch is free of stress.
+    fn excess_stretch(&self, h: &Mat<2>) -> Result<f64, NotPositive>;
+}
+
+/// A three-dimensional law in plane stress.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneStress<L>(pub L);
+
+const E3: Vector<3> = Vector([0.0, 0.0, 1.0]);
+
+impl<L: Thickness> Material<2> for PlaneStress<L> {
+    const ENERGY_DEGREE: usize = <L as Material<3>>::ENERGY_DEGREE;
+    type Point = <L as Material<3>>::Point;
+
+    #[inline]
+    fn at(&self, h: &Mat<2>) -> Result<Self::Point, NotPositive> {
+        let across = self.0.excess_stretch(h)?;
+        let [[a, b], [c, d]] = h.0;
+        self.0.at(&Mat([[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, across]]))
+    }
+
+    #[inline]
+    fn energy(&self, point: &Self::Point) -> f64 {
+        self.0.energy(point)
+    }
+
+    #[inline]
+    fn stress(&self, point: &Self::Point) -> Mat<2> {
+        within(&self.0.stress(point))
+    }
+
+    #[inline]
+    fn tangent(&self, point: &Self::Point, a: &Vector<2>, b: &Vector<2>) -> Mat<2> {
+        let [a, b] = [a, b].map(|v| Vector([v[0], v[1], 0.0]));
+        let coupled = |v: &Vector<3>| self.0.tangent(point, v, &E3).0.map(|row| row[2]);
+        let (left, right) = (coupled(&a), coupled(&b));
+        let across = self.0.tangent(point, &E3, &E3).0[2][2];
+        within(&self.0.tangent(point, &a, &b))
+            - Vector([left[0], left[1]]).outer(&Vector([right[0], right[1]])) * (1.0 / across)
+    }
+
+    fn cauchy(&self, point: &Self::Point) -> Mat<2> {
+        within(&self.0.cauchy(point))
+    }
+
+    fn lateral(&self, _: &Self::Point) -> f64 {
+        0.0
+    }
+
+    fn volume_ratio(&self, h: &Mat<2>) -> f64 {
+        let plane = 1.0 + excess_det(h);
+        self.0.excess_stretch(h).map_or(plane, |across| plane * (1.0 + across))
+    }
+}
+
+fn within(m: &Mat<3>) -> Mat<2> {
+    Mat([[m.0[0][0], m.0[0][1]], [m.0[1][0], m.0[1][1]]])
+}
+
+impl Thickness for LinearElastic {
+    /// ε₃₃ = −Λ tr ε/(Λ + 2μ).
+    #[inline]
+    fn excess_stretch(&self, h: &Mat<2>) -> Result<f64, NotPositive> {
+        Ok(-self.lambda * h.trace() / (self.lambda + 2.0 * self.mu))
+    }
+}
+
+impl Thickness for SaintVenantKirchhoff {
+    /// E₃₃ = −Λ(E₁₁ + E₂₂)/(Λ + 2μ), F₃₃ = √(1 + 2E₃₃).
+    #[inline]
+    fn excess_stretch(&self, h: &Mat<2>) -> Result<f64, NotPositive> {
+        let twice_trace = 2.0 * h.trace() + h.double_dot(h);
+        let twice = -self.lambda * twice_trace / (self.lambda + 2.0 * self.mu);
+        if twice > -1.0 {
+            // √(1 + x) − 1 without subtracting.
+            Ok(twice / (1.0 + (1.0 + twice).sqrt()))
+        } else {
+            Err(NotPositive(0.0))
+        }
+    }
+}
+
+impl Thickness for NeoHookean {
+    /// With s = ln F₃₃: μ(e²ˢ − 1) + Λ(ln J₂ + s) = 0 by Newton's method. The left side is convex in s; for Λ ≥ 0 it rises everywhere, and the
+    /// iterates come down to its one root from the second on. Λ < 0 has none where the plane is pressed together too far.
+    #[inline]
+    fn excess_stretch(&self, h: &Mat<2>) -> Result<f64, NotPositive> {
+        let excess = excess_det(h);
+        if excess <= -1.0 || excess.is_nan() {
+            return Err(NotPositive(1.0 + excess));
+        }
+        let (lambda, mu, ln_j) = (self.lambda, self.mu, excess.ln_1p());
+        let mut s = -lambda * ln_j / (lambda + 2.0 * mu);
+        let mut last = f64::INFINITY;
+        for _ in 0..60 {
+            let square = (2.0 * s).exp_m1();
+            let slope = 2.0 * mu * (1.0 + square) + lambda;
+            let step = (mu * square + lambda * (ln_j + s)) / slope;
+            if !(slope > 0.0 && step.is_finite()) {
+                break;
+            }
+            s -= step;
+            // Converged to round-off: steps no longer shrink.
+            if step.abs() <= 2.0 * f64::EPSILON * s.abs() || step.abs() >= last && last < 1e-9 {
+                return Ok(s.exp_m1());
+            }
+            last = step.abs();
+        }
+        Err(NotPositive(0.0))
+    }
+}

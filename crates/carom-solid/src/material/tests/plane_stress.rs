@@ -1,0 +1,109 @@
+//! Laws in plane stress: derivatives, objectivity, no stress across, uniaxial tension in closed form.
+
+use super::*;
+
+const YOUNG: f64 = MU * (3.0 * LAMBDA + 2.0 * MU) / (LAMBDA + MU);
+const POISSON: f64 = LAMBDA / (2.0 * (LAMBDA + MU));
+
+/// The law's point has no stress across, and the Cauchy stress is that of the three-dimensional law with the stretch it found.
+fn free_across<L: Thickness + Copy>(law: &L, h: &Mat<2>) {
+    let across = law.excess_stretch(h).unwrap();
+    let [[a, b], [c, d]] = h.0;
+    let wide = Mat([[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, across]]);
+    let point = Material::<3>::at(law, &wide).unwrap();
+    let (cauchy, p) = (Material::<3>::cauchy(law, &point), Material::<3>::stress(law, &point));
+    assert!(p.0[2][2].abs() < 1e-14, "{:e}", p.0[2][2]);
+    let plane = PlaneStress(*law);
+    let sheet = plane.at(h).unwrap();
+    for i in 0..2 {
+        for j in 0..2 {
+            assert_eq!(plane.cauchy(&sheet).0[i][j], cauchy.0[i][j]);
+        }
+    }
+    assert!((plane.volume_ratio(h) - (1.0 + excess_det(&wide))).abs() < 1e-15);
+}
+
+proptest! {
+    #[test]
+    fn stress_and_condensed_tangent_are_derivatives(entries in prop::collection::vec(-0.2..0.2, 4)) {
+        derivatives::<2, _>(&PlaneStress(neo_hookean()), &matrix(&entries));
+        derivatives::<2, _>(&PlaneStress(saint_venant_kirchhoff()), &matrix(&entries));
+        derivatives::<2, _>(&PlaneStress(linear_elastic()), &matrix(&entries));
+    }
+
+    #[test]
+    fn rotations_turn_the_stress(entries in prop::collection::vec(-0.2..0.2, 4), a in -3.0..3.0) {
+        let (s, c) = f64::sin_cos(a);
+        let q = Mat([[c, -s], [s, c]]);
+        objectivity::<2, _>(&PlaneStress(neo_hookean()), &matrix(&entries), &q);
+        objectivity::<2, _>(&PlaneStress(saint_venant_kirchhoff()), &matrix(&entries), &q);
+    }
+
+    #[test]
+    fn nothing_presses_across(entries in prop::collection::vec(-0.3..0.3, 4)) {
+        free_across(&neo_hookean(), &matrix(&entries));
+        free_across(&saint_venant_kirchhoff(), &matrix(&entries));
+        free_across(&linear_elastic(), &matrix(&entries));
+    }
+
+    #[test]
+    fn small_motions_are_hooke_s(entries in prop::collection::vec(-1.0..1.0, 4)) {
+        let h = matrix::<2>(&entries) * 1e-9;
+        let hooke = stress(&PlaneStress(linear_elastic()), &h);
+        let size = MU * h.double_dot(&h).sqrt();
+        prop_assert!(distance(&stress(&PlaneStress(neo_hookean()), &h), &hooke) < 3e-8 * size);
+        prop_assert!(distance(&stress(&PlaneStress(saint_venant_kirchhoff()), &h), &hooke) < 3e-8 * size);
+    }
+}
+
+/// The thickness is found for any plane stretch: the neo-Hookean root over twelve decades of J, nearly incompressible and foam-like.
+#[test]
+fn extreme_stretches_have_a_thickness() {
+    for lambda in [0.0, 1e-3, 2.0, 1e6] {
+        for stretch in [1e-6, 1e-3, 0.1, 10.0, 1e3, 1e6] {
+            let law = NeoHookean { lambda, mu: MU };
+            let h = Mat([[stretch - 1.0, 0.0], [0.0, 0.0]]);
+            let f33 = 1.0 + law.excess_stretch(&h).unwrap();
+            let terms = [MU * (f33 * f33 - 1.0), lambda * excess_det(&h).ln_1p(), lambda * f33.ln()];
+            let size = terms.iter().map(|t| t.abs()).sum::<f64>().max(f64::MIN_POSITIVE);
+            assert!(terms.iter().sum::<f64>().abs() < 1e-12 * size, "{lambda} {stretch}: {f33}");
+        }
+    }
+    let svk = saint_venant_kirchhoff();
+    assert_eq!(svk.excess_stretch(&Mat([[3.0, 0.0], [0.0, 3.0]])), Err(NotPositive(0.0)));
+    assert_eq!(neo_hookean().excess_stretch(&Mat([[-2.0, 0.0], [0.0, 0.0]])), Err(NotPositive(-1.0)));
+}
+
+/// P and σ at H.
+fn answers<L: Material<2>>(law: L) -> impl Fn(&Mat<2>) -> (Mat<2>, Mat<2>) {
+    move |h| {
+        let point = law.at(h).unwrap();
+        (law.stress(&point), law.cauchy(&point))
+    }
+}
+
+/// A strip pulled along x alone: lateral stretch x₂ = x₃ in closed form, P₁₁ and σ₁₁ = P₁₁/(x₂x₃).
+#[test]
+fn uniaxial_tension() {
+    let check = |law: &dyn Fn(&Mat<2>) -> (Mat<2>, Mat<2>), along: f64, lateral: f64, p11: f64, area: f64| {
+        let (p, cauchy) = law(&Mat([[along - 1.0, 0.0], [0.0, lateral - 1.0]]));
+        assert!((p.0[0][0] - p11).abs() < 1e-13, "{} for {p11}", p.0[0][0]);
+        assert!(p.0[1][1].abs() < 1e-13, "{:e}", p.0[1][1]);
+        assert!((cauchy.0[0][0] - p11 / area).abs() < 1e-13 && cauchy.0[1][1].abs() < 1e-13);
+    };
+    for strain in [-0.2, 0.1, 0.4] {
+        let linear = answers(PlaneStress(linear_elastic()));
+        check(&linear, 1.0 + strain, 1.0 - POISSON * strain, YOUNG * strain, 1.0);
+
+        let green: f64 = strain;
+        let (along, lateral) = ((1.0 + 2.0 * green).sqrt(), (1.0 - 2.0 * POISSON * green).sqrt());
+        let svk = answers(PlaneStress(saint_venant_kirchhoff()));
+        check(&svk, along, lateral, along * YOUNG * green, lateral * lateral);
+
+        // Λ ln(x₁x²) = −μ(x² − 1) gives x₁ from the lateral stretch x.
+        let x = 1.0 - 0.4 * strain;
+        let along = (-MU * (x * x - 1.0) / LAMBDA - 2.0 * x.ln()).exp();
+        let p11 = MU * (along - 1.0 / along) + LAMBDA * (along * x * x).ln() / along;
+        check(&answers(PlaneStress(neo_hookean())), along, x, p11, x * x);
+    }
+}

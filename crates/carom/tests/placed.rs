@@ -1,0 +1,70 @@
+//! A case that is turned and moved as a whole gives the turned and moved motion: shapes, contact, gravity and all.
+
+#![allow(clippy::unwrap_used)]
+
+use carom::case::{Document, read};
+use carom::{GridReport, Simulation};
+
+const DROP: &str = r#"
+dimension = 2
+material = [{ name = "rubber", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }]
+time = { end = 0.1, step = 2.5e-3, scheme = { kind = "chung-hulbert", rho_inf = 0.5 } }
+
+[[body]]
+name = "tube"
+material = "rubber"
+element = "T6"
+mesh = { shape = "ring", inner = 0.3, outer = 0.5, center = [0.05, 0.52], size = 0.2 }
+velocity = [0.0, -1.0]
+gravity = [0.0, -10.0]
+
+[[body]]
+name = "anvil"
+material = "rubber"
+element = "T3"
+mesh = { shape = "polygon", points = [[-1.0, -0.5], [1.0, -0.5], [1.0, 0.0], [-1.0, 0.0]], size = 0.3, refine = [{ near = [0.0, 0.0], radius = 0.2, size = 0.1 }] }
+
+[[support]]
+on = ["anvil.side1"]
+fix = ["x", "y"]
+
+[[contact]]
+name = "strike"
+secondary = "tube.outer"
+primary = "anvil.side3"
+"#;
+
+fn run(sets: &[String]) -> (Vec<[f64; 2]>, usize) {
+    let document = Document::parse("drop.toml", DROP, sets).unwrap();
+    let case = read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)));
+    let mut sim = Simulation::<2>::new(&case, 1).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)));
+    while !sim.finished() {
+        sim.advance(&mut GridReport::default()).unwrap();
+    }
+    let active = sim.state.pairs.iter().flatten().filter(|p| p.active).count();
+    (sim.state.y.as_chunks::<2>().0.to_vec(), active)
+}
+
+#[test]
+fn a_turned_and_moved_case_moves_alike() {
+    let (y, active) = run(&[]);
+    assert!(active > 0);
+    for degrees in [90.0, 37.0_f64] {
+        let (s, c) = degrees.to_radians().sin_cos();
+        let turned = |x: [f64; 2]| [c * x[0] - s * x[1], s * x[0] + c * x[1]];
+        let (v, g) = (turned([0.0, -1.0]), turned([0.0, -10.0]));
+        let place = format!("{{ rotate = {degrees}, about = [1.0, 2.0], shift = [-3.0, 0.5] }}");
+        let (other, _) = run(&[
+            format!("body.tube.place={place}"),
+            format!("body.anvil.place={place}"),
+            format!("body.tube.velocity=[{:e}, {:e}]", v[0], v[1]),
+            format!("body.tube.gravity=[{:e}, {:e}]", g[0], g[1]),
+        ]);
+        let mut worst = 0.0_f64;
+        for (here, there) in y.iter().zip(&other) {
+            let moved = turned([here[0] - 1.0, here[1] - 2.0]);
+            worst = worst.max((moved[0] - 2.0 - there[0]).hypot(moved[1] + 2.5 - there[1]));
+        }
+        assert!(worst < 1e-12, "{degrees}°: {worst:e}");
+    }
+}
