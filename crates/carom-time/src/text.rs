@@ -3,7 +3,7 @@ use std::fmt::{Display, Formatter, Result};
 
 use serde::Serialize;
 
-use crate::explain::{Accuracy, Explanation, accuracy, held};
+use crate::explain::{Accuracy, Explanation};
 use crate::family::scheme;
 use crate::names::short;
 use crate::scheme::{ForceRule, Scheme};
@@ -28,12 +28,13 @@ fn list<T: Display>(f: &mut Formatter, title: &str, items: &[T]) -> Result {
 
 impl Display for Explanation {
     fn fmt(&self, f: &mut Formatter) -> Result {
-        let rule = match self.scheme.forces {
-            ForceRule::AverageForces => "forces averaged",
-            ForceRule::AverageState => "state averaged",
+        let rule = match self.scheme.map(|scheme| scheme.forces) {
+            None => "",
+            Some(ForceRule::AverageForces) => "forces averaged   ",
+            Some(ForceRule::AverageState) => "state averaged   ",
         };
         if let Some((name, others)) = self.names.split_first() {
-            writeln!(f, "{name}   {rule}   {}", self.references.join("; "))?;
+            writeln!(f, "{name}   {rule}{}", self.references.join("; "))?;
             list(f, "the same as", others)?;
         }
         writeln!(f, "\nparameters")?;
@@ -64,8 +65,8 @@ pub struct CatalogueRow {
     pub kind: &'static str,
     /// The parameters shown, in words.
     pub parameters: String,
-    /// What they make.
-    pub scheme: Scheme,
+    /// What they make, in the α family.
+    pub scheme: Option<Scheme>,
     /// Order on smooth motion.
     pub order: u8,
     /// Spectral radius at infinity.
@@ -98,6 +99,12 @@ const SHOWN: &[(&str, &[(&str, f64)])] = &[
     ("chung-hulbert", &[("rho_inf", 0.1)]),
     ("chung-hulbert", &[("rho_inf", 0.0)]),
     ("generalized-alpha", &[("alpha_m", 0.5), ("alpha_f", 0.5), ("beta", 0.25), ("gamma", 0.5)]),
+    ("backward-euler", &[]),
+    ("bdf2", &[]),
+    ("tr-bdf2", &[]),
+    ("bathe", &[("rho_inf", 0.0)]),
+    ("bathe", &[("rho_inf", 0.6)]),
+    ("energy-momentum", &[]),
 ];
 
 /// The catalogue as a table.
@@ -113,14 +120,15 @@ pub fn explain_all() -> Catalogue {
         // Raw parameters stand in their columns.
         let shown = if parameters.len() > 2 { &[] } else { parameters };
         let words: Vec<_> = shown.iter().map(|(key, value)| format!("{key} {value}")).collect();
+        let told = scheme.explain();
         Some(CatalogueRow {
             kind,
             parameters: words.join(", "),
-            scheme,
-            order: scheme.order(),
-            rho_inf: scheme.spectral_radius_at_infinity(),
-            accuracy: accuracy(&scheme, 10),
-            held_steps: held(&scheme).steps,
+            scheme: told.scheme,
+            order: told.order,
+            rho_inf: told.rho_inf,
+            accuracy: told.accuracy.into_iter().find(|a| a.steps_per_period == 10)?,
+            held_steps: told.held.steps,
         })
     };
     Catalogue { rows: SHOWN.iter().filter_map(row).collect() }
@@ -133,8 +141,13 @@ impl Display for Catalogue {
         heads.iter().try_for_each(|head| write!(f, "{head:>10}"))?;
         writeln!(f)?;
         for row in &self.rows {
-            let Scheme { alpha_m, alpha_f, beta, gamma, .. } = row.scheme;
-            write!(f, "{:<18}{:<24}{alpha_m:>10.4}{alpha_f:>10.4}{beta:>10.4}{gamma:>10.4}", row.kind, row.parameters)?;
+            write!(f, "{:<18}{:<24}", row.kind, row.parameters)?;
+            match row.scheme {
+                Some(Scheme { alpha_m, alpha_f, beta, gamma, .. }) => {
+                    write!(f, "{alpha_m:>10.4}{alpha_f:>10.4}{beta:>10.4}{gamma:>10.4}")?;
+                }
+                None => write!(f, "{:>10}{:>10}{:>10}{:>10}", "–", "–", "–", "–")?,
+            }
             let (xi, pe) = (cell(row.accuracy.damping_ratio, 1.0), cell(row.accuracy.period_error, 100.0));
             let held = row.held_steps.map_or("∞".to_owned(), |steps| steps.to_string());
             writeln!(f, "{:>10}{:>10.3}{xi:>10}{:>10}{held:>10}", row.order, row.rho_inf, format!("{pe} %"))?;

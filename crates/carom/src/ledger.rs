@@ -1,48 +1,85 @@
 //! Where the energy of a step went (design.md §5): exact for eq. (15), because it uses the same averaged forces.
 //!
 //! ```text
-//! F̄ = (1−α_f) F_{s+1} + α_f F_s,   Δy = y_{s+1} − y_s
+//! F̄ = (1−α_f) F_{s+1} + α_f F_s,   Δy = y_{s+1} − y_s                    F̄ of other kernels: the mean their velocity update makes, `Stage::mean`
 //! external_work += Δy·F̄_ext (beyond the potential)        contact_work += −Δy·F̄_cont
 //! ```
 //!
-//! The increment of the dissipation then equals (Δy·F̄_int − ΔU) − (γ+α_m−1) Δy·MΔa + Δt² (β−γ/2) Δa·M(a_s + γΔa) to round-off (Krenk 2006).
+//! The increment of the dissipation of the α family then equals (Δy·F̄_int − ΔU) − (γ+α_m−1) Δy·MΔa + Δt² (β−γ/2) Δa·M(a_s + γΔa) to round-off
+//! (Krenk 2006).
 
-use carom_contact::Linearised;
+use carom_contact::{Linearised, Pair};
 
-use crate::balance::contact_weights;
+use crate::case::ForceTime;
 use crate::model::Model;
 use crate::newton::Workspace;
-use crate::state::State;
+use crate::state::{Previous, State};
 
-/// Books a solved step into `next`, before any projection. `work` holds the converged evaluation.
-pub(crate) fn account<const D: usize>(
+/// Adds what a solved stage gives to the mean contact force over the step (`work.mean`, nodal; cleared before the first stage) and to its impulse.
+/// `work` holds the converged evaluation, `previous` the step before of a two-step scheme.
+pub(crate) fn add_stage<const D: usize>(
     model: &Model<D>,
     state: &State,
+    previous: Option<&Previous>,
+    pairs: &[Vec<Pair>],
+    dt: f64,
+    impulse: &mut [f64; 2],
+    work: &mut Workspace<D>,
+) {
+    let [old, start, now] = work.stage.mean;
+    let (share, last) = (now / work.stage.weights.contact, work.stage.end == 1.0);
+    for i in 0..work.mean.len() {
+        let contact = work.forces.contact[i];
+        if model.massless[i] {
+            // Without inertia there is nothing to average with: the force at the end of the step.
+            work.mean[i] = if last { contact / work.stage.weights.external } else { 0.0 };
+        } else {
+            work.mean[i] += share * contact + start * state.f_contact[i];
+        }
+    }
+    if let Some(previous) = previous {
+        for (i, force) in previous.contact.iter().enumerate().filter(|(i, _)| !model.massless[*i]) {
+            work.mean[i] += old * force;
+        }
+        (0..2).for_each(|i| impulse[i] += old * previous.impulse[i]);
+    }
+    for (k, contact) in model.contacts.iter().enumerate() {
+        let (now, start) = if contact.force == ForceTime::End { (1.0, 0.0) } else { (now, start) };
+        let force = secondary_force(&pairs[k], &work.gaps[k]);
+        for i in 0..2 {
+            impulse[i] += dt * (now * force[i] + start * state.contact_forces[k][i]);
+        }
+    }
+}
+
+/// Books a solved step into `next`, before any projection. `work.mean` is the mean contact force.
+pub(crate) fn account<const D: usize>(
+    model: &Model<D>,
     next: &mut State,
     strain: f64,
     increment: &[f64],
-    dt: f64,
+    impulse: [f64; 2],
     work: &Workspace<D>,
 ) {
-    let (weights, before) = (work.stage.weights, work.stage.before);
-    for i in 0..increment.len() {
-        let averaged = if model.massless[i] {
-            work.forces.contact[i] / weights.external
-        } else {
-            work.forces.contact[i] + before.contact * state.f_contact[i]
-        };
-        next.ledger.contact_work -= increment[i] * averaged;
+    for (moved, force) in increment.iter().zip(&work.mean) {
+        next.ledger.contact_work -= moved * force;
     }
     book_contact_forces(model, next);
-    for (k, contact) in model.contacts.iter().enumerate() {
-        let (now, before) = contact_weights(&work.stage, contact.force);
-        for i in 0..2 {
-            next.ledger.impulse[i] += dt * (now * next.contact_forces[k][i] + before * state.contact_forces[k][i]);
-        }
-    }
+    (0..2).for_each(|i| next.ledger.impulse[i] += impulse[i]);
     next.ledger.strain = strain;
     next.ledger.potential = model.potential(&next.y);
     book_kinetic(model, next);
+}
+
+/// Force on a secondary side, −Σ λ ∂g/∂y_N, from gaps that are linearised already.
+fn secondary_force<const D: usize>(pairs: &[Pair], gaps: &[Linearised<D>]) -> [f64; 2] {
+    let mut force = [0.0; 2];
+    for (pair, gap) in pairs.iter().zip(gaps).filter(|(pair, _)| pair.active) {
+        for i in 0..D.min(2) {
+            force[i] -= pair.lambda * gap.gradient[0][i];
+        }
+    }
+    force
 }
 
 /// Kinetic energy of the velocities, and the largest energy so far.

@@ -56,6 +56,8 @@ pub struct Workspace<const D: usize> {
     pub(crate) gaps: Vec<Vec<Linearised<D>>>,
     /// The stage being solved.
     pub(crate) stage: Stage,
+    /// Mean contact force over the step, as far as its stages are solved.
+    pub(crate) mean: Vec<f64>,
     /// Wall time by phase.
     pub timings: Timings,
     residual: Vec<f64>,
@@ -80,6 +82,7 @@ impl<const D: usize> Workspace<D> {
             acceleration: zeros.clone(),
             gaps: vec![Vec::new(); model.contacts.len()],
             stage: Stage::default(),
+            mean: zeros.clone(),
             timings: Timings::default(),
             residual: zeros.clone(),
             at: zeros.clone(),
@@ -119,10 +122,11 @@ struct Measure {
     gap: f64,
 }
 
-/// Solves the stage in `work.stage` from the guess in `trial`.
+/// Solves the stage in `work.stage` from the guess in `trial`. `before`: positions at the end of the stage before, for trajectories.
 pub(crate) fn solve_stage<const D: usize>(
     model: &Model<D>,
     state: &State,
+    before: &[f64],
     settings: &NewtonSpec,
     trial: &mut Trial,
     work: &mut Workspace<D>,
@@ -130,7 +134,7 @@ pub(crate) fn solve_stage<const D: usize>(
     let mut effort = Effort::default();
     let mut sets: Vec<ActiveSet> =
         model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect();
-    timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))?;
+    timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
     let mut measure = evaluate(model, state, trial, work, true)?;
     let mut has_tangent = true;
     let mut step = f64::INFINITY;
@@ -140,7 +144,7 @@ pub(crate) fn solve_stage<const D: usize>(
             && measure.gap <= GAP_TOLERANCE * model.scale;
         let mut changed = change_sets(model, &mut sets, trial, work, settled)?;
         if settled && !changed {
-            if !timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))? {
+            if !timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))? {
                 return Ok(effort);
             }
             sets.iter_mut().for_each(ActiveSet::restart);
@@ -170,11 +174,11 @@ pub(crate) fn solve_stage<const D: usize>(
 /// Brings the pairs up to date with the trial's positions; whether that asks for another solve.
 fn detect<const D: usize>(
     model: &Model<D>,
-    state: &State,
+    before: &[f64],
     trial: &mut Trial,
     effort: &mut Effort,
 ) -> Result<bool, Rejected> {
-    let (before, now) = (state.y.as_chunks::<D>().0, trial.y.as_chunks::<D>().0);
+    let (before, now) = (before.as_chunks::<D>().0, trial.y.as_chunks::<D>().0);
     let mut changed = false;
     for (k, contact) in model.contacts.iter().enumerate() {
         let mut events = Vec::new();

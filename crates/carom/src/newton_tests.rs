@@ -22,8 +22,8 @@ fn the_whole_tangent_with_contact_is_the_derivative_of_the_residual() {
         }
         let (model, state) = (&sim.model, &sim.state);
         let mut work = Workspace::new(model, 1);
-        let memory = Memory { states: &[(&state.y, &state.v, &state.a)] };
-        case.time.scheme.scheme().unwrap().stage_into(0, sim.dt, &memory, &mut work.stage);
+        let memory = Memory { states: &[(&state.y, &state.v, &state.a)], before: None };
+        case.time.scheme.integrator().unwrap().alpha().unwrap().stage_into(0, sim.dt, &memory, &mut work.stage);
         known_into(model, &work.stage, state, &mut work.forces);
         let wave = |i: usize, seed: f64| ((i as f64 + seed) * 12.9898).sin();
         let increment: Vec<f64> =

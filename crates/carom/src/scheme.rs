@@ -1,34 +1,31 @@
 //! From a scheme's name in the case to the kernel that steps.
 
-use carom_time::{Kernel, Scheme, SchemeError};
+use carom_time::{Integrator, Kernel, SchemeError};
 
 use crate::case::{Problem, SchemeSpec};
 
 impl SchemeSpec {
-    /// The scheme's parameters.
+    /// The scheme by its name and parameters.
     ///
     /// # Errors
     /// Unknown kinds, missing, superfluous or inadmissible parameters.
-    pub fn scheme(&self) -> Result<Scheme, SchemeError> {
+    pub fn integrator(&self) -> Result<Integrator, SchemeError> {
         carom_time::scheme(&self.kind, &self.parameters, self.forces)
+    }
+
+    /// Whether it is of the α family, where a contact force may be averaged over the step.
+    pub fn is_alpha(&self) -> bool {
+        self.integrator().is_ok_and(|integrator| integrator.alpha().is_some())
     }
 
     /// The scheme as a list of stages.
     ///
     /// # Errors
-    /// As [`Self::scheme`], located at `time.scheme`.
+    /// As [`Self::integrator`], located at `time.scheme`.
     pub fn kernel(&self) -> Result<Box<dyn Kernel>, Vec<Problem>> {
-        match self.scheme() {
-            Ok(scheme) => Ok(Box::new(scheme)),
-            Err(error) => {
-                let path = format!("time.scheme.{}", error.key());
-                Err(vec![Problem::new(
-                    path,
-                    "the scheme cannot be used",
-                    error.to_string(),
-                    "carom explain lists schemes",
-                )])
-            }
-        }
+        self.integrator().map(Integrator::into_kernel).map_err(|error| {
+            let path = format!("time.scheme.{}", error.key());
+            vec![Problem::new(path, "the scheme cannot be used", error.to_string(), "carom explain lists schemes")]
+        })
     }
 }

@@ -41,6 +41,21 @@ impl Ledger {
     }
 }
 
+/// What a two-step scheme takes from the step before.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Previous {
+    /// Size of that step: one of another size does not go on from it.
+    pub dt: f64,
+    /// Increment of positions over it.
+    pub increment: Vec<f64>,
+    /// Velocities at its start.
+    pub velocity: Vec<f64>,
+    /// Mean contact force over it, nodal.
+    pub contact: Vec<f64>,
+    /// Its impulse on the secondary sides.
+    pub impulse: [f64; 2],
+}
+
 /// The state at the end of a step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
@@ -64,4 +79,6 @@ pub struct State {
     pub pairs: Vec<Vec<Pair>>,
     /// Energies and works.
     pub ledger: Ledger,
+    /// The step before, for a two-step scheme; none at the start and where contact has just begun.
+    pub previous: Option<Previous>,
 }

@@ -44,7 +44,7 @@ fn predicted_dissipation(sim: &Simulation<2>, before: &State, scheme: &carom_tim
 #[test]
 fn ledger_balance_and_gaps_hold_in_every_step_of_the_impact() {
     let case = case(&[]);
-    let scheme = case.time.scheme.scheme().unwrap();
+    let scheme = case.time.scheme.integrator().unwrap().alpha().unwrap();
     let mut sim = Simulation::<2>::new(&case, 1).unwrap();
     let (mut worst_ledger, mut touched) = (0.0_f64, 0);
     while !sim.finished() {

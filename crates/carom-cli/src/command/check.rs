@@ -87,6 +87,6 @@ fn counted(body: &BodyFacts) -> String {
 /// What the scheme's parameters imply.
 fn derived(spec: &SchemeSpec) -> Option<String> {
     let scheme = carom_time::scheme(&spec.kind, &spec.parameters, spec.forces).ok()?;
-    let told = carom_time::explain(&scheme);
+    let told = scheme.explain();
     Some(format!("order {}, ρ∞ = {}", told.order, short(told.rho_inf)))
 }

@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let spec = read_scheme(kind, &arguments.parameters)?;
     let scheme = carom_time::scheme(&spec.kind, &spec.parameters, spec.forces)
         .map_err(|e| Failure::Argument { what: e.to_string(), help: String::new() })?;
-    tell(&carom_time::explain(&scheme), arguments.json)
+    tell(&scheme.explain(), arguments.json)
 }
 
 fn tell<T: Display + Serialize>(told: &T, json: bool) -> Result<Exit, Failure> {

@@ -234,7 +234,8 @@ fn scheme(table: &Table, preset: Preset, path: &str, problems: &mut Vec<Problem>
     let v = View { table, keys: keys::SCHEMES.table(kind)?.keys, preset };
     let numbers = v.keys.iter().filter(|k| matches!(k.kind, Kind::Number(_)));
     let parameters = numbers.filter_map(|k| Some((k.name.to_owned(), v.number(k.name)?))).collect();
-    let forces = v.choice("forces")?;
+    let forces =
+        if v.keys.iter().any(|k| k.name == "forces") { v.choice("forces")? } else { carom_time::ForceRule::default() };
     let spec = SchemeSpec { kind: kind.to_owned(), parameters, forces };
     if let Err(error) = carom_time::scheme(kind, &spec.parameters, forces)
         && !problems.iter().any(|p| p.path.starts_with(path))

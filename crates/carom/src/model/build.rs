@@ -5,7 +5,7 @@ use carom_solid::Law;
 
 use super::dimension::{Dimension, Space};
 use super::{Contact, Mass, Model, Part, Probe, Support, exists_in};
-use crate::case::{self, ActiveSetRule, Case, Persistency, PrimarySpec, Problem};
+use crate::case::{self, ActiveSetRule, Case, ForceTime, Persistency, PrimarySpec, Problem};
 
 /// A side in global node numbers.
 struct Side {
@@ -189,6 +189,7 @@ fn contacts<const D: usize>(
 where
     Space: Dimension<D>,
 {
+    let averages = case.time.scheme.is_alpha();
     let mut contacts = Vec::new();
     for (k, spec) in case.contacts.iter().enumerate() {
         let secondary = match side(parts, &spec.secondary, &format!("contact[{k}].secondary")) {
@@ -229,7 +230,8 @@ where
             method,
             primary_part,
             secondary_facets: secondary.facets,
-            force: spec.force,
+            // Other schemes take the contact force at the ends of their stages: there is nothing to average.
+            force: if averages { spec.force } else { ForceTime::AlphaF },
             persistency: spec.persistency,
             within: spec.active_set == ActiveSetRule::Within,
         };
@@ -263,7 +265,7 @@ fn massless_refusals<const D: usize>(case: &Case, parts: &[Part<D>]) -> Vec<Prob
         |name: &str| name.split_once('.').is_some_and(|(body, _)| parts.iter().any(|p| p.massless && p.name == body));
     for (k, contact) in case.contacts.iter().enumerate() {
         let primary = matches!(&contact.primary, PrimarySpec::Side(name) if touches(name));
-        if contact.force == crate::case::ForceTime::End && (primary || touches(&contact.secondary)) {
+        if contact.force == ForceTime::End && (primary || touches(&contact.secondary)) {
             let why = "the share of the contact force on a massless side is that of its internal forces";
             let help = "force = \"alpha_f\", or a small density";
             problems.push(Problem::new(format!("contact[{k}].force"), what("force = \"end\""), why, help));

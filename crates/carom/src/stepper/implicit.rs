@@ -1,7 +1,7 @@
 //! Every kernel that is a list of implicit stages: guess, solve, account, and where contact begins project.
 
 use carom_contact::{Linearised, Pair};
-use carom_time::{Kernel, Memory};
+use carom_time::{Before, Kernel, Memory};
 
 use super::{Accepted, StepReport, Stepper};
 use crate::balance::known_into;
@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::newton::{Trial, Workspace, add_gradient, solve_stage};
 use crate::persistency::project;
 use crate::rejected::Rejected;
-use crate::state::State;
+use crate::state::{Previous, State};
 
 /// The implicit stepper.
 pub struct Implicit {
@@ -26,21 +26,42 @@ impl Implicit {
     }
 }
 
+/// Motion at the end of a stage.
+#[derive(Default)]
+struct Point {
+    y: Vec<f64>,
+    v: Vec<f64>,
+    a: Vec<f64>,
+}
+
 impl<const D: usize> Stepper<D> for Implicit {
     fn step(&self, model: &Model<D>, state: &State, dt: f64, work: &mut Workspace<D>) -> Result<Accepted, Rejected> {
-        let mut stage = std::mem::take(&mut work.stage);
-        let memory = Memory { states: &[(&state.y, &state.v, &state.a)] };
-        self.kernel.stage_into(0, dt, &memory, &mut stage);
-        work.stage = stage;
-        known_into(model, &work.stage, state, &mut work.forces);
-
-        let mut trial = guess(model, state, dt);
-        let effort = solve_stage(model, state, &self.newton, &mut trial, work)?;
-
+        let previous = state.previous.as_ref().filter(|previous| previous.dt == dt);
         let mut next = state.clone();
+        let mut report = StepReport::default();
+        let mut finished: Vec<Point> = Vec::new();
+        let (mut end, mut impulse) = (0.0, [0.0; 2]);
+        let mut trial =
+            Trial { increment: vec![0.0; model.dofs()], y: state.y.clone(), pairs: state.pairs.clone(), strain: 0.0 };
+        work.mean.fill(0.0);
+        for k in 0..self.kernel.stages() {
+            self.prepare(k, dt, state, &finished, work);
+            known_into(model, &work.stage, state, &mut work.forces);
+            let before = finished.last().map_or(&state.y, |point| &point.y);
+            go_on(model, &next.v, &next.a, (work.stage.end - end) * dt, &mut trial);
+            end = work.stage.end;
+            let effort = solve_stage(model, state, before, &self.newton, &mut trial, work)?;
+            report.newton += effort.iterations;
+            report.events.extend(effort.events);
+            ledger::add_stage(model, state, previous, &trial.pairs, dt, &mut impulse, work);
+            next.a.clone_from(&work.acceleration);
+            work.stage.velocity.value_into(&trial.increment, &mut next.v);
+            if k + 1 < self.kernel.stages() {
+                finished.push(Point { y: trial.y.clone(), v: next.v.clone(), a: next.a.clone() });
+            }
+        }
+
         next.y.clone_from(&trial.y);
-        next.a.clone_from(&work.acceleration);
-        work.stage.velocity.value_into(&trial.increment, &mut next.v);
         for (i, massless) in model.massless.iter().enumerate() {
             if *massless {
                 // Without inertia there is nothing to integrate: the velocity is the mean one, the acceleration zero.
@@ -56,33 +77,50 @@ impl<const D: usize> Stepper<D> for Implicit {
                 .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
         }
         averaged_contact_into(model, &next.pairs, &work.gaps, &mut next.f_contact);
-        ledger::account(model, state, &mut next, strain, &trial.increment, dt, work);
+        ledger::account(model, &mut next, strain, &trial.increment, impulse, work);
 
-        let mut report = StepReport { newton: effort.iterations, events: effort.events, ..StepReport::default() };
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
         if !report.activations.is_empty() {
             report.projection = project(model, &mut next, &report.activations, work)?;
         }
+        next.previous = (self.kernel.two_step() && report.activations.is_empty()).then(|| Previous {
+            dt,
+            increment: trial.increment,
+            velocity: state.v.clone(),
+            contact: work.mean.clone(),
+            impulse,
+        });
         Accepted::new(next, report)
     }
 }
 
-/// Positions if the acceleration stayed, multipliers as they were, each pair free to change facets again.
-fn guess<const D: usize>(model: &Model<D>, state: &State, dt: f64) -> Trial {
-    let dofs = model.dofs();
-    let increment: Vec<f64> =
-        (0..dofs).map(|i| if model.fixed[i] { 0.0 } else { dt * (state.v[i] + 0.5 * dt * state.a[i]) }).collect();
-    let y = (0..dofs).map(|i| state.y[i] + increment[i]).collect();
-    let mut pairs = state.pairs.clone();
-    for pairs in &mut pairs {
+impl Implicit {
+    /// Fills `work.stage` with stage `k`.
+    fn prepare<const D: usize>(&self, k: usize, dt: f64, state: &State, finished: &[Point], work: &mut Workspace<D>) {
+        let mut states: Vec<(&[f64], &[f64], &[f64])> = vec![(&state.y, &state.v, &state.a)];
+        states.extend(finished.iter().map(|p| (&p.y[..], &p.v[..], &p.a[..])));
+        let previous = state.previous.as_ref().filter(|previous| previous.dt == dt);
+        let before = previous.map(|p| Before { increment: &p.increment, velocity: &p.velocity });
+        self.kernel.stage_into(k, dt, &Memory { states: &states, before }, &mut work.stage);
+    }
+}
+
+/// The guess of a stage from where the trial is: positions if the acceleration stayed for `dt`, multipliers as they are, each pair free to change
+/// facets again.
+fn go_on<const D: usize>(model: &Model<D>, v: &[f64], a: &[f64], dt: f64, trial: &mut Trial) {
+    for i in (0..trial.increment.len()).filter(|&i| !model.fixed[i]) {
+        let moved = dt * (v[i] + 0.5 * dt * a[i]);
+        trial.increment[i] += moved;
+        trial.y[i] += moved;
+    }
+    for pairs in &mut trial.pairs {
         // Open pairs are found afresh, so that they depend on positions alone.
         pairs.retain(|p| p.active);
         for pair in pairs {
             pair.left = None;
         }
     }
-    Trial { increment, y, pairs, strain: 0.0 }
 }
 
 /// Σ Gᵀλ over the contacts whose force is averaged: what the next step takes its share of.

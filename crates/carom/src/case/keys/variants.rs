@@ -136,11 +136,15 @@ const FORCES: Key = key(
     "What is averaged over the step with α_f: the forces (eq. 15), or the state they are evaluated at.",
 )
 .default("\"average-forces\"");
-const SPECTRAL: &[Key] = &[
+const SPECTRAL_RADIUS: Key =
     key("rho_inf", Number(RHO_INF), "Spectral radius at infinite frequency: 0 damps it within steps, 1 not at all.")
-        .example("0.8"),
-    FORCES,
-];
+        .example("0.8");
+const SPECTRAL: &[Key] = &[SPECTRAL_RADIUS, FORCES];
+const RADIUS: &[Key] = &[SPECTRAL_RADIUS];
+
+const fn without_parameters(name: &'static str, doc: &'static str) -> Table {
+    Table { name, doc, keys: &[], later: &[] }
+}
 
 /// Time integrators.
 pub const SCHEMES: Variants = Variants {
@@ -203,19 +207,31 @@ pub const SCHEMES: Variants = Variants {
                 later: &[],
             },
         ),
+        (
+            "backward-euler",
+            without_parameters("scheme \"backward-euler\"", "All forces at the end; first order, ρ∞ = 0."),
+        ),
+        ("bdf2", without_parameters("scheme \"bdf2\"", "Two-step backward differentiation; second order, ρ∞ = 0.")),
+        (
+            "tr-bdf2",
+            without_parameters(
+                "scheme \"tr-bdf2\"",
+                "Trapezoidal rule, then backward differentiation; second order, ρ∞ = 0.",
+            ),
+        ),
+        (
+            "bathe",
+            Table { name: "scheme \"bathe\"", doc: "Composite rule of Noh and Bathe.", keys: RADIUS, later: &[] },
+        ),
+        (
+            "energy-momentum",
+            without_parameters(
+                "scheme \"energy-momentum\"",
+                "Midpoint rule with a discrete gradient; conserves energy and momenta.",
+            ),
+        ),
     ],
     or: None,
-    later: &[
-        "backward-euler",
-        "bdf2",
-        "tr-bdf2",
-        "bathe",
-        "energy-momentum",
-        "central-difference",
-        "moreau-jean",
-        "nonsmooth-generalized-alpha",
-        "paoli-schatzman",
-        "static",
-    ],
+    later: &["central-difference", "moreau-jean", "nonsmooth-generalized-alpha", "paoli-schatzman", "static"],
     later_keys: &[],
 };
