@@ -5,7 +5,7 @@
 
 use carom_algebra::LinearError;
 use carom_contact::{ActiveSet, Contender, Linearised, Pair, PairEvent};
-use carom_time::Stage;
+use carom_time::{Internal, Stage};
 
 use crate::balance::{Forces, contact_weights, residual_into};
 use crate::case::NewtonSpec;
@@ -200,15 +200,18 @@ fn evaluate<const D: usize>(
     tangent: bool,
 ) -> Result<Measure, Rejected> {
     let stage = &work.stage;
-    let share = 1.0 - stage.average;
+    let between = stage.internal == Internal::DiscreteGradient;
+    let share = if between { 1.0 } else { 1.0 - stage.average };
     for i in 0..trial.y.len() {
         trial.y[i] = state.y[i] + trial.increment[i];
         work.at[i] = state.y[i] + share * trial.increment[i];
     }
     let inverted = |(body, inverted)| Rejected::Inverted { body, inverted };
     let (system, at, force) = (&mut work.system, &work.at, &mut work.forces.internal);
-    trial.strain = timed(&mut work.timings.assembly, || {
-        if tangent { system.internal_tangent(model, at, force) } else { model.internal_force(at, force) }
+    trial.strain = timed(&mut work.timings.assembly, || match (tangent, between) {
+        (true, _) => system.internal_tangent(model, between.then_some(&state.y), at, force),
+        (false, true) => model.internal_between(&state.y, at, force),
+        (false, false) => model.internal_force(at, force),
     })
     .map_err(inverted)?;
     stage.acceleration.value_into(&trial.increment, &mut work.acceleration);
@@ -260,7 +263,11 @@ fn mass_factor(stage: &Stage) -> f64 {
 }
 
 fn stiffness_factor(stage: &Stage) -> f64 {
-    stage.weights.internal * (1.0 - stage.average)
+    match stage.internal {
+        Internal::Gradient => stage.weights.internal * (1.0 - stage.average),
+        // Its tangent is that by the end of the step already.
+        Internal::DiscreteGradient => stage.weights.internal,
+    }
 }
 
 /// Lets each contact's active set change; a released pair loses its multiplier.

@@ -96,10 +96,12 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Internal forces over all dofs and the tangent ∂f_int/∂y of the free ones; the strain energy is returned.
+    /// Internal forces over all dofs and the tangent ∂f_int/∂y of the free ones; the strain energy is returned. With `before`, the forces are the discrete
+    /// gradient from there to `y`, and of their tangent the symmetric part is taken.
     pub(crate) fn internal_tangent(
         &mut self,
         model: &Model<D>,
+        before: Option<&[f64]>,
         y: &[f64],
         force: &mut [f64],
     ) -> Result<f64, (String, Inverted)> {
@@ -110,6 +112,7 @@ impl<const D: usize> System<D> {
         for part in &model.parts {
             let mesh = part.body.mesh();
             let positions = &y.as_chunks::<D>().0[part.nodes()];
+            let before = before.map(|y| &y.as_chunks::<D>().0[part.nodes()]);
             let stiffness = &mut self.stiffness;
             let add = |cell: usize, f: &[f64], k: &[f64]| {
                 for (node, f) in mesh.cell(cell).iter().zip(f.as_chunks::<D>().0) {
@@ -123,8 +126,10 @@ impl<const D: usize> System<D> {
                     }
                 }
             };
-            strain +=
-                self.cells.for_each(&*part.body, positions, add).map_err(|inverted| (part.name.clone(), inverted))?;
+            strain += self
+                .cells
+                .for_each(&*part.body, before, positions, add)
+                .map_err(|inverted| (part.name.clone(), inverted))?;
         }
         Ok(strain)
     }

@@ -256,10 +256,14 @@ fn massless_refusals<const D: usize>(case: &Case, parts: &[Part<D>]) -> Vec<Prob
     let mut problems = Vec::new();
     let Some(part) = parts.iter().find(|p| p.massless) else { return problems };
     let what = |rule: &str| format!("body \"{}\" has no mass, and {rule} needs it", part.name);
+    let why = "its balance holds at the end of the step, not at the averaged state";
     if case.time.scheme.forces == carom_time::ForceRule::AverageState {
-        let why = "its balance holds at the end of the step, not at the averaged state";
         let help = "forces = \"average-forces\", or a small density";
         problems.push(Problem::new("time.scheme.forces", what("forces = \"average-state\""), why, help));
+    }
+    if case.time.scheme.kind == "energy-momentum" {
+        let help = "a scheme that is not midpoint, such as bathe, or a small density";
+        problems.push(Problem::new("time.scheme.kind", what("kind = \"energy-momentum\""), why, help));
     }
     let touches =
         |name: &str| name.split_once('.').is_some_and(|(body, _)| parts.iter().any(|p| p.massless && p.name == body));

@@ -103,17 +103,35 @@ impl<const D: usize> Model<D> {
     /// # Errors
     /// The body's name and the cell that is inverted.
     pub fn internal_force(&self, y: &[f64], force: &mut [f64]) -> Result<f64, (String, Inverted)> {
+        self.add_cells(force, |part, cell, local| {
+            part.body.cell_force(cell, &y.as_chunks::<D>().0[part.nodes()], local)
+        })
+    }
+
+    /// Discrete gradient of the strain energy between positions, overwriting `force`; U(now) is returned.
+    ///
+    /// # Errors
+    /// The body's name and the cell that is inverted.
+    pub fn internal_between(&self, before: &[f64], now: &[f64], force: &mut [f64]) -> Result<f64, (String, Inverted)> {
+        self.add_cells(force, |part, cell, local| {
+            let [before, now] = [before, now].map(|y| &y.as_chunks::<D>().0[part.nodes()]);
+            part.body.cell_between(cell, before, now, local, None)
+        })
+    }
+
+    fn add_cells(
+        &self,
+        force: &mut [f64],
+        of_cell: impl Fn(&Part<D>, usize, &mut [f64]) -> Result<f64, Inverted>,
+    ) -> Result<f64, (String, Inverted)> {
         force.fill(0.0);
         let mut strain = 0.0;
         for part in &self.parts {
             let (body, first) = (&part.body, part.first_node);
-            let positions = &y.as_chunks::<D>().0[part.nodes()];
             let n = body.mesh().element.nodes();
             let mut local = [0.0; MAX_CELL_DOFS];
             for cell in 0..body.mesh().cell_count() {
-                strain += body
-                    .cell_force(cell, positions, &mut local[..n * D])
-                    .map_err(|inverted| (part.name.clone(), inverted))?;
+                strain += of_cell(part, cell, &mut local[..n * D]).map_err(|inverted| (part.name.clone(), inverted))?;
                 for (k, &node) in body.mesh().cell(cell).iter().enumerate() {
                     for i in 0..D {
                         force[(first + node) * D + i] += local[k * D + i];
