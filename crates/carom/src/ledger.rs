@@ -64,9 +64,12 @@ pub(crate) fn account<const D: usize>(
     for (moved, force) in increment.iter().zip(&work.mean) {
         next.ledger.contact_work -= moved * force;
     }
+    // What went into springs is not lost: it is counted with the strain energy.
+    next.ledger.contact_work += work.springs - next.ledger.springs;
+    next.ledger.springs = work.springs;
     book_contact_forces(model, next);
     (0..2).for_each(|i| next.ledger.impulse[i] += impulse[i]);
-    next.ledger.strain = strain;
+    next.ledger.strain = strain + work.springs;
     next.ledger.potential = model.potential(&next.y);
     book_kinetic(model, next);
 }

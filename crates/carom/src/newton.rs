@@ -10,6 +10,7 @@ use carom_time::{Internal, Stage};
 use crate::balance::{Forces, contact_weights, residual_into};
 use crate::case::NewtonSpec;
 use crate::model::Model;
+use crate::penalty::{self, Configuration};
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::state::State;
@@ -54,6 +55,10 @@ pub struct Workspace<const D: usize> {
     pub(crate) acceleration: Vec<f64>,
     /// Linearised gaps of every pair of every contact.
     pub(crate) gaps: Vec<Vec<Linearised<D>>>,
+    /// ∂λ/∂g of every pair of every contact that is a spring now; 0 of the others.
+    pub(crate) stiffnesses: Vec<Vec<f64>>,
+    /// Energy of the springs of penalties at the last evaluation.
+    pub(crate) springs: f64,
     /// The stage being solved.
     pub(crate) stage: Stage,
     /// Mean contact force over the step, as far as its stages are solved.
@@ -81,6 +86,8 @@ impl<const D: usize> Workspace<D> {
             },
             acceleration: zeros.clone(),
             gaps: vec![Vec::new(); model.contacts.len()],
+            stiffnesses: vec![Vec::new(); model.contacts.len()],
+            springs: 0.0,
             stage: Stage::default(),
             mean: zeros.clone(),
             timings: Timings::default(),
@@ -217,12 +224,39 @@ fn evaluate<const D: usize>(
     stage.acceleration.value_into(&trial.increment, &mut work.acceleration);
     model.mass.multiply_into(&work.acceleration, &mut work.forces.inertia);
 
+    if between {
+        // Springs that conserve energy act along the normals at the middle of the step.
+        for i in 0..trial.y.len() {
+            work.at[i] = state.y[i] + 0.5 * trial.increment[i];
+        }
+    }
     let y = trial.y.as_chunks::<D>().0;
     work.forces.contact.fill(0.0);
+    work.springs = 0.0;
     let mut measure = Measure::default();
     for (k, contact) in model.contacts.iter().enumerate() {
         let weight = contact_weights(stage, contact.force).0;
         work.gaps[k].resize(trial.pairs[k].len(), Linearised::default());
+        work.stiffnesses[k].clear();
+        work.stiffnesses[k].resize(trial.pairs[k].len(), 0.0);
+        if let Some(penalty) = &contact.penalty {
+            let at = Configuration {
+                start: &state.y,
+                middle: between.then_some(&work.at),
+                end: &trial.y,
+                moved: &trial.increment,
+            };
+            for (p, (pair, gap)) in trial.pairs[k].iter_mut().zip(&mut work.gaps[k]).enumerate() {
+                let spring = penalty::spring(&*contact.method, penalty[pair.node], pair, &at, gap)
+                    .map_err(|error| Rejected::Contact { contact: contact.name.clone(), error })?;
+                work.stiffnesses[k][p] = spring.stiffness;
+                work.springs += spring.energy;
+                if pair.active {
+                    add_gradient(gap, weight * pair.lambda, &mut work.forces.contact);
+                }
+            }
+            continue;
+        }
         for (pair, gap) in trial.pairs[k].iter_mut().zip(&mut work.gaps[k]) {
             match contact.method.linearise(pair, y, pair.lambda, gap) {
                 Ok(()) => {}
@@ -279,7 +313,8 @@ fn change_sets<const D: usize>(
     settled: bool,
 ) -> Result<bool, Rejected> {
     let mut changed = false;
-    for (k, set) in sets.iter_mut().enumerate() {
+    // A spring presses or does not by its gap alone.
+    for (k, set) in sets.iter_mut().enumerate().filter(|(k, _)| model.contacts[*k].penalty.is_none()) {
         let secondary = model.contacts[k].method.secondary();
         let stiffness = stiffness_of_touch(model, work);
         let contenders: Vec<Contender> = trial.pairs[k]
@@ -310,7 +345,7 @@ fn stiffness_of_touch<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> 
 /// Names an active pair that no row holds: supports leave it no way out.
 fn stuck<const D: usize>(model: &Model<D>, trial: &Trial, work: &Workspace<D>) -> Result<(), Rejected> {
     let rows = independent_rows(model, &trial.pairs, work);
-    for (k, contact) in model.contacts.iter().enumerate() {
+    for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.penalty.is_none()) {
         for (p, pair) in trial.pairs[k].iter().enumerate().filter(|(_, pair)| pair.active) {
             let depth = -work.gaps[k][p].gap;
             if !rows.contains(&(k, p)) && depth > GAP_TOLERANCE * model.scale {
@@ -330,14 +365,21 @@ fn linear_step<const D: usize>(
 ) -> Result<(), Rejected> {
     let stage = &work.stage;
     let weight = |k: usize| contact_weights(stage, model.contacts[k].force).0;
-    let gaps: Vec<Row<D>> = rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k) }).collect();
+    let soft = |k: usize| model.contacts[k].penalty.is_some();
+    let compliance = |k: usize, p: usize| if soft(k) { work.stiffnesses[k][p].recip() } else { 0.0 };
+    let gaps: Vec<Row<D>> = rows
+        .iter()
+        .map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k), compliance: compliance(k, p) })
+        .collect();
     let (mass, stiffness) = (mass_factor(stage), stiffness_factor(stage));
     let inertia = timed(&mut work.timings.factor, || work.system.factor(model, mass, stiffness, &gaps))?;
     if inertia.negative < rows.len() {
         let size = model.free.len() + rows.len();
         return Err(LinearError::Singular { size, pivot: inertia.negative, value: 0.0 }.into());
     }
-    let right: Vec<f64> = rows.iter().map(|&(k, p)| -weight(k) * work.gaps[k][p].gap).collect();
+    // The multiplier of a spring is that of its gap already.
+    let right: Vec<f64> =
+        rows.iter().map(|&(k, p)| if soft(k) { 0.0 } else { -weight(k) * work.gaps[k][p].gap }).collect();
     work.residual.iter_mut().for_each(|r| *r = -*r);
     let (system, forces) = (&mut work.system, &work.residual);
     timed(&mut work.timings.solve, || {

@@ -33,7 +33,8 @@ pub(crate) fn project<const D: usize>(
     linearise_all(model, state, work)?;
     let mut places = independent_rows(model, &state.pairs, work);
     places.retain(|&(k, _)| asks(k));
-    let rows: Vec<Row<D>> = places.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: 1.0 }).collect();
+    let rows: Vec<Row<D>> =
+        places.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: 1.0, compliance: 0.0 }).collect();
     let inertia = work.system.factor_mass(model, &rows)?;
     if inertia.negative < rows.len() {
         let size = model.free.len() + rows.len();
@@ -129,7 +130,11 @@ pub fn start<const D: usize>(model: &Model<D>, work: &mut Workspace<D>) -> Resul
         .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
     let forces: Vec<f64> =
         (0..dofs).map(|i| if model.massless[i] { 0.0 } else { model.gravity[i] - state.f_internal[i] }).collect();
-    work.system.factor_mass(model, &[])?;
+    let inertia = work.system.factor_mass(model, &[])?;
+    if inertia.negative > 0 {
+        let size = model.free.len();
+        return Err(carom_algebra::LinearError::Singular { size, pivot: inertia.negative, value: -1.0 }.into());
+    }
     work.system.solve(model, &forces, &[], &mut state.a, &mut Vec::new())?;
     book_kinetic(model, &mut state);
     state.ledger.potential = model.potential(&state.y);

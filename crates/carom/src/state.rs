@@ -8,8 +8,10 @@ use serde::{Deserialize, Serialize};
 pub struct Ledger {
     /// ½ vᵀM v.
     pub kinetic: f64,
-    /// U.
+    /// U, of the bodies and of the springs of penalties.
     pub strain: f64,
+    /// The springs' part of it.
+    pub springs: f64,
     /// Potential of constant conservative loads.
     pub potential: f64,
     /// Total energy at the start.

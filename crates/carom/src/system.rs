@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! [ K  Gᵀ ] [Δy]   [−r]        K = w.mass a' M + w.internal K_int + Σ w.contact λ ∇²g,   rows of G: w.contact ∇g
-//! [ G  0  ] [Δλ] = [−g]
+//! [ G −C  ] [Δλ] = [−g]       C = 0, or w.contact/(∂λ/∂g) of a spring
 //! ```
 //!
 //! Bodies have a pattern of their own, made once, with the slots of every cell; contact entries are merged in when the set of rows changes, and only then is
@@ -24,6 +24,8 @@ pub(crate) struct Row<'a, const D: usize> {
     pub gap: &'a Linearised<D>,
     /// Weight of the contact force in the balance.
     pub weight: f64,
+    /// What a unit of multiplier gives of gap: 0 for a constraint, 1/(∂λ/∂g) for a spring.
+    pub compliance: f64,
 }
 
 /// The system and its solver.
@@ -158,6 +160,9 @@ impl<const D: usize> System<D> {
         let n = self.base.size();
         for (r, row) in rows.iter().enumerate() {
             let gap = row.gap;
+            if let Some(slot) = self.merged.slot(n + r, n + r) {
+                values[slot] -= row.weight * row.compliance;
+            }
             for p in 0..gap.count {
                 for i in 0..D {
                     let a = model.unknown[gap.nodes[p] * D + i];

@@ -128,3 +128,56 @@ fn the_composite_rule_reproduces_the_table() {
         Row(&[r#"time.scheme={ kind = "tr-bdf2" }"#], a, b),
     ]);
 }
+
+/// Kane's elasticity at the middle of the step and contact force at its end, with the predictor projected.
+#[test]
+fn contact_stabilised_newmark_reproduces_the_table() {
+    let a = [(1.15, 0.01), (0.004, 0.001), (0.996, 0.001), (0.984, 0.001)];
+    let b = [(0.20, 0.01), (0.974, 0.001)];
+    const LAW: &str = "contact.wall.law=\"predictor\"";
+    const NO: &str = "contact.wall.persistency=\"none\"";
+    check(&[
+        Row(&[LAW, NO, r#"time.scheme={ kind = "energy-momentum" }"#], a, b),
+        Row(
+            &[
+                LAW,
+                NO,
+                "contact.wall.force=\"end\"",
+                r#"time.scheme={ kind = "chung-hulbert", rho_inf = 1.0, forces = "average-state" }"#,
+            ],
+            a,
+            b,
+        ),
+    ]);
+}
+
+/// 1e5 is 100/9 times the stiffness of the end node, E/dx = 9000.
+#[test]
+fn the_energy_conserving_penalty_reproduces_the_table() {
+    check(&[Row(
+        &[
+            r#"time.scheme={ kind = "energy-momentum" }"#,
+            "contact.wall.enforcement=\"penalty\"",
+            "contact.wall.stiffness=11.11111111111111",
+        ],
+        [(1.41, 0.01), (0.283, 0.001), (1.0, 1e-4), (0.988, 0.001)],
+        [(0.11, 0.01), (1.0, 1e-4)],
+    )]);
+}
+
+#[test]
+fn redistributed_mass_reproduces_the_table() {
+    const TRAPEZOIDAL: &str = r#"time.scheme={ kind = "newmark", beta = 0.25, gamma = 0.5 }"#;
+    check(&[Row(
+        &[TRAPEZOIDAL, "body.bar.mass=\"redistributed-nearest\""],
+        [(1.33, 0.01), (0.005, 0.001), (1.0003, 1e-4), (0.990, 0.001)],
+        [(0.11, 0.01), (0.997, 0.001)],
+    )]);
+    // Total, centre and second moment kept by the least change of all nodes: of (a) the peak and the energy are published, of (b) both, the energies
+    // as those of the nearest nodes within .002.
+    check(&[Row(
+        &[TRAPEZOIDAL, "body.bar.mass=\"redistributed\""],
+        [(1.09, 0.01), (0.0, f64::INFINITY), (1.0003, 0.003), (0.0, f64::INFINITY)],
+        [(0.05, 0.01), (0.997, 0.003)],
+    )]);
+}

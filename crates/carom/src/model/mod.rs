@@ -4,6 +4,7 @@ mod build;
 mod dimension;
 mod mass;
 mod probe;
+mod redistribution;
 
 use carom_contact::ContactMethod;
 use carom_solid::{Body, Inverted};
@@ -46,6 +47,10 @@ pub struct Contact<const D: usize> {
     pub primary_part: Option<usize>,
     /// Facets of the secondary side in global nodes: for consistent weights.
     pub secondary_facets: Vec<Vec<usize>>,
+    /// Stiffness of a penalty for each secondary node; none where the constraint is kept by multipliers.
+    pub penalty: Option<Vec<f64>>,
+    /// Whether the predictor y + Δt v is kept out of the primary too.
+    pub predictor: bool,
     /// Averaged with α_f or taken at the end.
     pub force: ForceTime,
     /// What happens to velocities where contact begins.

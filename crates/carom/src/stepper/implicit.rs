@@ -1,14 +1,14 @@
 //! Every kernel that is a list of implicit stages: guess, solve, account, and where contact begins project.
 
 use carom_contact::{Linearised, Pair};
-use carom_time::{Before, Kernel, Memory};
+use carom_time::{Before, Internal, Kernel, Memory, Stage, Weights};
 
 use super::{Accepted, StepReport, Stepper};
 use crate::balance::known_into;
 use crate::case::{ForceTime, NewtonSpec};
 use crate::ledger;
-use crate::model::Model;
-use crate::newton::{Trial, Workspace, add_gradient, solve_stage};
+use crate::model::{Model, dot};
+use crate::newton::{GAP_TOLERANCE, Trial, Workspace, add_gradient, solve_stage};
 use crate::persistency::project;
 use crate::rejected::Rejected;
 use crate::state::{Previous, State};
@@ -43,9 +43,16 @@ impl<const D: usize> Stepper<D> for Implicit {
         let (mut end, mut impulse) = (0.0, [0.0; 2]);
         let mut trial =
             Trial { increment: vec![0.0; model.dofs()], y: state.y.clone(), pairs: state.pairs.clone(), strain: 0.0 };
+        let shift = self.predictor_shift(model, state, dt, work)?;
         work.mean.fill(0.0);
         for k in 0..self.kernel.stages() {
             self.prepare(k, dt, state, &finished, work);
+            if let Some(shift) = &shift {
+                let Stage { velocity, acceleration, .. } = &mut work.stage;
+                for map in [velocity, acceleration] {
+                    map.at_start.iter_mut().zip(shift).for_each(|(at_start, c)| *at_start -= map.slope * c);
+                }
+            }
             known_into(model, &work.stage, state, &mut work.forces);
             let before = finished.last().map_or(&state.y, |point| &point.y);
             go_on(model, &next.v, &next.a, (work.stage.end - end) * dt, &mut trial);
@@ -78,6 +85,18 @@ impl<const D: usize> Stepper<D> for Implicit {
         }
         averaged_contact_into(model, &next.pairs, &work.gaps, &mut next.f_contact);
         ledger::account(model, &mut next, strain, &trial.increment, impulse, work);
+        if let Some(shift) = &shift {
+            // Positions moved by the predictor's contact, against the forces of the step: M (v − v_s)/Δt is their sum.
+            let change: Vec<f64> = next.v.iter().zip(&state.v).map(|(v, old)| (v - old) / dt).collect();
+            model.mass.multiply_into(&change, &mut work.mean);
+            next.ledger.contact_work -= dot(shift, &work.mean);
+        }
+        if work.stage.internal == Internal::DiscreteGradient {
+            // A spring goes on from the gap it has counted.
+            for (pairs, gaps) in next.pairs.iter_mut().zip(&work.gaps) {
+                pairs.iter_mut().zip(gaps).for_each(|(pair, gap)| pair.start = Some(gap.gap));
+            }
+        }
 
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
@@ -96,6 +115,44 @@ impl<const D: usize> Stepper<D> for Implicit {
 }
 
 impl Implicit {
+    /// The law "predictor" (P. Deuflhard, R. Krause, S. Ertel, Int. J. Numer. Meth. Engng 73 (2008) 1274–1290): in place of y_s + Δt v_s in Newmark's
+    /// formula stands the nearest point, in the mass, without penetration,
+    ///
+    /// ```text
+    /// min ½ ‖q − (y_s + Δt v_s)‖²_M   with   g(q) ≥ 0
+    /// ```
+    ///
+    /// and velocities do not see the difference. It is solved as a stage of its own; q − (y_s + Δt v_s) is returned, none where nothing would penetrate.
+    fn predictor_shift<const D: usize>(
+        &self,
+        model: &Model<D>,
+        state: &State,
+        dt: f64,
+        work: &mut Workspace<D>,
+    ) -> Result<Option<Vec<f64>>, Rejected> {
+        if !model.contacts.iter().any(|contact| contact.predictor) {
+            return Ok(None);
+        }
+        let mut trial =
+            Trial { increment: vec![0.0; model.dofs()], y: state.y.clone(), pairs: state.pairs.clone(), strain: 0.0 };
+        go_on(model, &state.v, &vec![0.0; model.dofs()], dt, &mut trial);
+        let free = trial.increment.clone();
+        trial.pairs.iter_mut().flatten().for_each(|pair| pair.lambda = 0.0);
+        if !penetrates(model, &state.y, &mut trial)? {
+            return Ok(None);
+        }
+        let stage = &mut work.stage;
+        (stage.end, stage.average, stage.internal) = (1.0, 0.0, Internal::Gradient);
+        stage.weights = Weights { mass: 1.0, internal: 0.0, external: 0.0, contact: 1.0 };
+        stage.before = Weights::default();
+        stage.acceleration.slope = 1.0 / (dt * dt);
+        stage.acceleration.at_start.clear();
+        stage.acceleration.at_start.extend(free.iter().map(|d| -d / (dt * dt)));
+        known_into(model, &work.stage, state, &mut work.forces);
+        solve_stage(model, state, &state.y, &self.newton, &mut trial, work)?;
+        Ok(Some(trial.increment.iter().zip(&free).map(|(d, free)| d - free).collect()))
+    }
+
     /// Fills `work.stage` with stage `k`.
     fn prepare<const D: usize>(&self, k: usize, dt: f64, state: &State, finished: &[Point], work: &mut Workspace<D>) {
         let mut states: Vec<(&[f64], &[f64], &[f64])> = vec![(&state.y, &state.v, &state.a)];
@@ -121,6 +178,25 @@ fn go_on<const D: usize>(model: &Model<D>, v: &[f64], a: &[f64], dt: f64, trial:
             pair.left = None;
         }
     }
+}
+
+/// Whether any pair at the trial's positions penetrates.
+fn penetrates<const D: usize>(model: &Model<D>, before: &[f64], trial: &mut Trial) -> Result<bool, Rejected> {
+    let (before, now) = (before.as_chunks::<D>().0, trial.y.as_chunks::<D>().0);
+    let mut gap = Linearised::default();
+    for (contact, pairs) in model.contacts.iter().zip(&mut trial.pairs) {
+        contact
+            .method
+            .detect(before, now, pairs, &mut Vec::new())
+            .map_err(|error| Rejected::Contact { contact: contact.name.clone(), error })?;
+        for pair in pairs {
+            let found = contact.method.linearise(pair, now, 0.0, &mut gap);
+            if found.is_ok() && gap.gap < -GAP_TOLERANCE * model.scale {
+                return Ok(true);
+            }
+        }
+    }
+    Ok(false)
 }
 
 /// Σ Gᵀλ over the contacts whose force is averaged: what the next step takes its share of.

@@ -114,8 +114,9 @@ const BODY: Table = Table {
             .later("a table { linear, angular, about } or formulas"),
         key(
             "mass",
-            Choice(&["consistent", "lumped"], &["redistributed"]),
-            "Mass matrix: consistent, or diagonal by scaling (HRZ).",
+            Choice(&["consistent", "lumped", "redistributed", "redistributed-nearest"], &[]),
+            "Mass matrix: consistent, diagonal by scaling (HRZ), or without mass on the nodes of contacts: total, centre and second moments kept by the \
+             least change of the other nodes, or the lost mass given to the next nodes.",
         )
         .default("\"consistent\""),
     ],
@@ -159,8 +160,20 @@ const CONTACT: Table = Table {
         key("primary", SideOr(&RIGID), "Side, or rigid plane, they are kept out of.").example("\"prism.top\""),
         key("method", Choice(&["node-to-segment"], &["mortar"]), "Discretisation of the contact.")
             .default("\"node-to-segment\""),
-        key("enforcement", Choice(&["multiplier"], &["augmented", "penalty"]), "How the constraint is kept.")
-            .default("\"multiplier\""),
+        key(
+            "enforcement",
+            Choice(&["multiplier", "penalty"], &["augmented"]),
+            "How the constraint is kept: exactly, by a multiplier, or by springs whose energy counts as strain energy.",
+        )
+        .default("\"multiplier\""),
+        key("stiffness", Number(POSITIVE), "Of a penalty: times the reference stiffness of the secondary node.")
+            .default("10.0"),
+        key(
+            "law",
+            Choice(&["position", "predictor"], &["velocity"]),
+            "What a contact constrains: positions at the end, or those and the predictor y + Δt v (contact-stabilised).",
+        )
+        .default("\"position\""),
         key(
             "force",
             Choice(&["alpha_f", "end"], &[]),
@@ -189,7 +202,7 @@ const CONTACT: Table = Table {
         .default("\"closest-point\"")
         .paper("\"trajectory\""),
     ],
-    later: &["law", "restitution", "passes", "normals", "overlap", "stiffness", "between", "friction"],
+    later: &["restitution", "passes", "normals", "overlap", "between", "friction"],
 };
 
 const RIGID: Table = Table {

@@ -62,7 +62,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["time.energy_guard=true"], &["a number > 0, or false, not `true`"]),
     // schemes
     (&["time.scheme.kind=chung-hulber"], &["did you mean `chung-hulbert`?"]),
-    (&["time.scheme.kind=bathe"], &["this version does not have `kind = \"bathe\"` yet"]),
+    (&["time.scheme={ kind = \"bathe\", rho_inf = 1.5 }"], &["`rho_inf` must be a number in [0, 1]"]),
     (&["time.scheme={ kind = \"hu\", rho_inf = 0.5 }"], &["unknown key `rho_inf` in scheme \"hu\"", "scheme \"wbz\""]),
     (&["time.scheme={ kind = \"newmark\", beta = 0.25 }"], &["needs `gamma`"]),
     (&["time.scheme={ kind = \"hht\", alpha = -0.1 }"], &["did you mean `alpha = 0.1`?"]),
@@ -103,10 +103,24 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["expect=[{ what = \"min A.uy\", value = 0 }]"], &["does not set one bound", "it has value"]),
     // contact without mass
     (&["material.rubber.density=0"], &["nothing that touches in `strike` has mass", "persistency = \"none\""]),
+    // combinations without meaning
+    (
+        &["contact.strike.law=predictor", "time.scheme.kind=bathe"],
+        &["scheme `bathe` has no predictor to project", "several stages"],
+    ),
+    (
+        &["contact.strike.law=predictor", "contact.strike.enforcement=penalty"],
+        &["a penalty has no predictor to project"],
+    ),
+    (&["contact.strike.law=predictor", "contact.strike.persistency=project"], &["this projection has no meaning"]),
+    (
+        &["contact.strike.stiffness=3.0"],
+        &["this stiffness has no meaning", "only enforcement = \"penalty\" has springs"],
+    ),
     // later versions
     (&["plane=axisymmetric"], &["this version does not have `plane = \"axisymmetric\"` yet"]),
     (&["contact.strike.method=mortar"], &["does not have `method = \"mortar\"` yet"]),
-    (&["contact.strike.enforcement=penalty"], &["use one of: multiplier"]),
+    (&["contact.strike.enforcement=augmented"], &["use one of: multiplier, penalty"]),
     (&["contact.strike.restitution=0.5"], &["this version does not have `restitution` yet"]),
     (&["load=[]"], &["this version does not have `load` yet"]),
     (&["time.step={ initial = 1e-3 }"], &["`step` must be a number > 0, not a table", "A later version"]),
