@@ -132,8 +132,7 @@ pub fn start<const D: usize>(model: &Model<D>, work: &mut Workspace<D>) -> Resul
         (0..dofs).map(|i| if model.massless[i] { 0.0 } else { model.gravity[i] - state.f_internal[i] }).collect();
     let inertia = work.system.factor_mass(model, &[])?;
     if inertia.negative > 0 {
-        let size = model.free.len();
-        return Err(carom_algebra::LinearError::Singular { size, pivot: inertia.negative, value: -1.0 }.into());
+        return Err(Rejected::NegativeMass { directions: inertia.negative });
     }
     work.system.solve(model, &forces, &[], &mut state.a, &mut Vec::new())?;
     book_kinetic(model, &mut state);

@@ -56,6 +56,14 @@ pub enum Rejected {
         /// Penetration.
         depth: f64,
     },
+    /// The mass matrix does not make every motion cost energy.
+    #[error(
+        "the mass matrix is negative in {directions} directions: redistributed mass needs more nodes behind the contact"
+    )]
+    NegativeMass {
+        /// Negative eigenvalues.
+        directions: usize,
+    },
     /// A number is not finite.
     #[error("{what} is not finite")]
     NotFinite {
@@ -74,6 +82,7 @@ impl Rejected {
             Self::Cycle { .. } => "active-set-cycle",
             Self::Linear(_) => "linear-solver",
             Self::Stuck { .. } => "stuck-contact",
+            Self::NegativeMass { .. } => "negative-mass",
             Self::NotFinite { .. } => "not-finite",
         }
     }

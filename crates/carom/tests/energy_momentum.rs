@@ -84,7 +84,7 @@ fn energy_and_momenta_of_a_free_flight_are_kept_to_round_off() {
         assert!(least < 0.9);
     }
     // Averaged states at ρ∞ = 1 are the plain midpoint rule: momenta, but not energy.
-    let (energy, momenta, ..) =
+    let (energy, momenta, _, newton) =
         drift(&[r#"time.scheme={ kind = "chung-hulbert", rho_inf = 1.0, forces = "average-state" }"#]);
     println!("midpoint: {newton:.1} iterations a step");
     assert!(energy > 1e-4 && momenta.iter().all(|lost| *lost < 1e-8), "{energy:e} {momenta:?}");

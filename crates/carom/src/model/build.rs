@@ -228,7 +228,11 @@ where
                 }
             },
         };
-        let projects = spec.law == ContactLaw::Position && spec.enforcement == Enforcement::Multiplier;
+        let light = |part: usize| case.bodies[part].mass.is_redistributed();
+        let projects = spec.law == ContactLaw::Position
+            && spec.enforcement == Enforcement::Multiplier
+            && !light(secondary.part)
+            && !primary_part.is_some_and(light);
         let contact = Contact {
             name: spec.name.clone(),
             penalty: (spec.enforcement == Enforcement::Penalty)
@@ -239,7 +243,8 @@ where
             secondary_facets: secondary.facets,
             // Other schemes take the contact force at the ends of their stages: there is nothing to average.
             force: if averages { spec.force } else { ForceTime::AlphaF },
-            // A predictor that respects the contact, and a spring, leave nothing to project.
+            // A predictor that respects the contact, a spring, and nodes without mass that follow the other side leave nothing to project: projected, a
+            // massive side would be given the velocity of the light one.
             persistency: if projects { spec.persistency } else { Persistency::None },
             within: spec.active_set == ActiveSetRule::Within,
         };

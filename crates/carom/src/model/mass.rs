@@ -27,7 +27,7 @@ impl Mass {
                 match kind {
                     // Of redistributed masses the nodes of contacts are made light afterwards.
                     MassKind::Consistent | MassKind::Redistributed | MassKind::RedistributedNearest => {
-                        part.body.cell_mass(cell, &mut local)
+                        part.body.cell_mass(cell, &mut local);
                     }
                     MassKind::Lumped => {
                         cell_lumped_mass(&*part.body, cell, &mut local, &mut diagonal);
