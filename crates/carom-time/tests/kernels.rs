@@ -88,7 +88,7 @@ fn principal_roots_are_the_textbook_stability_functions() {
             // √(4 − 3 + 2z), the root with a positive real part.
             let d: Complex = (1.0, 2.0 * z.1);
             let m = d.0.hypot(d.1);
-            let root = (((m + d.0) / 2.0).sqrt(), ((m - d.0) / 2.0).sqrt());
+            let root = ((0.5 * (m + d.0)).sqrt(), (0.5 * (m - d.0)).sqrt());
             div((2.0 + root.0, root.1), p)
         };
         let cases: [(&dyn Kernel, Complex); 4] = [

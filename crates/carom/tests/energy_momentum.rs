@@ -76,16 +76,13 @@ fn energy_and_momenta_of_a_free_flight_are_kept_to_round_off() {
     {
         let sets = [format!("material.rubber.law=\"{law}\""), format!("newton.tolerance={tolerance}")];
         let (energy, momenta, least, newton) = drift(&sets.each_ref().map(String::as_str));
-        println!(
-            "{law}, {tolerance}: energy {energy:.1e}, momenta {momenta:?}, least J {least:.3}, {newton:.1} iterations a step"
-        );
+        assert!(newton < 10.0, "{law}: {newton} iterations a step");
         assert!(energy < kept, "{law}: {energy:e}");
         assert!(momenta.iter().all(|lost| *lost < kept), "{law}: {momenta:?}");
         assert!(least < 0.9);
     }
     // Averaged states at ρ∞ = 1 are the plain midpoint rule: momenta, but not energy.
-    let (energy, momenta, _, newton) =
+    let (energy, momenta, ..) =
         drift(&[r#"time.scheme={ kind = "chung-hulbert", rho_inf = 1.0, forces = "average-state" }"#]);
-    println!("midpoint: {newton:.1} iterations a step");
     assert!(energy > 1e-4 && momenta.iter().all(|lost| *lost < 1e-8), "{energy:e} {momenta:?}");
 }
