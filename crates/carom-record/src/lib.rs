@@ -19,11 +19,13 @@ mod expression;
 mod files;
 mod manifest;
 pub mod metrics;
+pub mod order;
 mod pvd;
 pub mod question;
 mod rows;
 mod run;
 pub mod study;
+pub mod verification;
 mod vtu;
 mod writer;
 

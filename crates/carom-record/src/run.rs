@@ -83,6 +83,12 @@ impl Run {
         self.history.times()
     }
 
+    /// Whether a contact was active in a motion: not where the time is the parameter of a static load.
+    pub fn had_dynamic_contact(&self) -> bool {
+        let kind = self.manifest.case.pointer("/time/scheme/kind").and_then(|k| k.as_str());
+        kind != Some("static") && self.column("active").is_some_and(|active| active.iter().any(|n| *n > 0.0))
+    }
+
     /// Reads one field file.
     pub fn field(&self, entry: &FieldEntry) -> Result<FieldSet, RecordError> {
         let path = self.directory.join(entry.file());

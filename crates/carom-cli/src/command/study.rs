@@ -86,11 +86,11 @@ pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
     Ok(carom_report::study(directory).map_err(made)?.page)
 }
 
-fn jobs(asked: Option<NonZero<usize>>) -> usize {
+pub(super) fn jobs(asked: Option<NonZero<usize>>) -> usize {
     asked.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get)
 }
 
-fn failure(error: StudyError) -> Failure {
+pub(super) fn failure(error: StudyError) -> Failure {
     match error {
         StudyError::Record(ref e) if e.exit_code() == 4 => Failure::Refused { what: error.to_string() },
         StudyError::Arm { source: carom::recording::RunError::Record(ref e), .. } if e.exit_code() == 4 => {
@@ -144,6 +144,13 @@ fn text(study: &Study) -> String {
     for v in &study.verdicts {
         let value = |x: Option<f64>| x.map_or("–".into(), short);
         lines.push(format!("{:9}  {}  ({} against {})", v.word(), v.claim.text, value(v.left), value(v.right)));
+    }
+    let arms = study.rows.iter().flat_map(|row| row.expectations.iter().map(move |e| (Some(&row.name), e)));
+    for (arm, e) in arms.chain(study.expectations.iter().map(|e| (None, e))) {
+        let word = if e.pass { "met" } else { "MISSED" };
+        let of = arm.map_or_else(String::new, |arm| format!(" of \"{arm}\""));
+        let got = e.got.map_or_else(|| e.why.clone().unwrap_or_default(), short);
+        lines.push(format!("{word:9}  {}{of}: {got}  ({})", e.what, e.expected));
     }
     lines.join("\n")
 }

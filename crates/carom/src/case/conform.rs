@@ -142,7 +142,7 @@ impl Check {
                 }
             }
             (Kind::Table(spec) | Kind::SideOr(spec), Value::Table(table)) => self.table(table, spec, path),
-            (Kind::Tables(spec), Value::List(list)) if !list.is_empty() => {
+            (Kind::Tables(spec), Value::List(list)) if !list.is_empty() || matches!(key.default, Default::Absent) => {
                 for (i, node) in list.iter().enumerate() {
                     let path = format!("{path}[{i}]");
                     match node.table() {

@@ -26,6 +26,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 pub use carom_record::{Bound, Expect as ExpectSpec};
+pub use columns::history_columns;
 pub use document::Document;
 pub use expect::{Asked, read_expects};
 pub use problem::{CaseError, Diagnostic, Problem};
@@ -65,6 +66,14 @@ pub struct Case {
     pub output: OutputSpec,
     /// Expected values that make the case a test.
     pub expects: Vec<ExpectSpec>,
+}
+
+impl Case {
+    /// A measure of the work it is, to put long runs before short ones: steps × nodes.
+    pub fn work(&self) -> f64 {
+        let nodes: f64 = self.bodies.iter().map(|body| body.mesh.estimate(body.element).1).sum();
+        self.time.steps() as f64 * nodes
+    }
 }
 
 /// Plane state of a two-dimensional body.
