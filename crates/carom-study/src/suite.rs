@@ -77,8 +77,10 @@ fn family(named: &Path, file: &Path, folder: bool) -> String {
     let name = match below {
         Some(first) => first.as_os_str().to_owned(),
         None => {
-            let whole = std::path::absolute(parent).unwrap_or_else(|_| parent.to_owned());
-            whole.file_name().map(ToOwned::to_owned).unwrap_or_default()
+            // `case.toml` alone has no folder in its path.
+            let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+            let folder = whole.parent().and_then(Path::file_name);
+            folder.map_or_else(|| "cases".into(), ToOwned::to_owned)
         }
     };
     name.to_string_lossy().into_owned()
