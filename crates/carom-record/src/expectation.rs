@@ -202,10 +202,10 @@ impl Expect {
             }
         };
         if let Some(after) = self.after {
-            words += &format!(", t > {after}");
+            words.extend([", t > ".to_owned(), after.to_string()]);
         }
         if let Some(before) = self.before {
-            words += &format!(", t < {before}");
+            words.extend([", t < ".to_owned(), before.to_string()]);
         }
         words
     }

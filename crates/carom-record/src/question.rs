@@ -147,11 +147,16 @@ impl Question {
 
     /// Names of the arms it speaks of; none where a quantity names no arm.
     pub fn arms(&self) -> Vec<Option<&str>> {
-        let of = |quantity| match quantity {
-            &Quantity::Metric(_, ref arm) => vec![arm.as_deref()],
-            Quantity::Reduced(_, series) => series.columns.quantities().iter().map(|a| a.arm.as_deref()).collect(),
-        };
-        self.quantities().into_iter().flat_map(of).collect()
+        let mut arms = Vec::new();
+        for quantity in self.quantities() {
+            match quantity {
+                Quantity::Metric(_, arm) => arms.push(arm.as_deref()),
+                Quantity::Reduced(_, series) => {
+                    arms.extend(series.columns.quantities().iter().map(|a| a.arm.as_deref()));
+                }
+            }
+        }
+        arms
     }
 
     /// Whether it asks if a run stopped, so that what was recorded until then counts.

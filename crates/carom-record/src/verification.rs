@@ -180,6 +180,6 @@ impl Verification {
                 &row.directory,
             ])?;
         }
-        writer.into_inner().map_err(|e| e.into_error())
+        writer.into_inner().map_err(csv::IntoInnerError::into_error)
     }
 }

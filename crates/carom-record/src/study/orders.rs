@@ -154,13 +154,11 @@ fn observed(
                 (None, None) => None,
             };
             let (second, last) = (value(name(two))?, value(name(three))?);
-            match exact {
-                Some(exact) => from_errors([h1, h2], [second - exact, last - exact]),
-                None => {
-                    let (steps, first) = triple()?;
-                    from_differences(steps, [value(first)? - second, second - last])
-                }
+            if let Some(exact) = exact {
+                return from_errors([h1, h2], [second - exact, last - exact]);
             }
+            let (steps, first) = triple()?;
+            from_differences(steps, [value(first)? - second, second - last])
         }
         Of::Column(series) => {
             let common = |arms: &[&str]| {
@@ -190,11 +188,11 @@ pub fn numeric_keys(manifest: &StudyManifest, least: usize) -> BTreeMap<String, 
         manifest.arms.iter().flat_map(|a| &a.sets).filter_map(|set| Some(set.split_once('=')?.0.trim().to_owned()));
     let mut found = BTreeMap::new();
     for key in keys {
-        if !found.contains_key(&key) {
-            let mut groups = refinements(manifest, &key, None);
+        found.entry(key).or_insert_with_key(|key| {
+            let mut groups = refinements(manifest, key, None);
             groups.retain(|g| g.arms.len() >= least && g.steps.windows(2).all(|h| h[0] > h[1]));
-            found.insert(key, groups);
-        }
+            groups
+        });
     }
     found.retain(|_, groups| !groups.is_empty());
     found
