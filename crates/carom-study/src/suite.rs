@@ -74,14 +74,13 @@ impl Suite {
 fn family(named: &Path, file: &Path, folder: bool) -> String {
     let parent = file.parent().unwrap_or(Path::new(""));
     let below = if folder { parent.strip_prefix(named).ok().and_then(|p| p.components().next()) } else { None };
-    let name = match below {
-        Some(first) => first.as_os_str().to_owned(),
-        None => {
-            // `case.toml` alone has no folder in its path.
-            let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-            let folder = whole.parent().and_then(Path::file_name);
-            folder.map_or_else(|| "cases".into(), ToOwned::to_owned)
-        }
+    let name = if let Some(first) = below {
+        first.as_os_str().to_owned()
+    } else {
+        // `case.toml` alone has no folder in its path.
+        let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+        let folder = whole.parent().and_then(Path::file_name);
+        folder.map_or_else(|| "cases".into(), ToOwned::to_owned)
     };
     name.to_string_lossy().into_owned()
 }

@@ -29,6 +29,7 @@ Examples:
   carom verify --fast --csv
 
 Exit codes: 0 all met · 1 an expectation was missed · 2 a case is wrong · 3 a run stopped though nothing expected it")]
+#[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
     /// Cases, studies, or folders of them [default: cases/, or the fast cases this program carries]
     paths: Vec<PathBuf>,
@@ -90,9 +91,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if arguments.report {
         pages(&suite, &verification, &directory)?;
     }
-    let page = carom_report::verify(&directory).map_err(unwritten)?;
+    let page = carom_report::verify(&directory).map_err(|e| unwritten(&e))?;
     if let Some(folder) = &arguments.markdown {
-        carom_report::verify_markdown(&directory, folder).map_err(unwritten)?;
+        carom_report::verify_markdown(&directory, folder).map_err(|e| unwritten(&e))?;
     }
     tell(&verification, arguments, &page)?;
     Ok(match (verification.stopped(), verification.missed()) {
@@ -102,7 +103,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     })
 }
 
-fn unwritten(error: carom_report::ReportError) -> Failure {
+fn unwritten(error: &carom_report::ReportError) -> Failure {
     Failure::Refused { what: error.to_string() }
 }
 
@@ -111,7 +112,7 @@ fn pages(suite: &Suite, verification: &Verification, directory: &Path) -> Result
     for (item, set_up) in suite.items.iter().zip(&verification.set_ups) {
         let place = directory.join(&set_up.directory);
         match item.kind {
-            Kind::Case(..) => carom_report::report(&place).map(drop).map_err(unwritten)?,
+            Kind::Case(..) => carom_report::report(&place).map(drop).map_err(|e| unwritten(&e))?,
             Kind::Study(_) => study_report(&place).map(drop)?,
         }
     }

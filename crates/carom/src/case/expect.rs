@@ -45,9 +45,9 @@ pub fn read_expects(document: &Document, path: &str, asked: Asked, problems: &mu
 /// One expectation; `None` when it cannot be read, which is then among the problems.
 pub(super) fn one(v: View, path: &str, asked: Asked, problems: &mut Vec<Problem>) -> Option<Expect> {
     let what = v.text("what")?;
-    let order = order(v, &what, path, asked, problems)?;
+    let order = order(v, &what, path, asked, problems).ok()?;
     let norm = v.choice("norm").unwrap_or(if order.is_some() { Norm::Rms } else { Norm::Max });
-    let deviation = deviation(v, norm, path, problems)?;
+    let deviation = deviation(v, norm, path, problems).ok()?;
     let bound = bound(v, deviation.is_some() && order.is_none(), path, problems)?;
     let name = |part: &str| format!("{path}.{part}");
     let parsed = match (&order, &deviation) {
@@ -78,15 +78,18 @@ pub(super) fn one(v: View, path: &str, asked: Asked, problems: &mut Vec<Problem>
     })
 }
 
-/// `Some(None)`: no order is asked for.
-fn order(v: View, what: &str, path: &str, asked: Asked, problems: &mut Vec<Problem>) -> Option<Option<OrderOf>> {
+/// Has told what is wrong.
+struct Told;
+
+/// The order that is asked for, if one is.
+fn order(v: View, what: &str, path: &str, asked: Asked, problems: &mut Vec<Problem>) -> Result<Option<OrderOf>, Told> {
     let given: Vec<_> = ["of", "against", "where", "exact"].into_iter().filter(|k| v.has(k)).collect();
     let mut wrong = |what: String, why: &str, help: &str| problems.push(Problem::new(path, what, why, help).at_key());
     match (what == "order", asked, given.as_slice()) {
-        (false, _, []) => Some(None),
+        (false, _, []) => Ok(None),
         (false, _, [first, ..]) => {
             wrong(format!("`{first}` without an order"), "it belongs to what = \"order\"", "leave it out");
-            None
+            Err(Told)
         }
         (true, Asked::OfARun, _) => {
             let why = "it is seen in runs with several steps";
@@ -95,11 +98,11 @@ fn order(v: View, what: &str, path: &str, asked: Asked, problems: &mut Vec<Probl
                 why,
                 "ask for it in the [[expect]] of a study",
             );
-            None
+            Err(Told)
         }
-        (true, Asked::OfArms, ["of", "against", ..]) => Some(Some(OrderOf {
-            of: v.text("of")?,
-            against: v.text("against")?,
+        (true, Asked::OfArms, ["of", "against", ..]) => Ok(Some(OrderOf {
+            of: v.text("of").ok_or(Told)?,
+            against: v.text("against").ok_or(Told)?,
             arms: v.text("where"),
             exact: v.number("exact"),
         })),
@@ -110,13 +113,13 @@ fn order(v: View, what: &str, path: &str, asked: Asked, problems: &mut Vec<Probl
                 "it is the order of a number or column in a key of the case",
                 help,
             );
-            None
+            Err(Told)
         }
     }
 }
 
-/// `Some(None)`: there is no formula.
-fn deviation(v: View, norm: Norm, path: &str, problems: &mut Vec<Problem>) -> Option<Option<Deviation>> {
+/// The deviation from a formula, if there is one.
+fn deviation(v: View, norm: Norm, path: &str, problems: &mut Vec<Problem>) -> Result<Option<Deviation>, Told> {
     if !v.has("formula") {
         if let Some(key) = ["norm", "scale"].into_iter().find(|k| v.has(k) && !(*k == "norm" && v.has("of"))) {
             let (why, help) =
@@ -124,9 +127,9 @@ fn deviation(v: View, norm: Norm, path: &str, problems: &mut Vec<Problem>) -> Op
             problems
                 .push(Problem::new(format!("{path}.{key}"), format!("`{key}` without `formula`"), why, help).at_key());
         }
-        return Some(None);
+        return Ok(None);
     }
-    let formula = v.text("formula")?;
+    let formula = v.text("formula").ok_or(Told)?;
     if let Err(error) = Formula::parse(&formula, &["t"]) {
         let why = "it is a formula in the time t";
         problems.push(Problem::new(
@@ -135,9 +138,9 @@ fn deviation(v: View, norm: Norm, path: &str, problems: &mut Vec<Problem>) -> Op
             why,
             "write for example \"-0.5*9.81*t^2\"",
         ));
-        return None;
+        return Err(Told);
     }
-    Some(Some(Deviation { formula, norm, scale: v.number("scale")? }))
+    Ok(Some(Deviation { formula, norm, scale: v.number("scale").ok_or(Told)? }))
 }
 
 fn bound(v: View, deviation: bool, path: &str, problems: &mut Vec<Problem>) -> Option<Bound> {
