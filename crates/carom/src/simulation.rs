@@ -127,15 +127,14 @@ where
     pub fn new(case: &Case, threads: usize) -> Result<Self, Vec<Problem>> {
         let mut simulation = Self::resume(case, threads, State::default())?;
         let model = &simulation.model;
-        let before = match &case.initial {
-            Some(initial) => Some(before(initial, case, model)?),
-            None => {
-                let problems = overlaps(model);
-                if !problems.is_empty() {
-                    return Err(problems);
-                }
-                None
+        let before = if let Some(initial) = &case.initial {
+            Some(before(initial, case, model)?)
+        } else {
+            let problems = overlaps(model);
+            if !problems.is_empty() {
+                return Err(problems);
             }
+            None
         };
         let inertia = !case.time.scheme.is_static();
         simulation.state = start(model, inertia, before, &mut simulation.work).map_err(|rejected| {

@@ -343,7 +343,7 @@ scheme = {{ kind = "static" }}
         )
     };
     let axis = "[[support]]\non = [\"disc.axis\"]\nfix = [\"x\"]\n";
-    let document = Document::parse("a.toml", &text("", 0.5).replace("[[contact]]", "[[contact]]"), &[]).unwrap();
+    let document = Document::parse("a.toml", &text("", 0.5), &[]).unwrap();
     let case = read(&document).unwrap();
     // Without its contact nothing could ever hold it: the case is wrong.
     let mut alone = case.clone();

@@ -144,13 +144,14 @@ impl Check {
                     self.formula(node, variables, key, &format!("{path}[{i}]"));
                 }
             }
-            (Kind::FormulasOr(_, spec), Value::Table(table)) => self.table(table, spec, path),
             (Kind::Sides, Value::List(list)) if !list.is_empty() => {
                 for (i, node) in list.iter().enumerate().filter(|(_, n)| n.text().is_none()) {
                     self.wrong(node, key, &format!("{path}[{i}]"));
                 }
             }
-            (Kind::Table(spec) | Kind::SideOr(spec), Value::Table(table)) => self.table(table, spec, path),
+            (Kind::Table(spec) | Kind::SideOr(spec) | Kind::FormulasOr(_, spec), Value::Table(table)) => {
+                self.table(table, spec, path);
+            }
             (Kind::Tables(spec), Value::List(list)) if !list.is_empty() => {
                 for (i, node) in list.iter().enumerate() {
                     let path = format!("{path}[{i}]");

@@ -10,7 +10,7 @@ pub struct Problem {
     /// Whether the key itself is meant rather than its value.
     pub at_key: bool,
     /// Bytes of the value's text that are meant, where it is a formula.
-    pub within: Option<std::ops::Range<usize>>,
+    pub within: Option<Box<std::ops::Range<usize>>>,
     /// What is wrong.
     pub what: String,
     /// Why it is wrong.
@@ -39,7 +39,7 @@ impl Problem {
     /// The same problem, pointing at a part of its value's text.
     #[must_use]
     pub fn within(self, bytes: std::ops::Range<usize>) -> Self {
-        Self { within: Some(bytes), ..self }
+        Self { within: Some(Box::new(bytes)), ..self }
     }
 }
 

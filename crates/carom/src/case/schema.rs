@@ -139,7 +139,7 @@ mod tests {
             see(spec, key);
             match key.kind {
                 Kind::Table(spec) | Kind::Tables(spec) | Kind::SideOr(spec) | Kind::FormulasOr(_, spec) => {
-                    visit(spec, see)
+                    visit(spec, see);
                 }
                 Kind::Variant(Variants { tables, or, .. }) => {
                     tables.iter().map(|(_, spec)| spec).chain(*or).for_each(|spec| visit(spec, see));
