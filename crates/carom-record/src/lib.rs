@@ -37,4 +37,4 @@ pub use pvd::FieldEntry;
 pub use rows::{ContactRow, Event};
 pub use run::{History, Run};
 pub use vtu::{Block, Cell, FieldSet, PointArray};
-pub use writer::{Reopened, RunWriter};
+pub use writer::{Reopened, RunWriter, last_checkpoint};

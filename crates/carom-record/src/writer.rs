@@ -103,14 +103,7 @@ impl RunWriter {
     pub fn reopen(directory: &Path) -> Result<Reopened, RecordError> {
         let manifest = Manifest::read(directory)?;
         let lock = lock(directory)?;
-        let [a, b] = [0, 1].map(|generation| verified(directory, generation));
-        let (generation, (header, payload), fallback) = match (a, b) {
-            (Ok(a), Ok(b)) if a.0.sequence > b.0.sequence => (0, a, None),
-            (Ok(_), Ok(b)) => (1, b, None),
-            (Ok(a), Err(error)) => (0, a, Some(error)),
-            (Err(error), Ok(b)) => (1, b, Some(error)),
-            (Err(error), Err(other)) => return Err(if missing(&error) { other } else { error }),
-        };
+        let (generation, (header, payload), fallback) = newest(directory)?;
         // One generation only is how every run begins.
         let fallback = fallback.filter(|error| !missing(error));
         Ok(Reopened { fallback, ..Self::open(directory, manifest, lock, generation, header, payload)? })
@@ -241,6 +234,26 @@ impl RunWriter {
         }
         Ok(())
     }
+}
+
+/// Payload of the newest checkpoint that is whole; nothing is changed.
+///
+/// # Errors
+/// There is none.
+pub fn last_checkpoint(directory: &Path) -> Result<Vec<u8>, RecordError> {
+    newest(directory).map(|(_, (_, payload), _)| payload)
+}
+
+/// The newest checkpoint that is whole: its generation, itself, and what is wrong with the other.
+fn newest(directory: &Path) -> Result<(usize, (Header, Vec<u8>), Option<RecordError>), RecordError> {
+    let [a, b] = [0, 1].map(|generation| verified(directory, generation));
+    Ok(match (a, b) {
+        (Ok(a), Ok(b)) if a.0.sequence > b.0.sequence => (0, a, None),
+        (Ok(_), Ok(b)) => (1, b, None),
+        (Ok(a), Err(error)) => (0, a, Some(error)),
+        (Err(error), Ok(b)) => (1, b, Some(error)),
+        (Err(error), Err(other)) => return Err(if missing(&error) { other } else { error }),
+    })
 }
 
 /// A checkpoint, if it is whole and the row files reach as far as it says.

@@ -10,6 +10,7 @@ mod names;
 mod oscillator;
 mod scheme;
 mod stage;
+mod statics;
 mod text;
 
 pub use analysis::Principal;
@@ -21,4 +22,5 @@ pub use names::{Elsewhere, Name};
 pub use oscillator::{Motion, Oscillator};
 pub use scheme::{ForceRule, Scheme};
 pub use stage::{Affine, Kernel, Memory, Stage, Weights};
+pub use statics::{STATIC, Static};
 pub use text::{Catalogue, CatalogueRow, explain_all};

@@ -2,15 +2,19 @@
 //!
 //! ```text
 //! F̄ = (1−α_f) F_{s+1} + α_f F_s,   Δy = y_{s+1} − y_s
-//! external_work += Δy·F̄_ext (beyond the potential)        contact_work += −Δy·F̄_cont
+//! external_work += Δy·F̄_ext (beyond the potential) + Δy_moved·R̄ + Δy/Δt·M J        contact_work += −Δy·F̄_cont
 //! ```
+//!
+//! R̄ is the residual of eq. (15) at moved dofs, the force of their supports. J = v_{s+1} − v_s − Δt ā at moved dofs is what their velocities change
+//! beyond their averaged acceleration ā: where a motion's velocity jumps, the impulse M J is the support's too, and its work is that of the mean
+//! velocity. Load steps without inertia take the mean of both ends, F̄ = (F_{s+1} + F_s)/2: exact where forces are linear in the displacements.
 //!
 //! The increment of the dissipation then equals (Δy·F̄_int − ΔU) − (γ+α_m−1) Δy·MΔa + Δt² (β−γ/2) Δa·M(a_s + γΔa) to round-off (Krenk 2006).
 
 use carom_contact::Linearised;
 
-use crate::balance::contact_weights;
-use crate::model::Model;
+use crate::balance::{contact_weights, mean_acceleration};
+use crate::model::{Model, dot};
 use crate::newton::Workspace;
 use crate::state::State;
 
@@ -33,6 +37,10 @@ pub(crate) fn account<const D: usize>(
         };
         next.ledger.contact_work -= increment[i] * averaged;
     }
+    next.ledger.external_work += work_of_loads(model, state, next, increment, work);
+    if !work.motions.is_empty() {
+        next.ledger.external_work += work_of_motions(model, state, next, increment, dt, work);
+    }
     book_contact_forces(model, next);
     for (k, contact) in model.contacts.iter().enumerate() {
         let (now, before) = contact_weights(&work.stage, contact.force);
@@ -43,6 +51,57 @@ pub(crate) fn account<const D: usize>(
     next.ledger.strain = strain;
     next.ledger.potential = model.potential(&next.y);
     book_kinetic(model, next);
+}
+
+/// Δy·F̄ of the loads.
+fn work_of_loads<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    next: &State,
+    increment: &[f64],
+    work: &Workspace<D>,
+) -> f64 {
+    if model.loads.is_empty() {
+        return 0.0;
+    }
+    let (now, before) = (work.stage.weights.external, work.stage.before.external);
+    let averaged = |i: usize| {
+        if work.stage.is_static() {
+            0.5 * (next.f_external[i] + state.f_external[i])
+        } else if model.massless[i] {
+            next.f_external[i]
+        } else {
+            now * work.forces.loads[i] + before * state.f_external[i]
+        }
+    };
+    (0..increment.len()).map(|i| increment[i] * averaged(i)).sum()
+}
+
+/// Work of the supports that move.
+fn work_of_motions<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    next: &State,
+    increment: &[f64],
+    dt: f64,
+    work: &Workspace<D>,
+) -> f64 {
+    if work.stage.is_static() {
+        // Without inertia the force of a support is what is left of the others; contact at the step's start is known as far as it is averaged.
+        let left = |s: &State, i: usize| s.f_internal[i] + s.f_contact[i] - model.gravity[i] - s.f_external[i];
+        return model.motions.dofs().map(|i| 0.5 * increment[i] * (left(next, i) + left(state, i))).sum();
+    }
+    let weights = work.stage.weights;
+    let mut jump = vec![0.0; increment.len()];
+    let mut sum = 0.0;
+    for i in model.motions.dofs() {
+        let force = if model.massless[i] { work.residual[i] / weights.external } else { work.residual[i] };
+        sum += increment[i] * force;
+        jump[i] = next.v[i] - state.v[i] - dt * mean_acceleration(&work.stage, next.a[i], state.a[i]);
+    }
+    let mut impulse = vec![0.0; increment.len()];
+    model.mass.multiply_into(&jump, &mut impulse);
+    sum + dot(increment, &impulse) / dt
 }
 
 /// Kinetic energy of the velocities, and the largest energy so far.

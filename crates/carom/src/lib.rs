@@ -3,6 +3,7 @@
 mod balance;
 pub mod case;
 mod cells;
+mod initial;
 mod ledger;
 pub mod model;
 mod newton;
@@ -12,12 +13,12 @@ mod rejected;
 mod rows;
 mod scheme;
 mod simulation;
+mod start;
 mod state;
 mod stepper;
 mod system;
 
 pub use newton::{Timings, Workspace};
-pub use persistency::start;
 pub use rejected::Rejected;
 pub use simulation::{GridReport, LogEvent, Simulation, Stopped};
 pub use state::{Ledger, State};

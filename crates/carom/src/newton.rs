@@ -7,9 +7,9 @@ use carom_algebra::LinearError;
 use carom_contact::{ActiveSet, Contender, Linearised, Pair, PairEvent};
 use carom_time::Stage;
 
-use crate::balance::{Forces, contact_weights, residual_into};
+use crate::balance::{Forces, contact_weights, mean_acceleration, residual_into};
 use crate::case::NewtonSpec;
-use crate::model::Model;
+use crate::model::{LoadsAt, Model, Prescribed};
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::state::State;
@@ -17,6 +17,8 @@ use crate::system::{Row, System};
 
 /// Penetration, as a fraction of L, that counts as touching.
 pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
+/// Gap, as a fraction of L, of nodes that touch before the first load step.
+const TOUCHING: f64 = 1e-9;
 /// Below this step, relative to L, the next iterate may well be the last: its tangent is not formed before it is needed.
 const NEARLY_THERE: f64 = 1e-3;
 /// Halvings of a Newton step that inverts a cell or makes the residual much worse.
@@ -58,7 +60,16 @@ pub struct Workspace<const D: usize> {
     pub(crate) stage: Stage,
     /// Wall time by phase.
     pub timings: Timings,
-    residual: Vec<f64>,
+    /// r of the last evaluation over all dofs: at held ones, the force of their support.
+    pub(crate) residual: Vec<f64>,
+    /// Loads at the stage's time.
+    pub(crate) loads: LoadsAt,
+    /// Moved dofs at the stage's end.
+    pub(crate) motions: Vec<Prescribed>,
+    /// What moved dofs still have to go; zero elsewhere.
+    remaining: Vec<f64>,
+    /// ∂f_int/∂y · remaining.
+    pull: Vec<f64>,
     at: Vec<f64>,
     correction: Vec<f64>,
     multipliers: Vec<f64>,
@@ -74,6 +85,7 @@ impl<const D: usize> Workspace<D> {
             forces: Forces {
                 inertia: zeros.clone(),
                 internal: zeros.clone(),
+                loads: zeros.clone(),
                 contact: zeros.clone(),
                 known: zeros.clone(),
             },
@@ -82,6 +94,10 @@ impl<const D: usize> Workspace<D> {
             stage: Stage::default(),
             timings: Timings::default(),
             residual: zeros.clone(),
+            loads: LoadsAt::default(),
+            motions: Vec::new(),
+            remaining: zeros.clone(),
+            pull: zeros.clone(),
             at: zeros.clone(),
             correction: zeros,
             multipliers: Vec::new(),
@@ -132,6 +148,9 @@ pub(crate) fn solve_stage<const D: usize>(
         model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect();
     timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))?;
     let mut measure = evaluate(model, state, trial, work, true)?;
+    if work.stage.is_static() && touch(model, trial, work) {
+        measure = evaluate(model, state, trial, work, false)?;
+    }
     let mut has_tangent = true;
     let mut step = f64::INFINITY;
     loop {
@@ -201,13 +220,29 @@ fn evaluate<const D: usize>(
         trial.y[i] = state.y[i] + trial.increment[i];
         work.at[i] = state.y[i] + share * trial.increment[i];
     }
+    for moved in &work.motions {
+        let target = model.reference[moved.dof] + moved.motion[0];
+        work.remaining[moved.dof] = (target - state.y[moved.dof]) - trial.increment[moved.dof];
+    }
     let inverted = |(body, inverted)| Rejected::Inverted { body, inverted };
     let (system, at, force) = (&mut work.system, &work.at, &mut work.forces.internal);
+    let pull = (!work.motions.is_empty()).then_some((&work.remaining[..], &mut work.pull[..]));
     trial.strain = timed(&mut work.timings.assembly, || {
-        if tangent { system.internal_tangent(model, at, force) } else { model.internal_force(at, force) }
+        if tangent { system.internal_tangent(model, at, force, pull) } else { model.internal_force(at, force) }
     })
     .map_err(inverted)?;
+    if !model.loads.is_empty() {
+        model.loads.force_into(&work.loads, at, &mut work.forces.loads);
+    }
     stage.acceleration.value_into(&trial.increment, &mut work.acceleration);
+    if !stage.is_static() {
+        for moved in &work.motions {
+            // What makes the balance, whose averages are those of the scheme's a, take this mean.
+            let before = state.a[moved.dof];
+            let mean = mean_acceleration(stage, moved.motion[2], before);
+            work.acceleration[moved.dof] = (mean - stage.before.mass * before) / stage.weights.mass;
+        }
+    }
     model.mass.multiply_into(&work.acceleration, &mut work.forces.inertia);
 
     let y = trial.y.as_chunks::<D>().0;
@@ -257,6 +292,24 @@ fn mass_factor(stage: &Stage) -> f64 {
 
 fn stiffness_factor(stage: &Stage) -> f64 {
     stage.weights.internal * (1.0 - stage.average)
+}
+
+fn follower_factor(stage: &Stage) -> f64 {
+    stage.weights.external * (1.0 - stage.average)
+}
+
+/// Before the first load step, lets bodies that supports leave free hold on to what they touch. Whether that is anything.
+fn touch<const D: usize>(model: &Model<D>, trial: &mut Trial, work: &Workspace<D>) -> bool {
+    if model.unheld.is_empty() || trial.pairs.iter().flatten().any(|p| p.active) {
+        return false;
+    }
+    let mut changed = false;
+    for (pairs, gaps) in trial.pairs.iter_mut().zip(&work.gaps) {
+        for (pair, _) in pairs.iter_mut().zip(gaps).filter(|(_, gap)| gap.gap <= TOUCHING * model.scale) {
+            (pair.active, changed) = (true, true);
+        }
+    }
+    changed
 }
 
 /// Lets each contact's active set change; a released pair loses its multiplier.
@@ -320,18 +373,31 @@ fn linear_step<const D: usize>(
     let stage = &work.stage;
     let weight = |k: usize| contact_weights(stage, model.contacts[k].force).0;
     let gaps: Vec<Row<D>> = rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k) }).collect();
-    let (mass, stiffness) = (mass_factor(stage), stiffness_factor(stage));
-    let inertia = timed(&mut work.timings.factor, || work.system.factor(model, mass, stiffness, &gaps))?;
+    if stage.is_static() {
+        model.check_held(&work.at, gaps.iter().map(|row| row.gap))?;
+    }
+    let (mass, stiffness, follower) = (mass_factor(stage), stiffness_factor(stage), follower_factor(stage));
+    let inertia = timed(&mut work.timings.factor, || work.system.factor(model, mass, stiffness, follower, &gaps))?;
     if inertia.negative < rows.len() {
         let size = model.free.len() + rows.len();
         return Err(LinearError::Singular { size, pivot: inertia.negative, value: 0.0 }.into());
     }
-    let right: Vec<f64> = rows.iter().map(|&(k, p)| -weight(k) * work.gaps[k][p].gap).collect();
-    work.residual.iter_mut().for_each(|r| *r = -*r);
+    let remaining = &work.remaining;
+    let closing = |gap: &Linearised<D>| {
+        let moved = |p: usize| (0..D).map(|i| gap.gradient[p][i] * remaining[gap.nodes[p] * D + i]).sum::<f64>();
+        gap.gap + (0..gap.count).map(moved).sum::<f64>()
+    };
+    let right: Vec<f64> = rows.iter().map(|&(k, p)| -weight(k) * closing(&work.gaps[k][p])).collect();
+    for (r, pull) in work.residual.iter_mut().zip(&work.pull) {
+        *r = -(*r + stiffness * pull);
+    }
     let (system, forces) = (&mut work.system, &work.residual);
     timed(&mut work.timings.solve, || {
         system.solve(model, forces, &right, &mut work.correction, &mut work.multipliers)
     })?;
+    for moved in &work.motions {
+        work.correction[moved.dof] = work.remaining[moved.dof];
+    }
     Ok(())
 }
 
@@ -378,6 +444,12 @@ fn take<const D: usize>(
 ) -> Result<Measure, Rejected> {
     for i in 0..trial.increment.len() {
         trial.increment[i] = work.saved.increment[i] + length * work.correction[i];
+    }
+    if length == 1.0 {
+        // To the last digit.
+        for moved in &work.motions {
+            trial.increment[moved.dof] = model.reference[moved.dof] + moved.motion[0] - state.y[moved.dof];
+        }
     }
     trial.pairs.clone_from(&work.saved.pairs);
     for (&(k, p), multiplier) in rows.iter().zip(&work.multipliers) {

@@ -1,10 +1,15 @@
 //! From a scheme's name in the case to the kernel that steps.
 
-use carom_time::{Kernel, Scheme, SchemeError};
+use carom_time::{Kernel, STATIC, Scheme, SchemeError, Static};
 
 use crate::case::{Problem, SchemeSpec};
 
 impl SchemeSpec {
+    /// Whether it is equilibrium without inertia, with t as the load parameter.
+    pub fn is_static(&self) -> bool {
+        self.kind == STATIC
+    }
+
     /// The scheme's parameters.
     ///
     /// # Errors
@@ -18,6 +23,9 @@ impl SchemeSpec {
     /// # Errors
     /// As [`Self::scheme`], located at `time.scheme`.
     pub fn kernel(&self) -> Result<Box<dyn Kernel>, Vec<Problem>> {
+        if self.is_static() {
+            return Ok(Box::new(Static));
+        }
         match self.scheme() {
             Ok(scheme) => Ok(Box::new(scheme)),
             Err(error) => {

@@ -56,6 +56,8 @@ pub struct State {
     pub a: Vec<f64>,
     /// Internal forces at `y`.
     pub f_internal: Vec<f64>,
+    /// Loads at `y`, gravity apart: their known share of the next step.
+    pub f_external: Vec<f64>,
     /// Σ Gᵀλ of the contacts whose force is averaged: the known share of the next step.
     pub f_contact: Vec<f64>,
     /// Force on the secondary side of each contact.

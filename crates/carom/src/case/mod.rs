@@ -6,6 +6,8 @@ mod conform;
 mod document;
 mod expect;
 pub mod keys;
+pub(crate) mod load;
+mod load_table;
 mod mesh;
 pub(crate) mod mesh_file;
 mod overrides;
@@ -29,6 +31,7 @@ pub use carom_record::{Bound, Expect as ExpectSpec};
 pub use columns::history_columns;
 pub use document::Document;
 pub use expect::{Asked, read_expects};
+pub use load::{FormulaSpec, InitialSpec, LoadKind, LoadSpec, TableSpec, Velocities};
 pub use problem::{CaseError, Diagnostic, Problem};
 pub use read::{read, read_scheme};
 pub use schema::schema;
@@ -52,8 +55,14 @@ pub struct Case {
     pub materials: Vec<MaterialSpec>,
     /// Deformable bodies.
     pub bodies: Vec<BodySpec>,
-    /// Fixed sides.
+    /// Sides held or moved.
     pub supports: Vec<SupportSpec>,
+    /// Forces on sides and in bodies.
+    #[serde(default)]
+    pub loads: Vec<LoadSpec>,
+    /// The run whose end is the start; none: the reference positions.
+    #[serde(default)]
+    pub initial: Option<InitialSpec>,
     /// Contact pairs of sides.
     pub contacts: Vec<ContactSpec>,
     /// Time interval, step and scheme.
@@ -150,8 +159,8 @@ pub struct BodySpec {
     pub place: Option<PlaceSpec>,
     /// Acceleration by gravity, one component per dimension.
     pub gravity: Vec<f64>,
-    /// Initial velocity, uniform.
-    pub velocity: Vec<f64>,
+    /// Initial velocity, formulas in X, Y.
+    pub velocity: Vec<FormulaSpec>,
     /// Mass matrix.
     pub mass: MassKind,
 }
@@ -267,7 +276,7 @@ pub struct RefineSpec {
     pub size: f64,
 }
 
-/// Sides held in some directions.
+/// Sides held or moved in some directions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SupportSpec {
     /// A named support records its reactions.
@@ -276,6 +285,9 @@ pub struct SupportSpec {
     pub on: Vec<String>,
     /// Directions held: 0 is x, 1 is y.
     pub fix: Vec<usize>,
+    /// Directions moved, with their displacements: formulas in X, Y, t.
+    #[serde(rename = "move", default)]
+    pub moves: Vec<(usize, FormulaSpec)>,
 }
 
 /// Two sides that may touch.

@@ -10,6 +10,7 @@ use carom_time::SchemeError;
 use super::document::{Document, joined};
 use super::expect::{self, Asked};
 use super::keys::{self, Kind};
+use super::load;
 use super::mesh;
 use super::place;
 use super::problem::{CaseError, Problem};
@@ -17,8 +18,8 @@ use super::suggest;
 use super::tree::{Node, Table};
 use super::view::{View, word};
 use super::{
-    Case, ContactSpec, ExpectSpec, MaterialSpec, NewtonSpec, OutputSpec, Preset, PrimarySpec, ProbeSpec, SchemeSpec,
-    SupportSpec, TimeSpec, Units,
+    Case, ContactSpec, ExpectSpec, InitialSpec, LoadSpec, MaterialSpec, NewtonSpec, OutputSpec, Preset, PrimarySpec,
+    ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
 };
 
 /// Tables read so far: `None` where one of them could not be.
@@ -27,6 +28,7 @@ pub(super) struct Draft {
     pub(super) materials: Vec<Option<MaterialSpec>>,
     pub(super) bodies: Vec<Option<BodySpec>>,
     pub(super) supports: Vec<Option<SupportSpec>>,
+    pub(super) loads: Vec<Option<LoadSpec>>,
     pub(super) contacts: Vec<Option<ContactSpec>>,
     pub(super) probes: Vec<Option<ProbeSpec>>,
     pub(super) expects: Vec<Option<ExpectSpec>>,
@@ -42,6 +44,7 @@ pub fn read(document: &Document) -> Result<Case, Vec<Problem>> {
         materials: reader.each("material", |v, path| material(v, path, &mut problems)),
         bodies: Vec::new(),
         supports: reader.each("support", |v, _| support(v)),
+        loads: Vec::new(),
         contacts: reader.each("contact", |v, _| contact(v)),
         probes: reader.each("probe", |v, _| probe(v)),
         expects: Vec::new(),
@@ -49,12 +52,13 @@ pub fn read(document: &Document) -> Result<Case, Vec<Problem>> {
     };
     let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
     draft.bodies = reader.each("body", |v, path| body(v, reader.dimension?, folder, path, &mut problems));
+    draft.loads = reader.each("load", |v, path| load::read(v, folder, path, &mut problems));
     draft.expects = reader.each("expect", |v, path| expect::one(v, path, Asked::OfARun, &mut problems));
     check::problems(document, &draft, &mut problems);
     if !problems.is_empty() {
         return Err(problems);
     }
-    reader.case(document, draft).ok_or_else(|| {
+    reader.case(document, draft, folder).ok_or_else(|| {
         let why = "its keys passed every check, but one of them could not be taken over";
         vec![Problem::new("", "the case cannot be read", why, "please report this file as a bug of Carom")]
     })
@@ -93,14 +97,13 @@ impl<'a> Reader<'a> {
         list.iter().enumerate().map(|(i, node)| read(view(node)?, &format!("{name}[{i}]"))).collect()
     }
 
-    fn case(&self, document: &Document, draft: Draft) -> Option<Case> {
+    fn case(&self, document: &Document, draft: Draft, folder: &Path) -> Option<Case> {
         let dimension = draft.dimension?;
         let stem = std::path::Path::new(document.name()).file_stem().map(|s| s.to_string_lossy().into_owned());
         let units = self.one("units")?;
         let mut bodies: Vec<BodySpec> = all(draft.bodies)?;
         for body in &mut bodies {
             body.gravity.resize(dimension, 0.0);
-            body.velocity.resize(dimension, 0.0);
         }
         Some(Case {
             title: self.root.text("title").or(stem).unwrap_or_default(),
@@ -112,6 +115,8 @@ impl<'a> Reader<'a> {
             materials: all(draft.materials)?,
             bodies,
             supports: all(draft.supports)?,
+            loads: all(draft.loads)?,
+            initial: self.root.has("initial").then(|| initial(self.one("initial")?, folder)).flatten(),
             contacts: all(draft.contacts)?,
             time: draft.time?,
             newton: newton(self.one("newton")?)?,
@@ -184,14 +189,21 @@ fn body(v: View, dimension: usize, folder: &Path, path: &str, problems: &mut Vec
             None => None,
         },
         gravity: if v.has("gravity") { v.numbers("gravity")? } else { Vec::new() },
-        velocity: if v.has("velocity") { v.numbers("velocity")? } else { Vec::new() },
+        velocity: load::velocity(&v, dimension, path, problems)?,
         mass: v.choice("mass")?,
     })
 }
 
 fn support(v: View) -> Option<SupportSpec> {
-    let fix = v.texts("fix")?.iter().map(|d| ["x", "y"].iter().position(|x| x == d)).collect::<Option<_>>()?;
-    Some(SupportSpec { name: v.text("name"), on: v.texts("on")?, fix })
+    let fix = if v.has("fix") { v.texts("fix")? } else { Vec::new() };
+    let fix = fix.iter().map(|d| ["x", "y"].iter().position(|x| x == d)).collect::<Option<_>>()?;
+    Some(SupportSpec { name: v.text("name"), on: v.texts("on")?, fix, moves: load::motion(&v)? })
+}
+
+fn initial(v: View, folder: &Path) -> Option<InitialSpec> {
+    let joined = folder.join(v.text("from")?);
+    let from = std::path::absolute(&joined).unwrap_or(joined);
+    Some(InitialSpec { from, velocities: v.choice("velocities")? })
 }
 
 fn contact(v: View) -> Option<ContactSpec> {
@@ -233,6 +245,10 @@ fn scheme(table: &Table, preset: Preset, path: &str, problems: &mut Vec<Problem>
     let kind = table.get("kind")?.text()?;
     let v = View { table, keys: keys::SCHEMES.table(kind)?.keys, preset };
     let numbers = v.keys.iter().filter(|k| matches!(k.kind, Kind::Number(_)));
+    if kind == carom_time::STATIC {
+        let forces = carom_time::ForceRule::AverageForces;
+        return Some(SchemeSpec { kind: kind.to_owned(), parameters: std::collections::BTreeMap::new(), forces });
+    }
     let parameters = numbers.filter_map(|k| Some((k.name.to_owned(), v.number(k.name)?))).collect();
     let forces = v.choice("forces")?;
     let spec = SchemeSpec { kind: kind.to_owned(), parameters, forces };

@@ -69,6 +69,9 @@ fn values(kind: &Kind) -> Map<String, Value> {
             let point = json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "number" } });
             json!({ "type": "array", "minItems": least, "items": point })
         }
+        Kind::Formula(_) => formula(),
+        Kind::Formulas(_) => formulas(),
+        Kind::FormulasOr(_, spec) => json!({ "oneOf": [formulas(), table(spec, None)] }),
         Kind::Side => side,
         Kind::Sides => json!({ "type": "array", "minItems": 1, "items": side }),
         Kind::SideOr(spec) => json!({ "oneOf": [side, table(spec, None)] }),
@@ -77,6 +80,14 @@ fn values(kind: &Kind) -> Map<String, Value> {
         Kind::Variant(variants) => one_of(variants),
     };
     if let Value::Object(schema) = schema { schema } else { Map::new() }
+}
+
+fn formula() -> Value {
+    json!({ "type": ["number", "string"] })
+}
+
+fn formulas() -> Value {
+    json!({ "type": "array", "minItems": 1, "maxItems": 2, "items": formula() })
 }
 
 fn one_of(variants: &Variants) -> Value {
@@ -127,7 +138,9 @@ mod tests {
         for key in spec.keys {
             see(spec, key);
             match key.kind {
-                Kind::Table(spec) | Kind::Tables(spec) | Kind::SideOr(spec) => visit(spec, see),
+                Kind::Table(spec) | Kind::Tables(spec) | Kind::SideOr(spec) | Kind::FormulasOr(_, spec) => {
+                    visit(spec, see);
+                }
                 Kind::Variant(Variants { tables, or, .. }) => {
                     tables.iter().map(|(_, spec)| spec).chain(*or).for_each(|spec| visit(spec, see));
                 }

@@ -4,13 +4,15 @@ use carom_contact::{ContactMethod, NodeToPlane};
 use carom_solid::Law;
 
 use super::dimension::{Dimension, Space};
-use super::{Contact, Mass, Model, Part, Probe, Support, exists_in};
+use super::formulas::value;
+use super::held::unheld;
+use super::{Contact, Loads, Mass, Model, Motions, Part, Probe, Support, exists_in};
 use crate::case::{self, ActiveSetRule, Case, Persistency, PrimarySpec, Problem};
 
 /// A side in global node numbers.
-struct Side {
-    part: usize,
-    nodes: Vec<usize>,
+pub(super) struct Side {
+    pub(super) part: usize,
+    pub(super) nodes: Vec<usize>,
     facets: Vec<Vec<usize>>,
     outward: f64,
 }
@@ -28,11 +30,9 @@ where
     let dofs = parts.last().map_or(0, |p| p.nodes().end) * D;
     let mut reference = Vec::with_capacity(dofs);
     let mut initial_velocity = Vec::with_capacity(dofs);
-    for (part, spec) in parts.iter().zip(&case.bodies) {
+    for (k, (part, spec)) in parts.iter().zip(&case.bodies).enumerate() {
         reference.extend(part.body.mesh().nodes.as_flattened());
-        for _ in part.nodes() {
-            initial_velocity.extend_from_slice(&spec.velocity);
-        }
+        velocity_into(part, spec, &format!("body[{k}].velocity"), &mut initial_velocity, &mut problems);
     }
 
     let mut fixed = vec![false; dofs];
@@ -41,13 +41,17 @@ where
         let mut held = Vec::new();
         for (j, name) in spec.on.iter().enumerate() {
             match side(&parts, name, &format!("support[{k}].on[{j}]")) {
-                Ok(side) => held.extend(side.nodes.iter().flat_map(|n| spec.fix.iter().map(move |i| n * D + i))),
+                Ok(side) => {
+                    let dofs = |axis: usize| side.nodes.iter().map(move |n| n * D + axis).collect::<Vec<_>>();
+                    for dof in spec.fix.iter().flat_map(|i| dofs(*i)) {
+                        fixed[dof] = true;
+                        initial_velocity[dof] = 0.0;
+                        held.push(dof);
+                    }
+                    held.extend(spec.moves.iter().flat_map(|(i, _)| dofs(*i)));
+                }
                 Err(problem) => problems.push(problem),
             }
-        }
-        for &dof in &held {
-            fixed[dof] = true;
-            initial_velocity[dof] = 0.0;
         }
         held.sort_unstable();
         held.dedup();
@@ -56,12 +60,18 @@ where
         }
     }
 
+    let motions = Motions::build(case, &parts, &fixed, &mut problems);
+    motions.dofs().for_each(|dof| fixed[dof] = true);
+    let loads = Loads::build(case, &parts, &mut problems);
+
     let kinds: Vec<_> = case.bodies.iter().map(|b| b.mass).collect();
     let mass = Mass::assemble(&parts, &kinds);
     let massless: Vec<bool> = (0..dofs).map(|dof| mass.is_massless(dof / D)).collect();
     let gravity = gravity(case, &parts, &mass, dofs);
     let contacts = contacts(case, &parts, &massless, &mut problems);
     let probes = probes(case, &parts, &mut problems);
+    let is_static = case.time.scheme.is_static();
+    let unheld = if is_static { unheld(&parts, &fixed, &contacts, &mut problems) } else { Vec::new() };
 
     problems.extend(massless_refusals(case, &parts));
 
@@ -82,6 +92,9 @@ where
             mass,
             massless,
             gravity,
+            loads,
+            motions,
+            unheld,
             contacts,
             supports,
             probes,
@@ -89,6 +102,41 @@ where
         })
     } else {
         Err(problems)
+    }
+}
+
+/// Initial velocities at the nodes of a body.
+fn velocity_into<const D: usize>(
+    part: &Part<D>,
+    spec: &case::BodySpec,
+    path: &str,
+    velocity: &mut Vec<f64>,
+    problems: &mut Vec<Problem>,
+) {
+    let what = format!("the velocity of body \"{}\"", part.name);
+    let variables = case::keys::variables(case::keys::IN_SPACE, D);
+    let formulas: Vec<_> = match spec.velocity.iter().map(|f| f.formula(&variables)).collect() {
+        Ok(formulas) => formulas,
+        Err(error) => {
+            let error: carom_formula::FormulaError = error;
+            return problems.push(Problem::new(path, what, error.to_string(), ""));
+        }
+    };
+    for place in &part.body.mesh().nodes {
+        for formula in &formulas {
+            match value(formula, &what, place, 0.0) {
+                Ok(value) => velocity.push(value),
+                Err(error) => {
+                    let help = "change the formula so that it has a value in the whole body";
+                    return problems.push(Problem::new(
+                        path,
+                        "the initial velocity has no value",
+                        error.to_string(),
+                        help,
+                    ));
+                }
+            }
+        }
     }
 }
 
@@ -150,7 +198,7 @@ fn gravity<const D: usize>(case: &Case, parts: &[Part<D>], mass: &Mass, dofs: us
     force
 }
 
-fn side<const D: usize>(parts: &[Part<D>], name: &str, path: &str) -> Result<Side, Problem> {
+pub(super) fn side<const D: usize>(parts: &[Part<D>], name: &str, path: &str) -> Result<Side, Problem> {
     let missing = |why: String, help: String| Problem::new(path, format!("there is no side \"{name}\""), why, help);
     let bodies = || parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
     let (body, side) = name
@@ -229,7 +277,8 @@ where
             method,
             primary_part,
             secondary_facets: secondary.facets,
-            force: spec.force,
+            // Without inertia nothing is averaged.
+            force: if case.time.scheme.is_static() { case::ForceTime::AlphaF } else { spec.force },
             persistency: spec.persistency,
             within: spec.active_set == ActiveSetRule::Within,
         };

@@ -198,14 +198,15 @@ where
             remarks: vec!["the run is finished: nothing was computed".into()],
         });
     }
-    let simulation = Simulation::<D>::new(case, options.threads).map_err(RunError::Case)?;
     let reopened = RunWriter::reopen(directory)?;
     let state: State = postcard::from_bytes(&reopened.payload).map_err(|error| RunError::Incompatible {
         what: format!("the checkpoint of {} does not fit this version of Carom: {error}", directory.display()),
     })?;
-    if state.y.len() != simulation.model.dofs() {
+    let dofs = state.y.len();
+    let simulation = Simulation::<D>::resume(case, options.threads, state).map_err(RunError::Case)?;
+    if dofs != simulation.model.dofs() {
         return Err(RunError::Incompatible {
-            what: format!("the checkpoint has {} dofs, the case {}", state.y.len(), simulation.model.dofs()),
+            what: format!("the checkpoint has {dofs} dofs, the case {}", simulation.model.dofs()),
         });
     }
     let mut manifest = reopened.manifest;
@@ -214,7 +215,7 @@ where
     manifest.started = carom_record::now();
     manifest.threads = options.threads;
     let remarks = reopened.fallback.iter().map(ToString::to_string).collect();
-    let mut session = Session::new(case, simulation.resumed(state), reopened.writer, manifest);
+    let mut session = Session::new(case, simulation, reopened.writer, manifest);
     session.writer.manifest(&session.manifest)?;
     if reopened.rows == 0 {
         session.write_start()?;

@@ -2,6 +2,7 @@
 
 mod contact;
 mod expect;
+mod loads;
 mod memory;
 mod time;
 
@@ -18,11 +19,14 @@ use super::{BodySpec, Quantity};
 pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Problem>) {
     let mut check = Check { document, draft, problems };
     check.dimension();
-    for list in ["material", "body", "support", "contact", "probe"] {
+    for list in ["material", "body", "support", "load", "contact", "probe"] {
         check.unique_names(list);
     }
     check.bodies();
     check.supports();
+    check.motions();
+    check.loads();
+    check.velocities();
     check.contacts();
     check.probes();
     check.time();

@@ -203,6 +203,15 @@ pub const SCHEMES: Variants = Variants {
                 later: &[],
             },
         ),
+        (
+            "static",
+            Table {
+                name: "scheme \"static\"",
+                doc: "Equilibrium at every step, without inertia: t is the load parameter.",
+                keys: &[],
+                later: &[],
+            },
+        ),
     ],
     or: None,
     later: &[
@@ -215,7 +224,6 @@ pub const SCHEMES: Variants = Variants {
         "moreau-jean",
         "nonsmooth-generalized-alpha",
         "paoli-schatzman",
-        "static",
     ],
     later_keys: &[],
 };

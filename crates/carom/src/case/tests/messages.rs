@@ -101,6 +101,35 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["expect=[{ what = \"last A.uy\", against = \"time.step\", at_most = 0 }]"], &["`against` without an order"]),
     (&["expect=[{ what = \"min A.uy\", slow = 1, at_most = 0 }]"], &["`slow`", "true or false"]),
     (&["expect=[{ what = \"min A.uy\", value = 0 }]"], &["does not set one bound", "it has value"]),
+    // loads, motions and their formulas
+    (
+        &["load=[{ on = [\"prism.top\"], pressure = \"2*sun(t)\" }]"],
+        &[
+            "--set:1:43: the formula of `pressure`: there is no function `sun`: did you mean `sin`?",
+            "\n  load=",
+            "^^^\n",
+        ],
+    ),
+    (&["load=[{ on = [\"prism.top\"], traction = [\"X +\", 1] }]"], &["the formula ends where a number"]),
+    (&["load=[{ on = [\"prism.top\"], traction = [\"Z\", 1] }]"], &["no variable `Z`: the variables are X, Y, t"]),
+    (&["load=[{ on = [\"prism.top\"], traction = [1.0] }]"], &["`traction` must be a list of 2 numbers or formulas"]),
+    (&["load=[{ on = [\"prism.topp\"], pressure = 1 }]"], &["body `prism` has no side `topp`", "`prism.top`?"]),
+    (&["load=[{ body = \"prisma\", body_force = [0, 1] }]"], &["there is no body `prisma`", "did you mean `prism`?"]),
+    (&["load=[{ on = [\"prism.top\"] }]"], &["does not say one force and its place: it has no force and on"]),
+    (&["load=[{ body = \"prism\", pressure = 1 }]"], &["it has pressure and body"]),
+    (&["load=[{ on = [\"prism.top\"], pressure = 1, table = \"no.csv\" }]"], &["the table \"no.csv\" cannot be used"]),
+    (&["support=[{ on = [\"prism.bottom\"] }]"], &["the support neither holds nor moves"]),
+    (
+        &["support=[{ on = [\"prism.bottom\"], fix = [\"y\"], move = { y = \"t\" } }]"],
+        &["the direction y is both fixed and moved"],
+    ),
+    (&["body.prism.velocity=[\"t\", 0]"], &["no variable `t`: the variables are X, Y"]),
+    (&["body.prism.velocity={ angular = 1.0 }"], &["the rotation has no centre", "add `about = [x, y]`"]),
+    (
+        &["body.prism.velocity=[1, 0]", "time.scheme={ kind = \"static\" }"],
+        &["the scheme \"static\" has no velocities"],
+    ),
+    (&["time.scheme={ kind = \"static\", rho_inf = 1 }"], &["unknown key `rho_inf` in scheme \"static\""]),
     // contact without mass
     (&["material.rubber.density=0"], &["nothing that touches in `strike` has mass", "persistency = \"none\""]),
     // later versions
@@ -108,7 +137,6 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["contact.strike.method=mortar"], &["does not have `method = \"mortar\"` yet"]),
     (&["contact.strike.enforcement=penalty"], &["use one of: multiplier"]),
     (&["contact.strike.restitution=0.5"], &["this version does not have `restitution` yet"]),
-    (&["load=[]"], &["this version does not have `load` yet"]),
     (&["time.step={ initial = 1e-3 }"], &["`step` must be a number > 0, not a table", "A later version"]),
     (&["body.prism.mesh={ file = \"a.msh\", surface = \"prism\" }"], &["the mesh \"a.msh\" cannot be read"]),
     // shapes
