@@ -201,6 +201,36 @@ relative = 1e-3
     }
 }
 
+/// The same formula, where it belongs: in the case.
+#[test]
+fn orders_from_the_case() {
+    let study = r#"
+case = "held.toml"
+reference = "exact"
+[[arm]]
+name = "one"
+set = { "time.step" = 0.004 }
+expect = [{ what = "A.ux", formula = "exact", tolerance = 2e-3 }]
+[[arm]]
+name = "two"
+set = { "time.step" = 0.002 }
+[[expect]]
+what = "order"
+of = "A.ux"
+against = "time.step"
+value = 2
+tolerance = 0.05
+"#;
+    let (folder, path) = folder(study);
+    let exact = "[exact]\n\"A.ux\" = \"sin(sqrt(300)*t)/sqrt(300)\"\n";
+    fs::write(folder.path().join("held.toml"), format!("{}{exact}", held())).unwrap();
+    let plan = Plan::read(&path).unwrap_or_else(|e| panic!("{e}"));
+    let study = start(&plan, &folder.path().join("out"), 2, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
+    let arm = &study.rows[0].expectations[0];
+    assert!(arm.pass && arm.what == "max |A.ux − (exact)|", "{arm:?}");
+    assert!(study.expectations[0].pass, "{:?}", study.expectations);
+}
+
 #[test]
 fn a_stopped_arm_may_be_expected() {
     let study = run(r#"
@@ -239,7 +269,7 @@ fn wrong_expectations_are_shown_where_they_stand() {
     assert!(found.what.contains("no column `A.uz`") && found.file.ends_with("study.toml"), "{found:?}");
     assert_eq!(found.line, 4);
     let found = arm("{ what = \"A.ux\", formula = \"t +\", at_most = 1 }");
-    assert_eq!((found.line, found.column), (5, 28), "{found:?}");
+    assert_eq!((found.line, found.column), (5, 32), "{found:?}");
     assert!(arm("{ what = \"last A.ux\" }").what.contains("does not set one bound"));
     let of = |expect: &str| wrong(&format!("case = \"fall.toml\"\n[[arm]]\nname = \"a\"\n[[expect]]\n{expect}\n"));
     let found = of("what = \"last A.ux\"\nat_most = 1");

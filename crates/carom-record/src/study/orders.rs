@@ -11,7 +11,7 @@ use super::arms::ArmRecords;
 use super::{Arm, StudyManifest};
 use crate::order::{from_differences, from_errors};
 use crate::question::{self, Quantity, Question, Series};
-use crate::{Expect, Expectation, Expression, Norm, OrderOf};
+use crate::{Deviation, Expect, Expectation, Expression, Norm, OrderOf};
 
 /// Arms that differ in one key, the coarsest first.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,7 +103,8 @@ pub(super) fn judge(
     records: &ArmRecords,
 ) -> Vec<Expectation> {
     let reference = manifest.reference.as_deref().filter(|name| *name != "exact");
-    let errors = order.exact.is_some() || expect.deviation.is_some() || reference.is_some();
+    let exact = manifest.reference.as_deref() == Some("exact");
+    let errors = exact || order.exact.is_some() || expect.deviation.is_some() || reference.is_some();
     let least = if errors { 2 } else { 3 };
     let groups = refinements(manifest, &order.against, order.arms.as_deref());
     let words = |group: &str| {
@@ -123,6 +124,30 @@ pub(super) fn judge(
         Expectation { what: words(&group.common), ..expect.verdict(got) }
     };
     enough.iter().map(verdict).collect()
+}
+
+/// The deviation errors are taken from: a formula, or the exact one an arm's case has for the column.
+fn deviation(
+    expect: &Expect,
+    manifest: &StudyManifest,
+    arm: usize,
+    series: &Series,
+    norm: Norm,
+) -> Result<Option<Deviation>, String> {
+    let exact = manifest.reference.as_deref() == Some("exact");
+    let known = expect.deviation.clone().map(|d| Deviation { norm, ..d });
+    let standing = || Deviation { formula: "exact".into(), exact: None, norm, scale: 1.0 };
+    let Some(deviation) = known.or_else(|| exact.then(standing)) else { return Ok(None) };
+    if deviation.formula != "exact" {
+        return Ok(Some(deviation));
+    }
+    let column = match &series.columns {
+        Expression::Quantity(asked) => &asked.column,
+        _ => return Err("only a single column has an exact formula".to_owned()),
+    };
+    let found = manifest.arms[arm].case.get("exact").and_then(|e| e.get(column)).and_then(|f| f.as_str());
+    let formula = found.ok_or_else(|| format!("the case has no [exact] formula of `{column}`"))?;
+    Ok(Some(Deviation { exact: Some(formula.to_owned()), ..deviation }))
 }
 
 fn observed(
@@ -165,8 +190,7 @@ fn observed(
                 let columns: Vec<Series> = arms.iter().map(|arm| series.of_arm(arm)).collect();
                 question::common(&columns, records, window)
             };
-            if let Some(deviation) = &expect.deviation {
-                let deviation = crate::Deviation { norm, ..deviation.clone() };
+            if let Some(deviation) = deviation(expect, manifest, *three, &series, norm)? {
                 let (times, columns) = common(&[name(two), name(three)])?;
                 return from_errors([h1, h2], [deviation.of(&times, &columns[0])?, deviation.of(&times, &columns[1])?]);
             }

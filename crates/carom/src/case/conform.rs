@@ -136,6 +136,11 @@ impl Check {
                     }
                 }
             }
+            (Kind::ByColumn, Value::Table(table)) => {
+                for entry in &table.0 {
+                    self.formula(&entry.node, &["t"], key, &joined(path, &entry.key));
+                }
+            }
             (Kind::Formula(variables), _) => self.formula(node, variables, key, path),
             (Kind::Formulas(variables) | Kind::FormulasOr(variables, _), Value::List(list))
                 if self.dimension.is_none_or(|d| d == list.len()) =>

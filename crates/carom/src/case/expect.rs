@@ -1,5 +1,7 @@
 //! `[[expect]]` of a case, of an arm and of a study: what is asked, and the one bound on it.
 
+use std::collections::BTreeMap;
+
 use carom_formula::Formula;
 use carom_record::question::{Question, Series};
 use carom_record::{Bound, Deviation, Expect, Norm, OrderOf};
@@ -21,6 +23,17 @@ pub enum Asked {
     OfArms,
 }
 
+/// What `formula = "exact"` stands for.
+#[derive(Clone, Copy)]
+pub(super) enum Exact<'a> {
+    /// These formulas by column.
+    Of(&'a BTreeMap<String, String>),
+    /// Known when the case is, to which the expectation will belong; or the arms, for an order.
+    Later,
+    /// Nothing.
+    Nobody,
+}
+
 /// The expectations of the list `NAME` of the table at `path` (the file's own: empty) in a study file.
 pub fn read_expects(document: &Document, path: &str, asked: Asked, problems: &mut Vec<Problem>) -> Vec<Expect> {
     let Some(list) = document.at(path).and_then(Node::list) else { return Vec::new() };
@@ -37,17 +50,20 @@ pub fn read_expects(document: &Document, path: &str, asked: Asked, problems: &mu
             continue;
         };
         problems.extend(conform::table(table, &EXPECT, &path));
-        found.extend(one(View { table, keys: EXPECT.keys, preset: Preset::Default }, &path, asked, problems));
+        let view = View { table, keys: EXPECT.keys, preset: Preset::Default };
+        let later = asked == Asked::OfARun || view.has("against");
+        let exact = if later { Exact::Later } else { Exact::Nobody };
+        found.extend(one(view, &path, asked, exact, problems));
     }
     found
 }
 
 /// One expectation; `None` when it cannot be read, which is then among the problems.
-pub(super) fn one(v: View, path: &str, asked: Asked, problems: &mut Vec<Problem>) -> Option<Expect> {
+pub(super) fn one(v: View, path: &str, asked: Asked, exact: Exact, problems: &mut Vec<Problem>) -> Option<Expect> {
     let what = v.text("what")?;
     let order = order(v, &what, path, asked, problems).ok()?;
     let norm = v.choice("norm").unwrap_or(if order.is_some() { Norm::Rms } else { Norm::Max });
-    let deviation = deviation(v, norm, path, problems).ok()?;
+    let deviation = deviation(v, norm, exact, path, problems).ok()?;
     let bound = bound(v, deviation.is_some() && order.is_none(), path, problems)?;
     let name = |part: &str| format!("{path}.{part}");
     let parsed = match (&order, &deviation) {
@@ -119,7 +135,13 @@ fn order(v: View, what: &str, path: &str, asked: Asked, problems: &mut Vec<Probl
 }
 
 /// The deviation from a formula, if there is one.
-fn deviation(v: View, norm: Norm, path: &str, problems: &mut Vec<Problem>) -> Result<Option<Deviation>, Told> {
+fn deviation(
+    v: View,
+    norm: Norm,
+    exact: Exact,
+    path: &str,
+    problems: &mut Vec<Problem>,
+) -> Result<Option<Deviation>, Told> {
     if !v.has("formula") {
         if let Some(key) = ["norm", "scale"].into_iter().find(|k| v.has(k) && !(*k == "norm" && v.has("of"))) {
             let (why, help) =
@@ -129,18 +151,36 @@ fn deviation(v: View, norm: Norm, path: &str, problems: &mut Vec<Problem>) -> Re
         }
         return Ok(None);
     }
-    let formula = v.text("formula").ok_or(Told)?;
-    if let Err(error) = Formula::parse(&formula, &["t"]) {
-        let why = "it is a formula in the time t";
-        problems.push(Problem::new(
-            format!("{path}.formula"),
-            error.to_string(),
-            why,
-            "write for example \"-0.5*9.81*t^2\"",
-        ));
-        return Err(Told);
+    let (formula, scale) = (v.text("formula").ok_or(Told)?, v.number("scale").ok_or(Told)?);
+    let mut wrong = |what: String, why: &str, help: &str, at| {
+        let problem = Problem::new(format!("{path}.formula"), what, why, help);
+        problems.push(if let Some(at) = at { problem.within(at) } else { problem });
+        Err(Told)
+    };
+    if formula == "exact" {
+        let column = v.text("what").unwrap_or_default();
+        let found = match exact {
+            Exact::Later => None,
+            Exact::Nobody => {
+                let why = "arms may have different ones; what is asked of several arms has none";
+                return wrong("there is no exact formula here".into(), why, "write the formula", None);
+            }
+            Exact::Of(formulas) => match formulas.get(&column) {
+                Some(formula) => Some(formula.clone()),
+                None => {
+                    let what = format!("the case has no exact formula of `{column}`");
+                    let help = format!("add `\"{column}\" = \"…\"` to [exact]");
+                    return wrong(what, "[exact] says what columns should be", &help, None);
+                }
+            },
+        };
+        return Ok(Some(Deviation { formula, exact: found, norm, scale }));
     }
-    Ok(Some(Deviation { formula, norm, scale: v.number("scale").ok_or(Told)? }))
+    if let Err(error) = Formula::parse(&formula, &["t"]) {
+        let help = "write for example \"-0.5*9.81*t^2\"; \"exact\" stands for the case's own, in [exact]";
+        return wrong(error.message, "it is a formula in the time t", help, Some(error.at));
+    }
+    Ok(Some(Deviation { formula, exact: None, norm, scale }))
 }
 
 fn bound(v: View, deviation: bool, path: &str, problems: &mut Vec<Problem>) -> Option<Bound> {

@@ -73,6 +73,9 @@ pub struct Case {
     pub probes: Vec<ProbeSpec>,
     /// What is written, and when.
     pub output: OutputSpec,
+    /// What columns should be, as formulas in t.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub exact: BTreeMap<String, String>,
     /// Expected values that make the case a test.
     pub expects: Vec<ExpectSpec>,
 }

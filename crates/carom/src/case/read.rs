@@ -1,5 +1,6 @@
 //! Document → case: every table read with its defaults; what concerns one table alone is checked here, the rest in `check`.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::BodySpec;
@@ -8,14 +9,14 @@ use super::conform;
 use carom_time::SchemeError;
 
 use super::document::{Document, joined};
-use super::expect::{self, Asked};
+use super::expect::{self, Asked, Exact};
 use super::keys::{self, Kind};
 use super::load;
 use super::mesh;
 use super::place;
 use super::problem::{CaseError, Problem};
 use super::suggest;
-use super::tree::{Node, Table};
+use super::tree::{Entry, Node, Table};
 use super::view::{View, word};
 use super::{
     Case, ContactSpec, ExpectSpec, InitialSpec, LoadSpec, MaterialSpec, NewtonSpec, OutputSpec, Preset, PrimarySpec,
@@ -31,6 +32,7 @@ pub(super) struct Draft {
     pub(super) loads: Vec<Option<LoadSpec>>,
     pub(super) contacts: Vec<Option<ContactSpec>>,
     pub(super) probes: Vec<Option<ProbeSpec>>,
+    pub(super) exact: BTreeMap<String, String>,
     pub(super) expects: Vec<Option<ExpectSpec>>,
     pub(super) time: Option<TimeSpec>,
 }
@@ -47,13 +49,15 @@ pub fn read(document: &Document) -> Result<Case, Vec<Problem>> {
         loads: Vec::new(),
         contacts: reader.each("contact", |v, _| contact(v)),
         probes: reader.each("probe", |v, _| probe(v)),
+        exact: reader.exact(),
         expects: Vec::new(),
         time: reader.one("time").and_then(|v| time(v, &mut problems)),
     };
     let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
     draft.bodies = reader.each("body", |v, path| body(v, reader.dimension?, folder, path, &mut problems));
     draft.loads = reader.each("load", |v, path| load::read(v, folder, path, &mut problems));
-    draft.expects = reader.each("expect", |v, path| expect::one(v, path, Asked::OfARun, &mut problems));
+    draft.expects =
+        reader.each("expect", |v, path| expect::one(v, path, Asked::OfARun, Exact::Of(&draft.exact), &mut problems));
     check::problems(document, &draft, &mut problems);
     if !problems.is_empty() {
         return Err(problems);
@@ -97,6 +101,16 @@ impl<'a> Reader<'a> {
         list.iter().enumerate().map(|(i, node)| read(view(node)?, &format!("{name}[{i}]"))).collect()
     }
 
+    /// Formulas by column, as written.
+    fn exact(&self) -> BTreeMap<String, String> {
+        let table = self.root.table.get("exact").and_then(Node::table);
+        let formula = |entry: &Entry| {
+            let node = &entry.node;
+            Some((entry.key.clone(), node.text().map(str::to_owned).or_else(|| Some(node.number()?.to_string()))?))
+        };
+        table.into_iter().flat_map(|t| &t.0).filter_map(formula).collect()
+    }
+
     fn case(&self, document: &Document, draft: Draft, folder: &Path) -> Option<Case> {
         let dimension = draft.dimension?;
         let stem = std::path::Path::new(document.name()).file_stem().map(|s| s.to_string_lossy().into_owned());
@@ -122,6 +136,7 @@ impl<'a> Reader<'a> {
             newton: newton(self.one("newton")?)?,
             probes: all(draft.probes)?,
             output: output(self.one("output")?)?,
+            exact: draft.exact,
             expects: all(draft.expects)?,
         })
     }

@@ -58,6 +58,7 @@ fn values(kind: &Kind) -> Map<String, Value> {
         Kind::Choices(words) => json!({ "type": "array", "minItems": 1, "items": { "enum": words } }),
         Kind::Number(range) => Value::Object(number(range)),
         Kind::NumberOrFalse(range) => json!({ "oneOf": [number(range), { "const": false }] }),
+        Kind::ByColumn => json!({ "type": "object", "additionalProperties": { "type": ["number", "string"] } }),
         Kind::Truth => json!({ "type": "boolean" }),
         Kind::Count(least) => json!({ "type": "integer", "minimum": least }),
         Kind::Counts(least) => {

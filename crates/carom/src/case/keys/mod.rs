@@ -82,6 +82,8 @@ pub enum Kind {
     Formulas(&'static [&'static str]),
     /// As many of them as dimensions, or this table.
     FormulasOr(&'static [&'static str], &'static Table),
+    /// A table of formulas in t by the name of a column.
+    ByColumn,
     /// A list of words out of these, at least one.
     Choices(&'static [&'static str]),
     /// A side `body.side`.
@@ -204,6 +206,7 @@ impl Kind {
             Self::Formula(_) => "a number or a formula in quotes".into(),
             Self::Formulas(_) => format!("{} or formulas in quotes", several(dimension)),
             Self::FormulasOr(..) => format!("{} or formulas in quotes, or a table", several(dimension)),
+            Self::ByColumn => "a table of formulas by column".into(),
             Self::Choices(choices) => format!("a list out of {}", words(choices)),
             Self::Side => "a side \"body.side\"".into(),
             Self::Sides => "a list of sides [\"body.side\"]".into(),

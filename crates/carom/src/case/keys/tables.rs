@@ -44,9 +44,16 @@ pub const CASE: Table = Table {
         key("newton", Kind::Table(&NEWTON), "Newton's method.").optional(),
         key("probe", Tables(&PROBE), "A point whose quantities become columns of history.csv.").optional(),
         key("output", Kind::Table(&OUTPUT), "What is written, and when.").optional(),
+        key(
+            "exact",
+            Kind::ByColumn,
+            "What columns should be, as formulas in t: for `formula = \"exact\"` in [[expect]], and a study's `reference = \"exact\"`.",
+        )
+        .optional()
+        .example("{ \"A.uy\" = \"-0.5*9.81*t^2\" }"),
         key("expect", Tables(&EXPECT), "An expected value: makes the case a test.").optional(),
     ],
-    later: &["exact", "manufactured"],
+    later: &["manufactured"],
 };
 
 const UNITS: Table = Table {

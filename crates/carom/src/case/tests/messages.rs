@@ -90,7 +90,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["expect=[{ what = \"last A.uy of 'x'\", at_most = 0 }]"], &["no arm \"x\"", "only a study has arms"]),
     (
         &["expect=[{ what = \"A.uy\", formula = \"2*sun(t)\", tolerance = 0 }]"],
-        &["no function `sun`", "did you mean `sin`", "character 3"],
+        &["no function `sun`", "did you mean `sin`"],
     ),
     (&["expect=[{ what = \"last A.uy\", formula = \"t\", tolerance = 0 }]"], &["is not a quantity to expect"]),
     (&["expect=[{ what = \"last A.uy\", norm = \"rms\", at_most = 0 }]"], &["`norm` without `formula`"]),
@@ -100,6 +100,9 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     ),
     (&["expect=[{ what = \"last A.uy\", against = \"time.step\", at_most = 0 }]"], &["`against` without an order"]),
     (&["expect=[{ what = \"min A.uy\", slow = 1, at_most = 0 }]"], &["`slow`", "true or false"]),
+    (&["expect=[{ what = \"A.uy\", formula = \"exact\", tolerance = 0 }]"], &["no exact formula of `A.uy`", "[exact]"]),
+    (&["exact={ \"A.uz\" = \"t\" }"], &["no column `A.uz`", "did you mean `A.uy`?"]),
+    (&["exact={ \"A.uy\" = \"s\" }"], &["no variable `s`"]),
     (&["expect=[{ what = \"min A.uy\", value = 0 }]"], &["does not set one bound", "it has value"]),
     // loads, motions and their formulas
     (

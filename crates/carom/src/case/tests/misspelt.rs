@@ -8,7 +8,10 @@ use crate::case::tree::{Node, Table, Value};
 fn keys(table: &Table, found: &mut Vec<(std::ops::Range<usize>, String)>) {
     for entry in &table.0 {
         found.push((entry.origin.span.clone(), entry.key.clone()));
-        values(&entry.node, found);
+        // Its keys are columns.
+        if entry.key != "exact" {
+            values(&entry.node, found);
+        }
     }
 }
 
