@@ -38,13 +38,23 @@ pub fn step(arm: &Arm, key: &str) -> Option<f64> {
     (value > 0.0 && f64::is_finite(value)).then(|| if counts { 1.0 / value } else { value })
 }
 
+/// Whether a name contains a text, not beginning or ending inside a word or number: `hu` is not in `chung-hulbert`, nor `0.1` in `0.15`.
+fn has_words(name: &str, text: &str) -> bool {
+    let inside =
+        |a: Option<char>, b: Option<char>| a.zip(b).is_some_and(|(a, b)| a.is_alphanumeric() && b.is_alphanumeric());
+    name.match_indices(text).any(|(at, _)| {
+        let (before, after) = (&name[..at], &name[at + text.len()..]);
+        !inside(before.chars().last(), text.chars().next()) && !inside(text.chars().last(), after.chars().next())
+    })
+}
+
 /// Groups of at least two arms that differ in `key` alone, in the order of their first arms. With `name`: one group of all arms whose names
 /// contain it, whatever else they set.
 pub fn refinements(manifest: &StudyManifest, key: &str, name: Option<&str>) -> Vec<Refinement> {
     let mut groups: Vec<Refinement> = Vec::new();
     for (i, arm) in manifest.arms.iter().enumerate() {
         let reference = manifest.reference.as_ref() == Some(&arm.name);
-        let Some(step) = step(arm, key).filter(|_| !reference && name.is_none_or(|n| arm.name.contains(n))) else {
+        let Some(step) = step(arm, key).filter(|_| !reference && name.is_none_or(|n| has_words(&arm.name, n))) else {
             continue;
         };
         let others =
@@ -220,4 +230,37 @@ pub fn numeric_keys(manifest: &StudyManifest, least: usize) -> BTreeMap<String, 
     }
     found.retain(|_, groups| !groups.is_empty());
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arm(sets: &[&str]) -> Arm {
+        Arm {
+            name: sets.join(", "),
+            directory: String::new(),
+            sets: sets.iter().map(ToString::to_string).collect(),
+            steps: 1,
+            case_path: None,
+            case: serde_json::json!({ "time": { "step": 0.5 } }),
+        }
+    }
+
+    #[test]
+    fn words_are_whole() {
+        let name = "time.scheme=chung-hulbert 0.15, time.step=1e-3";
+        assert!(has_words(name, "chung-hulbert") && has_words(name, "scheme=") && has_words(name, "0.15, time"));
+        assert!(!has_words(name, "hu") && !has_words(name, "0.1") && !has_words(name, "e-3"));
+        assert!(has_words("time.scheme=hu, time.step=1", "hu") && has_words(name, ""));
+    }
+
+    #[test]
+    fn steps_come_from_sets_or_the_case() {
+        assert_eq!(step(&arm(&["time.step=2e-3"]), "time.step"), Some(2e-3));
+        assert_eq!(step(&arm(&[]), "time.step"), Some(0.5));
+        assert_eq!(step(&arm(&["body.a.mesh.cells=[8, 4]"]), "body.a.mesh.cells"), Some(0.125));
+        assert_eq!(step(&arm(&["time.stepper=3"]), "time.end"), None);
+        assert_eq!(step(&arm(&["time.scheme={ kind = \"hu\" }"]), "time.scheme"), None);
+    }
 }

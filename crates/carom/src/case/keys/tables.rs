@@ -405,7 +405,7 @@ pub const EXPECT: Table = Table {
         key("against", Text, "With what = \"order\": the key of the case the arms differ in.")
             .optional()
             .example("\"time.step\""),
-        key("where", Text, "With what = \"order\": only arms whose names contain this.").optional().example("\"hu\""),
+        key("where", Text, "With what = \"order\": only arms whose names contain these whole words.").optional().example("\"hu\""),
         key("exact", Number(ANY), "With what = \"order\": the exact value, from which errors are taken.").optional().example("1.0"),
         key("slow", Truth, "Left out by `carom verify --fast`.").default("false"),
     ],
