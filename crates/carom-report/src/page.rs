@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use carom_record::{Run, Status, metrics};
+use carom_record::{FieldFormat, Run, Status, metrics};
 
 use crate::figures::Figure;
 use crate::labels::number;
@@ -210,7 +210,7 @@ fn reproduce(out: &mut String, run: &Run) {
     out.push_str("<p>Beside this page: ");
     let mut files = vec!["manifest.json", "history.csv", "contact.csv", "log.jsonl"];
     if !run.fields.is_empty() {
-        files.push("fields.pvd");
+        files.push(if run.field_format == FieldFormat::Vtu { "fields.pvd" } else { "fields.vtkhdf" });
     }
     let links: Vec<String> = files.iter().map(|f| format!("<a href=\"{f}\">{f}</a>")).collect();
     let _ = writeln!(out, "{}.</p>", links.join(", "));

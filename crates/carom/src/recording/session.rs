@@ -226,7 +226,8 @@ impl<'a, const D: usize> Session<'a, D>
 where
     Space: Dimension<D>,
 {
-    fn new(case: &'a Case, simulation: Simulation<D>, writer: RunWriter, manifest: Manifest) -> Self {
+    fn new(case: &'a Case, simulation: Simulation<D>, mut writer: RunWriter, manifest: Manifest) -> Self {
+        writer.field_format(case.output.format);
         let at = |time: &f64| (time / simulation.dt).round() as u64;
         let field_steps = case.output.at_times.iter().map(at).collect();
         let weights = center_weights(&simulation.model);
