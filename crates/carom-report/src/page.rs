@@ -141,7 +141,7 @@ fn expectations(out: &mut String, run: &Run) {
             out,
             "<tr><td><code>{}</code></td><td>{}</td><td class=\"n\">{}</td><td class=\"{class}\">{word}</td><td>{}</td></tr>",
             escape(&e.what),
-            escape(&e.expected),
+            escape(&e.expected).replace('-', "−"),
             e.got.map_or("–".into(), number),
             escape(e.source.as_deref().unwrap_or_default())
         );

@@ -4,7 +4,9 @@
 use carom::case::{Document, Problem};
 use toml_edit::{Item, TableLike, Value};
 
-const KEYS: [&str; 6] = ["title", "case", "reference", "arm", "grid", "claim"];
+pub(crate) const KEYS: [&str; 6] = ["title", "case", "reference", "arm", "grid", "claim"];
+pub(crate) const ARM: [&str; 2] = ["name", "set"];
+pub(crate) const CLAIM: [&str; 2] = ["text", "compare"];
 
 /// A study file, read; what could not be read is a problem.
 #[derive(Default)]
@@ -46,7 +48,7 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
     }
     for (i, table) in tables(root, "arm", problems).into_iter().enumerate() {
         let path = format!("arm[{i}]");
-        known(table, &["name", "set"], "[[arm]]", &path, problems);
+        known(table, &ARM, "[[arm]]", &path, problems);
         let mut set = Vec::new();
         match table.get("set").and_then(Item::as_table_like) {
             Some(values) => flatten(values, "", &mut set),
@@ -89,7 +91,7 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
     }
     for (i, table) in tables(root, "claim", problems).into_iter().enumerate() {
         let path = format!("claim[{i}]");
-        known(table, &["text", "compare"], "[[claim]]", &path, problems);
+        known(table, &CLAIM, "[[claim]]", &path, problems);
         let (words, compare) = (text(table, "text", &path, problems), text(table, "compare", &path, problems));
         match (words, compare) {
             (Some(text), Some(compare)) => file.claims.push(carom_record::study::Claim { text, compare }),
@@ -121,6 +123,9 @@ fn tables<'a>(root: &'a dyn TableLike, key: &str, problems: &mut Vec<Problem>) -
     match root.get(key) {
         None => Vec::new(),
         Some(Item::ArrayOfTables(list)) => list.iter().map(|t| t as &dyn TableLike).collect(),
+        Some(Item::Value(Value::Array(list))) if list.iter().all(Value::is_inline_table) => {
+            list.iter().filter_map(Value::as_inline_table).map(|t| t as &dyn TableLike).collect()
+        }
         Some(_) => {
             problems.push(not(key, "a list of tables", &format!("[[{key}]]")));
             Vec::new()

@@ -8,6 +8,8 @@ mod arms;
 mod file;
 mod plan;
 mod run;
+mod schema;
 
 pub use plan::{Plan, PlannedArm};
 pub use run::{Ended, Event, Outcome, StudyError, go_on, start};
+pub use schema::schema;

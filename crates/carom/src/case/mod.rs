@@ -31,7 +31,7 @@ pub use document::Document;
 pub use expect::{Asked, read_expects};
 pub use problem::{CaseError, Diagnostic, Problem};
 pub use read::{read, read_scheme};
-pub use schema::schema;
+pub use schema::{changes, schema};
 
 /// One simulation, fully resolved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -12,6 +12,41 @@ pub fn schema() -> Value {
     Value::Object(schema)
 }
 
+/// Schemas of the values that an override may set, by a pattern of its key: `time.step`, `body.NAME.element`.
+pub fn changes() -> Map<String, Value> {
+    let mut found = Vec::new();
+    paths(&CASE, "^", &mut found);
+    let mut schemas = Map::new();
+    for (pattern, schema) in found {
+        // A key that means different things in different variants takes what any of them takes.
+        let known = schemas.entry(pattern).or_insert_with(|| json!({ "anyOf": [] }));
+        if let Some(list) = known["anyOf"].as_array_mut().filter(|list| !list.contains(&schema)) {
+            list.push(schema);
+        }
+    }
+    schemas
+}
+
+/// Every key at every depth, behind the pattern of what is before it.
+fn paths(spec: &Table, before: &str, found: &mut Vec<(String, Value)>) {
+    for key in spec.keys {
+        let name = format!("{before}{}", key.name);
+        found.push((format!("{name}$"), property(key)));
+        match key.kind {
+            Kind::Table(spec) | Kind::SideOr(spec) => paths(spec, &format!("{name}\\."), found),
+            Kind::Tables(spec) => paths(spec, &format!("{name}\\.[^.]+\\."), found),
+            Kind::Variant(variants) => {
+                let before = format!("{name}\\.");
+                let values: Vec<_> = variants.tables.iter().map(|(value, _)| value).collect();
+                found.push((format!("{before}{}$", variants.tag), json!({ "enum": values })));
+                let tables = variants.tables.iter().map(|(_, spec)| spec).chain(variants.or);
+                tables.for_each(|spec| paths(spec, &before, found));
+            }
+            _ => {}
+        }
+    }
+}
+
 fn table(spec: &Table, tag: Option<(&str, &str, &str)>) -> Map<String, Value> {
     let mut properties = Map::new();
     let mut required = Vec::new();

@@ -8,7 +8,7 @@ use carom_record::{ContactRow, Event, Manifest, RecordError, RunWriter, Source, 
 
 use super::columns::{center_weights, columns, row};
 use super::fields::{consistent_weights, field_set, gap_of, sides};
-use super::log::entry;
+use super::log::{entry, repairs};
 use super::verdicts::judge;
 use crate::case::{Case, Problem};
 use crate::model::{Dimension, Space};
@@ -249,8 +249,11 @@ where
         }
     }
 
-    /// Warnings, row and fields of the initial state.
+    /// What was mended in meshes that were read, warnings, row and fields of the initial state.
     fn write_start(&mut self) -> Result<(), RunError> {
+        for event in repairs(self.case) {
+            self.writer.log(&event)?;
+        }
         for warning in &self.manifest.warnings {
             self.writer.log(&Event::new(0, 0.0, "warning", warning.clone()))?;
         }
