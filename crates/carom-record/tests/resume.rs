@@ -125,8 +125,10 @@ fn killed_anywhere(format: FieldFormat) {
             let path = directory.join("history.csv");
             let torn = [fs::read(&path).unwrap(), b"17,0.3".to_vec()].concat();
             fs::write(&path, torn).unwrap();
-            fs::create_dir_all(directory.join("fields")).unwrap();
-            fs::write(directory.join("fields/.00000099.vtu.partial"), "x").unwrap();
+            match format {
+                FieldFormat::Vtu => fs::write(directory.join("fields/.00000099.vtu.partial"), "x").unwrap(),
+                FieldFormat::VtkHdf => fs::write(directory.join(".fields.vtkhdf.partial"), "x").unwrap(),
+            }
             let mut reopened = match generation {
                 None => RunWriter::reopen(&directory).unwrap(),
                 Some(generation) => RunWriter::reopen_at(&directory, generation).unwrap(),

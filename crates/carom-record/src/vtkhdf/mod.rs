@@ -80,16 +80,22 @@ pub(crate) fn put(directory: &Path, place: usize, entry: &FieldEntry, fields: &F
 /// Forgets all but the given entries, which are the first ones.
 pub(crate) fn keep(directory: &Path, entries: &[FieldEntry]) -> Result<(), RecordError> {
     let (path, count) = (path(directory), entries.len());
+    // As long as the file itself, and maybe never written again.
+    removed(&files::partial(&path))?;
     if count == 0 {
-        return match fs::remove_file(&path) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(RecordError::io("remove", &path)(error)),
-            _ => Ok(()),
-        };
+        return removed(&path);
     }
     let Some(mut opened) = open(directory, true)? else { return Ok(()) };
     match opened.layout.count as usize {
         more if more > count => opened.count(count as u64),
         less if less < count => Err(corrupt(&path)(format!("it has {less} steps, but had {count}"))),
+        _ => Ok(()),
+    }
+}
+
+fn removed(path: &Path) -> Result<(), RecordError> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(RecordError::io("remove", path)(error)),
         _ => Ok(()),
     }
 }
