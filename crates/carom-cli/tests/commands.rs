@@ -117,7 +117,7 @@ fn a_study_goes_on_with_its_own_options() {
     let place = Place::new("study");
     place.file("case.toml", IMPACT);
     let arm = "[[arm]]\nname = \"short\"\nset = { \"time.end\" = 1.875e-2, \"output.fields_every\" = 0 }\n";
-    place.file("study.toml", &format!("case = \"case.toml\"\n{arm}"));
+    place.file("study.toml", format!("case = \"case.toml\"\n{arm}"));
     let code = |arguments: &[&str], expected: i32| {
         let done = place.carom(arguments);
         assert_eq!(done.status.code(), Some(expected), "{arguments:?}: {}", text(&done.stderr));

@@ -41,7 +41,7 @@ fn corrupt(path: &Path) -> impl Fn(String) -> RecordError {
 fn open(directory: &Path, write: bool) -> Result<Option<Opened<File>>, RecordError> {
     let path = path(directory);
     match OpenOptions::new().read(true).write(write).open(&path) {
-        Ok(file) => Opened::new(file, path).map(Some),
+        Ok(file) => Opened::new(file, &path).map(Some),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(RecordError::io("open", &path)(error)),
     }
@@ -118,7 +118,7 @@ pub(crate) fn entries(directory: &Path) -> Result<Option<Vec<FieldEntry>>, Recor
 pub(crate) fn read(directory: &Path, entry: &FieldEntry) -> Result<FieldSet, RecordError> {
     let path = path(directory);
     let file = File::open(&path).map_err(RecordError::io("open", &path))?;
-    let mut opened = Opened::new(file, path)?;
+    let mut opened = Opened::new(file, &path)?;
     opened.fields(entry.step).map_err(corrupt(&opened.path))
 }
 
@@ -182,8 +182,8 @@ fn write_at<F: Write + Seek>(file: &mut F, at: u64, bytes: &[u8]) -> io::Result<
 }
 
 impl Opened<File> {
-    fn new(file: File, path: PathBuf) -> Result<Self, RecordError> {
-        Self::of(file, path.clone()).map_err(corrupt(&path))
+    fn new(file: File, path: &Path) -> Result<Self, RecordError> {
+        Self::of(file, path.to_path_buf()).map_err(corrupt(path))
     }
 
     /// Lets the first `count` steps be seen, by one write inside one sector.
