@@ -126,9 +126,11 @@ def commands(carom):
 def explanations(carom):
     """Pages ask for generated/explain/NAME.txt; NAME is the arguments of `carom explain`, joined with +."""
     pages = "".join(page.read_text(encoding="utf-8") for page in (BOOK / "src").rglob("*.md"))
-    for name in sorted(set(re.findall(r"generated/explain/([^}\s]+)\.txt", pages))):
+    for name in sorted(set(re.findall(r"{{#include [./]*generated/explain/([^}\s]+)\.txt}}", pages))):
         arguments = [] if name == "all" else name.split("+")
-        write(f"explain/{name}.txt", (run(carom, "explain", *arguments) or "").strip() + "\n")
+        said = run(carom, "explain", *arguments)
+        if said is not None:
+            write(f"explain/{name}.txt", said.strip() + "\n")
 
 
 # Keys of the case file
@@ -156,10 +158,10 @@ def keys(carom):
             if case is None:
                 unused.append(full)
             example = f"{name} = {example[1:-1]}" if example else ""
-            shown = " ".join(filter(None, [f"`{example}`" if example else "", f"in `{case}`" if case else ""]))
+            shown = "<br>".join(filter(None, [f"`{example}`" if example else "", f"`{case}`" if case else ""]))
             rows.append([f"`{name}`", values(key), default, unit or "–", meaning, shown])
         parts.append(f"## {title}\n\n{spec.get('description', '')}\n\n")
-        parts.append(table(["Key", "Values", "Default", "Unit", "Meaning", "Example"], rows))
+        parts.append(f'<div class="keys">\n\n{table(["Key", "Values", "Default", "Unit", "Meaning", "Example"], rows)}</div>\n\n')
     write("keys.md", "".join(parts))
     if unused:
         problems.append(f"a case that uses {', '.join(unused)}: add one to docs/book/examples/")
