@@ -130,7 +130,8 @@ def explanations(carom):
         arguments = [] if name == "all" else name.split("+")
         said = run(carom, "explain", *arguments)
         if said is not None:
-            write(f"explain/{name}.txt", said.strip() + "\n")
+            # The book is about Carom: what other codes do stays with the command.
+            write(f"explain/{name}.txt", said.split("\nelsewhere\n")[0].strip() + "\n")
 
 
 # Keys of the case file
