@@ -10,7 +10,7 @@ use crate::labels::number;
 use crate::text::escape;
 
 /// What the page of a run does not need.
-const CSS: &str = "body { max-width: 1200px; } th.n { text-align: right; } td.q { overflow-wrap: anywhere; max-width: 22rem; } \
+const CSS: &str = "body { max-width: 1200px; } th.n { text-align: right; } td.q { overflow-wrap: anywhere; max-width: 26rem; } td.arm { max-width: 15rem; font-size: .85rem; } \
 td.source { max-width: 18rem; font-size: .85rem; color: #555; } .summary td { padding-right: 2rem; } tr.set-up td { background: #f6f6f6; padding-top: .5rem; } \
 @media print { table { font-size: 8pt; } a { color: inherit; text-decoration: none; } thead { display: table-header-group; } }\n";
 
@@ -90,7 +90,7 @@ fn page(v: &Verification, directory: &Path) -> String {
     for family in v.families() {
         let _ = writeln!(
             out,
-            "<h2 id=\"{name}\">{name}</h2>\n<table>\n<thead><tr><th>Quantity</th><th>Expected</th><th class=\"n\">Got</th>\
+            "<h2 id=\"{name}\">{name}</h2>\n<table>\n<thead><tr><th>Arm</th><th>Quantity</th><th>Expected</th><th class=\"n\">Got</th>\
              <th class=\"n\">Error</th><th class=\"n\">Tolerance</th><th></th><th>Source</th></tr></thead>",
             name = escape(family)
         );
@@ -111,7 +111,7 @@ fn head(out: &mut String, set_up: &SetUp, directory: &Path) {
     let contact = if set_up.contact { ", contact" } else { "" };
     let _ = writeln!(
         out,
-        "<tr class=\"set-up\"><td colspan=\"7\"><b>{}</b> <span class=\"small\"><a href=\"{}/{}\">{}</a>{runs}{contact}, {} s, \
+        "<tr class=\"set-up\"><td colspan=\"8\"><b>{}</b> <span class=\"small\"><a href=\"{}/{}\">{}</a>{runs}{contact}, {} s, \
          <code class=\"hash\" title=\"{}\">{}</code></span>{}</td></tr>",
         escape(&set_up.title),
         escape(&set_up.directory),
@@ -134,10 +134,11 @@ fn row(out: &mut String, row: &Row) {
     let shown = |x: Option<f64>| x.map_or("–".into(), number);
     let _ = writeln!(
         out,
-        "<tr><td class=\"q\"><a href=\"{}/\"><code>{}</code></a>{why}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>\
+        "<tr><td class=\"arm\">{}</td><td class=\"q\"><a href=\"{}/\"><code>{}</code></a>{why}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>\
          <td class=\"n\">{}</td><td class=\"{class}\">{word}</td><td class=\"source\">{}</td></tr>",
+        escape(row.arm.as_deref().unwrap_or_default()),
         escape(&row.directory),
-        escape(&row.quantity()),
+        escape(&verdict.what),
         escape(&verdict.expected),
         shown(verdict.got),
         shown(row.error()),

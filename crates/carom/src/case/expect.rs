@@ -165,14 +165,14 @@ fn deviation(
                 let why = "arms may have different ones; what is asked of several arms has none";
                 return wrong("there is no exact formula here".into(), why, "write the formula", None);
             }
-            Exact::Of(formulas) => match formulas.get(&column) {
-                Some(formula) => Some(formula.clone()),
-                None => {
+            Exact::Of(formulas) => {
+                let Some(formula) = formulas.get(&column) else {
                     let what = format!("the case has no exact formula of `{column}`");
                     let help = format!("add `\"{column}\" = \"…\"` to [exact]");
                     return wrong(what, "[exact] says what columns should be", &help, None);
-                }
-            },
+                };
+                Some(formula.clone())
+            }
         };
         return Ok(Some(Deviation { formula, exact: found, norm, scale }));
     }
