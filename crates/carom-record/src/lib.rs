@@ -5,7 +5,7 @@
 //!             history.csv            one row per recorded step
 //!             contact.csv            one row per active contact node of a recorded step
 //!             log.jsonl              one event per line
-//!             fields.pvd fields/     VTK files of the bodies
+//!             fields.pvd fields/     VTK files of the bodies, or all of them in fields.vtkhdf
 //!             checkpoint/            two generations of what a run needs to go on
 //! ```
 //!
@@ -26,6 +26,7 @@ mod rows;
 mod run;
 pub mod study;
 pub mod verification;
+mod vtkhdf;
 mod vtu;
 mod writer;
 
@@ -33,7 +34,7 @@ pub use error::RecordError;
 pub use expectation::{Bound, Deviation, Expect, Norm, OrderOf, judge};
 pub use expression::{Expression, Sign};
 pub use manifest::{Column, Expectation, Machine, Manifest, Source, Status, now};
-pub use pvd::FieldEntry;
+pub use pvd::{FieldEntry, FieldFormat};
 pub use rows::{ContactRow, Event};
 pub use run::{History, Run};
 pub use vtu::{Block, Cell, FieldSet, PointArray};

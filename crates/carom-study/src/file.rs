@@ -5,7 +5,9 @@ use carom::case::{Asked, Document, Problem, read_expects};
 use carom_record::Expect;
 use toml_edit::{Item, TableLike, Value};
 
-const KEYS: [&str; 7] = ["title", "case", "reference", "arm", "grid", "claim", "expect"];
+pub(crate) const KEYS: [&str; 7] = ["title", "case", "reference", "arm", "grid", "claim", "expect"];
+pub(crate) const ARM: [&str; 4] = ["name", "case", "set", "expect"];
+pub(crate) const CLAIM: [&str; 2] = ["text", "compare"];
 
 /// A study file, read; what could not be read is a problem.
 #[derive(Default)]
@@ -56,7 +58,7 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
     }
     for (i, table) in arms.into_iter().enumerate() {
         let path = format!("arm[{i}]");
-        known(table, &["name", "case", "set", "expect"], "[[arm]]", &path, problems);
+        known(table, &ARM, "[[arm]]", &path, problems);
         let mut set = Vec::new();
         match table.get("set").and_then(Item::as_table_like) {
             Some(values) => flatten(values, "", &mut set),
@@ -103,7 +105,7 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
     file.expects = read_expects(document, "expect", Asked::OfArms, problems);
     for (i, table) in tables(root, "claim", problems).into_iter().enumerate() {
         let path = format!("claim[{i}]");
-        known(table, &["text", "compare"], "[[claim]]", &path, problems);
+        known(table, &CLAIM, "[[claim]]", &path, problems);
         let (words, compare) = (text(table, "text", &path, problems), text(table, "compare", &path, problems));
         match (words, compare) {
             (Some(text), Some(compare)) => file.claims.push(carom_record::study::Claim { text, compare }),
@@ -154,6 +156,9 @@ fn tables<'a>(root: &'a dyn TableLike, key: &str, problems: &mut Vec<Problem>) -
     match root.get(key) {
         None => Vec::new(),
         Some(Item::ArrayOfTables(list)) => list.iter().map(|t| t as &dyn TableLike).collect(),
+        Some(Item::Value(Value::Array(list))) if list.iter().all(Value::is_inline_table) => {
+            list.iter().filter_map(Value::as_inline_table).map(|t| t as &dyn TableLike).collect()
+        }
         Some(_) => {
             problems.push(not(key, "a list of tables", &format!("[[{key}]]")));
             Vec::new()

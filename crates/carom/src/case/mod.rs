@@ -25,6 +25,7 @@ mod warnings;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use carom_record::FieldFormat;
 use serde::{Deserialize, Serialize};
 
 pub use carom_record::{Bound, Expect as ExpectSpec};
@@ -34,7 +35,7 @@ pub use expect::{Asked, read_expects};
 pub use load::{FormulaSpec, InitialSpec, LoadKind, LoadSpec, TableSpec, Velocities};
 pub use problem::{CaseError, Diagnostic, Problem};
 pub use read::{read, read_scheme};
-pub use schema::schema;
+pub use schema::{changes, expectation, schema};
 
 /// One simulation, fully resolved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -435,9 +436,12 @@ pub enum Quantity {
 /// What is written, and when.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutputSpec {
-    /// Field files every so many steps; 0: none.
+    /// Fields every so many steps; 0: none.
     pub fields_every: usize,
-    /// Field files at the steps nearest to these times, besides.
+    /// How fields are written.
+    #[serde(default)]
+    pub format: FieldFormat,
+    /// Fields at the steps nearest to these times, besides.
     pub at_times: Vec<f64>,
     /// History rows every so many steps.
     pub history_every: usize,

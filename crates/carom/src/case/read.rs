@@ -306,6 +306,7 @@ fn output(v: View) -> Option<OutputSpec> {
     let every = if v.has("at_times") { 0 } else { 20 };
     Some(OutputSpec {
         fields_every: if v.has("fields_every") { v.count("fields_every")? } else { every },
+        format: v.choice("format")?,
         at_times: v.numbers("at_times")?,
         history_every: v.count("history_every")?,
         checkpoint_every: v.count("checkpoint_every")?,

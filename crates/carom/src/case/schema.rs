@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::keys::{CASE, Default, Key, Kind, Range, Table, Variants};
+use super::keys::{CASE, Default, EXPECT, Key, Kind, Range, Table, Variants};
 
 /// The schema of a case file.
 pub fn schema() -> Value {
@@ -10,6 +10,46 @@ pub fn schema() -> Value {
     schema.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
     schema.insert("title".into(), json!("Carom case"));
     Value::Object(schema)
+}
+
+/// Schemas of the values that an override may set, by a pattern of its key: `time.step`, `body.NAME.element`.
+pub fn changes() -> Map<String, Value> {
+    let mut found = Vec::new();
+    paths(&CASE, "^", &mut found);
+    let mut schemas = Map::new();
+    for (pattern, schema) in found {
+        // A key that means different things in different variants takes what any of them takes.
+        let known = schemas.entry(pattern).or_insert_with(|| json!({ "anyOf": [] }));
+        if let Some(list) = known["anyOf"].as_array_mut().filter(|list| !list.contains(&schema)) {
+            list.push(schema);
+        }
+    }
+    schemas
+}
+
+/// Every key at every depth, behind the pattern of what is before it.
+fn paths(spec: &Table, before: &str, found: &mut Vec<(String, Value)>) {
+    for key in spec.keys {
+        let name = format!("{before}{}", key.name);
+        found.push((format!("{name}$"), property(key)));
+        match key.kind {
+            Kind::Table(spec) | Kind::SideOr(spec) => paths(spec, &format!("{name}\\."), found),
+            Kind::Tables(spec) => paths(spec, &format!("{name}\\.[^.]+\\."), found),
+            Kind::Variant(variants) => {
+                let before = format!("{name}\\.");
+                let values: Vec<_> = variants.tables.iter().map(|(value, _)| value).collect();
+                found.push((format!("{before}{}$", variants.tag), json!({ "enum": values })));
+                let tables = variants.tables.iter().map(|(_, spec)| spec).chain(variants.or);
+                tables.for_each(|spec| paths(spec, &before, found));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The schema of one expectation, of a case, an arm or a study.
+pub fn expectation() -> Value {
+    Value::Object(table(&EXPECT, None))
 }
 
 fn table(spec: &Table, tag: Option<(&str, &str, &str)>) -> Map<String, Value> {

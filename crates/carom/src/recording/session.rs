@@ -8,7 +8,7 @@ use carom_record::{ContactRow, Event, Manifest, RecordError, RunWriter, Source, 
 
 use super::columns::{center_weights, columns, row};
 use super::fields::{consistent_weights, field_set, gap_of, sides};
-use super::log::entry;
+use super::log::{entry, repairs};
 use super::verdicts::judge;
 use crate::case::{Case, Problem};
 use crate::model::{Dimension, Space};
@@ -227,7 +227,8 @@ impl<'a, const D: usize> Session<'a, D>
 where
     Space: Dimension<D>,
 {
-    fn new(case: &'a Case, simulation: Simulation<D>, writer: RunWriter, manifest: Manifest) -> Self {
+    fn new(case: &'a Case, simulation: Simulation<D>, mut writer: RunWriter, manifest: Manifest) -> Self {
+        writer.field_format(case.output.format);
         let at = |time: &f64| (time / simulation.dt).round() as u64;
         let field_steps = case.output.at_times.iter().map(at).collect();
         let weights = center_weights(&simulation.model);
@@ -249,8 +250,11 @@ where
         }
     }
 
-    /// Warnings, row and fields of the initial state.
+    /// What was mended in meshes that were read, warnings, row and fields of the initial state.
     fn write_start(&mut self) -> Result<(), RunError> {
+        for event in repairs(self.case) {
+            self.writer.log(&event)?;
+        }
         for warning in &self.manifest.warnings {
             self.writer.log(&Event::new(0, 0.0, "warning", warning.clone()))?;
         }

@@ -222,3 +222,8 @@ fn in_one_dimension(quantity: Quantity) -> bool {
     use Quantity::{Ax, DetF, SigmaXx, Ux, VonMises, Vx};
     matches!(quantity, Ux | Vx | Ax | SigmaXx | VonMises | DetF)
 }
+
+/// A computed number for a message: ten digits at most, so that 0.1 + 0.2 reads 0.3.
+pub(super) fn rounded(x: f64) -> f64 {
+    format!("{x:.9e}").parse().unwrap_or(x)
+}

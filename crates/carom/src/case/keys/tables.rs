@@ -357,11 +357,17 @@ const OUTPUT: Table = Table {
         key(
             "fields_every",
             Count(0),
-            "Field files every so many steps, 0: none; 20 if left out, or 0 if at_times is given.",
+            "Fields every so many steps, 0: none; 20 if left out, or 0 if at_times is given.",
         )
         .optional()
         .example("20"),
-        key("at_times", Numbers, "Field files at the steps nearest to these times.").unit("time").default("[]"),
+        key(
+            "format",
+            Choice(&["vtu", "vtkhdf"], &[]),
+            "Fields as a VTU file each with fields.pvd, or in one file, fields.vtkhdf.",
+        )
+        .default("\"vtu\""),
+        key("at_times", Numbers, "Fields at the steps nearest to these times.").unit("time").default("[]"),
         key("history_every", Count(1), "Rows of history.csv every so many steps.").default("1"),
         key("checkpoint_every", Count(1), "Checkpoints every so many steps.").default("50"),
     ],

@@ -47,6 +47,14 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["body.cylinder.gravity=[0.0, 0.0, -9.81]"], &["a list of 3 values"]),
     (&["body.cylinder.mesh.radius=0"], &["`radius` must be a number > 0, not 0"]),
     (&["body.cylinder.mesh.size=0.0"], &["`size` must be a number > 0, not 0"]),
+    (
+        &["body.cylinder.mesh.size=0.6"],
+        &["`size` = 0.6 is larger than the radius, 0.5", "give size ≤ 0.5, for example size = 0.1"],
+    ),
+    (
+        &["body.prism.mesh={ shape = \"rectangle\", min = [0.1, -0.5], max = [0.3, 0.0], size = 0.6 }"],
+        &["`size` = 0.6 is larger than the longer side, 0.5"],
+    ),
     (&["body.prism.mesh.cells=[8, 0]"], &["must be a whole number ≥ 1, not the whole number 0"]),
     (&["body.prism.mesh.cells=[8, 4.0]"], &["must be a list of 2 whole numbers ≥ 1, not the number 4"]),
     (&["body.prism.mesh.max=[1.0, -0.5]"], &["`max` = -0.5 is not greater than `min` = -0.5"]),
