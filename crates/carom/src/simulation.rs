@@ -150,7 +150,7 @@ where
         Ok(simulation)
     }
 
-    /// Builds the model of a case and goes on from a state of an earlier run of it; the run its [initial] names is not needed any more.
+    /// Builds the model of a case and goes on from a state of an earlier run of it; the run its `[initial]` names is not needed any more.
     ///
     /// # Errors
     /// As [`Self::new`].
