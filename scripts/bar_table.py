@@ -9,7 +9,8 @@ open; where the lower end is then below the wall, it is solved again with the en
 import itertools
 import numpy as np
 
-L, E, RHO, N, H0 = 10.0, 900.0, 1.0, 100, 5.0
+# Touching falls on a grid time, where round-off would decide: the bar starts a little higher and touches just after it.
+L, E, RHO, N, H0 = 10.0, 900.0, 1.0, 100, 5.0 + 1e-9
 DX, C0 = L / N, 30.0
 
 

@@ -1,58 +1,206 @@
 #!/usr/bin/env python3
-"""Opens pages in headless Chromium and fails on any console message, missing animation or request to the outside.
+"""Opens pages in headless Chromium, plays and drags their animation, and fails on any console message, missing part or outside request.
 
     python3 scripts/check_page.py runs/impact/report.html [more pages] [--screenshots DIR]
 
-Needs `chromium` (apt-get install chromium) and nothing else. With --screenshots, writes NAME.png of the screen and NAME.pdf of the
-print for every page, NAME being its folder.
+Needs `chromium` (apt-get install chromium) and nothing else. With --screenshots, writes NAME.png of the page as it opens, NAME-playing.png
+after it was played and NAME.pdf of the print for every page, NAME being its folder.
 """
 
 import argparse
+import base64
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
+OUTSIDE = re.compile(r"""(?:src|href)\s*=\s*["']?(?:https?:)?//|url\(|@import|\bfetch\(|XMLHttpRequest""")
 
-def chromium(page, *options):
-    """Standard output and error of one headless visit that is offline: every name resolves to nothing."""
-    program = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-    if program is None:
-        sys.exit("check_page.py needs chromium")
-    with tempfile.TemporaryDirectory() as profile:
+
+class Browser:
+    """Chromium spoken to through a pair of pipes: the DevTools protocol, messages ended by a zero byte."""
+
+    def __init__(self, profile):
+        program = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+        if program is None:
+            sys.exit("check_page.py needs chromium")
+        theirs, self.to = os.pipe()
+        self.of, ours = os.pipe()
         command = [
-            program, "--headless", "--disable-gpu", "--hide-scrollbars", f"--user-data-dir={profile}",
-            "--enable-logging=stderr", "--v=0", "--host-resolver-rules=MAP * ~NOTFOUND", "--virtual-time-budget=4000",
-            "--window-size=1000,3200", *options, page.resolve().as_uri(),
+            program, "--headless", "--disable-gpu", "--hide-scrollbars", f"--user-data-dir={profile}", "--no-first-run",
+            "--remote-debugging-pipe", "--host-resolver-rules=MAP * ~NOTFOUND", "--window-size=1000,1400",
         ]
         if hasattr(os, "geteuid") and os.geteuid() == 0:
-            command.insert(1, "--no-sandbox")
-        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
-    return done.stdout, done.stderr
+            command.append("--no-sandbox")
+        # It reads from 3 and writes to 4.
+        shell = ["sh", "-c", f'exec "$@" 3<&{theirs} 4>&{ours}', "sh", *command]
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        self.process = subprocess.Popen(shell, pass_fds=(theirs, ours), **quiet)
+        os.close(theirs)
+        os.close(ours)
+        self.number, self.buffer, self.session, self.said = 0, b"", None, []
+
+    def __call__(self, method, **parameters):
+        """Result of a command."""
+        self.number += 1
+        message = {"id": self.number, "method": method, "params": parameters}
+        if self.session and not method.startswith(("Target", "Browser")):
+            message["sessionId"] = self.session
+        os.write(self.to, json.dumps(message).encode() + b"\0")
+        while True:
+            answer = self.next()
+            if answer.get("id") == self.number:
+                if "error" in answer:
+                    sys.exit(f"check_page.py: {method}: {answer['error']}")
+                return answer["result"]
+
+    def next(self):
+        """The next message; what a page says or throws is kept."""
+        while b"\0" not in self.buffer:
+            part = os.read(self.of, 1 << 20)
+            if not part:
+                sys.exit("check_page.py: the browser has gone")
+            self.buffer += part
+        line, self.buffer = self.buffer.split(b"\0", 1)
+        message = json.loads(line)
+        if message.get("method") in ("Runtime.consoleAPICalled", "Runtime.exceptionThrown", "Log.entryAdded"):
+            self.said.append(json.dumps(message["params"])[:300])
+        return message
+
+    def open(self, page):
+        self.session, self.said = None, []
+        target = self("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Runtime", "Log", "Page"):
+            self(f"{domain}.enable")
+        self("Page.navigate", url=page.resolve().as_uri())
+        while self.next().get("method") != "Page.loadEventFired":
+            pass
+
+    def value(self, expression):
+        answer = self("Runtime.evaluate", expression=expression, returnByValue=True)
+        return answer["result"].get("value")
+
+    def until(self, expression, seconds=20):
+        """Whether an expression becomes true in time."""
+        end = time.monotonic() + seconds
+        while not (true := self.value(expression)) and time.monotonic() < end:
+            time.sleep(0.05)
+        return bool(true)
+
+    def place(self, selector):
+        """Left, top, width and height of an element, scrolled into view."""
+        found = f"document.querySelector({json.dumps(selector)})"
+        self.value(f"{found}.scrollIntoView({{ block: 'center' }})")
+        return self.value(f"(r => [r.x, r.y, r.width, r.height])({found}.getBoundingClientRect())")
+
+    def mouse(self, kind, x, y):
+        buttons = 0 if kind == "mouseReleased" else 1
+        self("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=buttons, clickCount=1)
+
+    def click(self, selector, across=0.5):
+        x, y, width, height = self.place(selector)
+        self.mouse("mousePressed", x + across * width, y + height / 2)
+        self.mouse("mouseReleased", x + across * width, y + height / 2)
+
+    def close(self):
+        self.session = None
+        self("Browser.close")
+        self.process.wait(timeout=20)
 
 
-def check(page):
+# What the animation shows: its caption, a sum over its picture, and where the cursors stand.
+SHOWN = """JSON.stringify((root => [
+    root.querySelector("output").textContent,
+    (c => {
+        const copy = new OffscreenCanvas(c.width, c.height).getContext("2d", { willReadFrequently: true });
+        copy.drawImage(c, 0, 0);
+        return copy.getImageData(0, 0, c.width, c.height).data.reduce((s, v) => (s * 31 + v) | 0, 0);
+    })(root.querySelector("canvas")),
+    document.querySelector("path.cursor").getAttribute("d"),
+])(document.getElementById("animation")))"""
+TIME = "parseFloat(document.querySelector('#animation output').textContent.match(/t = ([-+.e0-9]+)/)[1])"
+FORWARD = "document.querySelector('#animation button').textContent"
+
+
+def animation(browser):
+    """What is wrong with the animation when it is played, dragged and pointed at."""
+    wrong = []
+    if browser.value("document.getElementById('animation').hidden"):
+        return ["the animation's script did not run to its end"]
+    if not browser.value("!!document.querySelector('path.cursor')"):
+        return ["no time history has the animation's cursor"]
+
+    def shown():
+        return json.loads(browser.value(SHOWN))
+
+    def differs(before, after, what):
+        for name, a, b in zip(("caption", "picture", "cursor"), before, after):
+            if a == b:
+                wrong.append(f"{what} does not change the {name}")
+
+    at_first = shown()
+    browser.click("#animation button")
+    started = browser.value(TIME)
+    if browser.value(FORWARD) == "▶" or not browser.until(f"{TIME} > {started}"):
+        wrong.append("play does not play")
+    browser.click("#animation button")
+    differs(at_first, played := shown(), "play")
+    if browser.value(FORWARD) != "▶" or shown() != played:
+        wrong.append("pause does not pause")
+
+    x, y, width, height = browser.place("#animation input")
+    thumb = browser.value("document.querySelector('#animation input').value")
+    grip = 8 + float(thumb) * (width - 16)
+    target = 0.2 if float(thumb) > 0.5 else 0.8
+    browser.mouse("mousePressed", x + grip, y + height / 2)
+    for part in (0.3, 0.6, 1.0):
+        browser.mouse("mouseMoved", x + grip + part * (target * width - grip), y + height / 2)
+    browser.mouse("mouseReleased", x + target * width, y + height / 2)
+    differs(played, dragged := shown(), "dragging the slider")
+    reached = float(browser.value("document.querySelector('#animation input').value"))
+    if abs(reached - target) > 0.1:
+        wrong.append(f"the slider dragged to {target} stands at {reached}")
+
+    browser.value("document.querySelector('g.time').ownerSVGElement.id = 'history'")
+    browser.click("#history", 0.5)
+    differs(dragged, shown(), "a click into a time history")
+    return wrong
+
+
+def check(browser, page, screenshots):
     """What is wrong with a page, as sentences."""
-    dom, log = chromium(page, "--dump-dom")
-    wrong = [line for line in log.splitlines() if "CONSOLE" in line or "Uncaught" in line]
-    if "<h1>" not in dom:
-        wrong.append("the page has no heading: it was not shown")
+    browser.open(page)
     text = page.read_text(encoding="utf-8")
-    outside = re.search(r"""(?:src|href)\s*=\s*["']?(?:https?:)?//|url\(|@import|\bfetch\(|XMLHttpRequest""", text)
-    if outside:
+    wrong = []
+    if not browser.value("document.querySelector('h1')?.textContent"):
+        wrong.append("the page has no heading: it was not shown")
+    if outside := OUTSIDE.search(text):
         wrong.append(f"a request to the outside: {outside.group()}")
+    to = None
+    if screenshots:
+        screenshots.mkdir(parents=True, exist_ok=True)
+        to = screenshots / page.resolve().parent.name
+        picture(browser, f"{to}.png")
+        print_data = browser("Page.printToPDF", printBackground=True)["data"]
+        Path(f"{to}.pdf").write_bytes(base64.b64decode(print_data))
     if 'id="animation"' in text:
-        opening = re.search(r'<figure[^>]*id="animation"[^>]*>', dom)
-        if not opening or "hidden" in opening.group():
-            wrong.append("the animation's script did not run to its end")
-        if not re.search(r'<path[^>]*class="cursor"[^>]*d="M', dom):
-            wrong.append("no time history has the animation's cursor")
+        wrong += animation(browser)
+        if to:
+            picture(browser, f"{to}-playing.png")
     if page.stat().st_size > 5_000_000:
         wrong.append(f"{page.stat().st_size} bytes are more than 5 MB")
-    return wrong
+    return wrong + browser.said
+
+
+def picture(browser, path):
+    shot = browser("Page.captureScreenshot", captureBeyondViewport=True)["data"]
+    Path(path).write_bytes(base64.b64decode(shot))
 
 
 def main():
@@ -61,15 +209,17 @@ def main():
     parser.add_argument("--screenshots", type=Path)
     arguments = parser.parse_args()
     failed = False
-    for page in arguments.pages:
-        wrong = check(page)
-        failed |= bool(wrong)
-        print(f"{page}: {page.stat().st_size / 1e6:.2f} MB, {'; '.join(wrong) or 'no console message'}")
-        if arguments.screenshots:
-            arguments.screenshots.mkdir(parents=True, exist_ok=True)
-            to = arguments.screenshots / page.resolve().parent.name
-            chromium(page, f"--screenshot={to}.png")
-            chromium(page, f"--print-to-pdf={to}.pdf", "--no-pdf-header-footer")
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        browser = Browser(profile)
+        try:
+            for page in arguments.pages:
+                wrong = check(browser, page, arguments.screenshots)
+                failed |= bool(wrong)
+                played = "; played and dragged" if 'id="animation"' in page.read_text(encoding="utf-8") else ""
+                print(f"{page}: {page.stat().st_size / 1e6:.2f} MB, {'; '.join(wrong) or 'no console message' + played}")
+            browser.close()
+        finally:
+            browser.process.kill()
     sys.exit(1 if failed else 0)
 
 

@@ -9,6 +9,8 @@ use carom::case::CaseError;
 pub(crate) enum Exit {
     /// All was done.
     Done = 0,
+    /// An expectation was missed (`verify`).
+    Missed = 1,
     /// The case or an argument is wrong.
     Wrong = 2,
     /// The simulation stopped; its last good state is kept.

@@ -10,7 +10,7 @@ mod summary;
 mod wrong;
 
 use clap::{Parser, Subcommand};
-use command::{check, explain, mesh, new, report, resume, run, schema, study};
+use command::{check, explain, mesh, new, report, resume, run, schema, study, verify};
 
 /// Impact and contact of deformable solids, and the laboratory of its time integrators.
 #[derive(Parser)]
@@ -21,9 +21,10 @@ Examples:
   carom run cases/impact/impact.toml
   carom check cases/impact/impact.toml --set time.step=1e-3
   carom study cases/paper/paper.toml
+  carom verify --fast
   carom explain chung-hulbert rho_inf=0.1
 
-Exit codes: 0 done · 2 the case is wrong · 3 the simulation stopped · 4 the machine refused · 130 stopped by Ctrl-C")]
+Exit codes: 0 done · 1 an expectation was missed (verify) · 2 the case is wrong · 3 the simulation stopped · 4 the machine refused · 130 stopped by Ctrl-C")]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -34,6 +35,7 @@ enum Command {
     Run(run::Arguments),
     Resume(resume::Arguments),
     Study(study::Arguments),
+    Verify(verify::Arguments),
     Check(check::Arguments),
     Explain(explain::Arguments),
     Mesh(mesh::Arguments),
@@ -47,6 +49,7 @@ fn main() -> std::process::ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Resume(arguments) => resume::run(&arguments),
         Command::Study(arguments) => study::run(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Mesh(arguments) => mesh::run(&arguments),

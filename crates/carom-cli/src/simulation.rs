@@ -255,7 +255,8 @@ where
 {
     let model = carom::model::build::<D>(case)?;
     let overlaps = carom::model::overlaps(&model);
-    if !overlaps.is_empty() {
+    // Where another run ended, its contacts have kept the bodies apart.
+    if case.initial.is_none() && !overlaps.is_empty() {
         return Err(overlaps);
     }
     let mut transit = f64::INFINITY;

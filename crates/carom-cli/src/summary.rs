@@ -32,7 +32,7 @@ pub(crate) fn tell(done: Result<Outcome, Failure>, json: bool) -> Result<Exit, F
 fn text(outcome: &Outcome) -> String {
     let directory = outcome.directory.display();
     let wall = if outcome.wall > 0.0 { format!(" in {}", duration(outcome.wall)) } else { String::new() };
-    let mut lines = vec![format!("{} steps to t = {}{wall}", outcome.steps, outcome.time)];
+    let mut lines = vec![format!("{} steps to t = {}{wall}", outcome.steps, short(outcome.time))];
     let width = outcome.extremes.iter().map(|e| e.column.chars().count()).max().unwrap_or(0);
     for e in &outcome.extremes {
         lines.push(format!(

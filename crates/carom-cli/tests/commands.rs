@@ -113,6 +113,25 @@ fn arguments_are_checked() {
 }
 
 #[test]
+fn a_study_goes_on_with_its_own_options() {
+    let place = Place::new("study");
+    place.file("case.toml", IMPACT);
+    let arm = "[[arm]]\nname = \"short\"\nset = { \"time.end\" = 1.875e-2, \"output.fields_every\" = 0 }\n";
+    place.file("study.toml", format!("case = \"case.toml\"\n{arm}"));
+    let code = |arguments: &[&str], expected: i32| {
+        let done = place.carom(arguments);
+        assert_eq!(done.status.code(), Some(expected), "{arguments:?}: {}", text(&done.stderr));
+        text(&done.stdout) + &text(&done.stderr)
+    };
+    assert!(code(&["study", "study.toml", "--out", "s", "--no-report"], 0).contains("short"));
+    assert!(code(&["resume", "s", "--threads", "2"], 2).contains("--threads is for a run, and s is a study"));
+    assert!(code(&["resume", "s", "--profile"], 2).contains("--profile is for a run"));
+    assert!(!place.0.join("s/study.html").exists() && place.0.join("s/study.csv").exists());
+    assert!(code(&["resume", "s", "--jobs", "1"], 0).contains("study.html"));
+    assert!(code(&["resume", "s/arms/01-short", "--jobs", "1"], 2).contains("--jobs is for a study"));
+}
+
+#[test]
 fn check_tells_the_case() {
     let place = Place::new("check");
     place.file("case.toml", IMPACT);

@@ -44,6 +44,36 @@ fn meshes_are_written_once_and_read_back() {
     std::fs::remove_dir_all(&place).unwrap();
 }
 
+/// A square of two triangles, the second one clockwise.
+const SQUARE: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat
+$PhysicalNames\n1\n2 1 \"square\"\n$EndPhysicalNames
+$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes
+$Elements\n2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 4 3\n$EndElements\n";
+
+const FALL: &str = "
+dimension = 2
+material = [{ name = 'm', law = 'neo-hookean', density = 1.0, lambda = 1.0, mu = 1.0 }]
+body = [{ name = 'b', material = 'm', element = 'T3', mesh = { file = 'square.msh', surface = 'square' }, velocity = [1.0, 0.0] }]
+time = { end = 0.02, step = 0.01, scheme = { kind = 'hu' } }
+";
+
+#[test]
+fn repairs_are_logged_once() {
+    let place = place("repairs");
+    std::fs::write(place.join("square.msh"), SQUARE).unwrap();
+    std::fs::write(place.join("case.toml"), FALL).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_carom"));
+    let done = command.current_dir(&place).args(["run", "case.toml", "--out", "run", "--no-report"]).output().unwrap();
+    assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
+    let log = std::fs::read_to_string(place.join("run/log.jsonl")).unwrap();
+    let events: Vec<serde_json::Value> = log.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let repairs: Vec<_> = events.iter().filter(|e| e["kind"] == "repair").collect();
+    assert_eq!(repairs.len(), 1, "{log}");
+    assert_eq!((&repairs[0]["step"], &repairs[0]["body"]), (&0.into(), &"b".into()));
+    assert!(repairs[0]["message"].as_str().unwrap().contains("1 of 2 cells were clockwise"), "{log}");
+    std::fs::remove_dir_all(&place).unwrap();
+}
+
 #[test]
 fn what_cannot_be_written_is_told() {
     let place = place("told");

@@ -57,8 +57,11 @@ pub struct OrderOf {
 /// A column's deviation from a formula.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Deviation {
-    /// Formula in `t`.
+    /// Formula in `t`, or `exact`: the one its case has for the column.
     pub formula: String,
+    /// What `exact` stands for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub exact: Option<String>,
     /// How the deviation is measured.
     pub norm: Norm,
     /// What divides it.
@@ -156,14 +159,11 @@ impl Deviation {
     /// # Errors
     /// A formula that is none, or not a number at a time of a row.
     pub fn of(&self, times: &[f64], values: &[f64]) -> Result<f64, String> {
-        let formula = Formula::parse(&self.formula, &["t"]).map_err(|e| format!("`{}`: {e}", self.formula))?;
+        let text = self.exact.as_ref().unwrap_or(&self.formula);
+        let formula = Formula::parse(text, &["t"]).map_err(|e| format!("`{text}`: {e}"))?;
         let difference = |(t, c): (&f64, &f64)| {
             let expected = formula.value(&[*t]);
-            if expected.is_finite() {
-                Ok(c - expected)
-            } else {
-                Err(format!("`{}` is {expected} at t = {t}", self.formula))
-            }
+            if expected.is_finite() { Ok(c - expected) } else { Err(format!("`{text}` is {expected} at t = {t}")) }
         };
         let differences = times.iter().zip(values).map(difference).collect::<Result<Vec<_>, _>>()?;
         Ok(self.norm.of(&differences) / self.scale)
@@ -195,17 +195,17 @@ impl Expect {
     pub fn words(&self) -> String {
         let mut words = match &self.deviation {
             None => self.what.clone(),
-            Some(Deviation { formula, norm, scale }) => {
+            Some(Deviation { formula, norm, scale, .. }) => {
                 let norm = if *norm == Norm::Rms { "rms" } else { "max" };
                 let scale = if *scale == 1.0 { String::new() } else { format!(" / {scale}") };
                 format!("{norm} |{} − ({formula})|{scale}", self.what)
             }
         };
         if let Some(after) = self.after {
-            words += &format!(", t > {after}");
+            words.extend([", t > ".to_owned(), after.to_string()]);
         }
         if let Some(before) = self.before {
-            words += &format!(", t < {before}");
+            words.extend([", t < ".to_owned(), before.to_string()]);
         }
         words
     }

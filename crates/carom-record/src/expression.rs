@@ -54,6 +54,15 @@ impl Sign {
 }
 
 impl<Q> Expression<Q> {
+    /// The same expression in other quantities.
+    pub(crate) fn map<R>(&self, of: &dyn Fn(&Q) -> R) -> Expression<R> {
+        match self {
+            Self::Number(value) => Expression::Number(*value),
+            Self::Quantity(quantity) => Expression::Quantity(of(quantity)),
+            Self::Binary(sign, sides) => Expression::Binary(*sign, Box::new([sides[0].map(of), sides[1].map(of)])),
+        }
+    }
+
     /// Its value, given those of its quantities.
     ///
     /// # Errors

@@ -5,7 +5,7 @@
 //!             history.csv            one row per recorded step
 //!             contact.csv            one row per active contact node of a recorded step
 //!             log.jsonl              one event per line
-//!             fields.pvd fields/     VTK files of the bodies
+//!             fields.pvd fields/     VTK files of the bodies, or all of them in fields.vtkhdf
 //!             checkpoint/            two generations of what a run needs to go on
 //! ```
 //!
@@ -19,11 +19,14 @@ mod expression;
 mod files;
 mod manifest;
 pub mod metrics;
+pub mod order;
 mod pvd;
 pub mod question;
 mod rows;
 mod run;
 pub mod study;
+pub mod verification;
+mod vtkhdf;
 mod vtu;
 mod writer;
 
@@ -31,8 +34,8 @@ pub use error::RecordError;
 pub use expectation::{Bound, Deviation, Expect, Norm, OrderOf, judge};
 pub use expression::{Expression, Sign};
 pub use manifest::{Column, Expectation, Machine, Manifest, Source, Status, now};
-pub use pvd::FieldEntry;
+pub use pvd::{FieldEntry, FieldFormat};
 pub use rows::{ContactRow, Event};
 pub use run::{History, Run};
 pub use vtu::{Block, Cell, FieldSet, PointArray};
-pub use writer::{Reopened, RunWriter};
+pub use writer::{Reopened, RunWriter, last_checkpoint};

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{RecordError, files};
 
-/// One field file.
+/// An instant whose fields are on record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FieldEntry {
     /// Step it shows.
@@ -17,8 +17,19 @@ pub struct FieldEntry {
     pub time: f64,
 }
 
+/// How fields are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FieldFormat {
+    /// A VTU file per entry and `fields.pvd`.
+    #[default]
+    Vtu,
+    /// One file, `fields.vtkhdf`.
+    VtkHdf,
+}
+
 impl FieldEntry {
-    /// Its path inside the run directory, with `/`.
+    /// Path of its VTU file inside the run directory, with `/`.
     pub fn file(&self) -> String {
         format!("fields/{:08}.vtu", self.step)
     }

@@ -137,13 +137,26 @@ impl Question {
         if value.is_finite() { Ok(value) } else { Err(format!("its value is {value}")) }
     }
 
+    /// The same of an arm, where none is named.
+    pub(crate) fn of_arm(&self, arm: &str) -> Self {
+        self.map(&|quantity| match quantity {
+            Quantity::Metric(name, of) => Quantity::Metric(name.clone(), of.clone().or_else(|| Some(arm.to_owned()))),
+            Quantity::Reduced(form, series) => Quantity::Reduced(*form, series.of_arm(arm)),
+        })
+    }
+
     /// Names of the arms it speaks of; none where a quantity names no arm.
     pub fn arms(&self) -> Vec<Option<&str>> {
-        let of = |quantity| match quantity {
-            &Quantity::Metric(_, ref arm) => vec![arm.as_deref()],
-            Quantity::Reduced(_, series) => series.columns.quantities().iter().map(|a| a.arm.as_deref()).collect(),
-        };
-        self.quantities().into_iter().flat_map(of).collect()
+        let mut arms = Vec::new();
+        for quantity in self.quantities() {
+            match quantity {
+                Quantity::Metric(_, arm) => arms.push(arm.as_deref()),
+                Quantity::Reduced(_, series) => {
+                    arms.extend(series.columns.quantities().iter().map(|a| a.arm.as_deref()));
+                }
+            }
+        }
+        arms
     }
 
     /// Whether it asks if a run stopped, so that what was recorded until then counts.
@@ -166,26 +179,43 @@ impl Series {
     /// # Errors
     /// In words: what is not there.
     pub fn rows(&self, records: &dyn Records, window: Window) -> Result<(Vec<f64>, Vec<f64>), String> {
-        let asked = self.columns.quantities();
-        let columns = asked.iter().map(|a| records.column(a)).collect::<Result<Vec<_>, _>>()?;
-        let Some(first) = columns.first() else { return Err("no column is named".to_owned()) };
-        let key = |rows: &Rows| if self.by_step { rows.steps.to_vec() } else { rows.times.to_vec() };
-        let keys: Vec<Vec<f64>> = columns.iter().map(key).collect();
-        let span = keys[0].last().unwrap_or(&0.0) - keys[0].first().unwrap_or(&0.0);
-        let (mut times, mut values) = (Vec::new(), Vec::new());
-        for (row, (time, here)) in first.times.iter().zip(&keys[0]).enumerate() {
-            if !window.has(*time) {
-                continue;
-            }
-            // The same row of the same record, or the row at the same time of another.
-            let near = |keys: &Vec<f64>| {
-                let i = keys.partition_point(|k| *k < here - SAME_TIME * span);
-                keys.get(i).filter(|k| (*k - here).abs() <= SAME_TIME * span).map(|_| i)
-            };
-            let found = |keys: &Vec<f64>| if keys.get(row) == Some(here) { Some(row) } else { near(keys) };
-            let Some(rows) = keys.iter().map(found).collect::<Option<Vec<_>>>() else { continue };
-            let mut next = 0..;
-            let value = self.columns.value(&mut |a| {
+        let (times, mut values) = common(std::slice::from_ref(self), records, window)?;
+        Ok((times, values.swap_remove(0)))
+    }
+
+    /// The same of an arm, where none is named.
+    pub(crate) fn of_arm(&self, arm: &str) -> Self {
+        let named = |a: &Asked| Asked { column: a.column.clone(), arm: a.arm.clone().or_else(|| Some(arm.to_owned())) };
+        Self { columns: self.columns.map(&named), by_step: self.by_step }
+    }
+}
+
+/// Times, and values of each series, of the rows that all their columns have. Rows are matched by step if the first series says so.
+///
+/// # Errors
+/// In words: what is not there.
+pub fn common(series: &[Series], records: &dyn Records, window: Window) -> Result<(Vec<f64>, Vec<Vec<f64>>), String> {
+    let asked: Vec<&Asked> = series.iter().flat_map(|s| s.columns.quantities()).collect();
+    let columns = asked.iter().map(|a| records.column(a)).collect::<Result<Vec<_>, _>>()?;
+    let Some(first) = columns.first() else { return Err("no column is named".to_owned()) };
+    let by_step = series.iter().any(|s| s.by_step);
+    let keys: Vec<&[f64]> = columns.iter().map(|c| if by_step { &*c.steps } else { &*c.times }).collect();
+    let span = keys[0].last().unwrap_or(&0.0) - keys[0].first().unwrap_or(&0.0);
+    let (mut times, mut values) = (Vec::new(), vec![Vec::new(); series.len()]);
+    for (row, (time, here)) in first.times.iter().zip(keys[0]).enumerate() {
+        if !window.has(*time) {
+            continue;
+        }
+        // The same row of the same record, or the row at the same time of another.
+        let near = |keys: &[f64]| {
+            let i = keys.partition_point(|k| *k < here - SAME_TIME * span);
+            keys.get(i).filter(|k| (*k - here).abs() <= SAME_TIME * span).map(|_| i)
+        };
+        let found = |keys: &&[f64]| if keys.get(row) == Some(here) { Some(row) } else { near(keys) };
+        let Some(rows) = keys.iter().map(found).collect::<Option<Vec<_>>>() else { continue };
+        let mut next = 0..;
+        for (one, values) in series.iter().zip(&mut values) {
+            values.push(one.columns.value(&mut |a| {
                 let i = next.next().unwrap_or_default();
                 let value = columns[i].values.get(rows[i]).copied().unwrap_or(f64::NAN);
                 if value.is_nan() {
@@ -193,16 +223,15 @@ impl Series {
                 } else {
                     Ok(value)
                 }
-            })?;
-            times.push(*time);
-            values.push(value);
+            })?);
         }
-        match (values.is_empty(), window == Window::default(), columns.len()) {
-            (false, ..) => Ok((times, values)),
-            (true, true, 1) => Err("the history has no rows".to_owned()),
-            (true, true, _) => Err("the records have no common rows".to_owned()),
-            (true, false, _) => Err("there are no rows between `after` and `before`".to_owned()),
-        }
+        times.push(*time);
+    }
+    match (times.is_empty(), window == Window::default(), columns.len()) {
+        (false, ..) => Ok((times, values)),
+        (true, true, 1) => Err("the history has no rows".to_owned()),
+        (true, true, _) => Err("the records have no common rows".to_owned()),
+        (true, false, _) => Err("there are no rows between `after` and `before`".to_owned()),
     }
 }
 

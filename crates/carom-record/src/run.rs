@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::rows::CONTACT_COLUMNS;
-use crate::{Column, ContactRow, Event, FieldEntry, FieldSet, Manifest, RecordError, pvd};
+use crate::{Column, ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, pvd, vtkhdf};
 
 const HINT: &str = "`carom resume` goes back to the last checkpoint; or run the case again";
 
@@ -54,8 +54,10 @@ pub struct Run {
     pub contact: Vec<ContactRow<'static>>,
     /// What happened.
     pub log: Vec<Event>,
-    /// Field files, in the order of time.
+    /// Instants whose fields are on record, in the order of time.
     pub fields: Vec<FieldEntry>,
+    /// How these are written.
+    pub field_format: FieldFormat,
 }
 
 impl Run {
@@ -63,12 +65,17 @@ impl Run {
     pub fn open(directory: &Path) -> Result<Self, RecordError> {
         let manifest = Manifest::read(directory)?;
         let history = history(&directory.join("history.csv"), &manifest.columns)?;
+        let (fields, field_format) = match vtkhdf::entries(directory)? {
+            Some(entries) => (entries, FieldFormat::VtkHdf),
+            None => (pvd::read(directory)?, FieldFormat::Vtu),
+        };
         Ok(Self {
             directory: directory.to_path_buf(),
             history,
             contact: contact(&directory.join("contact.csv"))?,
             log: log(&directory.join("log.jsonl"))?,
-            fields: pvd::read(directory)?,
+            fields,
+            field_format,
             manifest,
         })
     }
@@ -83,9 +90,26 @@ impl Run {
         self.history.times()
     }
 
-    /// Reads one field file.
+    /// Whether a contact was active in a motion: not where the time is the parameter of a static load.
+    pub fn had_dynamic_contact(&self) -> bool {
+        let kind = self.manifest.case.pointer("/time/scheme/kind").and_then(|k| k.as_str());
+        kind != Some("static") && self.column("active").is_some_and(|active| active.iter().any(|n| *n > 0.0))
+    }
+
+    /// File of an instant's fields, inside the run directory, with `/`.
+    pub fn field_file(&self, entry: &FieldEntry) -> String {
+        match self.field_format {
+            FieldFormat::Vtu => entry.file(),
+            FieldFormat::VtkHdf => "fields.vtkhdf".into(),
+        }
+    }
+
+    /// Reads the fields of one instant.
     pub fn field(&self, entry: &FieldEntry) -> Result<FieldSet, RecordError> {
-        let path = self.directory.join(entry.file());
+        if self.field_format == FieldFormat::VtkHdf {
+            return vtkhdf::read(&self.directory, entry);
+        }
+        let path = self.directory.join(self.field_file(entry));
         let bytes = std::fs::read(&path).map_err(RecordError::io("read", &path))?;
         FieldSet::from_vtu(&bytes).map_err(|what| RecordError::corrupt(&path, None, what, HINT))
     }

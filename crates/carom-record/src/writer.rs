@@ -1,7 +1,7 @@
 //! Writing a run directory so that it can be killed at any moment and continued to the same bytes.
 //!
 //! A directory comes into being by one rename, with a checkpoint in it. A checkpoint first forces the row files to the disk, then
-//! records their lengths; reopening cuts them back to those lengths and drops later field files.
+//! records their lengths; reopening cuts them back to those lengths and drops later fields.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, Seek, SeekFrom, Write};
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use crate::checkpoint::{self, Header};
 use crate::rows::{CONTACT_COLUMNS, Table};
-use crate::{ContactRow, Event, FieldEntry, FieldSet, Manifest, RecordError, files, pvd};
+use crate::{ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, files, pvd, vtkhdf};
 
 const ROW_FILES: [&str; 3] = ["history.csv", "contact.csv", "log.jsonl"];
 
@@ -25,6 +25,8 @@ pub struct RunWriter {
     header: Header,
     /// Generation the next checkpoint replaces.
     generation: usize,
+    /// How `fields` writes.
+    field_format: FieldFormat,
     /// Held as long as this writer lives.
     _lock: File,
 }
@@ -103,14 +105,7 @@ impl RunWriter {
     pub fn reopen(directory: &Path) -> Result<Reopened, RecordError> {
         let manifest = Manifest::read(directory)?;
         let lock = lock(directory)?;
-        let [a, b] = [0, 1].map(|generation| verified(directory, generation));
-        let (generation, (header, payload), fallback) = match (a, b) {
-            (Ok(a), Ok(b)) if a.0.sequence > b.0.sequence => (0, a, None),
-            (Ok(_), Ok(b)) => (1, b, None),
-            (Ok(a), Err(error)) => (0, a, Some(error)),
-            (Err(error), Ok(b)) => (1, b, Some(error)),
-            (Err(error), Err(other)) => return Err(if missing(&error) { other } else { error }),
-        };
+        let (generation, (header, payload), fallback) = newest(directory)?;
         // One generation only is how every run begins.
         let fallback = fallback.filter(|error| !missing(error));
         Ok(Reopened { fallback, ..Self::open(directory, manifest, lock, generation, header, payload)? })
@@ -142,6 +137,7 @@ impl RunWriter {
         }
         let [history, contact, log] = rows.try_into().unwrap_or_else(|_| unreachable!("three row files"));
         drop_fields(directory, &header.fields)?;
+        vtkhdf::keep(directory, &header.fields)?;
         let writer = Self {
             directory: directory.to_path_buf(),
             integer: manifest.columns.iter().map(|c| c.integer).collect(),
@@ -150,10 +146,16 @@ impl RunWriter {
             log: BufWriter::new(log),
             generation: 1 - generation % 2,
             header,
+            field_format: FieldFormat::default(),
             _lock: lock,
         };
         let (step, rows) = (writer.header.step, writer.header.rows);
         Ok(Reopened { writer, manifest, payload, step, rows, fallback: None })
+    }
+
+    /// How fields are written from now on; VTU if nothing is said. One run has one format.
+    pub fn field_format(&mut self, format: FieldFormat) {
+        self.field_format = format;
     }
 
     /// Where it writes.
@@ -196,15 +198,19 @@ impl RunWriter {
             .map_err(|e| RecordError::io("write", &self.directory.join(ROW_FILES[2]))(e))
     }
 
-    /// Writes a field file and lists it in `fields.pvd`.
+    /// Writes fields as VTU, or into the run's VTKHDF file.
     pub fn fields(&mut self, step: u64, time: f64, fields: &FieldSet) -> Result<(), RecordError> {
         let entry = FieldEntry { step, time };
+        let entries = &mut self.header.fields;
+        entries.retain(|e| e.step != step);
+        entries.push(entry.clone());
+        if self.field_format == FieldFormat::VtkHdf {
+            return vtkhdf::put(&self.directory, entries.len() - 1, &entry, fields);
+        }
         let folder = self.directory.join("fields");
         fs::create_dir_all(&folder).map_err(RecordError::io("create", &folder))?;
         files::write_atomically(&self.directory.join(entry.file()), &[&fields.to_vtu(time)?])?;
-        self.header.fields.retain(|e| e.step != step);
-        self.header.fields.push(entry);
-        pvd::write(&self.directory, &self.header.fields)
+        pvd::write(&self.directory, entries)
     }
 
     /// Everything so far reaches the disk, then the older generation is replaced.
@@ -226,6 +232,7 @@ impl RunWriter {
     /// Everything reaches the disk, and last of all the manifest that says how it ended.
     pub fn finish(mut self, manifest: &Manifest) -> Result<(), RecordError> {
         self.sync()?;
+        vtkhdf::finish(&self.directory)?;
         manifest.write(&self.directory)
     }
 
@@ -241,6 +248,26 @@ impl RunWriter {
         }
         Ok(())
     }
+}
+
+/// Payload of the newest checkpoint that is whole; nothing is changed.
+///
+/// # Errors
+/// There is none.
+pub fn last_checkpoint(directory: &Path) -> Result<Vec<u8>, RecordError> {
+    newest(directory).map(|(_, (_, payload), _)| payload)
+}
+
+/// The newest checkpoint that is whole: its generation, itself, and what is wrong with the other.
+fn newest(directory: &Path) -> Result<(usize, (Header, Vec<u8>), Option<RecordError>), RecordError> {
+    let [a, b] = [0, 1].map(|generation| verified(directory, generation));
+    Ok(match (a, b) {
+        (Ok(a), Ok(b)) if a.0.sequence > b.0.sequence => (0, a, None),
+        (Ok(_), Ok(b)) => (1, b, None),
+        (Ok(a), Err(error)) => (0, a, Some(error)),
+        (Err(error), Ok(b)) => (1, b, Some(error)),
+        (Err(error), Err(other)) => return Err(if missing(&error) { other } else { error }),
+    })
 }
 
 /// A checkpoint, if it is whole and the row files reach as far as it says.

@@ -7,7 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use carom_record::{
-    Block, Cell, Column, ContactRow, Event, FieldSet, Manifest, RecordError, Run, RunWriter, Source, Status,
+    Block, Cell, Column, ContactRow, Event, FieldFormat, FieldSet, Manifest, PointArray, RecordError, Run, RunWriter,
+    Source, Status,
 };
 
 const STEPS: u64 = 40;
@@ -21,9 +22,14 @@ fn manifest() -> Manifest {
 
 fn fields(step: u64) -> FieldSet {
     FieldSet {
-        points: vec![[0.0, step as f64, 0.0], [1.0, 0.0, 0.0]],
+        points: vec![[0.0, 2.5, 0.0], [1.0, 0.0, 0.0]],
         blocks: vec![Block { body: "b".into(), cell: Cell::Curve, degree: 1, connectivity: vec![0, 1] }],
-        arrays: vec![],
+        arrays: vec![PointArray {
+            name: "p".into(),
+            unit: "Pa".into(),
+            components: 1,
+            values: vec![step as f64, -1.0],
+        }],
     }
 }
 
@@ -85,34 +91,52 @@ fn all_bytes(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-fn whole(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let writer = RunWriter::create(directory, &manifest(), &0u64.to_le_bytes()).unwrap();
+fn whole(directory: &Path, format: FieldFormat) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut writer = RunWriter::create(directory, &manifest(), &0u64.to_le_bytes()).unwrap();
+    writer.field_format(format);
     advance(writer, 0, 0, STEPS).finish(&manifest()).unwrap();
     all_bytes(directory)
 }
 
 #[test]
 fn killed_anywhere_ends_in_the_same_bytes() {
+    killed_anywhere(FieldFormat::Vtu);
+}
+
+#[test]
+fn killed_anywhere_with_fields_in_one_file_ends_in_the_same_bytes() {
+    killed_anywhere(FieldFormat::VtkHdf);
+}
+
+fn killed_anywhere(format: FieldFormat) {
     let scratch = tempfile::tempdir().unwrap();
-    let expected = whole(&scratch.path().join("whole"));
+    let expected = whole(&scratch.path().join("whole"), format);
     for kill in 0..STEPS {
         for generation in [None, Some(0), Some(1)] {
             let directory = scratch.path().join(format!("killed-{kill}-{generation:?}"));
-            let writer = RunWriter::create(&directory, &manifest(), &0u64.to_le_bytes()).unwrap();
+            let mut writer = RunWriter::create(&directory, &manifest(), &0u64.to_le_bytes()).unwrap();
+            writer.field_format(format);
             drop(advance(writer, 0, 0, kill));
+            // What is on record can be read at once, every instant of it.
+            let run = Run::open(&directory).unwrap();
+            assert_eq!(run.fields.len() as u64, kill / 5 + 1);
+            run.fields.iter().for_each(|e| assert_eq!(run.field(e).unwrap(), fields(e.step)));
             // A kill leaves torn lines and half-written files behind.
             let path = directory.join("history.csv");
             let torn = [fs::read(&path).unwrap(), b"17,0.3".to_vec()].concat();
             fs::write(&path, torn).unwrap();
-            fs::create_dir_all(directory.join("fields")).unwrap();
-            fs::write(directory.join("fields/.00000099.vtu.partial"), "x").unwrap();
-            let reopened = match generation {
+            match format {
+                FieldFormat::Vtu => fs::write(directory.join("fields/.00000099.vtu.partial"), "x").unwrap(),
+                FieldFormat::VtkHdf => fs::write(directory.join(".fields.vtkhdf.partial"), "x").unwrap(),
+            }
+            let mut reopened = match generation {
                 None => RunWriter::reopen(&directory).unwrap(),
                 Some(generation) => RunWriter::reopen_at(&directory, generation).unwrap(),
             };
             assert!(reopened.fallback.is_none());
             assert_eq!(reopened.payload, reopened.step.to_le_bytes());
             assert!(reopened.step <= kill && (generation.is_some() || reopened.step + 6 > kill));
+            reopened.writer.field_format(format);
             let writer = advance(reopened.writer, reopened.step, reopened.rows, STEPS);
             writer.finish(&manifest()).unwrap();
             let mut got = all_bytes(&directory);
@@ -131,7 +155,7 @@ fn killed_anywhere_ends_in_the_same_bytes() {
 fn a_damaged_checkpoint_falls_back_to_the_one_before() {
     let scratch = tempfile::tempdir().unwrap();
     let directory = scratch.path().join("run");
-    let expected = whole(&directory);
+    let expected = whole(&directory, FieldFormat::Vtu);
     // 36 is the newest step; find its file and bend one byte.
     let newest = RunWriter::reopen(&directory).unwrap();
     assert_eq!(newest.step, 36);

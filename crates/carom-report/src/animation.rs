@@ -184,7 +184,7 @@ pub(crate) fn html_of(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let frame_of = |(entry, _): &(FieldEntry, Instant)| {
         let list: Vec<f64> = forces.get(&entry.step).into_iter().flatten().flatten().copied().collect();
         let rounded: Vec<f64> = list.iter().map(|x| format!("{x:.5e}").parse().unwrap_or(0.0)).collect();
-        json!({ "time": entry.time, "step": entry.step, "file": entry.file(), "forces": rounded })
+        json!({ "time": entry.time, "step": entry.step, "file": run.field_file(entry), "forces": rounded })
     };
     let numbers: Vec<u8> = cells.iter().flat_map(|(_, n)| n.iter().flat_map(|k| (*k as u32).to_le_bytes())).collect();
     let data = json!({
@@ -213,9 +213,9 @@ pub(crate) fn html_of(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         String::new()
     };
     let every = if entries.len() < run.fields.len() {
-        format!("{} of the {} field files", entries.len(), run.fields.len())
+        format!("{} of the {} instants on record", entries.len(), run.fields.len())
     } else {
-        format!("all {} field files", entries.len())
+        format!("all {} instants on record", entries.len())
     };
     let mut out = String::new();
     let _ = write!(

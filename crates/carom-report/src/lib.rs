@@ -8,6 +8,7 @@ mod axis;
 mod bands;
 mod bodies;
 mod chart;
+mod convergence;
 mod figures;
 mod labels;
 mod page;
@@ -18,6 +19,7 @@ mod study;
 mod study_page;
 mod symbols;
 mod text;
+mod verify_page;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -26,6 +28,7 @@ use carom_record::{RecordError, Run};
 
 pub use figures::Figure;
 pub use study::study;
+pub use verify_page::{verify, verify_markdown};
 
 /// What a report consists of.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use carom_record::{Run, Status, metrics};
+use carom_record::{FieldFormat, Run, Status, metrics};
 
 use crate::figures::Figure;
 use crate::labels::number;
@@ -141,7 +141,7 @@ fn expectations(out: &mut String, run: &Run) {
             out,
             "<tr><td><code>{}</code></td><td>{}</td><td class=\"n\">{}</td><td class=\"{class}\">{word}</td><td>{}</td></tr>",
             escape(&e.what),
-            escape(&e.expected),
+            escape(&e.expected).replace('-', "−"),
             e.got.map_or("–".into(), number),
             escape(e.source.as_deref().unwrap_or_default())
         );
@@ -210,7 +210,7 @@ fn reproduce(out: &mut String, run: &Run) {
     out.push_str("<p>Beside this page: ");
     let mut files = vec!["manifest.json", "history.csv", "contact.csv", "log.jsonl"];
     if !run.fields.is_empty() {
-        files.push("fields.pvd");
+        files.push(if run.field_format == FieldFormat::Vtu { "fields.pvd" } else { "fields.vtkhdf" });
     }
     let links: Vec<String> = files.iter().map(|f| format!("<a href=\"{f}\">{f}</a>")).collect();
     let _ = writeln!(out, "{}.</p>", links.join(", "));

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use carom_record::Status;
 use carom_record::study::{Study, Verdict};
 
+use crate::convergence;
 use crate::study::{Figure, style};
 use crate::text::{escape, html};
 
@@ -33,6 +34,7 @@ pub(crate) fn page(study: &Study, figures: &[Figure]) -> String {
     let _ = writeln!(out, "<p><span class=\"status {class}\">{word}</span></p>");
     arms(&mut out, study);
     claims(&mut out, &study.verdicts);
+    expectations(&mut out, study);
     out.push_str("<h2>Figures</h2>\n");
     for (i, figure) in figures.iter().enumerate() {
         let (caption, name) = (html(&figure.caption), escape(&figure.name));
@@ -45,6 +47,7 @@ pub(crate) fn page(study: &Study, figures: &[Figure]) -> String {
         );
     }
     metrics(&mut out, study);
+    convergence::show(&mut out, study);
     reproduce(&mut out, study);
     out.push_str("</body>\n</html>\n");
     out
@@ -115,6 +118,30 @@ fn claims(out: &mut String, verdicts: &[Verdict]) {
     out.push_str("</table>\n");
 }
 
+fn expectations(out: &mut String, study: &Study) {
+    let arms = study.rows.iter().flat_map(|row| row.expectations.iter().map(move |e| (row.name.as_str(), e)));
+    let all: Vec<_> = arms.chain(study.expectations.iter().map(|e| ("", e))).collect();
+    if all.is_empty() {
+        return;
+    }
+    out.push_str("<h2>Expectations</h2>\n<table>\n<thead><tr><th>What</th><th>Arm</th><th>Expected</th><th class=\"n\">Got</th><th></th><th>Source</th></tr></thead>\n");
+    for (arm, e) in all {
+        let (class, word) = if e.pass { ("pass", "met") } else { ("miss", "missed") };
+        let why =
+            e.why.as_ref().map_or_else(String::new, |w| format!("<br><span class=\"small\">{}</span>", escape(w)));
+        let _ = writeln!(
+            out,
+            "<tr><td><code>{}</code>{why}</td><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"{class}\">{word}</td><td>{}</td></tr>",
+            escape(&e.what),
+            escape(arm),
+            escape(&e.expected),
+            e.got.map_or("–".into(), number),
+            escape(e.source.as_deref().unwrap_or_default())
+        );
+    }
+    out.push_str("</table>\n");
+}
+
 fn metrics(out: &mut String, study: &Study) {
     out.push_str("<h2>Metrics</h2>\n");
     let all = study.metrics();
@@ -168,4 +195,8 @@ fn reproduce(out: &mut String, study: &Study) {
         escape(&m.source.study),
         escape(&m.source.case)
     );
+    for (path, text) in &m.source.others {
+        let (path, text) = (escape(path), escape(text));
+        let _ = writeln!(out, "<details><summary>The case file {path}</summary>\n<pre>{text}</pre></details>");
+    }
 }

@@ -57,6 +57,9 @@ pub trait Body<const D: usize>: Send + Sync {
     /// Nodal volumes of a cell (`N`): ∫φᵃ dΩ₀, what a unit body force per volume gives.
     fn cell_volumes(&self, cell: usize, volumes: &mut [f64]);
 
+    /// Visits the quadrature points of a cell for volume integrals: shape functions (`N`), reference position, reference volume (× thickness).
+    fn each_volume_point(&self, cell: usize, visit: &mut dyn FnMut(&[f64], &[f64; D], f64));
+
     /// Smallest J over the quadrature points of a cell.
     fn cell_min_det_f(&self, cell: usize, y: &[[f64; D]]) -> f64;
 

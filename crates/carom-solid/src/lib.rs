@@ -5,6 +5,7 @@ mod discrete_gradient;
 mod factory;
 pub mod generate;
 pub mod gmsh;
+mod loaded_side;
 mod lumping;
 pub mod material;
 mod mesh;
@@ -15,6 +16,7 @@ mod solid;
 
 pub use body::{Body, Inverted, PointState};
 pub use factory::{Cells, body, plane_stress_body};
+pub use loaded_side::{LoadedSide, MAX_FACET_NODES};
 pub use lumping::cell_lumped_mass;
 pub use material::Law;
 pub use mesh::{Element, Facet, Mesh};

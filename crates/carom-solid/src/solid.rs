@@ -285,6 +285,17 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
         });
     }
 
+    fn each_volume_point(&self, cell: usize, visit: &mut dyn FnMut(&[f64], &[f64; D], f64)) {
+        let x = self.reference(cell);
+        self.each_mass_point(cell, |values, volume| {
+            let mut position = Vector::<D>::ZERO;
+            for a in 0..N {
+                position += x[a] * values[a];
+            }
+            visit(values, &position.0, volume);
+        });
+    }
+
     fn cell_min_det_f(&self, cell: usize, y: &[[f64; D]]) -> f64 {
         let u = self.displacements(cell, y);
         let points = &self.gradients[self.start[cell]..self.start[cell + 1]];

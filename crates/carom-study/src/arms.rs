@@ -12,6 +12,10 @@ pub(crate) struct Draft {
     pub(crate) path: String,
     /// `key=value`, and its path.
     pub(crate) sets: Vec<(String, String)>,
+    /// The case file it names.
+    pub(crate) case: Option<String>,
+    /// Its expectations instead of the case's, as the override that puts them there, and their path.
+    pub(crate) expect: (String, String),
 }
 
 /// All arms in their order. The last key of the grid varies fastest.
@@ -20,7 +24,14 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
     for (i, arm) in file.arms.iter().enumerate() {
         let path = format!("arm[{i}]");
         let sets = arm.set.iter().map(|(key, value)| (assignment(key, value), format!("{path}.set.\"{key}\"")));
-        drafts.push(Draft { name: arm.name.clone(), sets: sets.collect(), path });
+        let expect = format!("expect={}", arm.expect.as_deref().unwrap_or("[]"));
+        drafts.push(Draft {
+            name: arm.name.clone(),
+            sets: sets.collect(),
+            case: arm.case.clone(),
+            expect: (expect, format!("{path}.expect")),
+            path,
+        });
     }
     let combinations: usize = if file.grid.is_empty() { 0 } else { file.grid.iter().map(|(_, v)| v.len()).product() };
     for combination in 0..combinations {
@@ -35,7 +46,13 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
         }
         sets.reverse();
         name.reverse();
-        drafts.push(Draft { name: name.join(", "), path: "grid".into(), sets });
+        drafts.push(Draft {
+            name: name.join(", "),
+            path: "grid".into(),
+            sets,
+            case: None,
+            expect: ("expect=[]".into(), "grid".into()),
+        });
     }
     drafts
 }
@@ -83,7 +100,7 @@ pub(crate) fn placed(study: &Document, draft: &Draft, found: &Diagnostic, base: 
     if base.contains(found) {
         return found.clone();
     }
-    let set = draft.sets.iter().find(|(set, _)| found.file == "--set" && found.quoted == *set);
+    let set = draft.sets.iter().chain([&draft.expect]).find(|(set, _)| found.file == "--set" && found.quoted == *set);
     let path = set.map_or(&draft.path, |(_, path)| path);
     let place = match found.line {
         line if line > 0 && found.file != "--set" => format!(" ({}:{line}:{})", found.file, found.column),

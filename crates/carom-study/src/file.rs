@@ -1,21 +1,27 @@
 //! The study file as written: its keys, their types, and where each of them stands. A path names a place as in
 //! [`carom::case::Problem`]: `arm[0].set."time.step"`.
 
-use carom::case::{Document, Problem};
+use carom::case::{Asked, Document, Problem, read_expects};
+use carom_record::Expect;
 use toml_edit::{Item, TableLike, Value};
 
-const KEYS: [&str; 6] = ["title", "case", "reference", "arm", "grid", "claim"];
+pub(crate) const KEYS: [&str; 7] = ["title", "case", "reference", "arm", "grid", "claim", "expect"];
+pub(crate) const ARM: [&str; 4] = ["name", "case", "set", "expect"];
+pub(crate) const CLAIM: [&str; 2] = ["text", "compare"];
 
 /// A study file, read; what could not be read is a problem.
 #[derive(Default)]
 pub(crate) struct StudyFile {
     pub(crate) title: Option<String>,
-    pub(crate) case: String,
+    /// Case of the arms that name none.
+    pub(crate) case: Option<String>,
     pub(crate) reference: Option<String>,
     pub(crate) arms: Vec<ArmEntry>,
     /// Keys with their values.
     pub(crate) grid: Vec<(String, Vec<Value>)>,
     pub(crate) claims: Vec<carom_record::study::Claim>,
+    /// What is expected of the arms together.
+    pub(crate) expects: Vec<Expect>,
 }
 
 /// An `[[arm]]`.
@@ -23,6 +29,10 @@ pub(crate) struct ArmEntry {
     pub(crate) name: String,
     /// Keys with their values.
     pub(crate) set: Vec<(String, Value)>,
+    /// The case file it names instead of the study's.
+    pub(crate) case: Option<String>,
+    /// What is expected of its record, as written.
+    pub(crate) expect: Option<String>,
 }
 
 /// Reads the keys of a study file.
@@ -34,9 +44,11 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
     known(root, &KEYS, "a study", "", problems);
     file.title = text(root, "title", "", problems);
     file.reference = text(root, "reference", "", problems);
+    let arms = tables(root, "arm", problems);
+    let named = !arms.is_empty() && !root.contains_key("grid") && arms.iter().all(|arm| arm.contains_key("case"));
     match text(root, "case", "", problems) {
-        Some(case) => file.case = case,
-        None if root.contains_key("case") => {}
+        Some(case) => file.case = Some(case),
+        None if root.contains_key("case") || named => {}
         None => problems.push(Problem::new(
             "",
             "the study has no `case`",
@@ -44,9 +56,9 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
             "add `case = \"impact.toml\"`, relative to this file",
         )),
     }
-    for (i, table) in tables(root, "arm", problems).into_iter().enumerate() {
+    for (i, table) in arms.into_iter().enumerate() {
         let path = format!("arm[{i}]");
-        known(table, &["name", "set"], "[[arm]]", &path, problems);
+        known(table, &ARM, "[[arm]]", &path, problems);
         let mut set = Vec::new();
         match table.get("set").and_then(Item::as_table_like) {
             Some(values) => flatten(values, "", &mut set),
@@ -55,8 +67,10 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
             }
             None => {}
         }
+        let expect = expected(document, table, &format!("{path}.expect"), problems);
+        let case = text(table, "case", &path, problems);
         match text(table, "name", &path, problems) {
-            Some(name) => file.arms.push(ArmEntry { name, set }),
+            Some(name) => file.arms.push(ArmEntry { name, set, case, expect }),
             None if table.contains_key("name") => {}
             None => problems.push(
                 Problem::new(
@@ -87,9 +101,11 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
         Some(None) => problems.push(not("grid", "a table", "[grid]")),
         None => {}
     }
+    tables(root, "expect", problems);
+    file.expects = read_expects(document, "expect", Asked::OfArms, problems);
     for (i, table) in tables(root, "claim", problems).into_iter().enumerate() {
         let path = format!("claim[{i}]");
-        known(table, &["text", "compare"], "[[claim]]", &path, problems);
+        known(table, &CLAIM, "[[claim]]", &path, problems);
         let (words, compare) = (text(table, "text", &path, problems), text(table, "compare", &path, problems));
         match (words, compare) {
             (Some(text), Some(compare)) => file.claims.push(carom_record::study::Claim { text, compare }),
@@ -102,6 +118,25 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
         }
     }
     file
+}
+
+/// Expectations of an arm: checked where they stand, and as the text that replaces those of its case.
+fn expected(document: &Document, table: &dyn TableLike, path: &str, problems: &mut Vec<Problem>) -> Option<String> {
+    let item = table.get("expect")?;
+    read_expects(document, path, Asked::OfARun, problems);
+    let text = match item {
+        Item::Value(Value::Array(list)) => list.to_string(),
+        Item::ArrayOfTables(list) => Value::Array(list.clone().into_array()).to_string(),
+        _ => {
+            problems.push(not(
+                path,
+                "a list of tables",
+                "expect = [{ what = \"last A.uy\", value = 1.0, tolerance = 1e-3 }]",
+            ));
+            return None;
+        }
+    };
+    Some(text.lines().map(str::trim).collect::<Vec<_>>().join(" "))
 }
 
 /// Dotted keys are tables to TOML and one key here.
@@ -121,6 +156,9 @@ fn tables<'a>(root: &'a dyn TableLike, key: &str, problems: &mut Vec<Problem>) -
     match root.get(key) {
         None => Vec::new(),
         Some(Item::ArrayOfTables(list)) => list.iter().map(|t| t as &dyn TableLike).collect(),
+        Some(Item::Value(Value::Array(list))) if list.iter().all(Value::is_inline_table) => {
+            list.iter().filter_map(Value::as_inline_table).map(|t| t as &dyn TableLike).collect()
+        }
         Some(_) => {
             problems.push(not(key, "a list of tables", &format!("[[{key}]]")));
             Vec::new()

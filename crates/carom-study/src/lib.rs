@@ -5,9 +5,16 @@
 //! records alone: [`carom_record::study`].
 
 mod arms;
+mod expects;
 mod file;
 mod plan;
 mod run;
+mod schema;
+mod suite;
+mod verify;
 
 pub use plan::{Plan, PlannedArm};
 pub use run::{Ended, Event, Outcome, StudyError, go_on, start};
+pub use schema::schema;
+pub use suite::{Item, Kind, Suite};
+pub use verify::{Named, VerifyOptions};

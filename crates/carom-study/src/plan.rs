@@ -1,6 +1,7 @@
 //! A study read and checked: every arm's case is resolved and its model built before anything is written.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use carom::Simulation;
 use carom::case::{Case, CaseError, Diagnostic, Document, Problem, read};
@@ -8,7 +9,7 @@ use carom_record::study::{Arm, Comparison, StudyManifest, StudySource};
 use carom_record::{Machine, Source, Status, now};
 
 use crate::arms::{self, Draft};
-use crate::file;
+use crate::{expects, file};
 
 /// A study that can be started.
 #[derive(Clone, Debug)]
@@ -45,30 +46,30 @@ impl Plan {
         if !problems.is_empty() {
             return Err(study.diagnose_all(&problems));
         }
-        let case_path = path.parent().unwrap_or(Path::new("")).join(&file.case);
-        let case = Document::open(&case_path, &[]).map_err(|error| match error {
-            CaseError::Wrong(found) if !case_path.is_file() => {
-                let what = format!("the case `{}` cannot be read: {}", file.case, found[0].what);
-                study.diagnose_all(&[Problem::new(
-                    "case",
-                    what,
-                    "the path is relative to the study file",
-                    "correct the path",
-                )])
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut cases: BTreeMap<String, Base> = BTreeMap::new();
+        let named = drafts.iter().map(|d| (d.case.as_ref(), format!("{}.case", d.path)));
+        for (name, place) in std::iter::once((file.case.as_ref(), "case".to_owned())).chain(named) {
+            if let Some(name) = name.filter(|name| !cases.contains_key(*name)) {
+                cases.insert(name.clone(), Base::read(&study, folder, name, &place)?);
             }
-            error => error,
-        })?;
-        let base = resolved(&case_path, &[]).err().map_or_else(|| Ok(Vec::new()), diagnostics)?;
-
+        }
         let mut found: Vec<Diagnostic> = Vec::new();
         let mut planned = Vec::new();
         for draft in &drafts {
-            let sets: Vec<String> = draft.sets.iter().map(|(set, _)| set.clone()).collect();
-            match resolved(&case_path, &sets) {
-                Ok(case) => planned.push((draft, sets, case)),
+            let Some(base) = draft.case.as_ref().or(file.case.as_ref()).and_then(|name| cases.get(name)) else {
+                continue;
+            };
+            let mut sets: Vec<String> = draft.sets.iter().map(|(set, _)| set.clone()).collect();
+            sets.push(draft.expect.0.clone());
+            match resolved(&base.path, &sets) {
+                Ok(case) => {
+                    sets.pop();
+                    planned.push((draft, sets, case, base));
+                }
                 Err(error) => {
                     for diagnostic in diagnostics(error)? {
-                        let placed = arms::placed(&study, draft, &diagnostic, &base);
+                        let placed = arms::placed(&study, draft, &diagnostic, &base.diagnostics);
                         if !found.contains(&placed) {
                             found.push(placed);
                         }
@@ -76,18 +77,35 @@ impl Plan {
                 }
             }
         }
+        let known: Vec<(&str, &Case)> = planned.iter().map(|(d, _, case, _)| (d.name.as_str(), case)).collect();
+        let mut problems = Vec::new();
+        expects::check(&file.expects, &known, &mut problems);
+        if let Err(CaseError::Wrong(more)) =
+            if problems.is_empty() { Ok(()) } else { Err(study.diagnose_all(&problems)) }
+        {
+            found.extend(more);
+        }
         if !found.is_empty() {
             return Err(CaseError::Wrong(found));
         }
         let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        let sources =
-            StudySource { study: study.text().to_owned(), case_path: file.case.clone(), case: case.text().to_owned() };
-        let hash = Source { text: sources.study.clone(), sets: vec![sources.case.clone()] }.hash();
-        let arm = |(i, (draft, sets, case)): (usize, &(&Draft, Vec<String>, Case))| Arm {
+        let texts = |name: &String| cases.get(name).map(|base| base.text.clone()).unwrap_or_default();
+        let main = file.case.clone().unwrap_or_default();
+        let others = cases.keys().filter(|name| **name != main).map(|name| (name.clone(), texts(name)));
+        let sources = StudySource {
+            study: study.text().to_owned(),
+            case: texts(&main),
+            others: others.collect(),
+            case_path: main,
+        };
+        let texts = std::iter::once(sources.case.clone()).chain(sources.others.values().cloned());
+        let hash = Source { text: sources.study.clone(), sets: texts.collect() }.hash();
+        let arm = |(i, (draft, sets, case, _)): (usize, &(&Draft, Vec<String>, Case, &Base))| Arm {
             name: draft.name.clone(),
             directory: format!("arms/{:02}-{}", i + 1, arms::slug(&draft.name)),
             sets: sets.clone(),
             steps: case.time.steps() as u64,
+            case_path: draft.case.clone(),
             case: serde_json::to_value(case).unwrap_or_default(),
         };
         let manifest = StudyManifest {
@@ -100,11 +118,39 @@ impl Plan {
             reference: file.reference,
             arms: planned.iter().enumerate().map(arm).collect(),
             claims: file.claims,
+            expects: file.expects,
             source: sources,
         };
-        let text = case.text();
-        let arm = |(_, sets, case)| PlannedArm { case, source: Source { text: text.to_owned(), sets } };
+        let arm = |(_, sets, case, base): (&Draft, Vec<String>, Case, &Base)| PlannedArm {
+            case,
+            source: Source { text: base.text.clone(), sets },
+        };
         Ok(Self { manifest, arms: planned.into_iter().map(arm).collect() })
+    }
+}
+
+/// A case file arms start from.
+struct Base {
+    path: PathBuf,
+    text: String,
+    /// What is wrong with it without any arm.
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Base {
+    /// Reads the case file `name`, told at `place` of the study.
+    fn read(study: &Document, folder: &Path, name: &str, place: &str) -> Result<Self, CaseError> {
+        let path = folder.join(name);
+        let document = Document::open(&path, &[]).map_err(|error| match error {
+            CaseError::Wrong(found) if !path.is_file() => {
+                let what = format!("the case `{name}` cannot be read: {}", found[0].what);
+                let why = "the path is relative to the study file";
+                study.diagnose_all(&[Problem::new(place, what, why, "correct the path")])
+            }
+            error => error,
+        })?;
+        let diagnostics = resolved(&path, &[]).err().map_or_else(|| Ok(Vec::new()), diagnostics)?;
+        Ok(Self { text: document.text().to_owned(), path, diagnostics })
     }
 }
 
@@ -154,7 +200,7 @@ fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) 
 }
 
 /// A case with changes, its model built once to see what only the model shows.
-fn resolved(path: &Path, sets: &[String]) -> Result<Case, CaseError> {
+pub(crate) fn resolved(path: &Path, sets: &[String]) -> Result<Case, CaseError> {
     let document = Document::open(path, sets)?;
     let case = read(&document).map_err(|problems| document.diagnose_all(&problems))?;
     let built = match case.dimension {

@@ -1,7 +1,7 @@
 //! The arms of a study computed: as many at a time as there are jobs, the longest first, each in its own run directory. An arm that
 //! fails is a row of the tables; Ctrl-C or a kill leaves every arm resumable.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, mpsc};
@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError, mpsc};
 use carom::case::Case;
 use carom::recording::{self, End, Options, Progress, RunError};
 use carom_record::study::{Study, StudyManifest};
-use carom_record::{RecordError, Source, Status};
+use carom_record::{RecordError, Status};
 
 use crate::Plan;
 
@@ -120,15 +120,38 @@ pub fn go_on(
         }
     }
     waiting.sort_by_key(|(i, _)| std::cmp::Reverse(manifest.arms[*i].steps));
-    let queue = Mutex::new(VecDeque::from(waiting));
+    let begun: BTreeMap<usize, bool> = waiting.iter().copied().collect();
+    let order = waiting.into_iter().map(|(i, _)| i).collect();
+    let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
+        compute(&manifest, directory, i, begun.get(&i) == Some(&true), progress, stop)
+    };
+    side_by_side(order, jobs, &one, observe, stop)?;
+    let study = Study::open(directory, &mut |_, _| ())?;
+    let ended = |row: &carom_record::study::Row| matches!(row.status, Some(Status::Finished | Status::Failed));
+    let interrupted = !study.rows.iter().all(ended);
+    manifest.status = if interrupted { Status::Stopped } else { Status::Finished };
+    manifest.write(directory)?;
+    study.write_tables()?;
+    Ok(Outcome { interrupted, study: Study { manifest, ..study } })
+}
+
+/// Computes numbered runs, as many at a time as there are jobs, begun in the order given; stops at the first error.
+pub(crate) fn side_by_side<E: Send>(
+    order: VecDeque<usize>,
+    jobs: usize,
+    one: &(dyn Fn(usize, &mut dyn FnMut(&Progress)) -> Result<Ended, E> + Sync),
+    observe: &mut dyn FnMut(&Event),
+    stop: &AtomicBool,
+) -> Result<(), E> {
+    let queue = Mutex::new(order);
     let failure = Mutex::new(None);
     let halted = AtomicBool::new(false);
     let work = |send: &mpsc::Sender<Event>| {
         while !stop.load(Ordering::Relaxed) && !halted.load(Ordering::Relaxed) {
-            let Some((i, begun)) = locked(&queue).pop_front() else { return };
-            // A listener that has gone must not stop the arms.
+            let Some(i) = locked(&queue).pop_front() else { return };
+            // A listener that has gone must not stop the runs.
             let _ = send.send(Event::Began(i));
-            match compute(&manifest, directory, i, begun, &mut |p| drop(send.send(Event::Progress(i, *p))), stop) {
+            match one(i, &mut |p| drop(send.send(Event::Progress(i, *p)))) {
                 Ok(ended) => drop(send.send(Event::Ended(i, ended))),
                 Err(error) => {
                     halted.store(true, Ordering::Relaxed);
@@ -146,16 +169,7 @@ pub fn go_on(
         drop(send);
         events.iter().for_each(|event| observe(&event));
     });
-    if let Some(error) = failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
-        return Err(error);
-    }
-    let study = Study::open(directory, &mut |_, _| ())?;
-    let ended = |row: &carom_record::study::Row| matches!(row.status, Some(Status::Finished | Status::Failed));
-    let interrupted = !study.rows.iter().all(ended);
-    manifest.status = if interrupted { Status::Stopped } else { Status::Finished };
-    manifest.write(directory)?;
-    study.write_tables()?;
-    Ok(Outcome { interrupted, study: Study { manifest, ..study } })
+    failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
 }
 
 fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
@@ -179,14 +193,19 @@ fn compute(
     } else {
         let case: Case = serde_json::from_value(arm.case.clone())
             .map_err(|e| StudyError::Incompatible { arm: arm.name.clone(), what: e.to_string() })?;
-        let source = Source { text: manifest.source.case.clone(), sets: arm.sets.clone() };
+        let source = manifest.source_of(arm);
         recording::run(&case, source, &path, options, observe, stop)
     };
-    let outcome = done.map_err(|source| StudyError::Arm { arm: arm.name.clone(), source })?;
-    let (status, reason) = match outcome.end {
-        End::Finished => (Status::Finished, None),
-        End::Interrupted => (Status::Stopped, None),
-        End::Stopped(stopped) => (Status::Failed, Some(stopped.to_string())),
-    };
-    Ok(Ended { status, reason, wall: outcome.wall })
+    done.map(Ended::of).map_err(|source| StudyError::Arm { arm: arm.name.clone(), source })
+}
+
+impl Ended {
+    pub(crate) fn of(outcome: recording::Outcome) -> Self {
+        let (status, reason) = match outcome.end {
+            End::Finished => (Status::Finished, None),
+            End::Interrupted => (Status::Stopped, None),
+            End::Stopped(stopped) => (Status::Failed, Some(stopped.to_string())),
+        };
+        Self { status, reason, wall: outcome.wall }
+    }
 }

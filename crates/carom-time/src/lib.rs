@@ -17,6 +17,7 @@ mod oscillator;
 mod polynomial;
 mod scheme;
 mod stage;
+mod statics;
 mod text;
 
 pub use analysis::Principal;
@@ -33,4 +34,5 @@ pub use names::{Elsewhere, Name};
 pub use oscillator::{Motion, Oscillator};
 pub use scheme::{ForceRule, Scheme};
 pub use stage::{Affine, Before, Internal, Kernel, Memory, Stage, Weights};
+pub use statics::{STATIC, Static};
 pub use text::{Catalogue, CatalogueRow, explain_all};

@@ -76,6 +76,13 @@ pub struct Stage {
     pub mean: [f64; 3],
 }
 
+impl Stage {
+    /// Whether the balance has no inertia: velocities and accelerations are then zero, and time only parametrises the loads.
+    pub fn is_static(&self) -> bool {
+        self.weights.mass == 0.0
+    }
+}
+
 /// What is known when a stage begins: the step's start, then the ends of the stages before.
 #[derive(Clone, Copy, Debug)]
 pub struct Memory<'a> {

@@ -7,6 +7,11 @@
 //!
 //! with y = y_s + d, a(d) and the weights w (now), b (before) from the stage. The unknown is the increment d: formed from rounded positions, the
 //! acceleration would carry their last digit divided by Δt². A dof without mass has no inertia to average with: its balance holds at s + 1 alone.
+//! f_ext is gravity and the loads at the same time (and, of pressures, positions) as f_int. The residual of a held dof is what its support must
+//! exert.
+//!
+//! At dofs that move as a formula says, the acceleration ü is known, and M ü acts on the neighbours like an external force, averaged with α_f. The scheme's
+//! own a is another quantity, late by (α_f − α_m)Δt (Erlicher, Bonaventura, Bursi 2002): ü averaged with α_m in its place costs an order.
 
 use carom_time::{Stage, Weights};
 
@@ -21,6 +26,8 @@ pub(crate) struct Forces {
     pub inertia: Vec<f64>,
     /// f_int.
     pub internal: Vec<f64>,
+    /// f_ext without gravity.
+    pub loads: Vec<f64>,
     /// Σ w.contact Gᵀλ, weighted per contact.
     pub contact: Vec<f64>,
     /// The lower line of the balance: what is known from the step's start.
@@ -35,6 +42,12 @@ pub(crate) fn contact_weights(stage: &Stage, force: ForceTime) -> (f64, f64) {
     }
 }
 
+/// Mean over the step of the known acceleration of a moved dof: the weights are those of external forces.
+pub(crate) fn mean_acceleration(stage: &Stage, now: f64, before: f64) -> f64 {
+    let (weight, known) = (stage.weights.external, stage.before.external);
+    weight * (1.0 - stage.average) * now + (known + weight * stage.average) * before
+}
+
 /// Fills `forces.known` from the state at the step's start.
 pub(crate) fn known_into<const D: usize>(model: &Model<D>, stage: &Stage, state: &State, forces: &mut Forces) {
     let Weights { mass, internal, external, contact } = stage.before;
@@ -44,7 +57,7 @@ pub(crate) fn known_into<const D: usize>(model: &Model<D>, stage: &Stage, state:
             0.0
         } else {
             mass * forces.known[i] + internal * state.f_internal[i] + contact * state.f_contact[i]
-                - external * model.gravity[i]
+                - external * (model.gravity[i] + state.f_external[i])
         };
     }
 }
@@ -63,7 +76,7 @@ pub(crate) fn residual_into<const D: usize>(
             mass * forces.inertia[i],
             internal * forces.internal[i],
             forces.contact[i],
-            -external * model.gravity[i],
+            -external * (model.gravity[i] + forces.loads[i]),
             forces.known[i],
         ];
         residual[i] = terms.iter().sum();

@@ -3,6 +3,7 @@
 mod balance;
 pub mod case;
 mod cells;
+mod initial;
 mod ledger;
 pub mod model;
 mod newton;
@@ -13,13 +14,13 @@ mod rejected;
 mod rows;
 mod scheme;
 mod simulation;
+mod start;
 mod state;
 mod stepper;
 mod system;
 
 pub use newton::{Timings, Workspace};
-pub use persistency::start;
 pub use rejected::Rejected;
 pub use simulation::{GridReport, LogEvent, Simulation, Stopped};
-pub use state::{Ledger, Previous, State};
+pub use state::{Ledger, Means, Previous, State};
 pub use stepper::{Accepted, Implicit, StepReport, Stepper};

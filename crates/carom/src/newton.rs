@@ -7,17 +7,19 @@ use carom_algebra::LinearError;
 use carom_contact::{ActiveSet, Contender, Linearised, Pair, PairEvent};
 use carom_time::{Internal, Stage};
 
-use crate::balance::{Forces, contact_weights, residual_into};
+use crate::balance::{Forces, contact_weights, mean_acceleration, residual_into};
 use crate::case::NewtonSpec;
-use crate::model::Model;
+use crate::model::{LoadsAt, Model, Prescribed};
 use crate::penalty::{self, Configuration};
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
-use crate::state::State;
+use crate::state::{Means, State};
 use crate::system::{Row, System};
 
 /// Penetration, as a fraction of L, that counts as touching.
 pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
+/// Gap, as a fraction of L, of nodes that touch before the first load step.
+const TOUCHING: f64 = 1e-9;
 /// Below this step, relative to L, the next iterate may well be the last: its tangent is not formed before it is needed.
 const NEARLY_THERE: f64 = 1e-3;
 /// Halvings of a Newton step that inverts a cell or makes the residual much worse.
@@ -61,11 +63,20 @@ pub struct Workspace<const D: usize> {
     pub(crate) springs: f64,
     /// The stage being solved.
     pub(crate) stage: Stage,
-    /// Mean contact force over the step, as far as its stages are solved.
-    pub(crate) mean: Vec<f64>,
+    /// Means over the step, as far as its stages are solved.
+    pub(crate) means: Means,
     /// Wall time by phase.
     pub timings: Timings,
-    residual: Vec<f64>,
+    /// r of the last evaluation over all dofs: at held ones, the force of their support.
+    pub(crate) residual: Vec<f64>,
+    /// Loads at the stage's time.
+    pub(crate) loads: LoadsAt,
+    /// Moved dofs at the stage's end.
+    pub(crate) motions: Vec<Prescribed>,
+    /// What moved dofs still have to go; zero elsewhere.
+    remaining: Vec<f64>,
+    /// ∂f_int/∂y · remaining.
+    pull: Vec<f64>,
     at: Vec<f64>,
     correction: Vec<f64>,
     multipliers: Vec<f64>,
@@ -81,6 +92,7 @@ impl<const D: usize> Workspace<D> {
             forces: Forces {
                 inertia: zeros.clone(),
                 internal: zeros.clone(),
+                loads: zeros.clone(),
                 contact: zeros.clone(),
                 known: zeros.clone(),
             },
@@ -89,9 +101,13 @@ impl<const D: usize> Workspace<D> {
             stiffnesses: vec![Vec::new(); model.contacts.len()],
             springs: 0.0,
             stage: Stage::default(),
-            mean: zeros.clone(),
+            means: Means::new(model.dofs()),
             timings: Timings::default(),
             residual: zeros.clone(),
+            loads: LoadsAt::default(),
+            motions: Vec::new(),
+            remaining: zeros.clone(),
+            pull: zeros.clone(),
             at: zeros.clone(),
             correction: zeros,
             multipliers: Vec::new(),
@@ -143,6 +159,9 @@ pub(crate) fn solve_stage<const D: usize>(
         model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect();
     timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
     let mut measure = evaluate(model, state, trial, work, true)?;
+    if work.stage.is_static() && touch(model, trial, work) {
+        measure = evaluate(model, state, trial, work, false)?;
+    }
     let mut has_tangent = true;
     let mut step = f64::INFINITY;
     loop {
@@ -213,23 +232,39 @@ fn evaluate<const D: usize>(
         trial.y[i] = state.y[i] + trial.increment[i];
         work.at[i] = state.y[i] + share * trial.increment[i];
     }
+    for moved in &work.motions {
+        let target = model.reference[moved.dof] + moved.motion[0];
+        work.remaining[moved.dof] = (target - state.y[moved.dof]) - trial.increment[moved.dof];
+    }
     let inverted = |(body, inverted)| Rejected::Inverted { body, inverted };
     let (system, at, force) = (&mut work.system, &work.at, &mut work.forces.internal);
+    let pull = (!work.motions.is_empty()).then_some((&work.remaining[..], &mut work.pull[..]));
     trial.strain = timed(&mut work.timings.assembly, || match (tangent, between) {
-        (true, _) => system.internal_tangent(model, between.then_some(&state.y), at, force),
+        (true, _) => system.internal_tangent(model, between.then_some(&state.y), at, force, pull),
         (false, true) => model.internal_between(&state.y, at, force),
         (false, false) => model.internal_force(at, force),
     })
     .map_err(inverted)?;
-    stage.acceleration.value_into(&trial.increment, &mut work.acceleration);
-    model.mass.multiply_into(&work.acceleration, &mut work.forces.inertia);
-
     if between {
-        // Springs that conserve energy act along the normals at the middle of the step.
+        // Springs that conserve energy act along the normals at the middle of the step, and pressures on the side as it lies there.
         for i in 0..trial.y.len() {
             work.at[i] = state.y[i] + 0.5 * trial.increment[i];
         }
     }
+    if !model.loads.is_empty() {
+        model.loads.force_into(&work.loads, &work.at, &mut work.forces.loads);
+    }
+    stage.acceleration.value_into(&trial.increment, &mut work.acceleration);
+    if !stage.is_static() {
+        for moved in &work.motions {
+            // What makes the balance, whose averages are those of the scheme's a, take this mean.
+            let before = state.a[moved.dof];
+            let mean = mean_acceleration(stage, moved.motion[2], before);
+            work.acceleration[moved.dof] = (mean - stage.before.mass * before) / stage.weights.mass;
+        }
+    }
+    model.mass.multiply_into(&work.acceleration, &mut work.forces.inertia);
+
     let y = trial.y.as_chunks::<D>().0;
     work.forces.contact.fill(0.0);
     work.springs = 0.0;
@@ -304,6 +339,26 @@ fn stiffness_factor(stage: &Stage) -> f64 {
     }
 }
 
+fn follower_factor(stage: &Stage) -> f64 {
+    stage.weights.external * (1.0 - stage.average)
+}
+
+/// Before the first load step, lets bodies that supports leave free hold on to what they touch. Whether that is anything.
+fn touch<const D: usize>(model: &Model<D>, trial: &mut Trial, work: &Workspace<D>) -> bool {
+    if model.unheld.is_empty() || trial.pairs.iter().flatten().any(|p| p.active) {
+        return false;
+    }
+    let mut changed = false;
+    // A spring holds nothing before it is pressed.
+    let constraints = model.contacts.iter().map(|contact| contact.penalty.is_none());
+    for ((pairs, gaps), _) in trial.pairs.iter_mut().zip(&work.gaps).zip(constraints).filter(|(_, holds)| *holds) {
+        for (pair, _) in pairs.iter_mut().zip(gaps).filter(|(_, gap)| gap.gap <= TOUCHING * model.scale) {
+            (pair.active, changed) = (true, true);
+        }
+    }
+    changed
+}
+
 /// Lets each contact's active set change; a released pair loses its multiplier.
 fn change_sets<const D: usize>(
     model: &Model<D>,
@@ -371,20 +426,33 @@ fn linear_step<const D: usize>(
         .iter()
         .map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k), compliance: compliance(k, p) })
         .collect();
-    let (mass, stiffness) = (mass_factor(stage), stiffness_factor(stage));
-    let inertia = timed(&mut work.timings.factor, || work.system.factor(model, mass, stiffness, &gaps))?;
+    if stage.is_static() {
+        model.check_held(&work.at, gaps.iter().map(|row| row.gap))?;
+    }
+    let (mass, stiffness, follower) = (mass_factor(stage), stiffness_factor(stage), follower_factor(stage));
+    let inertia = timed(&mut work.timings.factor, || work.system.factor(model, mass, stiffness, follower, &gaps))?;
     if inertia.negative < rows.len() {
         let size = model.free.len() + rows.len();
         return Err(LinearError::Singular { size, pivot: inertia.negative, value: 0.0 }.into());
     }
-    // The multiplier of a spring is that of its gap already.
-    let right: Vec<f64> =
-        rows.iter().map(|&(k, p)| if soft(k) { 0.0 } else { -weight(k) * work.gaps[k][p].gap }).collect();
-    work.residual.iter_mut().for_each(|r| *r = -*r);
+    let remaining = &work.remaining;
+    let approach = |gap: &Linearised<D>| {
+        let moved = |p: usize| (0..D).map(|i| gap.gradient[p][i] * remaining[gap.nodes[p] * D + i]).sum::<f64>();
+        (0..gap.count).map(moved).sum::<f64>()
+    };
+    // The multiplier of a spring is that of its gap already; only what moved supports still bring is missing.
+    let open = |k: usize, p: usize| if soft(k) { 0.0 } else { work.gaps[k][p].gap };
+    let right: Vec<f64> = rows.iter().map(|&(k, p)| -weight(k) * (open(k, p) + approach(&work.gaps[k][p]))).collect();
+    for (r, pull) in work.residual.iter_mut().zip(&work.pull) {
+        *r = -(*r + stiffness * pull);
+    }
     let (system, forces) = (&mut work.system, &work.residual);
     timed(&mut work.timings.solve, || {
         system.solve(model, forces, &right, &mut work.correction, &mut work.multipliers)
     })?;
+    for moved in &work.motions {
+        work.correction[moved.dof] = work.remaining[moved.dof];
+    }
     Ok(())
 }
 
@@ -431,6 +499,12 @@ fn take<const D: usize>(
 ) -> Result<Measure, Rejected> {
     for i in 0..trial.increment.len() {
         trial.increment[i] = work.saved.increment[i] + length * work.correction[i];
+    }
+    if length == 1.0 {
+        // To the last digit.
+        for moved in &work.motions {
+            trial.increment[moved.dof] = model.reference[moved.dof] + moved.motion[0] - state.y[moved.dof];
+        }
     }
     trial.pairs.clone_from(&work.saved.pairs);
     for (&(k, p), multiplier) in rows.iter().zip(&work.multipliers) {

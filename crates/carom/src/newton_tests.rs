@@ -68,3 +68,69 @@ fn the_whole_tangent_with_contact_is_the_derivative_of_the_residual() {
         }
     }
 }
+
+/// Follower pressure with open, free ends and a moving side: the quadratic form of the symmetric matrix is that of the residual's derivative, and where
+/// the ends are held and the pressure is uniform the whole matrix is.
+#[test]
+fn the_tangent_under_pressure_is_the_symmetric_part_of_the_derivative() {
+    let text = |on: &str, pressure: &str| {
+        format!(
+            r#"
+dimension = 2
+material = [{{ name = "rubber", law = "neo-hookean", density = 1.0, lambda = 20.0, mu = 10.0 }}]
+support = [{{ on = ["block.left"], fix = ["x", "y"] }}, {{ on = ["block.right"], move = {{ x = "0.1*t", y = "t^2" }} }}]
+load = [{{ on = ["block.{on}"], pressure = "{pressure}" }}]
+time = {{ end = 0.1, step = 0.1, scheme = {{ kind = "chung-hulbert", rho_inf = 0.5 }} }}
+[[body]]
+name = "block"
+material = "rubber"
+element = "T6"
+mesh = {{ shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [3, 2] }}
+"#
+        )
+    };
+    for (on, pressure, symmetric) in [("top", "3", true), ("top", "3*(1 + X^2)", false), ("bottom", "-2", true)] {
+        let text = text(on, pressure);
+        let case = read(&Document::parse("a.toml", &text, &[]).unwrap()).unwrap();
+        let sim = Simulation::<2>::new(&case, 1).unwrap();
+        let (model, state) = (&sim.model, &sim.state);
+        let mut work = Workspace::new(model, 1);
+        let memory = Memory { states: &[(&state.y, &state.v, &state.a)], before: None };
+        // Without inertia and with soft springs the pressure is a good part of the tangent.
+        case.time.scheme.kernel().unwrap().stage_into(0, 1e3, &memory, &mut work.stage);
+        model.loads.at(&model.parts, model.dofs(), 0.1, &mut work.loads).unwrap();
+        work.system.loads_tangent(model, &work.loads);
+        known_into(model, &work.stage, state, &mut work.forces);
+        let wave = |i: usize, seed: f64| ((i as f64 + seed) * 12.9898).sin();
+        let increment: Vec<f64> =
+            (0..model.dofs()).map(|i| if model.fixed[i] { 0.0 } else { 1e-2 * wave(i, 0.3) }).collect();
+        let mut trial = Trial { increment: increment.clone(), y: state.y.clone(), pairs: vec![], strain: 0.0 };
+        evaluate(model, state, &mut trial, &mut work, true).unwrap();
+        linear_step(model, &mut work, &[]).unwrap();
+        let u: Vec<f64> = (0..model.free.len()).map(|i| wave(i, 0.1)).collect();
+        let ku = work.system.product(&u);
+        let mut residual = |e: f64| -> Vec<f64> {
+            let mut at = trial.clone();
+            for (place, &dof) in model.free.iter().enumerate() {
+                at.increment[dof] = increment[dof] + e * u[place];
+            }
+            evaluate(model, state, &mut at, &mut work, false).unwrap();
+            model.free.iter().map(|&dof| work.residual[dof]).collect()
+        };
+        let mut slope = |h: f64| -> Vec<f64> {
+            let (plus, minus) = (residual(h), residual(-h));
+            plus.iter().zip(&minus).map(|(p, m)| (p - m) / (2.0 * h)).collect()
+        };
+        let (fine, coarse) = (slope(1e-4), slope(2e-4));
+        let size = ku.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let mut form = 0.0;
+        let mut largest = 0.0_f64;
+        for i in 0..ku.len() {
+            let numeric = (4.0 * fine[i] - coarse[i]) / 3.0;
+            form += u[i] * (numeric - ku[i]);
+            largest = largest.max((numeric - ku[i]).abs());
+        }
+        assert!(form.abs() < 1e-7 * size, "{on} {pressure}: {form:e}");
+        assert_eq!(largest < 1e-7 * size, symmetric, "{on} {pressure}: {largest:e}");
+    }
+}

@@ -12,7 +12,7 @@ use carom_contact::Linearised;
 use crate::case::Persistency;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;
-use crate::newton::Workspace;
+use crate::newton::{Workspace, add_gradient};
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::state::State;
@@ -54,13 +54,9 @@ pub(crate) fn project<const D: usize>(
         }
     }
 
-    let forces: Vec<f64> =
-        (0..dofs).map(|i| if model.massless[i] { 0.0 } else { model.gravity[i] - state.f_internal[i] }).collect();
-    let bending: Vec<f64> = rows.iter().map(|row| -curvature(row.gap, &state.v)).collect();
+    let (forces, bending) = drive(model, state, &work.gaps, &places);
     work.system.solve(model, &forces, &bending, &mut change, &mut multipliers)?;
-    for i in 0..dofs {
-        state.a[i] = if model.massless[i] { 0.0 } else { change[i] };
-    }
+    take_accelerations(model, state, &change);
     for (&(k, p), lambda) in places.iter().zip(&multipliers) {
         state.pairs[k][p].lambda = *lambda;
     }
@@ -74,8 +70,44 @@ pub(crate) fn project<const D: usize>(
     Ok(jump)
 }
 
+/// Right-hand sides of M a + Gᵀλ = f_ext − f_int, G a = −v·∇²g·v for the rows in `places`, less what the accelerations of moving supports, in `state`,
+/// and the forces of all other active pairs, springs among them, contribute.
+pub(crate) fn drive<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    gaps: &[Vec<Linearised<D>>],
+    places: &[(usize, usize)],
+) -> (Vec<f64>, Vec<f64>) {
+    let dofs = model.dofs();
+    let (mut moved, mut carried) = (vec![0.0; dofs], vec![0.0; dofs]);
+    if !model.motions.is_empty() {
+        model.motions.dofs().for_each(|dof| moved[dof] = state.a[dof]);
+        model.mass.multiply_into(&moved, &mut carried);
+    }
+    for (k, pairs) in state.pairs.iter().enumerate() {
+        for (p, pair) in pairs.iter().enumerate().filter(|(p, pair)| pair.active && !places.contains(&(k, *p))) {
+            add_gradient(&gaps[k][p], pair.lambda, &mut carried);
+        }
+    }
+    let force = |i: usize| model.gravity[i] + state.f_external[i] - state.f_internal[i] - carried[i];
+    let forces = (0..dofs).map(|i| if model.massless[i] { 0.0 } else { force(i) }).collect();
+    let bending = |gap: &Linearised<D>| -curvature(gap, &state.v) - rate(gap, &moved);
+    (forces, places.iter().map(|&(k, p)| bending(&gaps[k][p])).collect())
+}
+
+/// Accelerations of free dofs that have mass; moving supports keep theirs.
+pub(crate) fn take_accelerations<const D: usize>(model: &Model<D>, state: &mut State, solved: &[f64]) {
+    for &i in &model.free {
+        state.a[i] = if model.massless[i] { 0.0 } else { solved[i] };
+    }
+}
+
 /// Gaps of all pairs at the state, with second derivatives for λ = 1.
-fn linearise_all<const D: usize>(model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), Rejected> {
+pub(crate) fn linearise_all<const D: usize>(
+    model: &Model<D>,
+    state: &mut State,
+    work: &mut Workspace<D>,
+) -> Result<(), Rejected> {
     let y = state.y.as_chunks::<D>().0;
     for (k, contact) in model.contacts.iter().enumerate() {
         work.gaps[k].resize(state.pairs[k].len(), Linearised::default());
@@ -107,36 +139,4 @@ fn curvature<const D: usize>(gap: &Linearised<D>, v: &[f64]) -> f64 {
         }
     }
     sum
-}
-
-/// The state before the first step: M a₀ = f_ext − f_int with no contact force (λ₀ = 0).
-///
-/// # Errors
-/// A cell is inverted in the reference position, or the mass matrix is singular.
-pub fn start<const D: usize>(model: &Model<D>, work: &mut Workspace<D>) -> Result<State, Rejected> {
-    let dofs = model.dofs();
-    let mut state = State {
-        y: model.reference.clone(),
-        v: model.initial_velocity.clone(),
-        a: vec![0.0; dofs],
-        f_internal: vec![0.0; dofs],
-        f_contact: vec![0.0; dofs],
-        contact_forces: vec![[0.0; 2]; model.contacts.len()],
-        pairs: vec![Vec::new(); model.contacts.len()],
-        ..State::default()
-    };
-    state.ledger.strain = model
-        .internal_force(&state.y, &mut state.f_internal)
-        .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
-    let forces: Vec<f64> =
-        (0..dofs).map(|i| if model.massless[i] { 0.0 } else { model.gravity[i] - state.f_internal[i] }).collect();
-    let inertia = work.system.factor_mass(model, &[])?;
-    if inertia.negative > 0 {
-        return Err(Rejected::NegativeMass { directions: inertia.negative });
-    }
-    work.system.solve(model, &forces, &[], &mut state.a, &mut Vec::new())?;
-    book_kinetic(model, &mut state);
-    state.ledger.potential = model.potential(&state.y);
-    state.ledger.total_at_start = state.ledger.total();
-    Ok(state)
 }

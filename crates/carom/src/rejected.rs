@@ -4,6 +4,8 @@ use carom_algebra::LinearError;
 use carom_contact::ContactError;
 use carom_solid::Inverted;
 
+use crate::model::{NoValue, Unheld};
+
 /// A step that was not accepted; it is bisected, or ends the run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Rejected {
@@ -64,6 +66,22 @@ pub enum Rejected {
         /// Negative eigenvalues.
         directions: usize,
     },
+    /// A load or a motion has no value.
+    #[error(transparent)]
+    NoValue(#[from] NoValue),
+    /// Without inertia, nothing holds a body.
+    #[error(transparent)]
+    Unheld(#[from] Unheld),
+    /// A moved support is not where its formula has it at the start.
+    #[error(
+        "a moved support would jump: node {node} is {distance:.3e} away from where its `move` has it at t = 0; let the formula begin where the node is"
+    )]
+    Jump {
+        /// Global number of the node.
+        node: usize,
+        /// Distance along the moved direction.
+        distance: f64,
+    },
     /// A number is not finite.
     #[error("{what} is not finite")]
     NotFinite {
@@ -83,6 +101,9 @@ impl Rejected {
             Self::Linear(_) => "linear-solver",
             Self::Stuck { .. } => "stuck-contact",
             Self::NegativeMass { .. } => "negative-mass",
+            Self::NoValue(_) => "no-value",
+            Self::Unheld(_) => "unheld-body",
+            Self::Jump { .. } => "jump",
             Self::NotFinite { .. } => "not-finite",
         }
     }

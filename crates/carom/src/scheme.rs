@@ -1,11 +1,16 @@
 //! From a scheme's name in the case to the kernel that steps.
 
-use carom_time::{Integrator, Kernel, SchemeError};
+use carom_time::{Integrator, Kernel, STATIC, SchemeError, Static};
 
 use crate::case::{Problem, SchemeSpec};
 
 impl SchemeSpec {
-    /// The scheme by its name and parameters.
+    /// Whether it is equilibrium without inertia, with t as the load parameter.
+    pub fn is_static(&self) -> bool {
+        self.kind == STATIC
+    }
+
+    /// The scheme by its name and parameters; the static one is none of them.
     ///
     /// # Errors
     /// Unknown kinds, missing, superfluous or inadmissible parameters.
@@ -23,6 +28,9 @@ impl SchemeSpec {
     /// # Errors
     /// As [`Self::integrator`], located at `time.scheme`.
     pub fn kernel(&self) -> Result<Box<dyn Kernel>, Vec<Problem>> {
+        if self.is_static() {
+            return Ok(Box::new(Static));
+        }
         self.integrator().map(Integrator::into_kernel).map_err(|error| {
             let path = format!("time.scheme.{}", error.key());
             vec![Problem::new(path, "the scheme cannot be used", error.to_string(), "carom explain lists schemes")]

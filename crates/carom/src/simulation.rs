@@ -3,10 +3,11 @@
 use carom_contact::PairEvent;
 
 use crate::case::{Case, Problem};
+use crate::initial::before;
 use crate::model::{Dimension, Model, Space, build, overlaps};
 use crate::newton::{Timings, Workspace};
-use crate::persistency::start;
 use crate::rejected::Rejected;
+use crate::start::start;
 use crate::state::State;
 use crate::stepper::{Implicit, Stepper};
 
@@ -124,23 +125,42 @@ where
     /// # Errors
     /// Everything wrong with the case that only its meshes show.
     pub fn new(case: &Case, threads: usize) -> Result<Self, Vec<Problem>> {
-        let model = build::<D>(case)?;
-        let problems = overlaps(&model);
-        if !problems.is_empty() {
-            return Err(problems);
-        }
-        let mut work = Workspace::new(&model, threads);
-        let state = start(&model, &mut work).map_err(|rejected| {
-            vec![Problem::new(
-                "body",
-                "the start has no acceleration",
-                rejected.to_string(),
-                "check masses and supports",
-            )]
+        let mut simulation = Self::resume(case, threads, State::default())?;
+        let model = &simulation.model;
+        let before = if let Some(initial) = &case.initial {
+            Some(before(initial, case, model)?)
+        } else {
+            let problems = overlaps(model);
+            if !problems.is_empty() {
+                return Err(problems);
+            }
+            None
+        };
+        let inertia = !case.time.scheme.is_static();
+        simulation.state = start(model, inertia, before, &mut simulation.work).map_err(|rejected| {
+            let (path, what, help) = match rejected {
+                Rejected::NoValue(_) => ("load", "a formula has no value at t = 0", "change it so that it has one"),
+                Rejected::Jump { .. } => {
+                    ("support", "a support would jump at the start", "let its `move` begin where the body is")
+                }
+                _ => ("body", "the start has no acceleration", "check masses and supports"),
+            };
+            vec![Problem::new(path, what, rejected.to_string(), help)]
         })?;
+        Ok(simulation)
+    }
+
+    /// Builds the model of a case and goes on from a state of an earlier run of it; the run its `[initial]` names is not needed any more.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn resume(case: &Case, threads: usize, state: State) -> Result<Self, Vec<Problem>> {
+        let model = build::<D>(case)?;
+        let work = Workspace::new(&model, threads);
         let stepper = Box::new(Implicit::new(case.time.scheme.kernel()?, case.newton.clone()));
         let steps = (case.time.end / case.time.step).round() as u64;
-        let guard = case.time.energy_guard;
+        // Load steps create nothing: what their works miss of the energies is the error of a sum over few steps.
+        let guard = case.time.energy_guard.filter(|_| !case.time.scheme.is_static());
         Ok(Self { model, state, dt: case.time.step, steps, stepper, work, guard })
     }
 }
@@ -179,12 +199,13 @@ impl<const D: usize> Simulation<D> {
         while done < 1 << level {
             let dt = self.dt / f64::from(1_u32 << level);
             let time = start + done as f64 * dt;
-            match self.stepper.step(&self.model, &state, dt, &mut self.work) {
+            let to = start + (done + 1) as f64 * dt;
+            match self.stepper.step(&self.model, &state, dt, to, &mut self.work) {
                 Ok(accepted) => {
                     let (next, step) = accepted.into_parts();
                     state = next;
                     done += 1;
-                    let now = start + done as f64 * dt;
+                    let now = to;
                     report.newton += step.newton;
                     report.activations += step.activations.len() as u32;
                     report.releases += step.releases.len() as u32;

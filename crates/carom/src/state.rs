@@ -52,10 +52,41 @@ pub struct Previous {
     pub increment: Vec<f64>,
     /// Velocities at its start.
     pub velocity: Vec<f64>,
-    /// Mean contact force over it, nodal.
+    /// Means over it.
+    pub means: Means,
+}
+
+/// Means over a step, as its own velocity update weighs start and stages; flat over all dofs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Means {
+    /// Contact forces.
     pub contact: Vec<f64>,
-    /// Its impulse on the secondary sides.
+    /// Loads, gravity apart.
+    pub loads: Vec<f64>,
+    /// Forces of moved supports; zero at other dofs.
+    pub supports: Vec<f64>,
+    /// Accelerations of moved supports; zero at other dofs.
+    pub accelerations: Vec<f64>,
+    /// Impulse of the contact forces on the secondary sides.
     pub impulse: [f64; 2],
+}
+
+impl Means {
+    /// Nothing yet.
+    pub fn new(dofs: usize) -> Self {
+        let mut means = Self::default();
+        means.clear(dofs);
+        means
+    }
+
+    /// Back to nothing.
+    pub(crate) fn clear(&mut self, dofs: usize) {
+        for mean in [&mut self.contact, &mut self.loads, &mut self.supports, &mut self.accelerations] {
+            mean.clear();
+            mean.resize(dofs, 0.0);
+        }
+        self.impulse = [0.0; 2];
+    }
 }
 
 /// The state at the end of a step.
@@ -73,6 +104,8 @@ pub struct State {
     pub a: Vec<f64>,
     /// Internal forces at `y`.
     pub f_internal: Vec<f64>,
+    /// Loads at `y`, gravity apart: their known share of the next step.
+    pub f_external: Vec<f64>,
     /// Σ Gᵀλ of the contacts whose force is averaged: the known share of the next step.
     pub f_contact: Vec<f64>,
     /// Force on the secondary side of each contact.

@@ -1,9 +1,12 @@
 //! The linear system of one Newton iteration over free dofs and active multipliers,
 //!
 //! ```text
-//! [ K  Gᵀ ] [Δy]   [−r]        K = w.mass a' M + w.internal K_int + Σ w.contact λ ∇²g,   rows of G: w.contact ∇g
+//! [ K  Gᵀ ] [Δy]   [−r]        K = w.mass a' M + w.internal K_int − w.external K_ext + Σ w.contact λ ∇²g,   rows of G: w.contact ∇g
 //! [ G −C  ] [Δλ] = [−g]       C = 0, or w.contact/(∂λ/∂g) of a spring
 //! ```
+//!
+//! Of the tangent of follower pressures, K_ext, the symmetric part is taken: all of it where the side is closed or its ends are held and the
+//! pressure is uniform. Elsewhere Newton converges at a linear rate, to the same root.
 //!
 //! Bodies have a pattern of their own, made once, with the slots of every cell; contact entries are merged in when the set of rows changes, and only then is
 //! the system analysed again. The pattern is a function of the rows alone: a resumed run eliminates in the same order.
@@ -13,7 +16,7 @@ use carom_contact::Linearised;
 use carom_solid::Inverted;
 
 use crate::cells::Cells;
-use crate::model::Model;
+use crate::model::{LoadsAt, Model};
 
 /// Slot of an entry that is not stored: upper triangle, or a held dof.
 const SKIP: u32 = u32::MAX;
@@ -33,8 +36,12 @@ pub(crate) struct System<const D: usize> {
     base: Pattern,
     stiffness: Vec<f64>,
     mass: Vec<f64>,
+    /// Symmetric part of ∂f_ext/∂y.
+    follower: Vec<f64>,
     /// Slots of each cell's dof pairs, cell after cell through all bodies.
     slots: Vec<u32>,
+    /// The same for the facets under pressure.
+    facet_slots: Vec<u32>,
     cells: Cells,
     merged: Pattern,
     from_base: Vec<usize>,
@@ -81,9 +88,21 @@ impl<const D: usize> System<D> {
                 }
             }
         }
+        let mut facet_slots = Vec::new();
+        model.loads.each_facet_tangent(None, |nodes, _| {
+            let dofs: Vec<usize> = nodes.iter().flat_map(|n| (0..D).map(move |i| n * D + i)).collect();
+            for a in dofs.iter().map(|&dof| model.unknown[dof]) {
+                for b in dofs.iter().map(|&dof| model.unknown[dof]) {
+                    let stored = a != usize::MAX && b != usize::MAX && a >= b;
+                    facet_slots.push(if stored { base.slot(a, b).map_or(SKIP, |s| s as u32) } else { SKIP });
+                }
+            }
+        });
         Self {
             stiffness: vec![0.0; base.len()],
+            follower: vec![0.0; base.len()],
             mass,
+            facet_slots,
             slots,
             cells: Cells::new(threads),
             merged: Pattern::default(),
@@ -98,16 +117,38 @@ impl<const D: usize> System<D> {
         }
     }
 
+    /// The symmetric part of the loads' tangent; it does not depend on the positions.
+    pub(crate) fn loads_tangent(&mut self, model: &Model<D>, at: &LoadsAt) {
+        self.follower.fill(0.0);
+        let mut slots = self.facet_slots.iter();
+        let follower = &mut self.follower;
+        model.loads.each_facet_tangent(Some(at), |nodes, k| {
+            let n = nodes.len() * D;
+            for a in 0..n {
+                for b in 0..n {
+                    if let Some(&slot) = slots.next().filter(|slot| **slot != SKIP) {
+                        follower[slot as usize] += 0.5 * (k[a * n + b] + k[b * n + a]);
+                    }
+                }
+            }
+        });
+    }
+
     /// Internal forces over all dofs and the tangent ∂f_int/∂y of the free ones; the strain energy is returned. With `before`, the forces are the discrete
-    /// gradient from there to `y`, and of their tangent the symmetric part is taken.
+    /// gradient from there to `y`, and of their tangent the symmetric part is taken. With `pull`, its second vector becomes ∂f_int/∂y times its first,
+    /// over all dofs.
     pub(crate) fn internal_tangent(
         &mut self,
         model: &Model<D>,
         before: Option<&[f64]>,
         y: &[f64],
         force: &mut [f64],
+        mut pull: Option<(&[f64], &mut [f64])>,
     ) -> Result<f64, (String, Inverted)> {
         force.fill(0.0);
+        if let Some((_, product)) = &mut pull {
+            product.fill(0.0);
+        }
         self.stiffness.fill(0.0);
         let mut slots = self.slots.iter();
         let mut strain = 0.0;
@@ -120,6 +161,13 @@ impl<const D: usize> System<D> {
                 for (node, f) in mesh.cell(cell).iter().zip(f.as_chunks::<D>().0) {
                     for i in 0..D {
                         force[(part.first_node + node) * D + i] += f[i];
+                    }
+                }
+                if let Some((moved, product)) = &mut pull {
+                    let dof = |k: usize| (part.first_node + mesh.cell(cell)[k / D]) * D + k % D;
+                    for a in 0..f.len() {
+                        let row = &k[a * f.len()..(a + 1) * f.len()];
+                        product[dof(a)] += row.iter().enumerate().map(|(b, k)| k * moved[dof(b)]).sum::<f64>();
                     }
                 }
                 for (value, slot) in k.iter().zip(slots.by_ref()) {
@@ -143,19 +191,21 @@ impl<const D: usize> System<D> {
             .map(move |&s| mass_factor * self.mass[s] + stiffness_factor * self.stiffness[s])
     }
 
-    /// Factors the system of the last tangent with these rows.
+    /// Factors the system of the last tangents with these rows.
     pub(crate) fn factor(
         &mut self,
         model: &Model<D>,
         mass_factor: f64,
         stiffness_factor: f64,
+        follower_factor: f64,
         rows: &[Row<D>],
     ) -> Result<Inertia, LinearError> {
         self.analyse(model, rows)?;
         let values = self.solver.values();
         values.fill(0.0);
         for (k, &slot) in self.from_base.iter().enumerate() {
-            values[slot] = mass_factor * self.mass[k] + stiffness_factor * self.stiffness[k];
+            values[slot] =
+                mass_factor * self.mass[k] + stiffness_factor * self.stiffness[k] - follower_factor * self.follower[k];
         }
         let n = self.base.size();
         for (r, row) in rows.iter().enumerate() {

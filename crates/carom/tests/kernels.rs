@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use carom::case::{Document, read};
-use carom::{GridReport, Previous, Simulation, State};
+use carom::{GridReport, Means, Previous, Simulation, State};
 use carom_time::map;
 
 /// A spring of one cell, its left end held.
@@ -69,13 +69,8 @@ fn one_dof_is_amplified_as_the_analysis_says() {
             let [u, v, a, d, w] = unit;
             (sim.state.y[1], sim.state.v[1], sim.state.a[1]) = (1.0 + u, v / dt, a / (dt * dt));
             sim.state.f_internal = vec![-stiffness * u, stiffness * u];
-            sim.state.previous = Some(Previous {
-                dt,
-                increment: vec![0.0, d],
-                velocity: vec![0.0, w / dt],
-                contact: vec![0.0; 2],
-                impulse: [0.0; 2],
-            });
+            sim.state.previous =
+                Some(Previous { dt, increment: vec![0.0, d], velocity: vec![0.0, w / dt], means: Means::new(2) });
             sim.advance(&mut GridReport::default()).unwrap();
             let now = [sim.state.y[1] - 1.0, dt * sim.state.v[1], dt * dt * sim.state.a[1]];
             for row in 0..3 {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use carom::case::{Case, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec};
+use carom::case::{Case, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec};
 
 use crate::exit::{Exit, Failure};
 use crate::out;
@@ -50,11 +50,17 @@ fn table(case: &Case, facts: &Facts) -> String {
     }
     for support in &case.supports {
         let fixed: String = support.fix.iter().map(|axis| ["x", "y"][*axis]).collect();
+        let moved = support.moves.iter().map(|(axis, u)| format!("moved along {} by {u}", ["x", "y"][*axis]));
+        let fixed = (!fixed.is_empty()).then(|| format!("fixed in {fixed}"));
         lines.push(format!(
-            "  support  {:12} {} fixed in {fixed}",
+            "  support  {:12} {} {}",
             support.name.as_deref().unwrap_or(""),
-            support.on.join(", ")
+            support.on.join(", "),
+            fixed.into_iter().chain(moved).collect::<Vec<_>>().join(", ")
         ));
+    }
+    for load in &case.loads {
+        lines.push(format!("  load     {:12} {}", load.name.as_deref().unwrap_or(""), told_load(load)));
     }
     for contact in &case.contacts {
         let primary = match &contact.primary {
@@ -76,6 +82,16 @@ fn table(case: &Case, facts: &Facts) -> String {
     lines.push(format!("           a pressure wave crosses the smallest body in {transit} steps"));
     lines.extend(case.warnings().iter().map(|warning| format!("  warning  {warning}")));
     lines.join("\n")
+}
+
+fn told_load(load: &LoadSpec) -> String {
+    let list = |value: &[FormulaSpec]| value.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    let what = match &load.kind {
+        LoadKind::Traction { on, value } => format!("traction [{}] on {}", list(value), on.join(", ")),
+        LoadKind::Pressure { on, value } => format!("pressure {value} on {}", on.join(", ")),
+        LoadKind::BodyForce { body, value } => format!("force per volume [{}] in {body}", list(value)),
+    };
+    load.table.as_ref().map_or(what.clone(), |table| format!("{what}, times {}", table.file))
 }
 
 fn counted(body: &BodyFacts) -> String {

@@ -32,6 +32,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return tell(&carom_time::explain_all(), arguments.json);
     };
     let spec = read_scheme(kind, &arguments.parameters)?;
+    if spec.is_static() {
+        return Err(Failure::Argument {
+            what:
+                "the scheme `static` integrates nothing: every step is an equilibrium at rest, t is the load parameter"
+                    .into(),
+            help: "carom explain lists the time integrators".into(),
+        });
+    }
     let scheme = carom_time::scheme(&spec.kind, &spec.parameters, spec.forces)
         .map_err(|e| Failure::Argument { what: e.to_string(), help: String::new() })?;
     tell(&scheme.explain(), arguments.json)

@@ -9,6 +9,7 @@ pub(crate) mod resume;
 pub(crate) mod run;
 pub(crate) mod schema;
 pub(crate) mod study;
+pub(crate) mod verify;
 
 use std::path::Path;
 

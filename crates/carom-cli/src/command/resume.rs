@@ -13,17 +13,23 @@ use crate::{out, summary};
 
 /// Go on with a run or a study that was stopped, bit for bit
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  carom resume runs/impact")]
+#[command(after_help = "\
+Examples:
+  carom resume runs/impact
+  carom resume runs/fair --jobs 2")]
 pub(crate) struct Arguments {
     /// The directory of the run or study
     directory: PathBuf,
-    /// Threads; the results are the same bits for any number [default: 1]
+    /// Threads of a run; the results are the same bits for any number [default: 1]
     #[arg(long, value_name = "N")]
     threads: Option<NonZero<usize>>,
+    /// Arms of a study computed at the same time; the results are the same bits for any number [default: all cores]
+    #[arg(long, value_name = "N")]
+    jobs: Option<NonZero<usize>>,
     /// Make no figures and no page
     #[arg(long)]
     no_report: bool,
-    /// Tell where the time went
+    /// Tell where the time of a run went
     #[arg(long)]
     profile: bool,
     /// One JSON object per event on standard output, and nothing else there
@@ -33,7 +39,18 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if StudyManifest::is_in(&arguments.directory) {
-        return super::study::resume(&arguments.directory, arguments.json);
+        let of_a_run = [(arguments.threads.is_some(), "--threads"), (arguments.profile, "--profile")];
+        if let Some((_, option)) = of_a_run.iter().find(|(given, _)| *given) {
+            let what = format!("{option} is for a run, and {} is a study", arguments.directory.display());
+            let help = "the arms of a study take one thread each: --jobs says how many at the same time; \
+                        the time of an arm is in its manifest.json";
+            return Err(Failure::Argument { what, help: help.to_owned() });
+        }
+        return super::study::resume(&arguments.directory, arguments.jobs, !arguments.no_report, arguments.json);
+    }
+    if arguments.jobs.is_some() {
+        let what = format!("--jobs is for a study, and {} is none", arguments.directory.display());
+        return Err(Failure::Argument { what, help: "use --threads for a run".to_owned() });
     }
     super::report::run_directory(&arguments.directory)?;
     let options = Options {

@@ -3,16 +3,22 @@
 use crate::exit::{Exit, Failure};
 use crate::out;
 
-/// Print the JSON Schema of case files, for editors
+/// Print the JSON Schema of case files or study files, for editors
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
   carom schema > carom.schema.json
-  and `#:schema ./carom.schema.json` as first line of a case")]
-pub(crate) struct Arguments {}
+  and `#:schema ./carom.schema.json` as first line of a case
+  carom schema --study > study.schema.json")]
+pub(crate) struct Arguments {
+    /// That of study files
+    #[arg(long)]
+    study: bool,
+}
 
-pub(crate) fn run(_: &Arguments) -> Result<Exit, Failure> {
-    let schema = serde_json::to_string_pretty(&carom::case::schema()).map_err(std::io::Error::from)?;
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let schema = if arguments.study { carom_study::schema() } else { carom::case::schema() };
+    let schema = serde_json::to_string_pretty(&schema).map_err(std::io::Error::from)?;
     out::line(&schema)?;
     Ok(Exit::Done)
 }

@@ -36,6 +36,9 @@ pub(crate) struct Arguments {
     /// Arms computed at the same time; the results are the same bits for any number [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
+    /// Make no figures and no page
+    #[arg(long)]
+    no_report: bool,
     /// One JSON object per event on standard output, and nothing else there
     #[arg(long)]
     json: bool,
@@ -52,19 +55,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         )?;
     }
     let done = carom_study::start(&plan, &directory, jobs(arguments.jobs), &mut |e| seen.event(e), &stop);
-    conclude(done, seen, &directory)
+    conclude(done, seen, &directory, !arguments.no_report)
 }
 
-/// Goes on with a study that was stopped.
-pub(crate) fn resume(directory: &Path, json: bool) -> Result<Exit, Failure> {
+/// Goes on with a study that was stopped; `page`: with figures and page at the end.
+pub(crate) fn resume(directory: &Path, asked: Option<NonZero<usize>>, page: bool, json: bool) -> Result<Exit, Failure> {
     let manifest = StudyManifest::read(directory).map_err(|e| failure(e.into()))?;
     let mut seen = Seen::new(&manifest, json);
     let stop = stop_on_signal()?;
     if json {
         out::event(&json!({ "event": "resume", "directory": directory, "arms": seen.names }))?;
     }
-    let done = carom_study::go_on(directory, jobs(None), &mut |e| seen.event(e), &stop);
-    conclude(done, seen, directory)
+    let done = carom_study::go_on(directory, jobs(asked), &mut |e| seen.event(e), &stop);
+    conclude(done, seen, directory, page)
 }
 
 /// Rebuilds tables, figures and page of a study, and the pages of its arms.
@@ -86,11 +89,11 @@ pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
     Ok(carom_report::study(directory).map_err(made)?.page)
 }
 
-fn jobs(asked: Option<NonZero<usize>>) -> usize {
+pub(super) fn jobs(asked: Option<NonZero<usize>>) -> usize {
     asked.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get)
 }
 
-fn failure(error: StudyError) -> Failure {
+pub(super) fn failure(error: StudyError) -> Failure {
     match error {
         StudyError::Record(ref e) if e.exit_code() == 4 => Failure::Refused { what: error.to_string() },
         StudyError::Arm { source: carom::recording::RunError::Record(ref e), .. } if e.exit_code() == 4 => {
@@ -102,11 +105,11 @@ fn failure(error: StudyError) -> Failure {
     }
 }
 
-fn conclude(done: Result<Outcome, StudyError>, seen: Seen, directory: &Path) -> Result<Exit, Failure> {
+fn conclude(done: Result<Outcome, StudyError>, seen: Seen, directory: &Path, page: bool) -> Result<Exit, Failure> {
     let json = seen.json;
     drop(seen);
     let outcome = done.map_err(failure)?;
-    let page = report(directory)?;
+    let page = if page { Some(report(directory)?) } else { None };
     if json {
         let study = &outcome.study;
         let claims = study
@@ -121,7 +124,7 @@ fn conclude(done: Result<Outcome, StudyError>, seen: Seen, directory: &Path) -> 
         if outcome.interrupted {
             out::line(&format!("stopped by Ctrl-C; go on with: carom resume {}", directory.display()))?;
         }
-        out::line(&page.display().to_string())?;
+        out::line(&page.as_deref().unwrap_or(directory).display().to_string())?;
     }
     Ok(if outcome.interrupted { Exit::Interrupted } else { Exit::Done })
 }
@@ -144,6 +147,13 @@ fn text(study: &Study) -> String {
     for v in &study.verdicts {
         let value = |x: Option<f64>| x.map_or("–".into(), short);
         lines.push(format!("{:9}  {}  ({} against {})", v.word(), v.claim.text, value(v.left), value(v.right)));
+    }
+    let arms = study.rows.iter().flat_map(|row| row.expectations.iter().map(move |e| (Some(&row.name), e)));
+    for (arm, e) in arms.chain(study.expectations.iter().map(|e| (None, e))) {
+        let word = if e.pass { "met" } else { "MISSED" };
+        let of = arm.map_or_else(String::new, |arm| format!(" of \"{arm}\""));
+        let got = e.got.map_or_else(|| e.why.clone().unwrap_or_default(), short);
+        lines.push(format!("{word:9}  {}{of}: {got}  ({})", e.what, e.expected));
     }
     lines.join("\n")
 }

@@ -75,7 +75,7 @@ fn windows_are_strict() {
 fn deviations_from_a_formula() {
     let record = record();
     let with = |norm, scale, bound| {
-        let deviation = Some(Deviation { formula: "1 + t".into(), norm, scale });
+        let deviation = Some(Deviation { formula: "1 + t".into(), exact: None, norm, scale });
         Expect { deviation, ..expect("a", bound) }
     };
     assert_eq!(with(Norm::Max, 1.0, Bound::AtMost(5.0)).got(&record), Ok(5.0));
@@ -88,7 +88,7 @@ fn deviations_from_a_formula() {
     let early = Expect { before: Some(1.5), ..with(Norm::Max, 1.0, Bound::AtMost(1.0)) };
     assert_eq!(early.got(&record), Ok(1.0));
     let nowhere = Expect {
-        deviation: Some(Deviation { formula: "1/t".into(), norm: Norm::Max, scale: 1.0 }),
+        deviation: Some(Deviation { formula: "1/t".into(), exact: None, norm: Norm::Max, scale: 1.0 }),
         ..expect("a", Bound::AtMost(1.0))
     };
     assert!(nowhere.got(&record).unwrap_err().contains("inf at t = 0"));

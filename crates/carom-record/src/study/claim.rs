@@ -93,7 +93,7 @@ impl Comparison {
 
     /// Names of the arms it speaks of.
     pub fn arms(&self) -> Vec<&str> {
-        self.questions().iter().flat_map(|side| side.arms()).flatten().collect()
+        self.questions().iter().flat_map(Question::arms).flatten().collect()
     }
 
     /// Its two sides.

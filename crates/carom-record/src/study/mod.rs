@@ -11,16 +11,20 @@
 
 mod arms;
 mod claim;
+mod orders;
 mod tables;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use crate::metrics::{self, Metric};
-use crate::{Machine, Manifest, RecordError, Run, Status, files};
+use crate::question::{Question, Series};
+use crate::{Expect, Expectation, Machine, Manifest, RecordError, Run, Source, Status, files, judge};
 pub use arms::ArmRecords;
 pub use claim::{Comparison, Verdict};
+pub use orders::{Refinement, numeric_keys, refinements, step};
 
 /// The files a study was made from.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,6 +35,9 @@ pub struct StudySource {
     pub case_path: String,
     /// Text of the case file.
     pub case: String,
+    /// Texts of the case files that arms name, by the name they use.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub others: BTreeMap<String, String>,
 }
 
 /// One simulation of a study.
@@ -44,8 +51,18 @@ pub struct Arm {
     pub sets: Vec<String>,
     /// Time steps.
     pub steps: u64,
+    /// The case file it names instead of the study's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub case_path: Option<String>,
     /// The case as resolved.
     pub case: serde_json::Value,
+}
+
+impl Arm {
+    /// What is expected of its record.
+    pub fn expects(&self) -> Vec<Expect> {
+        self.case.get("expects").and_then(|e| serde_json::from_value(e.clone()).ok()).unwrap_or_default()
+    }
 }
 
 /// A statement and the comparison that decides it.
@@ -78,6 +95,9 @@ pub struct StudyManifest {
     pub arms: Vec<Arm>,
     /// Statements to decide.
     pub claims: Vec<Claim>,
+    /// Expected values.
+    #[serde(default)]
+    pub expects: Vec<Expect>,
     /// The files as given.
     pub source: StudySource,
 }
@@ -112,6 +132,12 @@ impl StudyManifest {
         files::write_atomically(&path, &[&text])
     }
 
+    /// The case file and the changes an arm is made of.
+    pub fn source_of(&self, arm: &Arm) -> Source {
+        let other = arm.case_path.as_ref().and_then(|path| self.source.others.get(path));
+        Source { text: other.unwrap_or(&self.source.case).clone(), sets: arm.sets.clone() }
+    }
+
     /// How far an arm is: none when it has not begun; the reason if it did not finish.
     ///
     /// # Errors
@@ -136,6 +162,10 @@ pub struct Row {
     pub reason: Option<String>,
     /// Metrics of a finished run; empty otherwise, since numbers of half a run mislead.
     pub metrics: Vec<Metric>,
+    /// What was expected of its record.
+    pub expectations: Vec<Expectation>,
+    /// Whether a contact was ever active in it.
+    pub contact: bool,
 }
 
 impl Row {
@@ -156,6 +186,8 @@ pub struct Study {
     pub rows: Vec<Row>,
     /// One per claim.
     pub verdicts: Vec<Verdict>,
+    /// What was expected of the study as a whole; an order may have one per group of arms.
+    pub expectations: Vec<Expectation>,
 }
 
 impl Study {
@@ -166,25 +198,35 @@ impl Study {
     pub fn open(directory: &Path, visit: &mut dyn FnMut(usize, &Run)) -> Result<Self, RecordError> {
         let manifest = StudyManifest::read(directory)?;
         let comparisons: Vec<_> = manifest.claims.iter().map(|c| Comparison::parse(&c.compare).ok()).collect();
-        let questions: Vec<_> = comparisons.iter().flatten().flat_map(Comparison::questions).collect();
+        let (asked, series): (Vec<_>, Vec<_>) = manifest.expects.iter().map(|e| orders::needs(e, &manifest)).unzip();
+        let claimed = comparisons.iter().flatten().flat_map(Comparison::questions);
+        let questions: Vec<&Question> = claimed.chain(asked.iter().flatten()).collect();
+        let series: Vec<&Series> = series.iter().flatten().collect();
         let mut records = ArmRecords::default();
         let mut rows = Vec::new();
         for (i, arm) in manifest.arms.iter().enumerate() {
             let (status, reason) = manifest.state(directory, arm)?;
-            let mut metrics = Vec::new();
+            let (mut metrics, mut expectations, mut contact) = (Vec::new(), Vec::new(), false);
             if status.is_some() {
                 let run = Run::open(&directory.join(&arm.directory))?;
                 visit(i, &run);
                 if status == Some(Status::Finished) {
                     metrics = metrics::of_run(&run);
                 }
-                records.gather(&arm.name, &run, &metrics, &questions, &[]);
+                records.gather(&arm.name, &run, &metrics, &questions, &series);
+                expectations = judge(&run, &arm.expects());
+                contact = run.had_dynamic_contact();
             }
-            rows.push(Row { name: arm.name.clone(), status, reason, metrics });
+            rows.push(Row { name: arm.name.clone(), status, reason, metrics, expectations, contact });
         }
         let verdicts =
             manifest.claims.iter().zip(&comparisons).map(|(claim, c)| Verdict::of(claim, c.as_ref(), &records));
-        Ok(Self { directory: directory.to_path_buf(), verdicts: verdicts.collect(), rows, manifest })
+        let judged = manifest.expects.iter().flat_map(|expect| match &expect.order {
+            Some(order) => orders::judge(expect, order, &manifest, &records),
+            None => vec![expect.verdict(expect.got(&records))],
+        });
+        let expectations = judged.collect();
+        Ok(Self { expectations, directory: directory.to_path_buf(), verdicts: verdicts.collect(), rows, manifest })
     }
 
     /// Every metric any arm has, in order: name, unit, definition.

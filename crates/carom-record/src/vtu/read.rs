@@ -91,6 +91,32 @@ fn numbers(data: &[u8], array: &Array, expected: usize) -> Result<Vec<f64>, Stri
     Err(format!("array `{}` has {} values instead of {expected}", array.name, values.len()))
 }
 
+impl Block {
+    /// Blocks of cells that follow each other and are of one kind; a cell is its body, its VTK type and its point numbers.
+    pub(crate) fn gather(cells: Vec<(usize, u8, &[usize])>, names: &[String]) -> Result<Vec<Self>, String> {
+        let mut blocks: Vec<Self> = Vec::new();
+        let mut last = None;
+        for (body, kind, nodes) in cells {
+            let cell = match kind {
+                68 => Cell::Curve,
+                69 => Cell::Triangle,
+                _ => return Err(format!("cells of VTK type {kind}")),
+            };
+            let degree = (1..=3).find(|&d| cell.nodes(d) == nodes.len());
+            let degree = degree.ok_or_else(|| format!("cells of {} nodes", nodes.len()))?;
+            if last != Some((body, kind, degree)) {
+                let name = names.get(body).cloned().ok_or("a cell of an unnamed body")?;
+                blocks.push(Self { body: name, cell, degree, connectivity: Vec::new() });
+                last = Some((body, kind, degree));
+            }
+            if let Some(block) = blocks.last_mut() {
+                block.connectivity.extend(nodes);
+            }
+        }
+        Ok(blocks)
+    }
+}
+
 impl FieldSet {
     /// Reads the bytes of a field file.
     ///
@@ -120,28 +146,13 @@ impl FieldSet {
         let codes = codes.map_err(|e| format!("body names: {e}"))?;
         let names: Vec<String> = codes.split(|&c| c == 0).map(|n| String::from_utf8_lossy(n).into_owned()).collect();
 
-        let mut blocks: Vec<Block> = Vec::new();
-        let mut last = None;
         let mut start = 0;
-        for ((&end, [kind]), body) in ends.iter().zip(types).zip(bodies) {
-            let cell = match kind {
-                68 => Cell::Curve,
-                69 => Cell::Triangle,
-                _ => return Err(format!("cells of VTK type {kind}")),
-            };
+        let cells = ends.iter().zip(types).zip(bodies).map(|((&end, [kind]), body)| {
             let nodes = connectivity.get(start..end).ok_or("cells reach beyond the connectivity")?;
-            let degree = (1..=3).find(|&d| cell.nodes(d) == nodes.len());
-            let degree = degree.ok_or_else(|| format!("cells of {} nodes", nodes.len()))?;
-            if last != Some((body, kind, degree)) {
-                let name = names.get(i32::from_le_bytes(body) as usize).cloned().ok_or("a cell of an unnamed body")?;
-                blocks.push(Block { body: name, cell, degree, connectivity: Vec::new() });
-                last = Some((body, kind, degree));
-            }
-            if let Some(block) = blocks.last_mut() {
-                block.connectivity.extend(nodes);
-            }
             start = end;
-        }
+            Ok((i32::from_le_bytes(body) as usize, kind, nodes))
+        });
+        let blocks = Block::gather(cells.collect::<Result<Vec<_>, String>>()?, &names)?;
         let arrays = arrays.iter().filter(|a| a.section == "PointData").map(|a| {
             let expected = n.checked_mul(a.components).ok_or("too many points")?;
             let values = numbers(data, a, expected)?;

@@ -39,7 +39,8 @@ impl Parts {
 }
 
 impl FieldSet {
-    fn check(&self) -> Result<(), RecordError> {
+    /// Refuses lengths that contradict each other.
+    pub(crate) fn check(&self) -> Result<(), RecordError> {
         let refuse = |what| Err(RecordError::Field { what });
         let n = self.points.len();
         for array in &self.arrays {

@@ -1,6 +1,6 @@
 //! The columns history.csv will have, in the order of the run directory's contract.
 
-use super::{BodySpec, ContactSpec, ProbeSpec, Quantity, SupportSpec};
+use super::{BodySpec, Case, ContactSpec, ProbeSpec, Quantity, SupportSpec};
 
 const SCALARS: [&str; 10] =
     ["step", "time", "dt", "kinetic", "strain", "potential", "total", "external_work", "contact_work", "dissipation"];
@@ -21,6 +21,17 @@ pub(super) fn quantity(quantity: Quantity) -> &'static str {
         Quantity::VonMises => "von_mises",
         Quantity::DetF => "det_f",
     }
+}
+
+/// Names of the columns of the history a case makes, in their order.
+pub fn history_columns(case: &Case) -> Vec<String> {
+    of(
+        case.dimension,
+        &case.bodies.iter().cloned().map(Some).collect::<Vec<_>>(),
+        &case.contacts.iter().cloned().map(Some).collect::<Vec<_>>(),
+        &case.supports.iter().cloned().map(Some).collect::<Vec<_>>(),
+        &case.probes.iter().cloned().map(Some).collect::<Vec<_>>(),
+    )
 }
 
 /// Column names of a case in the given dimension.

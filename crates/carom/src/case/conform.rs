@@ -136,13 +136,28 @@ impl Check {
                     }
                 }
             }
+            (Kind::ByColumn, Value::Table(table)) => {
+                for entry in &table.0 {
+                    self.formula(&entry.node, &["t"], key, &joined(path, &entry.key));
+                }
+            }
+            (Kind::Formula(variables), _) => self.formula(node, variables, key, path),
+            (Kind::Formulas(variables) | Kind::FormulasOr(variables, _), Value::List(list))
+                if self.dimension.is_none_or(|d| d == list.len()) =>
+            {
+                for (i, node) in list.iter().enumerate() {
+                    self.formula(node, variables, key, &format!("{path}[{i}]"));
+                }
+            }
             (Kind::Sides, Value::List(list)) if !list.is_empty() => {
                 for (i, node) in list.iter().enumerate().filter(|(_, n)| n.text().is_none()) {
                     self.wrong(node, key, &format!("{path}[{i}]"));
                 }
             }
-            (Kind::Table(spec) | Kind::SideOr(spec), Value::Table(table)) => self.table(table, spec, path),
-            (Kind::Tables(spec), Value::List(list)) if !list.is_empty() => {
+            (Kind::Table(spec) | Kind::SideOr(spec) | Kind::FormulasOr(_, spec), Value::Table(table)) => {
+                self.table(table, spec, path);
+            }
+            (Kind::Tables(spec), Value::List(list)) if !list.is_empty() || matches!(key.default, Default::Absent) => {
                 for (i, node) in list.iter().enumerate() {
                     let path = format!("{path}[{i}]");
                     match node.table() {
@@ -262,6 +277,22 @@ impl Check {
             } else {
                 self.wrong(node, key, &path);
             }
+        }
+    }
+
+    fn formula(&mut self, node: &Node, variables: &'static [&'static str], key: &Key, path: &str) {
+        match &node.value {
+            Value::Integer(_) | Value::Float(_) => self.number(node, &keys::ANY, key, path),
+            Value::Text(text) => {
+                let variables = keys::variables(variables, self.dimension.unwrap_or(2));
+                if let Err(error) = carom_formula::Formula::parse(text, &variables) {
+                    let what = format!("the formula of `{}`: {}", key.name, error.message);
+                    let why = format!("{} It is a formula in {}.", meaning(key), variables.join(", "));
+                    let help = format!("write for example `{} = {}`", key.name, key.example);
+                    self.problems.push(Problem::new(path, what, why, help).within(error.at));
+                }
+            }
+            _ => self.wrong(node, key, path),
         }
     }
 

@@ -1,5 +1,6 @@
 //! A case file as text: parsed, overridden by `--set`, and able to say where any key path was written.
 
+use std::ops::Range;
 use std::path::Path;
 
 use super::overrides;
@@ -92,7 +93,11 @@ impl Document {
         match self.origin(&problem.path, problem.at_key) {
             Some(origin) => {
                 let (name, text) = &self.sources[origin.source];
-                Diagnostic::at(name, text, origin.span, message)
+                let span = match &problem.within {
+                    Some(bytes) => part_of_text(text, &origin.span, bytes),
+                    None => origin.span,
+                };
+                Diagnostic::at(name, text, span, message)
             }
             None => Diagnostic::of_file(self.name(), &problem.what, &problem.why, &problem.help),
         }
@@ -136,6 +141,16 @@ impl Document {
         }
         found
     }
+}
+
+/// Where bytes of a text value stand in the source that holds it, quotes and all; all of it where escapes may have moved them.
+fn part_of_text(source: &str, value: &Range<usize>, bytes: &Range<usize>) -> Range<usize> {
+    let raw = source.get(value.clone()).unwrap_or_default();
+    if raw.contains('\\') || raw.starts_with("\"\"\"") || raw.starts_with("'''") {
+        return value.clone();
+    }
+    let start = value.start + if raw.starts_with(['"', '\'']) { 1 } else { raw.len() - raw.trim_start().len() };
+    start + bytes.start..start + bytes.end
 }
 
 /// A diagnostic for text that is not TOML.

@@ -1,5 +1,7 @@
 //! `[[expect]]` of a case, of an arm and of a study: what is asked, and the one bound on it.
 
+use std::collections::BTreeMap;
+
 use carom_formula::Formula;
 use carom_record::question::{Question, Series};
 use carom_record::{Bound, Deviation, Expect, Norm, OrderOf};
@@ -21,6 +23,17 @@ pub enum Asked {
     OfArms,
 }
 
+/// What `formula = "exact"` stands for.
+#[derive(Clone, Copy)]
+pub(super) enum Exact<'a> {
+    /// These formulas by column.
+    Of(&'a BTreeMap<String, String>),
+    /// Known when the case is, to which the expectation will belong; or the arms, for an order.
+    Later,
+    /// Nothing.
+    Nobody,
+}
+
 /// The expectations of the list `NAME` of the table at `path` (the file's own: empty) in a study file.
 pub fn read_expects(document: &Document, path: &str, asked: Asked, problems: &mut Vec<Problem>) -> Vec<Expect> {
     let Some(list) = document.at(path).and_then(Node::list) else { return Vec::new() };
@@ -37,17 +50,20 @@ pub fn read_expects(document: &Document, path: &str, asked: Asked, problems: &mu
             continue;
         };
         problems.extend(conform::table(table, &EXPECT, &path));
-        found.extend(one(View { table, keys: EXPECT.keys, preset: Preset::Default }, &path, asked, problems));
+        let view = View { table, keys: EXPECT.keys, preset: Preset::Default };
+        let later = asked == Asked::OfARun || view.has("against");
+        let exact = if later { Exact::Later } else { Exact::Nobody };
+        found.extend(one(view, &path, asked, exact, problems));
     }
     found
 }
 
 /// One expectation; `None` when it cannot be read, which is then among the problems.
-pub(super) fn one(v: View, path: &str, asked: Asked, problems: &mut Vec<Problem>) -> Option<Expect> {
+pub(super) fn one(v: View, path: &str, asked: Asked, exact: Exact, problems: &mut Vec<Problem>) -> Option<Expect> {
     let what = v.text("what")?;
-    let order = order(v, &what, path, asked, problems)?;
+    let order = order(v, &what, path, asked, problems).ok()?;
     let norm = v.choice("norm").unwrap_or(if order.is_some() { Norm::Rms } else { Norm::Max });
-    let deviation = deviation(v, norm, path, problems)?;
+    let deviation = deviation(v, norm, exact, path, problems).ok()?;
     let bound = bound(v, deviation.is_some() && order.is_none(), path, problems)?;
     let name = |part: &str| format!("{path}.{part}");
     let parsed = match (&order, &deviation) {
@@ -78,15 +94,18 @@ pub(super) fn one(v: View, path: &str, asked: Asked, problems: &mut Vec<Problem>
     })
 }
 
-/// `Some(None)`: no order is asked for.
-fn order(v: View, what: &str, path: &str, asked: Asked, problems: &mut Vec<Problem>) -> Option<Option<OrderOf>> {
+/// Has told what is wrong.
+struct Told;
+
+/// The order that is asked for, if one is.
+fn order(v: View, what: &str, path: &str, asked: Asked, problems: &mut Vec<Problem>) -> Result<Option<OrderOf>, Told> {
     let given: Vec<_> = ["of", "against", "where", "exact"].into_iter().filter(|k| v.has(k)).collect();
     let mut wrong = |what: String, why: &str, help: &str| problems.push(Problem::new(path, what, why, help).at_key());
     match (what == "order", asked, given.as_slice()) {
-        (false, _, []) => Some(None),
+        (false, _, []) => Ok(None),
         (false, _, [first, ..]) => {
             wrong(format!("`{first}` without an order"), "it belongs to what = \"order\"", "leave it out");
-            None
+            Err(Told)
         }
         (true, Asked::OfARun, _) => {
             let why = "it is seen in runs with several steps";
@@ -95,11 +114,11 @@ fn order(v: View, what: &str, path: &str, asked: Asked, problems: &mut Vec<Probl
                 why,
                 "ask for it in the [[expect]] of a study",
             );
-            None
+            Err(Told)
         }
-        (true, Asked::OfArms, ["of", "against", ..]) => Some(Some(OrderOf {
-            of: v.text("of")?,
-            against: v.text("against")?,
+        (true, Asked::OfArms, ["of", "against", ..]) => Ok(Some(OrderOf {
+            of: v.text("of").ok_or(Told)?,
+            against: v.text("against").ok_or(Told)?,
             arms: v.text("where"),
             exact: v.number("exact"),
         })),
@@ -110,13 +129,19 @@ fn order(v: View, what: &str, path: &str, asked: Asked, problems: &mut Vec<Probl
                 "it is the order of a number or column in a key of the case",
                 help,
             );
-            None
+            Err(Told)
         }
     }
 }
 
-/// `Some(None)`: there is no formula.
-fn deviation(v: View, norm: Norm, path: &str, problems: &mut Vec<Problem>) -> Option<Option<Deviation>> {
+/// The deviation from a formula, if there is one.
+fn deviation(
+    v: View,
+    norm: Norm,
+    exact: Exact,
+    path: &str,
+    problems: &mut Vec<Problem>,
+) -> Result<Option<Deviation>, Told> {
     if !v.has("formula") {
         if let Some(key) = ["norm", "scale"].into_iter().find(|k| v.has(k) && !(*k == "norm" && v.has("of"))) {
             let (why, help) =
@@ -124,20 +149,38 @@ fn deviation(v: View, norm: Norm, path: &str, problems: &mut Vec<Problem>) -> Op
             problems
                 .push(Problem::new(format!("{path}.{key}"), format!("`{key}` without `formula`"), why, help).at_key());
         }
-        return Some(None);
+        return Ok(None);
     }
-    let formula = v.text("formula")?;
+    let (formula, scale) = (v.text("formula").ok_or(Told)?, v.number("scale").ok_or(Told)?);
+    let mut wrong = |what: String, why: &str, help: &str, at| {
+        let problem = Problem::new(format!("{path}.formula"), what, why, help);
+        problems.push(if let Some(at) = at { problem.within(at) } else { problem });
+        Err(Told)
+    };
+    if formula == "exact" {
+        let column = v.text("what").unwrap_or_default();
+        let found = match exact {
+            Exact::Later => None,
+            Exact::Nobody => {
+                let why = "arms may have different ones; what is asked of several arms has none";
+                return wrong("there is no exact formula here".into(), why, "write the formula", None);
+            }
+            Exact::Of(formulas) => {
+                let Some(formula) = formulas.get(&column) else {
+                    let what = format!("the case has no exact formula of `{column}`");
+                    let help = format!("add `\"{column}\" = \"…\"` to [exact]");
+                    return wrong(what, "[exact] says what columns should be", &help, None);
+                };
+                Some(formula.clone())
+            }
+        };
+        return Ok(Some(Deviation { formula, exact: found, norm, scale }));
+    }
     if let Err(error) = Formula::parse(&formula, &["t"]) {
-        let why = "it is a formula in the time t";
-        problems.push(Problem::new(
-            format!("{path}.formula"),
-            error.to_string(),
-            why,
-            "write for example \"-0.5*9.81*t^2\"",
-        ));
-        return None;
+        let help = "write for example \"-0.5*9.81*t^2\"; \"exact\" stands for the case's own, in [exact]";
+        return wrong(error.message, "it is a formula in the time t", help, Some(error.at));
     }
-    Some(Some(Deviation { formula, norm, scale: v.number("scale")? }))
+    Ok(Some(Deviation { formula, exact: None, norm, scale }))
 }
 
 fn bound(v: View, deviation: bool, path: &str, problems: &mut Vec<Problem>) -> Option<Bound> {

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use carom_solid::{Element, generate};
 
+use super::check::rounded;
 use super::keys::{self, Kind};
 use super::mesh_file;
 use super::problem::Problem;
@@ -103,9 +104,6 @@ pub(super) fn read(
             ordered(min[1], max[1], "[1]", path, problems)?;
             Some(MeshSpec::Rectangle { min, max, cells: rectangle_cells(v, min, max, path, problems)? })
         }
-        "disc" => {
-            Some(MeshSpec::Disc { radius: v.number("radius")?, center: point("center")?, size: v.number("size")? })
-        }
         "ring" => {
             let (inner, outer) = (v.number("inner")?, v.number("outer")?);
             if inner >= outer {
@@ -114,11 +112,18 @@ pub(super) fn read(
                 problems.push(Problem::new(path, what, why, "give outer > inner"));
                 return None;
             }
-            Some(MeshSpec::Ring { inner, outer, center: point("center")?, size: v.number("size")? })
+            let size = v.number("size")?;
+            fitting(size, ("outer radius", outer), path, problems)?;
+            Some(MeshSpec::Ring { inner, outer, center: point("center")?, size })
         }
         "polygon" => polygon(v, path, problems),
         _ => {
-            Some(MeshSpec::HalfDisc { radius: v.number("radius")?, center: point("center")?, size: v.number("size")? })
+            let (radius, center, size) = (v.number("radius")?, point("center")?, v.number("size")?);
+            fitting(size, ("radius", radius), path, problems)?;
+            Some(match shape {
+                "disc" => MeshSpec::Disc { radius, center, size },
+                _ => MeshSpec::HalfDisc { radius, center, size },
+            })
         }
     }
 }
@@ -154,6 +159,7 @@ fn rectangle_cells(
         (true, false) => v.value("cells")?.list()?.iter().map(Node::count).collect::<Option<Vec<_>>>()?.try_into().ok(),
         (false, true) => {
             let size = v.number("size").filter(|size| *size > 0.0)?;
+            fitting(size, ("longer side", (max[0] - min[0]).max(max[1] - min[1])), path, problems)?;
             Some([0, 1].map(|i| ((max[i] - min[i]) / size - 1e-9).ceil().max(1.0) as usize))
         }
         (both, _) => {
@@ -174,6 +180,19 @@ fn rectangle_cells(
             None
         }
     }
+}
+
+/// Refuses cells that are meant to be larger than their body.
+fn fitting(size: f64, (extent, length): (&str, f64), path: &str, problems: &mut Vec<Problem>) -> Option<()> {
+    // What is not positive has a message of its own.
+    if size > length && length > 0.0 {
+        let what = format!("`size` = {size} is larger than the {extent}, {}", rounded(length));
+        let why = "it is the length of the cells, and none would fit";
+        let help = format!("give size ≤ {}, for example size = {}", rounded(length), rounded(length / 5.0));
+        problems.push(Problem::new(format!("{path}.size"), what, why, help));
+        return None;
+    }
+    Some(())
 }
 
 fn ordered(min: f64, max: f64, index: &str, path: &str, problems: &mut Vec<Problem>) -> Option<()> {

@@ -6,6 +6,8 @@ mod conform;
 mod document;
 mod expect;
 pub mod keys;
+pub(crate) mod load;
+mod load_table;
 mod mesh;
 pub(crate) mod mesh_file;
 mod overrides;
@@ -23,14 +25,17 @@ mod warnings;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use carom_record::FieldFormat;
 use serde::{Deserialize, Serialize};
 
 pub use carom_record::{Bound, Expect as ExpectSpec};
+pub use columns::history_columns;
 pub use document::Document;
 pub use expect::{Asked, read_expects};
+pub use load::{FormulaSpec, InitialSpec, LoadKind, LoadSpec, TableSpec, Velocities};
 pub use problem::{CaseError, Diagnostic, Problem};
 pub use read::{read, read_scheme};
-pub use schema::schema;
+pub use schema::{changes, expectation, schema};
 
 /// One simulation, fully resolved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,8 +56,14 @@ pub struct Case {
     pub materials: Vec<MaterialSpec>,
     /// Deformable bodies.
     pub bodies: Vec<BodySpec>,
-    /// Fixed sides.
+    /// Sides held or moved.
     pub supports: Vec<SupportSpec>,
+    /// Forces on sides and in bodies.
+    #[serde(default)]
+    pub loads: Vec<LoadSpec>,
+    /// The run whose end is the start; none: the reference positions.
+    #[serde(default)]
+    pub initial: Option<InitialSpec>,
     /// Contact pairs of sides.
     pub contacts: Vec<ContactSpec>,
     /// Time interval, step and scheme.
@@ -63,8 +74,19 @@ pub struct Case {
     pub probes: Vec<ProbeSpec>,
     /// What is written, and when.
     pub output: OutputSpec,
+    /// What columns should be, as formulas in t.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub exact: BTreeMap<String, String>,
     /// Expected values that make the case a test.
     pub expects: Vec<ExpectSpec>,
+}
+
+impl Case {
+    /// A measure of the work it is, to put long runs before short ones: steps × nodes.
+    pub fn work(&self) -> f64 {
+        let nodes: f64 = self.bodies.iter().map(|body| body.mesh.estimate(body.element).1).sum();
+        self.time.steps() as f64 * nodes
+    }
 }
 
 /// Plane state of a two-dimensional body.
@@ -141,8 +163,8 @@ pub struct BodySpec {
     pub place: Option<PlaceSpec>,
     /// Acceleration by gravity, one component per dimension.
     pub gravity: Vec<f64>,
-    /// Initial velocity, uniform.
-    pub velocity: Vec<f64>,
+    /// Initial velocity, formulas in X, Y.
+    pub velocity: Vec<FormulaSpec>,
     /// Mass matrix.
     pub mass: MassKind,
 }
@@ -269,7 +291,7 @@ pub struct RefineSpec {
     pub size: f64,
 }
 
-/// Sides held in some directions.
+/// Sides held or moved in some directions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SupportSpec {
     /// A named support records its reactions.
@@ -278,6 +300,9 @@ pub struct SupportSpec {
     pub on: Vec<String>,
     /// Directions held: 0 is x, 1 is y.
     pub fix: Vec<usize>,
+    /// Directions moved, with their displacements: formulas in X, Y, t.
+    #[serde(rename = "move", default)]
+    pub moves: Vec<(usize, FormulaSpec)>,
 }
 
 /// Two sides that may touch.
@@ -448,9 +473,12 @@ pub enum Quantity {
 /// What is written, and when.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutputSpec {
-    /// Field files every so many steps; 0: none.
+    /// Fields every so many steps; 0: none.
     pub fields_every: usize,
-    /// Field files at the steps nearest to these times, besides.
+    /// How fields are written.
+    #[serde(default)]
+    pub format: FieldFormat,
+    /// Fields at the steps nearest to these times, besides.
     pub at_times: Vec<f64>,
     /// History rows every so many steps.
     pub history_every: usize,

@@ -9,6 +9,8 @@ pub struct Problem {
     pub path: String,
     /// Whether the key itself is meant rather than its value.
     pub at_key: bool,
+    /// Bytes of the value's text that are meant, where it is a formula.
+    pub within: Option<Box<std::ops::Range<usize>>>,
     /// What is wrong.
     pub what: String,
     /// Why it is wrong.
@@ -25,13 +27,19 @@ impl Problem {
         why: impl Into<String>,
         help: impl Into<String>,
     ) -> Self {
-        Self { path: path.into(), at_key: false, what: what.into(), why: why.into(), help: help.into() }
+        Self { path: path.into(), at_key: false, within: None, what: what.into(), why: why.into(), help: help.into() }
     }
 
     /// The same problem, pointing at the key instead of its value.
     #[must_use]
     pub fn at_key(self) -> Self {
         Self { at_key: true, ..self }
+    }
+
+    /// The same problem, pointing at a part of its value's text.
+    #[must_use]
+    pub fn within(self, bytes: std::ops::Range<usize>) -> Self {
+        Self { within: Some(Box::new(bytes)), ..self }
     }
 }
 

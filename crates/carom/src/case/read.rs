@@ -1,5 +1,6 @@
 //! Document → case: every table read with its defaults; what concerns one table alone is checked here, the rest in `check`.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::BodySpec;
@@ -8,17 +9,18 @@ use super::conform;
 use carom_time::SchemeError;
 
 use super::document::{Document, joined};
-use super::expect::{self, Asked};
+use super::expect::{self, Asked, Exact};
 use super::keys::{self, Kind};
+use super::load;
 use super::mesh;
 use super::place;
 use super::problem::{CaseError, Problem};
 use super::suggest;
-use super::tree::{Node, Table};
+use super::tree::{Entry, Node, Table};
 use super::view::{View, word};
 use super::{
-    Case, ContactSpec, ExpectSpec, MaterialSpec, NewtonSpec, OutputSpec, Preset, PrimarySpec, ProbeSpec, SchemeSpec,
-    SupportSpec, TimeSpec, Units,
+    Case, ContactSpec, ExpectSpec, InitialSpec, LoadSpec, MaterialSpec, NewtonSpec, OutputSpec, Preset, PrimarySpec,
+    ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
 };
 
 /// Tables read so far: `None` where one of them could not be.
@@ -27,8 +29,10 @@ pub(super) struct Draft {
     pub(super) materials: Vec<Option<MaterialSpec>>,
     pub(super) bodies: Vec<Option<BodySpec>>,
     pub(super) supports: Vec<Option<SupportSpec>>,
+    pub(super) loads: Vec<Option<LoadSpec>>,
     pub(super) contacts: Vec<Option<ContactSpec>>,
     pub(super) probes: Vec<Option<ProbeSpec>>,
+    pub(super) exact: BTreeMap<String, String>,
     pub(super) expects: Vec<Option<ExpectSpec>>,
     pub(super) time: Option<TimeSpec>,
 }
@@ -42,19 +46,23 @@ pub fn read(document: &Document) -> Result<Case, Vec<Problem>> {
         materials: reader.each("material", |v, path| material(v, path, &mut problems)),
         bodies: Vec::new(),
         supports: reader.each("support", |v, _| support(v)),
+        loads: Vec::new(),
         contacts: reader.each("contact", |v, _| contact(v)),
         probes: reader.each("probe", |v, _| probe(v)),
+        exact: reader.exact(),
         expects: Vec::new(),
         time: reader.one("time").and_then(|v| time(v, &mut problems)),
     };
     let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
     draft.bodies = reader.each("body", |v, path| body(v, reader.dimension?, folder, path, &mut problems));
-    draft.expects = reader.each("expect", |v, path| expect::one(v, path, Asked::OfARun, &mut problems));
+    draft.loads = reader.each("load", |v, path| load::read(v, folder, path, &mut problems));
+    draft.expects =
+        reader.each("expect", |v, path| expect::one(v, path, Asked::OfARun, Exact::Of(&draft.exact), &mut problems));
     check::problems(document, &draft, &mut problems);
     if !problems.is_empty() {
         return Err(problems);
     }
-    reader.case(document, draft).ok_or_else(|| {
+    reader.case(document, draft, folder).ok_or_else(|| {
         let why = "its keys passed every check, but one of them could not be taken over";
         vec![Problem::new("", "the case cannot be read", why, "please report this file as a bug of Carom")]
     })
@@ -93,14 +101,23 @@ impl<'a> Reader<'a> {
         list.iter().enumerate().map(|(i, node)| read(view(node)?, &format!("{name}[{i}]"))).collect()
     }
 
-    fn case(&self, document: &Document, draft: Draft) -> Option<Case> {
+    /// Formulas by column, as written.
+    fn exact(&self) -> BTreeMap<String, String> {
+        let table = self.root.table.get("exact").and_then(Node::table);
+        let formula = |entry: &Entry| {
+            let node = &entry.node;
+            Some((entry.key.clone(), node.text().map(str::to_owned).or_else(|| Some(node.number()?.to_string()))?))
+        };
+        table.into_iter().flat_map(|t| &t.0).filter_map(formula).collect()
+    }
+
+    fn case(&self, document: &Document, draft: Draft, folder: &Path) -> Option<Case> {
         let dimension = draft.dimension?;
         let stem = std::path::Path::new(document.name()).file_stem().map(|s| s.to_string_lossy().into_owned());
         let units = self.one("units")?;
         let mut bodies: Vec<BodySpec> = all(draft.bodies)?;
         for body in &mut bodies {
             body.gravity.resize(dimension, 0.0);
-            body.velocity.resize(dimension, 0.0);
         }
         Some(Case {
             title: self.root.text("title").or(stem).unwrap_or_default(),
@@ -112,11 +129,14 @@ impl<'a> Reader<'a> {
             materials: all(draft.materials)?,
             bodies,
             supports: all(draft.supports)?,
+            loads: all(draft.loads)?,
+            initial: self.root.has("initial").then(|| initial(self.one("initial")?, folder)).flatten(),
             contacts: all(draft.contacts)?,
             time: draft.time?,
             newton: newton(self.one("newton")?)?,
             probes: all(draft.probes)?,
             output: output(self.one("output")?)?,
+            exact: draft.exact,
             expects: all(draft.expects)?,
         })
     }
@@ -184,14 +204,21 @@ fn body(v: View, dimension: usize, folder: &Path, path: &str, problems: &mut Vec
             None => None,
         },
         gravity: if v.has("gravity") { v.numbers("gravity")? } else { Vec::new() },
-        velocity: if v.has("velocity") { v.numbers("velocity")? } else { Vec::new() },
+        velocity: load::velocity(&v, dimension, path, problems)?,
         mass: v.choice("mass")?,
     })
 }
 
 fn support(v: View) -> Option<SupportSpec> {
-    let fix = v.texts("fix")?.iter().map(|d| ["x", "y"].iter().position(|x| x == d)).collect::<Option<_>>()?;
-    Some(SupportSpec { name: v.text("name"), on: v.texts("on")?, fix })
+    let fix = if v.has("fix") { v.texts("fix")? } else { Vec::new() };
+    let fix = fix.iter().map(|d| ["x", "y"].iter().position(|x| x == d)).collect::<Option<_>>()?;
+    Some(SupportSpec { name: v.text("name"), on: v.texts("on")?, fix, moves: load::motion(&v)? })
+}
+
+fn initial(v: View, folder: &Path) -> Option<InitialSpec> {
+    let joined = folder.join(v.text("from")?);
+    let from = std::path::absolute(&joined).unwrap_or(joined);
+    Some(InitialSpec { from, velocities: v.choice("velocities")? })
 }
 
 fn contact(v: View) -> Option<ContactSpec> {
@@ -236,6 +263,10 @@ fn scheme(table: &Table, preset: Preset, path: &str, problems: &mut Vec<Problem>
     let kind = table.get("kind")?.text()?;
     let v = View { table, keys: keys::SCHEMES.table(kind)?.keys, preset };
     let numbers = v.keys.iter().filter(|k| matches!(k.kind, Kind::Number(_)));
+    if kind == carom_time::STATIC {
+        let forces = carom_time::ForceRule::AverageForces;
+        return Some(SchemeSpec { kind: kind.to_owned(), parameters: std::collections::BTreeMap::new(), forces });
+    }
     let parameters = numbers.filter_map(|k| Some((k.name.to_owned(), v.number(k.name)?))).collect();
     let forces =
         if v.keys.iter().any(|k| k.name == "forces") { v.choice("forces")? } else { carom_time::ForceRule::default() };
@@ -279,6 +310,7 @@ fn output(v: View) -> Option<OutputSpec> {
     let every = if v.has("at_times") { 0 } else { 20 };
     Some(OutputSpec {
         fields_every: if v.has("fields_every") { v.count("fields_every")? } else { every },
+        format: v.choice("format")?,
         at_times: v.numbers("at_times")?,
         history_every: v.count("history_every")?,
         checkpoint_every: v.count("checkpoint_every")?,

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::keys::{CASE, Default, Key, Kind, Range, Table, Variants};
+use super::keys::{CASE, Default, EXPECT, Key, Kind, Range, Table, Variants};
 
 /// The schema of a case file.
 pub fn schema() -> Value {
@@ -10,6 +10,46 @@ pub fn schema() -> Value {
     schema.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
     schema.insert("title".into(), json!("Carom case"));
     Value::Object(schema)
+}
+
+/// Schemas of the values that an override may set, by a pattern of its key: `time.step`, `body.NAME.element`.
+pub fn changes() -> Map<String, Value> {
+    let mut found = Vec::new();
+    paths(&CASE, "^", &mut found);
+    let mut schemas = Map::new();
+    for (pattern, schema) in found {
+        // A key that means different things in different variants takes what any of them takes.
+        let known = schemas.entry(pattern).or_insert_with(|| json!({ "anyOf": [] }));
+        if let Some(list) = known["anyOf"].as_array_mut().filter(|list| !list.contains(&schema)) {
+            list.push(schema);
+        }
+    }
+    schemas
+}
+
+/// Every key at every depth, behind the pattern of what is before it.
+fn paths(spec: &Table, before: &str, found: &mut Vec<(String, Value)>) {
+    for key in spec.keys {
+        let name = format!("{before}{}", key.name);
+        found.push((format!("{name}$"), property(key)));
+        match key.kind {
+            Kind::Table(spec) | Kind::SideOr(spec) => paths(spec, &format!("{name}\\."), found),
+            Kind::Tables(spec) => paths(spec, &format!("{name}\\.[^.]+\\."), found),
+            Kind::Variant(variants) => {
+                let before = format!("{name}\\.");
+                let values: Vec<_> = variants.tables.iter().map(|(value, _)| value).collect();
+                found.push((format!("{before}{}$", variants.tag), json!({ "enum": values })));
+                let tables = variants.tables.iter().map(|(_, spec)| spec).chain(variants.or);
+                tables.for_each(|spec| paths(spec, &before, found));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The schema of one expectation, of a case, an arm or a study.
+pub fn expectation() -> Value {
+    Value::Object(table(&EXPECT, None))
 }
 
 fn table(spec: &Table, tag: Option<(&str, &str, &str)>) -> Map<String, Value> {
@@ -58,6 +98,7 @@ fn values(kind: &Kind) -> Map<String, Value> {
         Kind::Choices(words) => json!({ "type": "array", "minItems": 1, "items": { "enum": words } }),
         Kind::Number(range) => Value::Object(number(range)),
         Kind::NumberOrFalse(range) => json!({ "oneOf": [number(range), { "const": false }] }),
+        Kind::ByColumn => json!({ "type": "object", "additionalProperties": { "type": ["number", "string"] } }),
         Kind::Truth => json!({ "type": "boolean" }),
         Kind::Count(least) => json!({ "type": "integer", "minimum": least }),
         Kind::Counts(least) => {
@@ -69,6 +110,9 @@ fn values(kind: &Kind) -> Map<String, Value> {
             let point = json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "number" } });
             json!({ "type": "array", "minItems": least, "items": point })
         }
+        Kind::Formula(_) => formula(),
+        Kind::Formulas(_) => formulas(),
+        Kind::FormulasOr(_, spec) => json!({ "oneOf": [formulas(), table(spec, None)] }),
         Kind::Side => side,
         Kind::Sides => json!({ "type": "array", "minItems": 1, "items": side }),
         Kind::SideOr(spec) => json!({ "oneOf": [side, table(spec, None)] }),
@@ -77,6 +121,14 @@ fn values(kind: &Kind) -> Map<String, Value> {
         Kind::Variant(variants) => one_of(variants),
     };
     if let Value::Object(schema) = schema { schema } else { Map::new() }
+}
+
+fn formula() -> Value {
+    json!({ "type": ["number", "string"] })
+}
+
+fn formulas() -> Value {
+    json!({ "type": "array", "minItems": 1, "maxItems": 2, "items": formula() })
 }
 
 fn one_of(variants: &Variants) -> Value {
@@ -127,7 +179,9 @@ mod tests {
         for key in spec.keys {
             see(spec, key);
             match key.kind {
-                Kind::Table(spec) | Kind::Tables(spec) | Kind::SideOr(spec) => visit(spec, see),
+                Kind::Table(spec) | Kind::Tables(spec) | Kind::SideOr(spec) | Kind::FormulasOr(_, spec) => {
+                    visit(spec, see);
+                }
                 Kind::Variant(Variants { tables, or, .. }) => {
                     tables.iter().map(|(_, spec)| spec).chain(*or).for_each(|spec| visit(spec, see));
                 }

@@ -89,7 +89,7 @@ fn shipped_cases_are_read() {
         let case = resolved(text, &[]).unwrap();
         assert_eq!(case.time.steps(), steps);
         assert_eq!(case.bodies[1].gravity, [0.0, 0.0]);
-        assert_eq!(case.bodies[0].velocity, [0.0, 0.0]);
+        assert!(case.bodies[0].velocity.iter().all(FormulaSpec::is_zero));
         let strike = &case.contacts[0];
         assert_eq!((strike.persistency, strike.active_set), (Persistency::Project, ActiveSetRule::Within));
         assert_eq!((strike.detection, strike.force), (Detection::ClosestPoint, ForceTime::AlphaF));
@@ -182,7 +182,9 @@ fn later_problems_are_placed() {
 
 #[test]
 fn scheme_tables_are_the_catalogue() {
-    let ours: Vec<_> = keys::SCHEMES.tables.iter().map(|(name, _)| *name).collect();
+    // Besides the integrators there is equilibrium, which has nothing to analyse.
+    let ours: Vec<_> =
+        keys::SCHEMES.tables.iter().map(|(name, _)| *name).filter(|k| *k != carom_time::STATIC).collect();
     assert_eq!(ours, carom_time::KINDS.iter().map(|k| k.name).collect::<Vec<_>>());
     for ((_, table), kind) in keys::SCHEMES.tables.iter().zip(carom_time::KINDS) {
         let ours: Vec<_> = table.keys.iter().map(|k| k.name).filter(|k| *k != "forces").collect();

@@ -4,9 +4,9 @@ use std::borrow::Cow;
 
 use serde::de::DeserializeOwned;
 
-use super::Preset;
 use super::keys::{Default, Key};
 use super::tree::{self, Node, Table};
+use super::{FormulaSpec, Preset};
 
 /// A table with the keys that go with it.
 #[derive(Clone, Copy)]
@@ -55,6 +55,14 @@ impl<'a> View<'a> {
 
     pub(super) fn texts(&self, name: &str) -> Option<Vec<String>> {
         self.value(name)?.list()?.iter().map(|n| n.text().map(str::to_owned)).collect()
+    }
+
+    pub(super) fn formula(&self, name: &str) -> Option<FormulaSpec> {
+        FormulaSpec::of(&*self.value(name)?)
+    }
+
+    pub(super) fn formulas(&self, name: &str) -> Option<Vec<FormulaSpec>> {
+        self.value(name)?.list()?.iter().map(FormulaSpec::of).collect()
     }
 
     pub(super) fn has(&self, name: &str) -> bool {

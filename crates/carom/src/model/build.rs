@@ -4,15 +4,17 @@ use carom_contact::{ContactMethod, NodeToPlane};
 use carom_solid::Law;
 
 use super::dimension::{Dimension, Space};
-use super::{Contact, Mass, Model, Part, Probe, Support, exists_in, redistribution};
+use super::formulas::value;
+use super::held::unheld;
+use super::{Contact, Loads, Mass, Model, Motions, Part, Probe, Support, exists_in, redistribution};
 use crate::case::{
     self, ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, MassKind, Persistency, PrimarySpec, Problem,
 };
 
 /// A side in global node numbers.
-struct Side {
-    part: usize,
-    nodes: Vec<usize>,
+pub(super) struct Side {
+    pub(super) part: usize,
+    pub(super) nodes: Vec<usize>,
     facets: Vec<Vec<usize>>,
     outward: f64,
 }
@@ -30,11 +32,9 @@ where
     let dofs = parts.last().map_or(0, |p| p.nodes().end) * D;
     let mut reference = Vec::with_capacity(dofs);
     let mut initial_velocity = Vec::with_capacity(dofs);
-    for (part, spec) in parts.iter().zip(&case.bodies) {
+    for (k, (part, spec)) in parts.iter().zip(&case.bodies).enumerate() {
         reference.extend(part.body.mesh().nodes.as_flattened());
-        for _ in part.nodes() {
-            initial_velocity.extend_from_slice(&spec.velocity);
-        }
+        velocity_into(part, spec, &format!("body[{k}].velocity"), &mut initial_velocity, &mut problems);
     }
 
     let mut fixed = vec![false; dofs];
@@ -43,13 +43,17 @@ where
         let mut held = Vec::new();
         for (j, name) in spec.on.iter().enumerate() {
             match side(&parts, name, &format!("support[{k}].on[{j}]")) {
-                Ok(side) => held.extend(side.nodes.iter().flat_map(|n| spec.fix.iter().map(move |i| n * D + i))),
+                Ok(side) => {
+                    let dofs = |axis: usize| side.nodes.iter().map(move |n| n * D + axis).collect::<Vec<_>>();
+                    for dof in spec.fix.iter().flat_map(|i| dofs(*i)) {
+                        fixed[dof] = true;
+                        initial_velocity[dof] = 0.0;
+                        held.push(dof);
+                    }
+                    held.extend(spec.moves.iter().flat_map(|(i, _)| dofs(*i)));
+                }
                 Err(problem) => problems.push(problem),
             }
-        }
-        for &dof in &held {
-            fixed[dof] = true;
-            initial_velocity[dof] = 0.0;
         }
         held.sort_unstable();
         held.dedup();
@@ -58,6 +62,10 @@ where
         }
     }
 
+    let motions = Motions::build(case, &parts, &fixed, &mut problems);
+    motions.dofs().for_each(|dof| fixed[dof] = true);
+    let loads = Loads::build(case, &parts, &mut problems);
+
     let kinds: Vec<_> = case.bodies.iter().map(|b| b.mass).collect();
     let mut mass = Mass::assemble(&parts, &kinds);
     problems.extend(redistributions(case, &parts, &reference, &mut mass));
@@ -65,6 +73,8 @@ where
     let gravity = gravity(case, &parts, &mass, dofs);
     let contacts = contacts(case, &parts, &massless, &mut problems);
     let probes = probes(case, &parts, &mut problems);
+    let is_static = case.time.scheme.is_static();
+    let unheld = if is_static { unheld(&parts, &fixed, &contacts, &mut problems) } else { Vec::new() };
 
     problems.extend(massless_refusals(case, &parts, &massless));
 
@@ -85,6 +95,9 @@ where
             mass,
             massless,
             gravity,
+            loads,
+            motions,
+            unheld,
             contacts,
             supports,
             probes,
@@ -92,6 +105,41 @@ where
         })
     } else {
         Err(problems)
+    }
+}
+
+/// Initial velocities at the nodes of a body.
+fn velocity_into<const D: usize>(
+    part: &Part<D>,
+    spec: &case::BodySpec,
+    path: &str,
+    velocity: &mut Vec<f64>,
+    problems: &mut Vec<Problem>,
+) {
+    let what = format!("the velocity of body \"{}\"", part.name);
+    let variables = case::keys::variables(case::keys::IN_SPACE, D);
+    let formulas: Vec<_> = match spec.velocity.iter().map(|f| f.formula(&variables)).collect() {
+        Ok(formulas) => formulas,
+        Err(error) => {
+            let error: carom_formula::FormulaError = error;
+            return problems.push(Problem::new(path, what, error.to_string(), ""));
+        }
+    };
+    for place in &part.body.mesh().nodes {
+        for formula in &formulas {
+            match value(formula, &what, place, 0.0) {
+                Ok(value) => velocity.push(value),
+                Err(error) => {
+                    let help = "change the formula so that it has a value in the whole body";
+                    return problems.push(Problem::new(
+                        path,
+                        "the initial velocity has no value",
+                        error.to_string(),
+                        help,
+                    ));
+                }
+            }
+        }
     }
 }
 
@@ -153,7 +201,7 @@ fn gravity<const D: usize>(case: &Case, parts: &[Part<D>], mass: &Mass, dofs: us
     force
 }
 
-fn side<const D: usize>(parts: &[Part<D>], name: &str, path: &str) -> Result<Side, Problem> {
+pub(super) fn side<const D: usize>(parts: &[Part<D>], name: &str, path: &str) -> Result<Side, Problem> {
     let missing = |why: String, help: String| Problem::new(path, format!("there is no side \"{name}\""), why, help);
     let bodies = || parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
     let (body, side) = name
@@ -231,6 +279,7 @@ where
         let light = |part: usize| case.bodies[part].mass.is_redistributed();
         let projects = spec.law == ContactLaw::Position
             && spec.enforcement == Enforcement::Multiplier
+            && !case.time.scheme.is_static()
             && !light(secondary.part)
             && !primary_part.is_some_and(light);
         let contact = Contact {
@@ -243,8 +292,8 @@ where
             secondary_facets: secondary.facets,
             // Other schemes take the contact force at the ends of their stages: there is nothing to average.
             force: if averages { spec.force } else { ForceTime::AlphaF },
-            // A predictor that respects the contact, a spring, and nodes without mass that follow the other side leave nothing to project: projected, a
-            // massive side would be given the velocity of the light one.
+            // A predictor that respects the contact, a spring, load steps, and nodes without mass that follow the other side leave nothing to project:
+            // projected, a massive side would be given the velocity of the light one.
             persistency: if projects { spec.persistency } else { Persistency::None },
             within: spec.active_set == ActiveSetRule::Within,
         };

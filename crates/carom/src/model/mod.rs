@@ -2,7 +2,11 @@
 
 mod build;
 mod dimension;
+mod formulas;
+mod held;
+mod loads;
 mod mass;
+mod motion;
 mod probe;
 mod redistribution;
 
@@ -11,7 +15,11 @@ use carom_solid::{Body, Inverted};
 
 pub use build::{build, overlaps};
 pub use dimension::{Dimension, Space};
+pub use formulas::NoValue;
+pub use held::{Mode, Unheld};
+pub use loads::{Loads, LoadsAt};
 pub use mass::Mass;
+pub use motion::{Motions, Prescribed};
 pub use probe::Probe;
 
 use crate::case::{ForceTime, Persistency, Quantity};
@@ -73,9 +81,9 @@ pub struct Model<const D: usize> {
     pub parts: Vec<Part<D>>,
     /// Reference positions X, flat.
     pub reference: Vec<f64>,
-    /// Initial velocities, flat; zero where supported.
+    /// Initial velocities, flat; zero where fixed.
     pub initial_velocity: Vec<f64>,
-    /// Whether a dof is held.
+    /// Whether a dof is held, fixed or moved.
     pub fixed: Vec<bool>,
     /// Dofs that are not held, ascending.
     pub free: Vec<usize>,
@@ -87,6 +95,12 @@ pub struct Model<const D: usize> {
     pub massless: Vec<bool>,
     /// Gravity as nodal forces; constant, with potential −f·y.
     pub gravity: Vec<f64>,
+    /// Loads on sides and in bodies.
+    pub loads: Loads<D>,
+    /// Supports that move.
+    pub motions: Motions<D>,
+    /// Rigid motions that supports leave to bodies; only looked for where there is no inertia.
+    pub unheld: Vec<Mode>,
     /// Contacts.
     pub contacts: Vec<Contact<D>>,
     /// Named supports.
@@ -145,6 +159,18 @@ impl<const D: usize> Model<D> {
             }
         }
         Ok(strain)
+    }
+
+    /// Loads at a time and positions `y`, overwriting `force`; gravity is not among them.
+    ///
+    /// # Errors
+    /// A formula without a finite value.
+    pub fn loads_into(&self, time: f64, y: &[f64], at: &mut LoadsAt, force: &mut [f64]) -> Result<(), NoValue> {
+        if !self.loads.is_empty() {
+            self.loads.at(&self.parts, self.dofs(), time, at)?;
+            self.loads.force_into(at, y, force);
+        }
+        Ok(())
     }
 
     /// Kinetic energy ½ vᵀM v.

@@ -213,7 +213,7 @@ fn reactions<const D: usize>(model: &Model<D>, state: &State) -> Vec<f64> {
     let mut force = vec![0.0; model.dofs()];
     model.mass.multiply_into(&state.a, &mut force);
     for i in 0..force.len() {
-        force[i] += state.f_internal[i] - model.gravity[i];
+        force[i] += state.f_internal[i] - model.gravity[i] - state.f_external[i];
     }
     let mut gap = Linearised::default();
     for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {

@@ -3,8 +3,21 @@
 use carom_contact::PairEvent;
 use carom_record::Event;
 
+use crate::case::{Case, MeshSpec};
 use crate::model::Model;
 use crate::simulation::LogEvent;
+
+/// What was mended in meshes that were read from files.
+pub(super) fn repairs(case: &Case) -> Vec<Event> {
+    let of_body = |body: &crate::case::BodySpec| match &body.mesh {
+        MeshSpec::File { repairs, .. } => repairs.clone(),
+        _ => Vec::new(),
+    };
+    let event = |name: &str, repair: &str| {
+        Event::new(0, 0.0, "repair", format!("mesh of \"{name}\": {repair}")).with("body", name)
+    };
+    case.bodies.iter().flat_map(|b| of_body(b).into_iter().map(move |r| event(&b.name, &r))).collect()
+}
 
 /// An event of the step being computed.
 pub(super) fn entry<const D: usize>(model: &Model<D>, step: u64, event: &LogEvent) -> Event {

@@ -8,7 +8,7 @@ use carom_record::{ContactRow, Event, Manifest, RecordError, RunWriter, Source, 
 
 use super::columns::{center_weights, columns, row};
 use super::fields::{consistent_weights, field_set, gap_of, sides};
-use super::log::entry;
+use super::log::{entry, repairs};
 use super::verdicts::judge;
 use crate::case::{Case, Problem};
 use crate::model::{Dimension, Space};
@@ -198,14 +198,15 @@ where
             remarks: vec!["the run is finished: nothing was computed".into()],
         });
     }
-    let simulation = Simulation::<D>::new(case, options.threads).map_err(RunError::Case)?;
     let reopened = RunWriter::reopen(directory)?;
     let state: State = postcard::from_bytes(&reopened.payload).map_err(|error| RunError::Incompatible {
         what: format!("the checkpoint of {} does not fit this version of Carom: {error}", directory.display()),
     })?;
-    if state.y.len() != simulation.model.dofs() {
+    let dofs = state.y.len();
+    let simulation = Simulation::<D>::resume(case, options.threads, state).map_err(RunError::Case)?;
+    if dofs != simulation.model.dofs() {
         return Err(RunError::Incompatible {
-            what: format!("the checkpoint has {} dofs, the case {}", state.y.len(), simulation.model.dofs()),
+            what: format!("the checkpoint has {dofs} dofs, the case {}", simulation.model.dofs()),
         });
     }
     let mut manifest = reopened.manifest;
@@ -214,7 +215,7 @@ where
     manifest.started = carom_record::now();
     manifest.threads = options.threads;
     let remarks = reopened.fallback.iter().map(ToString::to_string).collect();
-    let mut session = Session::new(case, simulation.resumed(state), reopened.writer, manifest);
+    let mut session = Session::new(case, simulation, reopened.writer, manifest);
     session.writer.manifest(&session.manifest)?;
     if reopened.rows == 0 {
         session.write_start()?;
@@ -226,7 +227,8 @@ impl<'a, const D: usize> Session<'a, D>
 where
     Space: Dimension<D>,
 {
-    fn new(case: &'a Case, simulation: Simulation<D>, writer: RunWriter, manifest: Manifest) -> Self {
+    fn new(case: &'a Case, simulation: Simulation<D>, mut writer: RunWriter, manifest: Manifest) -> Self {
+        writer.field_format(case.output.format);
         let at = |time: &f64| (time / simulation.dt).round() as u64;
         let field_steps = case.output.at_times.iter().map(at).collect();
         let weights = center_weights(&simulation.model);
@@ -248,8 +250,11 @@ where
         }
     }
 
-    /// Warnings, row and fields of the initial state.
+    /// What was mended in meshes that were read, warnings, row and fields of the initial state.
     fn write_start(&mut self) -> Result<(), RunError> {
+        for event in repairs(self.case) {
+            self.writer.log(&event)?;
+        }
         for warning in &self.manifest.warnings {
             self.writer.log(&Event::new(0, 0.0, "warning", warning.clone()))?;
         }

@@ -35,16 +35,23 @@ struct Point {
 }
 
 impl<const D: usize> Stepper<D> for Implicit {
-    fn step(&self, model: &Model<D>, state: &State, dt: f64, work: &mut Workspace<D>) -> Result<Accepted, Rejected> {
+    fn step(
+        &self,
+        model: &Model<D>,
+        state: &State,
+        dt: f64,
+        to: f64,
+        work: &mut Workspace<D>,
+    ) -> Result<Accepted, Rejected> {
         let previous = state.previous.as_ref().filter(|previous| previous.dt == dt);
         let mut next = state.clone();
         let mut report = StepReport::default();
         let mut finished: Vec<Point> = Vec::new();
-        let (mut end, mut impulse) = (0.0, [0.0; 2]);
+        let mut end = 0.0;
         let mut trial =
             Trial { increment: vec![0.0; model.dofs()], y: state.y.clone(), pairs: state.pairs.clone(), strain: 0.0 };
-        let shift = self.predictor_shift(model, state, dt, work)?;
-        work.mean.fill(0.0);
+        let shift = self.predictor_shift(model, state, dt, to, work)?;
+        work.means.clear(model.dofs());
         for k in 0..self.kernel.stages() {
             self.prepare(k, dt, state, &finished, work);
             if let Some(shift) = &shift {
@@ -53,43 +60,51 @@ impl<const D: usize> Stepper<D> for Implicit {
                     map.at_start.iter_mut().zip(shift).for_each(|(at_start, c)| *at_start -= map.slope * c);
                 }
             }
+            let time = if work.stage.end == 1.0 { to } else { state.time + work.stage.end * dt };
+            begin(model, state, time, work)?;
             known_into(model, &work.stage, state, &mut work.forces);
             let before = finished.last().map_or(&state.y, |point| &point.y);
-            go_on(model, &next.v, &next.a, (work.stage.end - end) * dt, &mut trial);
+            go_on(&next.v, &next.a, (work.stage.end - end) * dt, &mut trial);
             end = work.stage.end;
             let effort = solve_stage(model, state, before, &self.newton, &mut trial, work)?;
             report.newton += effort.iterations;
             report.events.extend(effort.events);
-            ledger::add_stage(model, state, previous, &trial.pairs, dt, &mut impulse, work);
+            ledger::add_stage(model, state, previous, &trial.pairs, dt, work);
             next.a.clone_from(&work.acceleration);
             work.stage.velocity.value_into(&trial.increment, &mut next.v);
+            take_motions(work, &mut next);
             if k + 1 < self.kernel.stages() {
                 finished.push(Point { y: trial.y.clone(), v: next.v.clone(), a: next.a.clone() });
             }
         }
 
+        next.time = to;
         next.y.clone_from(&trial.y);
         for (i, massless) in model.massless.iter().enumerate() {
-            if *massless {
+            if *massless && !work.stage.is_static() {
                 // Without inertia there is nothing to integrate: the velocity is the mean one, the acceleration zero.
                 (next.v[i], next.a[i]) = (trial.increment[i] / dt, 0.0);
             }
         }
+        take_motions(work, &mut next);
         next.pairs.clone_from(&trial.pairs);
+        next.f_external.clone_from(&work.forces.loads);
         next.f_internal.clone_from(&work.forces.internal);
         let mut strain = trial.strain;
         if work.stage.average != 0.0 {
             strain = model
                 .internal_force(&next.y, &mut next.f_internal)
                 .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+            model.loads_into(to, &next.y, &mut work.loads, &mut next.f_external)?;
         }
         averaged_contact_into(model, &next.pairs, &work.gaps, &mut next.f_contact);
-        ledger::account(model, &mut next, strain, &trial.increment, impulse, work);
+        ledger::account(model, state, &mut next, strain, &trial.increment, dt, work);
         if let Some(shift) = &shift {
             // Positions moved by the predictor's contact, against the forces of the step: M (v − v_s)/Δt is their sum.
             let change: Vec<f64> = next.v.iter().zip(&state.v).map(|(v, old)| (v - old) / dt).collect();
-            model.mass.multiply_into(&change, &mut work.mean);
-            next.ledger.contact_work -= dot(shift, &work.mean);
+            let mut forces = vec![0.0; model.dofs()];
+            model.mass.multiply_into(&change, &mut forces);
+            next.ledger.contact_work -= dot(shift, &forces);
         }
         if work.stage.internal == Internal::DiscreteGradient {
             // A spring goes on from the gap it has counted.
@@ -107,8 +122,7 @@ impl<const D: usize> Stepper<D> for Implicit {
             dt,
             increment: trial.increment,
             velocity: state.v.clone(),
-            contact: work.mean.clone(),
-            impulse,
+            means: work.means.clone(),
         });
         Accepted::new(next, report)
     }
@@ -128,6 +142,7 @@ impl Implicit {
         model: &Model<D>,
         state: &State,
         dt: f64,
+        to: f64,
         work: &mut Workspace<D>,
     ) -> Result<Option<Vec<f64>>, Rejected> {
         if !model.contacts.iter().any(|contact| contact.predictor) {
@@ -135,7 +150,13 @@ impl Implicit {
         }
         let mut trial =
             Trial { increment: vec![0.0; model.dofs()], y: state.y.clone(), pairs: state.pairs.clone(), strain: 0.0 };
-        go_on(model, &state.v, &vec![0.0; model.dofs()], dt, &mut trial);
+        go_on(&state.v, &vec![0.0; model.dofs()], dt, &mut trial);
+        // A support goes where it is moved to, whatever the contact.
+        model.motions.at(to, &mut work.motions)?;
+        for moved in &work.motions {
+            trial.increment[moved.dof] = model.reference[moved.dof] + moved.motion[0] - state.y[moved.dof];
+            trial.y[moved.dof] = state.y[moved.dof] + trial.increment[moved.dof];
+        }
         let free = trial.increment.clone();
         trial.pairs.iter_mut().flatten().for_each(|pair| pair.lambda = 0.0);
         if !penetrates(model, &state.y, &mut trial)? {
@@ -163,10 +184,30 @@ impl Implicit {
     }
 }
 
+/// Loads at the time the stage's internal forces are taken at, and the motions of supports at its end.
+fn begin<const D: usize>(model: &Model<D>, state: &State, to: f64, work: &mut Workspace<D>) -> Result<(), Rejected> {
+    let average = work.stage.average;
+    let time = if average == 0.0 { to } else { (1.0 - average) * to + average * state.time };
+    if !model.loads.is_empty() {
+        model.loads.at(&model.parts, model.dofs(), time, &mut work.loads)?;
+        if model.loads.follow() {
+            work.system.loads_tangent(model, &work.loads);
+        }
+    }
+    Ok(model.motions.at(to, &mut work.motions)?)
+}
+
+/// Velocities and accelerations of the supports that move are their own, not the scheme's.
+fn take_motions<const D: usize>(work: &Workspace<D>, next: &mut State) {
+    for moved in work.motions.iter().filter(|_| !work.stage.is_static()) {
+        [next.v[moved.dof], next.a[moved.dof]] = [moved.motion[1], moved.motion[2]];
+    }
+}
+
 /// The guess of a stage from where the trial is: positions if the acceleration stayed for `dt`, multipliers as they are, each pair free to change
 /// facets again.
-fn go_on<const D: usize>(model: &Model<D>, v: &[f64], a: &[f64], dt: f64, trial: &mut Trial) {
-    for i in (0..trial.increment.len()).filter(|&i| !model.fixed[i]) {
+fn go_on(v: &[f64], a: &[f64], dt: f64, trial: &mut Trial) {
+    for i in 0..trial.increment.len() {
         let moved = dt * (v[i] + 0.5 * dt * a[i]);
         trial.increment[i] += moved;
         trial.y[i] += moved;

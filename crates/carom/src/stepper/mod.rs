@@ -56,6 +56,13 @@ impl Accepted {
 
 /// A time stepper.
 pub trait Stepper<const D: usize>: Send + Sync {
-    /// One step of size `dt` from `state`. The grid index and time of the result are the caller's to set.
-    fn step(&self, model: &Model<D>, state: &State, dt: f64, work: &mut Workspace<D>) -> Result<Accepted, Rejected>;
+    /// One step of size `dt` from `state` to the time `to`. The grid index of the result is the caller's to set.
+    fn step(
+        &self,
+        model: &Model<D>,
+        state: &State,
+        dt: f64,
+        to: f64,
+        work: &mut Workspace<D>,
+    ) -> Result<Accepted, Rejected>;
 }

@@ -41,11 +41,11 @@ impl Check<'_> {
             self.add(path("law"), "contacts have different laws", why, "give all contacts one law");
         }
         let Some(scheme) = self.draft.time.as_ref().map(|time| &time.scheme) else { return };
-        if let Ok(integrator) = scheme.integrator()
-            && !integrator.kernel().has_predictor()
+        if let Ok(kernel) = scheme.kernel()
+            && !kernel.has_predictor()
         {
             let what = format!("scheme `{}` has no predictor to project", scheme.kind);
-            let why = "law = \"predictor\" replaces y + Δt v in Newmark's formula, and this scheme is of two steps or several stages";
+            let why = "law = \"predictor\" replaces y + Δt v in Newmark's formula, and this scheme is of two steps, of several stages, or without inertia";
             self.add(
                 path("law"),
                 what,

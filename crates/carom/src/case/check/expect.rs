@@ -2,6 +2,7 @@
 
 use carom_record::question::{Form, Quantity, Question, Series, metric_names};
 
+use super::super::document::joined;
 use super::super::suggest;
 use super::{Check, columns};
 
@@ -17,6 +18,9 @@ impl Check<'_> {
         let known =
             columns::of(draft.dimension.unwrap_or(2), &draft.bodies, &draft.contacts, &draft.supports, &draft.probes);
         let end = draft.time.as_ref().map_or(f64::INFINITY, |t| t.end);
+        for column in draft.exact.keys().filter(|column| complete && !known.contains(column)) {
+            self.no_column(joined("exact", column), column, &known);
+        }
         for (i, expect) in draft.expects.iter().enumerate() {
             let Some(expect) = expect else { continue };
             let path = format!("expect[{i}].what");
@@ -55,14 +59,16 @@ impl Check<'_> {
                 self.add(path.clone(), format!("there is no arm \"{arm}\""), why, format!("leave `of \"{arm}\"` out"));
             }
             for column in wanted.iter().filter(|_| complete).filter(|c| !known.contains(c)) {
-                let why = "columns are those of history.csv; probes add name.quantity";
-                let help = suggest::nearest(column, known.iter().map(String::as_str)).map_or_else(
-                    || format!("use one of: {}", known.join(", ")),
-                    |near| format!("did you mean `{near}`?"),
-                );
-                self.add(path.clone(), format!("history.csv will have no column `{column}`"), why, help);
+                self.no_column(path.clone(), column, &known);
             }
         }
+    }
+
+    fn no_column(&mut self, path: String, column: &str, known: &[String]) {
+        let why = "columns are those of history.csv; probes add name.quantity";
+        let help = suggest::nearest(column, known.iter().map(String::as_str))
+            .map_or_else(|| format!("use one of: {}", known.join(", ")), |near| format!("did you mean `{near}`?"));
+        self.add(path, format!("history.csv will have no column `{column}`"), why, help);
     }
 
     fn metric(&mut self, name: &str, columns: &[String], path: &str) {

@@ -2,6 +2,7 @@
 
 mod contact;
 mod expect;
+mod loads;
 mod memory;
 mod time;
 
@@ -18,11 +19,14 @@ use super::{BodySpec, Quantity};
 pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Problem>) {
     let mut check = Check { document, draft, problems };
     check.dimension();
-    for list in ["material", "body", "support", "contact", "probe"] {
+    for list in ["material", "body", "support", "load", "contact", "probe"] {
         check.unique_names(list);
     }
     check.bodies();
     check.supports();
+    check.motions();
+    check.loads();
+    check.velocities();
     check.contacts();
     check.probes();
     check.time();
@@ -217,4 +221,9 @@ fn all_sides(body: &BodySpec) -> String {
 fn in_one_dimension(quantity: Quantity) -> bool {
     use Quantity::{Ax, DetF, SigmaXx, Ux, VonMises, Vx};
     matches!(quantity, Ux | Vx | Ax | SigmaXx | VonMises | DetF)
+}
+
+/// A computed number for a message: ten digits at most, so that 0.1 + 0.2 reads 0.3.
+pub(super) fn rounded(x: f64) -> f64 {
+    format!("{x:.9e}").parse().unwrap_or(x)
 }

@@ -1,7 +1,7 @@
 //! The grid of times n·Δt: it must end at `end`.
 
 use super::super::TimeSpec;
-use super::Check;
+use super::{Check, rounded};
 
 /// More steps than any run will take: 10⁹ of a microsecond each are a quarter of an hour, of a millisecond twelve days.
 const MOST_STEPS: f64 = 1e9;
@@ -29,13 +29,13 @@ impl Check<'_> {
             self.add("time.step", "the run has too many steps", why, "choose a longer step or an earlier end");
         } else if (end / step - steps).abs() > 1e-6 * steps {
             let (below, above) = ((end / step).floor(), (end / step).ceil());
-            let why = format!("times are n·step, and end / step = {}", short(end / step));
+            let why = format!("times are n·step, and end / step = {}", rounded(end / step));
             let help = format!(
                 "try step = {} or step = {}, or end = {} or end = {}",
-                short(end / above),
-                short(end / below),
-                short(below * step),
-                short(above * step)
+                rounded(end / above),
+                rounded(end / below),
+                rounded(below * step),
+                rounded(above * step)
             );
             self.add("time.end", format!("the end {end} is not a multiple of the step {step}"), why, help);
         }
@@ -52,9 +52,4 @@ impl Check<'_> {
             }
         }
     }
-}
-
-/// Ten digits at most.
-fn short(x: f64) -> f64 {
-    format!("{x:.9e}").parse().unwrap_or(x)
 }

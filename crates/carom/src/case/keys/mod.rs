@@ -76,6 +76,14 @@ pub enum Kind {
     Numbers,
     /// Points of the plane, at least so many.
     Points(usize),
+    /// A finite number, or a formula in these variables (`Y` only where there is one).
+    Formula(&'static [&'static str]),
+    /// As many of them as dimensions.
+    Formulas(&'static [&'static str]),
+    /// As many of them as dimensions, or this table.
+    FormulasOr(&'static [&'static str], &'static Table),
+    /// A table of formulas in t by the name of a column.
+    ByColumn,
     /// A list of words out of these, at least one.
     Choices(&'static [&'static str]),
     /// A side `body.side`.
@@ -148,6 +156,16 @@ impl Range {
     }
 }
 
+/// Reference place and time.
+pub const IN_SPACE_AND_TIME: &[&str] = &["X", "Y", "t"];
+/// Reference place.
+pub const IN_SPACE: &[&str] = &["X", "Y"];
+
+/// The variables of a formula in a space of this dimension: there is no `Y` on a line.
+pub fn variables(all: &'static [&'static str], dimension: usize) -> Vec<&'static str> {
+    all.iter().copied().filter(|name| dimension > 1 || *name != "Y").collect()
+}
+
 impl Table {
     /// A key by name.
     pub fn key(&self, name: &str) -> Option<&Key> {
@@ -185,6 +203,10 @@ impl Kind {
             Self::Vector => several(dimension),
             Self::Numbers => "a list of numbers".into(),
             Self::Points(least) => format!("a list of at least {least} points [x, y]"),
+            Self::Formula(_) => "a number or a formula in quotes".into(),
+            Self::Formulas(_) => format!("{} or formulas in quotes", several(dimension)),
+            Self::FormulasOr(..) => format!("{} or formulas in quotes, or a table", several(dimension)),
+            Self::ByColumn => "a table of formulas by column".into(),
             Self::Choices(choices) => format!("a list out of {}", words(choices)),
             Self::Side => "a side \"body.side\"".into(),
             Self::Sides => "a list of sides [\"body.side\"]".into(),

@@ -1,10 +1,10 @@
 //! Every key of every table: name, values, unit, default, meaning, example.
 
 use super::Kind::{
-    Choice, Choices, Count, Name, Number, NumberOrFalse, Numbers, Side, SideOr, Sides, Tables, Text, Truth, Variant,
-    Vector,
+    Choice, Choices, Count, Formula, Formulas, FormulasOr, Name, Number, NumberOrFalse, Numbers, Side, SideOr, Sides,
+    Tables, Text, Truth, Variant, Vector,
 };
-use super::{ANY, Kind, NOT_NEGATIVE, POSITIVE, Range, SCHEMES, SHAPES, Table, key};
+use super::{ANY, IN_SPACE, IN_SPACE_AND_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, SCHEMES, SHAPES, Table, key};
 
 /// The whole file.
 pub const CASE: Table = Table {
@@ -31,15 +31,29 @@ pub const CASE: Table = Table {
             .default("\"default\""),
         key("material", Tables(&MATERIAL), "A material bodies refer to by name."),
         key("body", Tables(&BODY), "A deformable body."),
-        key("support", Tables(&SUPPORT), "Sides held in some directions.").optional(),
+        key("support", Tables(&SUPPORT), "Sides held or moved in some directions.").optional(),
+        key("load", Tables(&LOAD), "Forces on a side or in a body.").optional(),
+        key(
+            "initial",
+            Kind::Table(&INITIAL),
+            "Where the bodies are at the start, if not in their reference positions.",
+        )
+        .optional(),
         key("contact", Tables(&CONTACT), "Two sides that may touch.").optional(),
         key("time", Kind::Table(&TIME), "Time interval, step and scheme."),
         key("newton", Kind::Table(&NEWTON), "Newton's method.").optional(),
         key("probe", Tables(&PROBE), "A point whose quantities become columns of history.csv.").optional(),
         key("output", Kind::Table(&OUTPUT), "What is written, and when.").optional(),
+        key(
+            "exact",
+            Kind::ByColumn,
+            "What columns should be, as formulas in t: for `formula = \"exact\"` in [[expect]], and a study's `reference = \"exact\"`.",
+        )
+        .optional()
+        .example("{ \"A.uy\" = \"-0.5*9.81*t^2\" }"),
         key("expect", Tables(&EXPECT), "An expected value: makes the case a test.").optional(),
     ],
-    later: &["load", "initial", "exact", "manufactured"],
+    later: &["manufactured"],
 };
 
 const UNITS: Table = Table {
@@ -107,11 +121,14 @@ const BODY: Table = Table {
             .unit("length/time²")
             .optional()
             .example("[0.0, -9.81]"),
-        key("velocity", Vector, "Uniform initial velocity; zero if left out.")
-            .unit("length/time")
-            .optional()
-            .example("[0.0, -1.0]")
-            .later("a table { linear, angular, about } or formulas"),
+        key(
+            "velocity",
+            FormulasOr(IN_SPACE, &VELOCITY),
+            "Initial velocity, uniform or formulas in X, Y; zero if left out.",
+        )
+        .unit("length/time")
+        .optional()
+        .example("[0.0, -1.0]"),
         key(
             "mass",
             Choice(&["consistent", "lumped", "redistributed", "redistributed-nearest"], &[]),
@@ -119,6 +136,23 @@ const BODY: Table = Table {
              least change of the other nodes, or the lost mass given to the next nodes.",
         )
         .default("\"consistent\""),
+    ],
+    later: &[],
+};
+
+const VELOCITY: Table = Table {
+    name: "velocity",
+    doc: "Initial velocity of a rigid motion: linear + angular × (X − about).",
+    keys: &[
+        key("linear", Vector, "Velocity of the point `about`; zero if left out.")
+            .unit("length/time")
+            .optional()
+            .example("[0.0, -1.0]"),
+        key("angular", Number(ANY), "Angular velocity, anticlockwise, in dimension 2.").unit("1/time").default("0.0"),
+        key("about", Vector, "Centre of the rotation, needed with angular.")
+            .unit("length")
+            .optional()
+            .example("[0.0, 1.0]"),
     ],
     later: &[],
 };
@@ -142,13 +176,66 @@ const PLACE: Table = Table {
 
 const SUPPORT: Table = Table {
     name: "[[support]]",
-    doc: "Sides held in some directions.",
+    doc: "Sides held in some directions with fix, or moved with move.",
     keys: &[
         key("name", Name, "A named support records its reactions.").optional().example("\"floor\""),
         key("on", Sides, "Sides that are held.").example("[\"prism.bottom\"]"),
-        key("fix", Choices(&["x", "y"]), "Directions that are held.").example("[\"x\", \"y\"]"),
+        key("fix", Choices(&["x", "y"]), "Directions that are held.").optional().example("[\"x\", \"y\"]"),
+        key(
+            "move",
+            Kind::Table(&MOVE),
+            "Directions that are moved: displacements, zero at t = 0; velocity and acceleration are the formula's own.",
+        )
+        .optional()
+        .example("{ y = \"-0.1*t\" }"),
     ],
-    later: &["move"],
+    later: &[],
+};
+
+const MOVE: Table = Table {
+    name: "move",
+    doc: "Displacements of a side from its reference position.",
+    keys: &[
+        key("x", Formula(IN_SPACE_AND_TIME), "Displacement along x.").unit("length").optional().example("\"0.1*t\""),
+        key("y", Formula(IN_SPACE_AND_TIME), "Displacement along y.").unit("length").optional().example("\"-0.1*t\""),
+    ],
+    later: &[],
+};
+
+const LOAD: Table = Table {
+    name: "[[load]]",
+    doc: "Forces on sides (on, with traction or pressure) or in a body (body, with body_force). Formulas in X, Y (reference place) and t.",
+    keys: &[
+        key("name", Name, "Name in messages.").optional().example("\"press\""),
+        key("on", Sides, "Sides that are loaded, with traction or pressure.").optional().example("[\"prism.top\"]"),
+        key("body", Name, "Body that is loaded, with body_force.").optional().example("\"prism\""),
+        key("traction", Formulas(IN_SPACE_AND_TIME), "Dead force per reference area.")
+            .unit("mass/(length·time²)")
+            .optional()
+            .example("[\"0\", \"-5*min(t/0.1, 1)\"]"),
+        key("pressure", Formula(IN_SPACE_AND_TIME), "Follower force per current area, against the outward normal.")
+            .unit("mass/(length·time²)")
+            .optional()
+            .example("\"2*t\""),
+        key("body_force", Formulas(IN_SPACE_AND_TIME), "Dead force per reference volume.")
+            .unit("mass/(length²·time²)")
+            .optional()
+            .example("[\"0\", \"-3*X\"]"),
+        key("table", Text, "CSV file with columns t, value: a factor, linear between its lines, on the load.")
+            .optional()
+            .example("\"amplitude.csv\""),
+    ],
+    later: &[],
+};
+
+const INITIAL: Table = Table {
+    name: "[initial]",
+    doc: "Start from the end of another run of the same meshes; time begins at 0 anew.",
+    keys: &[
+        key("from", Text, "Directory of the finished run, from the folder of the case.").example("\"runs/preload\""),
+        key("velocities", Choice(&["keep", "zero"], &[]), "Whether its velocities are taken over.").default("\"keep\""),
+    ],
+    later: &[],
 };
 
 const CONTACT: Table = Table {
@@ -283,11 +370,17 @@ const OUTPUT: Table = Table {
         key(
             "fields_every",
             Count(0),
-            "Field files every so many steps, 0: none; 20 if left out, or 0 if at_times is given.",
+            "Fields every so many steps, 0: none; 20 if left out, or 0 if at_times is given.",
         )
         .optional()
         .example("20"),
-        key("at_times", Numbers, "Field files at the steps nearest to these times.").unit("time").default("[]"),
+        key(
+            "format",
+            Choice(&["vtu", "vtkhdf"], &[]),
+            "Fields as a VTU file each with fields.pvd, or in one file, fields.vtkhdf.",
+        )
+        .default("\"vtu\""),
+        key("at_times", Numbers, "Fields at the steps nearest to these times.").unit("time").default("[]"),
         key("history_every", Count(1), "Rows of history.csv every so many steps.").default("1"),
         key("checkpoint_every", Count(1), "Checkpoints every so many steps.").default("50"),
     ],
@@ -331,7 +424,7 @@ pub const EXPECT: Table = Table {
         key("against", Text, "With what = \"order\": the key of the case the arms differ in.")
             .optional()
             .example("\"time.step\""),
-        key("where", Text, "With what = \"order\": only arms whose names contain this.").optional().example("\"hu\""),
+        key("where", Text, "With what = \"order\": only arms whose names contain these whole words.").optional().example("\"hu\""),
         key("exact", Number(ANY), "With what = \"order\": the exact value, from which errors are taken.").optional().example("1.0"),
         key("slow", Truth, "Left out by `carom verify --fast`.").default("false"),
     ],

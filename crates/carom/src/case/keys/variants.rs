@@ -230,8 +230,15 @@ pub const SCHEMES: Variants = Variants {
                 "Midpoint rule with a discrete gradient; conserves energy and momenta.",
             ),
         ),
+        (
+            "static",
+            without_parameters(
+                "scheme \"static\"",
+                "Equilibrium at every step, without inertia: t is the load parameter.",
+            ),
+        ),
     ],
     or: None,
-    later: &["central-difference", "moreau-jean", "nonsmooth-generalized-alpha", "paoli-schatzman", "static"],
+    later: &["central-difference", "moreau-jean", "nonsmooth-generalized-alpha", "paoli-schatzman"],
     later_keys: &[],
 };

@@ -1,0 +1,250 @@
+//! `carom verify`: every case that carries expectations, run and held against them.
+
+use std::io::{self, IsTerminal, Write};
+use std::num::NonZero;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use carom_record::Status;
+use carom_record::verification::{Row, SetUp, Verification};
+use carom_study::{Event, Kind, Named, Suite, VerifyOptions};
+use include_dir::{Dir, include_dir};
+use serde_json::json;
+
+use super::study::{failure, jobs, report as study_report};
+use crate::exit::{Exit, Failure};
+use crate::live::{duration, stop_on_signal};
+use crate::summary::short;
+use crate::{directory, out};
+
+/// The cases as they were when the program was built.
+static CASES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../cases");
+
+/// Run every case that carries expectations, and print what came out
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  carom verify
+  carom verify cases/bar --report
+  carom verify --fast --csv
+
+Exit codes: 0 all met · 1 an expectation was missed · 2 a case is wrong · 3 a run stopped though nothing expected it")]
+#[allow(clippy::struct_excessive_bools)] // flags of the command line
+pub(crate) struct Arguments {
+    /// Cases, studies, or folders of them [default: cases/, or the fast cases this program carries]
+    paths: Vec<PathBuf>,
+    /// Leave out what is marked slow
+    #[arg(long)]
+    fast: bool,
+    /// Runs at the same time; the results are the same bits for any number [default: all cores]
+    #[arg(long, value_name = "N")]
+    jobs: Option<NonZero<usize>>,
+    /// Directory of the verification; must not exist yet [default: runs/verify, runs/verify-2, …]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the table as CSV
+    #[arg(long, conflicts_with = "json")]
+    csv: bool,
+    /// Write field files, figures and a page for every run
+    #[arg(long)]
+    report: bool,
+    /// Write one Markdown table per family into this directory
+    #[arg(long, value_name = "DIR")]
+    markdown: Option<PathBuf>,
+    /// One JSON object per event on standard output, and nothing else there
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let directory = directory::of_run(Path::new("verify"), arguments.out.as_deref())?;
+    let (paths, fast) = match arguments.paths.as_slice() {
+        [] if Path::new("cases").is_dir() => (vec![PathBuf::from("cases")], arguments.fast),
+        [] => {
+            let cases = directory.join("cases");
+            std::fs::create_dir_all(&cases)?;
+            CASES.extract(&cases)?;
+            (vec![cases], true)
+        }
+        paths => (paths.to_vec(), arguments.fast),
+    };
+    let suite = Suite::read(&paths, fast)?;
+    if suite.items.is_empty() {
+        let help = "name a case or study with [[expect]], or a folder of them".to_owned();
+        return Err(Failure::Argument { what: "nothing here carries an expectation".to_owned(), help });
+    }
+    std::fs::create_dir_all(&directory)?;
+    let options = VerifyOptions { jobs: jobs(arguments.jobs), whole: arguments.report };
+    let stop = stop_on_signal()?;
+    let seen = std::cell::RefCell::new(Seen::new(arguments.json, arguments.csv));
+    let mut begin = |runs: &[Named]| seen.borrow_mut().begin(runs);
+    let done = suite.verify(&directory, options, &mut begin, &mut |e| seen.borrow_mut().event(e), &stop);
+    drop(seen);
+    let Some(verification) = done.map_err(failure)? else {
+        if arguments.json {
+            out::event(&json!({ "event": "interrupted", "directory": directory }))?;
+        } else {
+            out::line("stopped by Ctrl-C: nothing was judged")?;
+        }
+        return Ok(Exit::Interrupted);
+    };
+    if arguments.report {
+        pages(&suite, &verification, &directory)?;
+    }
+    let page = carom_report::verify(&directory).map_err(|e| unwritten(&e))?;
+    if let Some(folder) = &arguments.markdown {
+        carom_report::verify_markdown(&directory, folder).map_err(|e| unwritten(&e))?;
+    }
+    tell(&verification, arguments, &page)?;
+    Ok(match (verification.stopped(), verification.missed()) {
+        (0, 0) => Exit::Done,
+        (0, _) => Exit::Missed,
+        _ => Exit::Stopped,
+    })
+}
+
+fn unwritten(error: &carom_report::ReportError) -> Failure {
+    Failure::Refused { what: error.to_string() }
+}
+
+/// Figures and pages of every run.
+fn pages(suite: &Suite, verification: &Verification, directory: &Path) -> Result<(), Failure> {
+    for (item, set_up) in suite.items.iter().zip(&verification.set_ups) {
+        let place = directory.join(&set_up.directory);
+        match item.kind {
+            Kind::Case(..) => carom_report::report(&place).map(drop).map_err(|e| unwritten(&e))?,
+            Kind::Study(_) => study_report(&place).map(drop)?,
+        }
+    }
+    Ok(())
+}
+
+fn tell(v: &Verification, arguments: &Arguments, page: &Path) -> Result<(), Failure> {
+    if arguments.json {
+        for (set_up, row) in v.rows() {
+            out::event(
+                &json!({ "event": "row", "family": set_up.family, "case": set_up.name, "row": row, "error": row.error() }),
+            )?;
+        }
+        let counts = json!({ "event": "done", "set_ups": v.set_ups.len(), "with_contact": v.with_contact(), "rows": v.rows().count(),
+            "missed": v.missed(), "stopped": v.stopped(), "wall": v.wall, "report": page });
+        return Ok(out::event(&counts)?);
+    }
+    if arguments.csv {
+        let text = v.csv()?;
+        return Ok(out::line(&String::from_utf8_lossy(&text))?);
+    }
+    out::line(&table(v))?;
+    Ok(out::line(&page.display().to_string())?)
+}
+
+fn table(v: &Verification) -> String {
+    const HEADS: [&str; 8] = ["case", "quantity", "expected", "got", "error", "tolerance", "", "source"];
+    let shown = |x: Option<f64>| x.map_or("–".to_owned(), short);
+    let line = |(set_up, row): (&SetUp, &Row)| {
+        [
+            format!("{}/{}", set_up.family, set_up.name),
+            row.quantity(),
+            row.verdict.expected.clone(),
+            shown(row.verdict.got),
+            shown(row.error()),
+            shown(row.verdict.tolerance),
+            if row.verdict.pass { "met" } else { "MISSED" }.to_owned(),
+            row.verdict.why.clone().or_else(|| row.verdict.source.clone()).unwrap_or_default(),
+        ]
+    };
+    let mut cells = vec![HEADS.map(str::to_owned)];
+    cells.extend(v.rows().map(line));
+    let widths: [usize; 8] = std::array::from_fn(|i| cells.iter().map(|row| row[i].chars().count()).max().unwrap_or(0));
+    let mut lines: Vec<String> = Vec::new();
+    for row in cells {
+        let padded = row.iter().zip(widths).enumerate().map(|(i, (cell, width))| match i {
+            3..=5 => format!("{cell:>width$}"),
+            7 => cell.clone(),
+            _ => format!("{cell:width$}"),
+        });
+        lines.push(padded.collect::<Vec<_>>().join("  ").trim_end().to_owned());
+    }
+    for set_up in &v.set_ups {
+        lines.extend(set_up.stopped.iter().map(|why| format!("{}/{} stopped: {why}", set_up.family, set_up.name)));
+    }
+    lines.push(format!(
+        "{} set-ups, {} with dynamic contact; {} expected values, {} missed; {}",
+        v.set_ups.len(),
+        v.with_contact(),
+        v.rows().count(),
+        v.missed(),
+        duration(v.wall)
+    ));
+    lines.join("\n")
+}
+
+/// What is seen while a suite runs: a line on a terminal, else a line for every run that ended, on standard error.
+struct Seen {
+    runs: Vec<Named>,
+    done: Vec<u64>,
+    ended: usize,
+    json: bool,
+    quiet: bool,
+    terminal: bool,
+    last: Option<Instant>,
+}
+
+impl Seen {
+    fn new(json: bool, quiet: bool) -> Self {
+        let terminal = io::stderr().is_terminal();
+        Self { runs: Vec::new(), done: Vec::new(), ended: 0, json, quiet, terminal, last: None }
+    }
+
+    fn begin(&mut self, runs: &[Named]) {
+        self.runs = runs.to_vec();
+        self.done = vec![0; runs.len()];
+        if self.json {
+            let names: Vec<_> = runs.iter().map(|r| &r.name).collect();
+            // A line nobody can see must not stop the suite.
+            let _ = out::event(&json!({ "event": "start", "runs": names }));
+        }
+    }
+
+    fn event(&mut self, event: &Event) {
+        let told = match event {
+            Event::Began(i) => json!({ "event": "began", "run": self.runs[*i].name }),
+            Event::Ended(i, ended) => {
+                (self.done[*i], self.ended) = (self.runs[*i].steps, self.ended + 1);
+                if !self.terminal && !self.json && !self.quiet {
+                    let how = if ended.status == Status::Finished { "done" } else { "stopped" };
+                    let count = format!("{}/{}", self.ended, self.runs.len());
+                    let _ =
+                        writeln!(io::stderr(), "{count:>9}  {how} in {}  {}", duration(ended.wall), self.runs[*i].name);
+                }
+                json!({ "event": "ended", "run": self.runs[*i].name, "status": ended.status, "reason": ended.reason, "wall": ended.wall })
+            }
+            Event::Progress(i, p) => {
+                self.done[*i] = p.step;
+                if self.last.is_some_and(|then| then.elapsed() < Duration::from_millis(200)) {
+                    return;
+                }
+                self.last = Some(Instant::now());
+                json!({ "event": "progress", "run": self.runs[*i].name, "step": p.step, "steps": p.steps, "left": p.left })
+            }
+            Event::Kept(_) => return,
+        };
+        if self.json {
+            let _ = out::event(&told);
+        }
+        if self.terminal {
+            let all = self.runs.iter().map(|r| r.steps).sum::<u64>().max(1);
+            let percent = 100.0 * self.done.iter().sum::<u64>() as f64 / all as f64;
+            let line = format!("{percent:4.0} %  {} of {} runs", self.ended, self.runs.len());
+            let _ = write!(io::stderr().lock(), "\r\x1b[K{line}");
+        }
+    }
+}
+
+impl Drop for Seen {
+    fn drop(&mut self) {
+        if self.terminal {
+            let _ = write!(io::stderr().lock(), "\r\x1b[K");
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! Orders of convergence that are observed, and the limit they point to.
+//!
+//! ```text
+//! f(h) = f₀ + C hᵖ:   (f₁ − f₂)/(f₂ − f₃) = (h₁ᵖ − h₂ᵖ)/(h₂ᵖ − h₃ᵖ)        p from three steps h₁ > h₂ > h₃
+//!                     e₁/e₂ = (h₁/h₂)ᵖ                                     p from two errors
+//!                     f₀ = f₃ − (f₂ − f₃)·h₃ᵖ/(h₂ᵖ − h₃ᵖ)                  Richardson; band 1.25·|f₃ − f₀|
+//! ```
+//!
+//! The band is Roache's grid convergence index with the safety factor 1.25 of studies with more than two grids (P. J. Roache, "Perspective:
+//! a method for uniform reporting of grid refinement studies", J. Fluids Eng. 116, 1994). An order counts as established when the estimates
+//! of two successive triples of steps agree within [`MARGIN`].
+
+/// Two successive estimates of an order that is established differ by at most this.
+pub const MARGIN: f64 = 0.3;
+
+/// A difference below this fraction of the values is round-off.
+const ROUND_OFF: f64 = 1e-12;
+
+/// An order that is established, and where it leads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extrapolation {
+    /// Order from the three finest steps.
+    pub order: f64,
+    /// Value at step zero.
+    pub value: f64,
+    /// Half width of its band.
+    pub band: f64,
+}
+
+/// Order from the differences f₁ − f₂ and f₂ − f₃ (or their sizes) at three falling steps.
+///
+/// # Errors
+/// In words, why there is none: steps that do not fall, differences of opposite signs, a difference of zero.
+pub fn from_differences(steps: [f64; 3], differences: [f64; 2]) -> Result<f64, String> {
+    falling(&steps)?;
+    let quotient = differences[0] / differences[1];
+    if differences.contains(&0.0) || !quotient.is_finite() {
+        return Err(format!("the differences {:.3e} and {:.3e} have no quotient", differences[0], differences[1]));
+    }
+    if quotient < 0.0 {
+        return Err(format!(
+            "it does not approach from one side: differences {:.3e}, {:.3e}",
+            differences[0], differences[1]
+        ));
+    }
+    // (h₁ᵖ − h₂ᵖ)/(h₂ᵖ − h₃ᵖ), divided by h₂ᵖ; it grows with p from 0 to infinity.
+    let (coarse, fine) = ((steps[0] / steps[1]).ln(), (steps[1] / steps[2]).ln());
+    let ratio = |p: f64| {
+        if p.abs() < 1e-9 { coarse / fine } else { (p * coarse).exp_m1() / -(-p * fine).exp_m1() }
+    };
+    let (mut low, mut high) = (-20.0, 40.0);
+    if ratio(low) > quotient || ratio(high) < quotient {
+        return Err(format!("the differences {:.3e} and {:.3e} fit no order", differences[0], differences[1]));
+    }
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if ratio(middle) < quotient { low = middle } else { high = middle }
+    }
+    Ok(0.5 * (low + high))
+}
+
+/// Order from two errors at two falling steps.
+///
+/// # Errors
+/// In words, why there is none: steps that do not fall, an error of zero.
+pub fn from_errors(steps: [f64; 2], errors: [f64; 2]) -> Result<f64, String> {
+    falling(&steps)?;
+    let order = (errors[0] / errors[1]).abs().ln() / (steps[0] / steps[1]).ln();
+    if order.is_finite() {
+        Ok(order)
+    } else {
+        Err(format!("the errors {:.3e} and {:.3e} have no order", errors[0], errors[1]))
+    }
+}
+
+/// Orders of successive triples of steps, each told at its finest.
+pub fn orders(steps: &[f64], values: &[f64]) -> Vec<Result<f64, String>> {
+    let triples = steps.windows(3).zip(values.windows(3));
+    triples.map(|(h, f)| triple([h[0], h[1], h[2]], [f[0], f[1], f[2]])).collect()
+}
+
+fn triple(steps: [f64; 3], values: [f64; 3]) -> Result<f64, String> {
+    let differences = [values[0] - values[1], values[1] - values[2]];
+    let size = values.iter().fold(0.0, |size, x| f64::max(size, x.abs()));
+    if differences.iter().any(|d| d.abs() <= ROUND_OFF * size) {
+        return Err("differences of the size of round-off".to_owned());
+    }
+    from_differences(steps, differences)
+}
+
+/// The value at step zero, where an order is established.
+///
+/// # Errors
+/// In words, why there is no order.
+pub fn extrapolated(steps: &[f64], values: &[f64]) -> Result<Extrapolation, String> {
+    falling(steps)?;
+    if values.len() < 4 || steps.len() != values.len() {
+        return Err(format!("{} values; two estimates of an order need four", values.len()));
+    }
+    let last = values.len() - 4;
+    let [before, order] = &orders(&steps[last..], &values[last..])[..] else {
+        return Err("four values are needed".to_owned());
+    };
+    let (before, order) = (before.clone()?, order.clone()?);
+    if (order - before).abs() > MARGIN {
+        return Err(format!("the last two estimates, {before:.2} and {order:.2}, differ by more than {MARGIN}"));
+    }
+    if order <= 0.0 {
+        return Err(format!("the differences grow as the step falls: estimate {order:.2}"));
+    }
+    let [.., h2, h3] = steps else { return Err("four values are needed".to_owned()) };
+    let [.., f2, f3] = values else { return Err("four values are needed".to_owned()) };
+    let value = f3 - (f2 - f3) / (order * (h2 / h3).ln()).exp_m1();
+    Ok(Extrapolation { order, value, band: 1.25 * (f3 - value).abs() })
+}
+
+fn falling(steps: &[f64]) -> Result<(), String> {
+    if steps.windows(2).all(|h| h[0] > h[1]) && steps.iter().all(|h| *h > 0.0 && h.is_finite()) {
+        Ok(())
+    } else {
+        Err(format!("the steps {steps:?} do not fall"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EVEN: [f64; 4] = [0.4, 0.2, 0.1, 0.05];
+    const UNEVEN: [f64; 4] = [0.5, 0.3, 0.2, 0.05];
+
+    fn values(steps: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> {
+        steps.iter().map(|h| f(*h)).collect()
+    }
+
+    /// f = 7 − 3hᵖ: the order is p and the limit 7, whatever the steps.
+    #[test]
+    fn powers_have_their_order() {
+        for steps in [EVEN, UNEVEN] {
+            for p in [0.5, 1.0, 2.0, 3.0, 4.0] {
+                let f = values(&steps, |h| 7.0 - 3.0 * h.powf(p));
+                for order in orders(&steps, &f) {
+                    assert!((order.unwrap() - p).abs() < 1e-9, "{p}");
+                }
+                let limit = extrapolated(&steps, &f).unwrap();
+                assert!((limit.value - 7.0).abs() < 1e-9 && (limit.order - p).abs() < 1e-9, "{limit:?}");
+                assert!((limit.band - 1.25 * 3.0 * steps[3].powf(p)).abs() < 1e-9);
+                let errors = [3.0 * steps[2].powf(p), -3.0 * steps[3].powf(p)];
+                assert!((from_errors([steps[2], steps[3]], errors).unwrap() - p).abs() < 1e-12);
+            }
+        }
+    }
+
+    /// f = h + h²: p from a triple of halved steps is log₂((h₁ − h₂ + h₁² − h₂²)/(h₂ − h₃ + h₂² − h₃²)).
+    #[test]
+    fn mixed_powers_by_hand() {
+        let f = values(&EVEN, |h| h + h * h);
+        let expected = ((0.2 + 0.12) / (0.1 + 0.03_f64)).log2();
+        assert!((orders(&EVEN, &f)[0].clone().unwrap() - expected).abs() < 1e-9);
+    }
+
+    #[test]
+    fn no_order_says_why() {
+        let why = |values: &[f64]| extrapolated(&EVEN[..values.len()], values).unwrap_err();
+        assert!(why(&[1.0, 2.0, 3.0]).contains("need four"));
+        assert!(why(&[1.0, 3.0, 2.0, 2.5]).contains("one side"));
+        assert!(why(&[1.0, 1.0, 1.0, 1.0]).contains("round-off"));
+        assert!(why(&[0.0, 8.0, 10.0, 11.9]).contains("differ by more"));
+        assert!(why(&[0.0, 1.0, 3.0, 7.0]).contains("grow"));
+        assert!(from_differences([0.1, 0.2, 0.4], [1.0, 1.0]).unwrap_err().contains("do not fall"));
+        assert!(from_errors([0.2, 0.1], [1.0, 0.0]).is_err());
+    }
+}

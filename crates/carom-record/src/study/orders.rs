@@ -1,0 +1,266 @@
+//! Arms that differ in one key alone, and the order of convergence observed in them.
+//!
+//! ```text
+//! of a number   p from f₁ − f₂ and f₂ − f₃ of the three finest steps; with an exact value or a reference, from the errors of the two finest
+//! of a column   the same with e_k = ‖c_k − c_{k+1}‖ (rms over the rows whose times all three recorded), or e_k = ‖c_k − reference‖
+//! ```
+
+use std::collections::BTreeMap;
+
+use super::arms::ArmRecords;
+use super::{Arm, StudyManifest};
+use crate::order::{from_differences, from_errors};
+use crate::question::{self, Quantity, Question, Series};
+use crate::{Deviation, Expect, Expectation, Expression, Norm, OrderOf};
+
+/// Arms that differ in one key, the coarsest first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refinement {
+    /// What they have in common, as set.
+    pub common: String,
+    /// Numbers of the arms.
+    pub arms: Vec<usize>,
+    /// Their steps: the value of the key, or 1/value where the key counts cells.
+    pub steps: Vec<f64>,
+}
+
+/// The step of an arm: what it sets the key to, or what its case has; 1/n for a number of cells.
+pub fn step(arm: &Arm, key: &str) -> Option<f64> {
+    let set = arm.sets.iter().find_map(|set| set.strip_prefix(key)?.trim_start().strip_prefix('='));
+    let value = match set {
+        Some(text) => {
+            let first = text.trim().trim_start_matches('[').split([',', ']']).next()?;
+            first.trim().replace('_', "").parse().ok()?
+        }
+        None => key.split('.').try_fold(&arm.case, |node, part| node.get(part))?.as_f64()?,
+    };
+    let counts = key.ends_with("cells");
+    (value > 0.0 && f64::is_finite(value)).then(|| if counts { 1.0 / value } else { value })
+}
+
+/// Whether a name contains a text, not beginning or ending inside a word or number: `hu` is not in `chung-hulbert`, nor `0.1` in `0.15`.
+fn has_words(name: &str, text: &str) -> bool {
+    let inside =
+        |a: Option<char>, b: Option<char>| a.zip(b).is_some_and(|(a, b)| a.is_alphanumeric() && b.is_alphanumeric());
+    name.match_indices(text).any(|(at, _)| {
+        let (before, after) = (&name[..at], &name[at + text.len()..]);
+        !inside(before.chars().last(), text.chars().next()) && !inside(text.chars().last(), after.chars().next())
+    })
+}
+
+/// Groups of at least two arms that differ in `key` alone, in the order of their first arms. With `name`: one group of all arms whose names
+/// contain it, whatever else they set.
+pub fn refinements(manifest: &StudyManifest, key: &str, name: Option<&str>) -> Vec<Refinement> {
+    let mut groups: Vec<Refinement> = Vec::new();
+    for (i, arm) in manifest.arms.iter().enumerate() {
+        let reference = manifest.reference.as_ref() == Some(&arm.name);
+        let Some(step) = step(arm, key).filter(|_| !reference && name.is_none_or(|n| has_words(&arm.name, n))) else {
+            continue;
+        };
+        let others =
+            arm.sets.iter().filter(|s| s.split('=').next().is_none_or(|k| k.trim() != key)).map(String::as_str);
+        let case = arm.case_path.as_deref().into_iter();
+        let common = name.map_or_else(|| case.chain(others).collect::<Vec<_>>().join(", "), str::to_owned);
+        match groups.iter_mut().find(|g| g.common == common) {
+            Some(group) => {
+                let at = group.steps.partition_point(|s| *s > step);
+                group.steps.insert(at, step);
+                group.arms.insert(at, i);
+            }
+            None => groups.push(Refinement { common, arms: vec![i], steps: vec![step] }),
+        }
+    }
+    groups.retain(|g| g.arms.len() > 1);
+    groups
+}
+
+/// What an order is asked of.
+enum Of {
+    Number(Question),
+    Column(Series),
+}
+
+fn of(order: &OrderOf) -> Result<Of, String> {
+    let parsed = Question::parse(&order.of);
+    match parsed {
+        // A single word that is no metric is a column.
+        Ok(Expression::Quantity(Quantity::Metric(name, None)))
+            if !name.contains(':') && !question::metric_names().contains(&name.as_str()) =>
+        {
+            Series::parse(&name).map(Of::Column)
+        }
+        Ok(question) => Ok(Of::Number(question)),
+        Err(why) => Series::parse(&order.of).map(Of::Column).map_err(|_| why),
+    }
+}
+
+/// The questions and columns an expectation needs of the arms.
+pub(super) fn needs(expect: &Expect, manifest: &StudyManifest) -> (Vec<Question>, Vec<Series>) {
+    let Some(order) = &expect.order else { return (Question::parse(&expect.what).into_iter().collect(), Vec::new()) };
+    let arms = manifest.arms.iter().map(|a| a.name.as_str());
+    match of(order) {
+        Ok(Of::Number(question)) => (arms.map(|arm| question.of_arm(arm)).collect(), Vec::new()),
+        Ok(Of::Column(series)) => (Vec::new(), arms.map(|arm| series.of_arm(arm)).collect()),
+        Err(_) => (Vec::new(), Vec::new()),
+    }
+}
+
+/// Verdicts on an order: one per group of arms.
+pub(super) fn judge(
+    expect: &Expect,
+    order: &OrderOf,
+    manifest: &StudyManifest,
+    records: &ArmRecords,
+) -> Vec<Expectation> {
+    let reference = manifest.reference.as_deref().filter(|name| *name != "exact");
+    let exact = manifest.reference.as_deref() == Some("exact");
+    let errors = exact || order.exact.is_some() || expect.deviation.is_some() || reference.is_some();
+    let least = if errors { 2 } else { 3 };
+    let groups = refinements(manifest, &order.against, order.arms.as_deref());
+    let words = |group: &str| {
+        let place = if group.is_empty() { String::new() } else { format!(", {group}") };
+        format!("order of {} in {}{place}", order.of, order.against)
+    };
+    let enough: Vec<&Refinement> = groups.iter().filter(|g| g.arms.len() >= least).collect();
+    if enough.is_empty() {
+        let why = format!("no {least} arms differ in {} alone", order.against);
+        return vec![Expectation {
+            what: words(order.arms.as_deref().unwrap_or_default()),
+            ..expect.verdict(Err(why))
+        }];
+    }
+    let verdict = |group: &&Refinement| {
+        let got = observed(expect, order, group, manifest, records, reference);
+        Expectation { what: words(&group.common), ..expect.verdict(got) }
+    };
+    enough.iter().map(verdict).collect()
+}
+
+/// The deviation errors are taken from: a formula, or the exact one an arm's case has for the column.
+fn deviation(
+    expect: &Expect,
+    manifest: &StudyManifest,
+    arm: usize,
+    series: &Series,
+    norm: Norm,
+) -> Result<Option<Deviation>, String> {
+    let exact = manifest.reference.as_deref() == Some("exact");
+    let known = expect.deviation.clone().map(|d| Deviation { norm, ..d });
+    let standing = || Deviation { formula: "exact".into(), exact: None, norm, scale: 1.0 };
+    let Some(deviation) = known.or_else(|| exact.then(standing)) else { return Ok(None) };
+    if deviation.formula != "exact" {
+        return Ok(Some(deviation));
+    }
+    let column = match &series.columns {
+        Expression::Quantity(asked) => &asked.column,
+        _ => return Err("only a single column has an exact formula".to_owned()),
+    };
+    let found = manifest.arms[arm].case.get("exact").and_then(|e| e.get(column)).and_then(|f| f.as_str());
+    let formula = found.ok_or_else(|| format!("the case has no [exact] formula of `{column}`"))?;
+    Ok(Some(Deviation { exact: Some(formula.to_owned()), ..deviation }))
+}
+
+fn observed(
+    expect: &Expect,
+    order: &OrderOf,
+    group: &Refinement,
+    manifest: &StudyManifest,
+    records: &ArmRecords,
+    reference: Option<&str>,
+) -> Result<f64, String> {
+    let name = |i: &usize| manifest.arms[*i].name.as_str();
+    let norm = expect.norm.unwrap_or(Norm::Rms);
+    let window = expect.window();
+    let [.., h1, h2] = group.steps[..] else { return Err("there are not two steps".to_owned()) };
+    let [.., two, three] = &group.arms[..] else { return Err("there are not two arms".to_owned()) };
+    let triple = || {
+        let n = group.steps.len();
+        if n < 3 {
+            return Err("there are not three steps".to_owned());
+        }
+        Ok(([group.steps[n - 3], h1, h2], name(&group.arms[n - 3])))
+    };
+    match of(order)? {
+        Of::Number(question) => {
+            let value = |arm: &str| question.of_arm(arm).answer(records, window);
+            let exact = match (order.exact, reference) {
+                (Some(exact), _) => Some(exact),
+                (None, Some(arm)) => Some(value(arm)?),
+                (None, None) => None,
+            };
+            let (second, last) = (value(name(two))?, value(name(three))?);
+            if let Some(exact) = exact {
+                return from_errors([h1, h2], [second - exact, last - exact]);
+            }
+            let (steps, first) = triple()?;
+            from_differences(steps, [value(first)? - second, second - last])
+        }
+        Of::Column(series) => {
+            let common = |arms: &[&str]| {
+                let columns: Vec<Series> = arms.iter().map(|arm| series.of_arm(arm)).collect();
+                question::common(&columns, records, window)
+            };
+            if let Some(deviation) = deviation(expect, manifest, *three, &series, norm)? {
+                let (times, columns) = common(&[name(two), name(three)])?;
+                return from_errors([h1, h2], [deviation.of(&times, &columns[0])?, deviation.of(&times, &columns[1])?]);
+            }
+            let apart = |a: &[f64], b: &[f64]| norm.of(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
+            if let Some(arm) = reference {
+                let (_, c) = common(&[name(two), name(three), arm])?;
+                return from_errors([h1, h2], [apart(&c[0], &c[2]), apart(&c[1], &c[2])]);
+            }
+            let (steps, first) = triple()?;
+            let (_, c) = common(&[first, name(two), name(three)])?;
+            from_differences(steps, [apart(&c[0], &c[1]), apart(&c[1], &c[2])])
+        }
+    }
+}
+
+/// Keys in which arms differ by numbers alone, with their groups of at least `least` arms.
+pub fn numeric_keys(manifest: &StudyManifest, least: usize) -> BTreeMap<String, Vec<Refinement>> {
+    let keys =
+        manifest.arms.iter().flat_map(|a| &a.sets).filter_map(|set| Some(set.split_once('=')?.0.trim().to_owned()));
+    let mut found = BTreeMap::new();
+    for key in keys {
+        found.entry(key).or_insert_with_key(|key| {
+            let mut groups = refinements(manifest, key, None);
+            groups.retain(|g| g.arms.len() >= least && g.steps.windows(2).all(|h| h[0] > h[1]));
+            groups
+        });
+    }
+    found.retain(|_, groups| !groups.is_empty());
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arm(sets: &[&str]) -> Arm {
+        Arm {
+            name: sets.join(", "),
+            directory: String::new(),
+            sets: sets.iter().map(ToString::to_string).collect(),
+            steps: 1,
+            case_path: None,
+            case: serde_json::json!({ "time": { "step": 0.5 } }),
+        }
+    }
+
+    #[test]
+    fn words_are_whole() {
+        let name = "time.scheme=chung-hulbert 0.15, time.step=1e-3";
+        assert!(has_words(name, "chung-hulbert") && has_words(name, "scheme=") && has_words(name, "0.15, time"));
+        assert!(!has_words(name, "hu") && !has_words(name, "0.1") && !has_words(name, "e-3"));
+        assert!(has_words("time.scheme=hu, time.step=1", "hu") && has_words(name, ""));
+    }
+
+    #[test]
+    fn steps_come_from_sets_or_the_case() {
+        assert_eq!(step(&arm(&["time.step=2e-3"]), "time.step"), Some(2e-3));
+        assert_eq!(step(&arm(&[]), "time.step"), Some(0.5));
+        assert_eq!(step(&arm(&["body.a.mesh.cells=[8, 4]"]), "body.a.mesh.cells"), Some(0.125));
+        assert_eq!(step(&arm(&["time.stepper=3"]), "time.end"), None);
+        assert_eq!(step(&arm(&["time.scheme={ kind = \"hu\" }"]), "time.scheme"), None);
+    }
+}

@@ -1,0 +1,78 @@
+//! Expectations of a study must be in the records of its arms: names of arms, columns and metrics, keys that are numbers.
+
+use carom::case::{Case, Problem, history_columns};
+use carom_record::question::{Asked, Quantity, Question, Series, metric_names};
+use carom_record::{Expect, Expression, OrderOf};
+
+/// Adds what is wrong with a study's expectations.
+pub(crate) fn check(expects: &[Expect], arms: &[(&str, &Case)], problems: &mut Vec<Problem>) {
+    for (i, expect) in expects.iter().enumerate() {
+        let path = format!("expect[{i}].what");
+        let wrong = match (&expect.order, &expect.deviation) {
+            (Some(order), _) => order_of(order, arms).map_err(|what| (format!("expect[{i}].of"), what)),
+            (None, Some(_)) => Series::parse(&expect.what).and_then(|s| series(&s, arms)).map_err(|what| (path, what)),
+            (None, None) => Question::parse(&expect.what).and_then(|q| question(&q, arms)).map_err(|what| (path, what)),
+        };
+        if let Err((path, what)) = wrong {
+            let why = "it is asked of the records of the arms";
+            problems.push(Problem::new(path, what, why, "write for example 'last A.uy of \"ARM\"'"));
+        }
+    }
+}
+
+fn question(question: &Question, arms: &[(&str, &Case)]) -> Result<(), String> {
+    question.quantities().into_iter().try_for_each(|quantity| match quantity {
+        Quantity::Reduced(_, columns) => series(columns, arms),
+        Quantity::Metric(name, arm) => metric(name, arm.as_deref(), arms),
+    })
+}
+
+fn series(series: &Series, arms: &[(&str, &Case)]) -> Result<(), String> {
+    series.columns.quantities().into_iter().try_for_each(|asked| column(asked, arms))
+}
+
+fn metric(name: &str, arm: Option<&str>, arms: &[(&str, &Case)]) -> Result<(), String> {
+    match name.rsplit_once(':') {
+        Some((of, "min" | "max" | "roughness")) => {
+            column(&Asked { column: of.to_owned(), arm: arm.map(str::to_owned) }, arms)
+        }
+        _ if metric_names().contains(&name) => here(arm, arms).map(drop),
+        _ => Err(format!("there is no metric `{name}`; there are: {}", metric_names().join(", "))),
+    }
+}
+
+fn column(asked: &Asked, arms: &[(&str, &Case)]) -> Result<(), String> {
+    for (name, case) in here(asked.arm.as_deref(), arms)? {
+        let columns = history_columns(case);
+        if !columns.contains(&asked.column) {
+            let near = columns.iter().min_by_key(|c| strsim::damerau_levenshtein(c, &asked.column));
+            let near = near.map_or_else(String::new, |near| format!(": did you mean `{near}`?"));
+            return Err(format!("the record of arm \"{name}\" will have no column `{}`{near}", asked.column));
+        }
+    }
+    Ok(())
+}
+
+/// The arms a quantity is asked of: the one it names, or all.
+fn here<'a>(arm: Option<&str>, arms: &'a [(&'a str, &'a Case)]) -> Result<Vec<&'a (&'a str, &'a Case)>, String> {
+    let Some(name) = arm else { return Ok(arms.iter().collect()) };
+    let found: Vec<_> = arms.iter().filter(|(other, _)| *other == name).collect();
+    if found.is_empty() {
+        let known: Vec<_> = arms.iter().map(|(name, _)| format!("\"{name}\"")).collect();
+        return Err(format!("no arm is named \"{name}\"; the arms are: {}", known.join(", ")));
+    }
+    Ok(found)
+}
+
+fn order_of(order: &OrderOf, arms: &[(&str, &Case)]) -> Result<(), String> {
+    match Question::parse(&order.of) {
+        // A word that is no metric is a column.
+        Ok(Expression::Quantity(Quantity::Metric(name, None)))
+            if !name.contains(':') && !metric_names().contains(&name.as_str()) =>
+        {
+            column(&Asked { column: name, arm: None }, arms)
+        }
+        Ok(asked) => question(&asked, arms),
+        Err(_) => series(&Series::parse(&order.of)?, arms),
+    }
+}

@@ -1,0 +1,43 @@
+//! JSON Schema (draft 2020-12) of the study file, for editors: its own keys, and those of the case wherever a value is set.
+
+use carom::case;
+use serde_json::{Map, Value, json};
+
+use crate::file::{ARM, CLAIM, KEYS};
+
+/// The schema of a study file.
+pub fn schema() -> Value {
+    let text = |doc: &str| json!({ "type": "string", "description": doc });
+    let set = |values: Map<String, Value>, doc: &str| json!({ "type": "object", "description": doc, "patternProperties": values, "additionalProperties": false });
+    let list = |(pattern, schema)| (pattern, json!({ "type": "array", "minItems": 1, "items": schema }));
+    let set_doc =
+        "Values of the case that this arm replaces: \"time.step\" = 1e-3, \"body.cylinder.element\" = \"T6\".";
+    let expects = || json!({ "type": "array", "items": case::expectation() });
+    let arm = [
+        text("Its name in tables, figures and claims."),
+        text("Another case file, relative to the study, instead of the study's."),
+        set(case::changes(), set_doc),
+        expects(),
+    ];
+    let claim = [text("A statement, in words."), text("What decides it: 'METRIC of \"ARM\" > METRIC of \"ARM\"'.")];
+    let study = [
+        text("Title of the page."),
+        text("The case file, relative to this one."),
+        text("The arm others are compared with, or \"exact\"."),
+        json!({ "type": "array", "items": object("A simulation.", &ARM, arm, &["name"]) }),
+        set(case::changes().into_iter().map(list).collect(), "Lists of values; their product adds arms."),
+        json!({ "type": "array", "items": object("A statement, confirmed or denied.", &CLAIM, claim, &CLAIM) }),
+        expects(),
+    ];
+    let mut schema = object("Many runs of one case, compared.", &KEYS, study, &["case"]);
+    schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
+    schema["title"] = json!("Carom study");
+    schema
+}
+
+fn object<const N: usize>(doc: &str, keys: &[&str; N], values: [Value; N], required: &[&str]) -> Value {
+    let properties: Map<String, Value> = keys.iter().map(|k| (*k).to_owned()).zip(values).collect();
+    json!({
+        "type": "object", "description": doc, "properties": properties, "required": required, "additionalProperties": false
+    })
+}

@@ -1,0 +1,126 @@
+//! What `carom verify` runs: the cases and studies of files and folders that carry expectations, read and checked before anything is written.
+
+use std::path::{Path, PathBuf};
+
+use carom::case::{Case, CaseError, Diagnostic, Document};
+use carom_record::{Expect, Source};
+
+use crate::Plan;
+use crate::plan::resolved;
+
+/// Cases and studies to verify.
+#[derive(Clone, Debug, Default)]
+pub struct Suite {
+    /// What is run, family by family.
+    pub items: Vec<Item>,
+    /// Whether slow expectations are left out.
+    pub fast: bool,
+}
+
+/// One file of a suite.
+#[derive(Clone, Debug)]
+pub struct Item {
+    /// Folder it belongs to.
+    pub family: String,
+    /// Name of its file without the ending.
+    pub name: String,
+    /// The file.
+    pub file: PathBuf,
+    /// What it is.
+    pub kind: Kind,
+}
+
+/// A case, or a study.
+#[derive(Clone, Debug)]
+pub enum Kind {
+    /// One simulation.
+    Case(Box<Case>, Source),
+    /// Many of them.
+    Study(Box<Plan>),
+}
+
+impl Suite {
+    /// Reads files, and all `.toml` files below folders. What carries no expectation, or with `fast` only slow ones, is left out.
+    ///
+    /// # Errors
+    /// Everything that is wrong with any of them, with its place.
+    pub fn read(paths: &[PathBuf], fast: bool) -> Result<Self, CaseError> {
+        let mut files = Vec::new();
+        for path in paths {
+            let folder = path.is_dir();
+            let below = if folder { toml_files(path)? } else { vec![path.clone()] };
+            files.extend(below.into_iter().map(|file| (family(path, &file, folder), file)));
+        }
+        files.sort();
+        files.dedup_by(|a, b| a.1 == b.1);
+        let mut suite = Self { items: Vec::new(), fast };
+        let mut wrong: Vec<Diagnostic> = Vec::new();
+        for (family, file) in files {
+            match kind(&file, fast) {
+                Ok(Some(kind)) => {
+                    let name = file.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+                    suite.items.push(Item { family, name, file, kind });
+                }
+                Ok(None) => {}
+                Err(CaseError::Wrong(found)) => wrong.extend(found),
+                Err(refused) => return Err(refused),
+            }
+        }
+        if wrong.is_empty() { Ok(suite) } else { Err(CaseError::Wrong(wrong)) }
+    }
+}
+
+/// The folder below the one that was named, or that folder itself.
+fn family(named: &Path, file: &Path, folder: bool) -> String {
+    let parent = file.parent().unwrap_or(Path::new(""));
+    let below = if folder { parent.strip_prefix(named).ok().and_then(|p| p.components().next()) } else { None };
+    let name = if let Some(first) = below {
+        first.as_os_str().to_owned()
+    } else {
+        // `case.toml` alone has no folder in its path.
+        let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+        let folder = whole.parent().and_then(Path::file_name);
+        folder.map_or_else(|| "cases".into(), ToOwned::to_owned)
+    };
+    name.to_string_lossy().into_owned()
+}
+
+fn toml_files(folder: &Path) -> Result<Vec<PathBuf>, CaseError> {
+    let refused = |source| CaseError::Refused { path: folder.display().to_string(), source };
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(refused)? {
+        let path = entry.map_err(refused)?.path();
+        if path.is_dir() {
+            found.extend(toml_files(&path)?);
+        } else if path.extension().is_some_and(|e| e == "toml") {
+            found.push(path);
+        }
+    }
+    Ok(found)
+}
+
+/// Whether one of the expectations is to be judged.
+fn wanted<'a>(expects: impl IntoIterator<Item = &'a Expect>, fast: bool) -> bool {
+    expects.into_iter().any(|e| !(fast && e.slow))
+}
+
+fn kind(file: &Path, fast: bool) -> Result<Option<Kind>, CaseError> {
+    let document = Document::open(file, &[])?;
+    let root = toml_edit::Document::parse(document.text()).ok();
+    let has = |key: &str| root.as_ref().is_some_and(|r| r.as_table().contains_key(key));
+    if ["case", "arm", "grid"].into_iter().any(has) {
+        // Arms are built when they are read: not for nothing.
+        if !document.text().contains("expect") {
+            return Ok(None);
+        }
+        let plan = Plan::read(file)?;
+        let arms = plan.arms.iter().flat_map(|arm| &arm.case.expects);
+        return Ok(wanted(arms.chain(&plan.manifest.expects), fast).then(|| Kind::Study(Box::new(plan))));
+    }
+    let case = carom::case::read(&document).map_err(|problems| document.diagnose_all(&problems))?;
+    if !wanted(&case.expects, fast) {
+        return Ok(None);
+    }
+    let source = Source { text: document.text().to_owned(), sets: Vec::new() };
+    resolved(file, &[]).map(|case| Some(Kind::Case(Box::new(case), source)))
+}

@@ -1,0 +1,221 @@
+//! A suite run and judged: cases and arms side by side, the longest first, one thread each. Pictures and pages are made only if asked for.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use carom::case::Case;
+use carom::recording::{self, Options, Progress};
+use carom_record::question::Question;
+use carom_record::study::{Study, StudyManifest};
+use carom_record::verification::{Row, SetUp, Verification};
+use carom_record::{Expect, Expectation, Machine, RecordError, Run, Source, Status, judge, now};
+
+use crate::run::{Ended, Event, StudyError, side_by_side};
+use crate::suite::{Item, Kind, Suite};
+
+/// How a suite is run.
+#[derive(Clone, Copy, Debug)]
+pub struct VerifyOptions {
+    /// Runs at the same time.
+    pub jobs: usize,
+    /// Whether runs write field files and checkpoints as their cases say, so that pages can be made of them.
+    pub whole: bool,
+}
+
+/// One simulation of a suite.
+struct Unit {
+    item: usize,
+    name: String,
+    directory: PathBuf,
+    case: Case,
+    source: Source,
+}
+
+/// A simulation of a suite, as it is told of.
+#[derive(Clone, Debug)]
+pub struct Named {
+    /// Family, file and arm.
+    pub name: String,
+    /// Time steps.
+    pub steps: u64,
+}
+
+impl Suite {
+    /// Runs everything into a directory, which is made; none if it was stopped before the end. `begin` is told the runs events speak of by number.
+    ///
+    /// # Errors
+    /// What the machine refused. A run that stops, and an expectation that is missed, are no errors.
+    pub fn verify(
+        &self,
+        directory: &Path,
+        options: VerifyOptions,
+        begin: &mut dyn FnMut(&[Named]),
+        observe: &mut dyn FnMut(&Event),
+        stop: &AtomicBool,
+    ) -> Result<Option<Verification>, StudyError> {
+        let (started, began) = (now(), Instant::now());
+        let places = self.places();
+        let mut units = Vec::new();
+        for (i, item) in self.items.iter().enumerate() {
+            units.extend(item.units(i, &directory.join(&places[i]), options.whole)?);
+        }
+        let named: Vec<Named> =
+            units.iter().map(|u| Named { name: u.name.clone(), steps: u.case.time.steps() as u64 }).collect();
+        begin(&named);
+        let mut order: Vec<usize> = (0..units.len()).collect();
+        order.sort_by(|a, b| units[*b].case.work().total_cmp(&units[*a].case.work()));
+        let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
+            let Unit { name, directory, case, source, .. } = &units[i];
+            let done = recording::run(case, source.clone(), directory, Options { threads: 1 }, progress, stop);
+            done.map(Ended::of).map_err(|source| StudyError::Arm { arm: name.clone(), source })
+        };
+        let mut walls = vec![0.0; self.items.len()];
+        let mut watch = |event: &Event| {
+            if let Event::Ended(i, ended) = event {
+                walls[units[*i].item] += ended.wall;
+            }
+            observe(event);
+        };
+        side_by_side(VecDeque::from(order), options.jobs, &one, &mut watch, stop)?;
+        if stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        let set_ups = self.items.iter().zip(&places).zip(walls);
+        let set_ups = set_ups.map(|((item, place), wall)| item.judged(directory, place, wall, self.fast));
+        let verification = Verification {
+            version: env!("CARGO_PKG_VERSION").into(),
+            started,
+            machine: Machine::current(),
+            jobs: options.jobs,
+            wall: began.elapsed().as_secs_f64(),
+            fast: self.fast,
+            set_ups: set_ups.collect::<Result<_, _>>()?,
+        };
+        verification.write(directory)?;
+        Ok(Some(verification))
+    }
+
+    /// Directories of the items: family/name, numbered where two would share one.
+    fn places(&self) -> Vec<String> {
+        let mut places: Vec<String> = Vec::new();
+        for item in &self.items {
+            let first = format!("{}/{}", item.family, item.name);
+            let mut place = first.clone();
+            for n in 2.. {
+                if !places.contains(&place) {
+                    break;
+                }
+                place = format!("{first}-{n}");
+            }
+            places.push(place);
+        }
+        places
+    }
+}
+
+/// A case that writes its history alone: the numbers are the same bits.
+fn bare(mut case: Case, whole: bool) -> Case {
+    if !whole {
+        case.output.fields_every = 0;
+        case.output.at_times.clear();
+        case.output.checkpoint_every = usize::MAX;
+    }
+    case
+}
+
+impl Item {
+    fn units(&self, item: usize, directory: &Path, whole: bool) -> Result<Vec<Unit>, StudyError> {
+        let name = format!("{}/{}", self.family, self.name);
+        match &self.kind {
+            Kind::Case(case, source) => Ok(vec![Unit {
+                item,
+                name,
+                directory: directory.to_owned(),
+                case: bare((**case).clone(), whole),
+                source: source.clone(),
+            }]),
+            Kind::Study(plan) => {
+                let path = directory.join("arms");
+                let refused = |source| RecordError::Io { action: "create", path: path.clone(), source };
+                std::fs::create_dir_all(&path).map_err(refused)?;
+                plan.manifest.write(directory)?;
+                let arms = plan.arms.iter().zip(&plan.manifest.arms);
+                let unit = |(planned, arm): (&crate::PlannedArm, &carom_record::study::Arm)| Unit {
+                    item,
+                    name: format!("{name}, {}", arm.name),
+                    directory: directory.join(&arm.directory),
+                    case: bare(planned.case.clone(), whole),
+                    source: planned.source.clone(),
+                };
+                Ok(arms.map(unit).collect())
+            }
+        }
+    }
+
+    /// Its records held against what is expected of them.
+    fn judged(&self, root: &Path, place: &str, wall: f64, fast: bool) -> Result<SetUp, StudyError> {
+        let directory = root.join(place);
+        let row = |arm: Option<&str>, directory: String, verdict: Expectation| Row {
+            arm: arm.map(str::to_owned),
+            directory,
+            verdict,
+        };
+        let mut set_up = SetUp {
+            family: self.family.clone(),
+            name: self.name.clone(),
+            title: String::new(),
+            file: self.file.display().to_string(),
+            input_hash: String::new(),
+            directory: place.to_owned(),
+            runs: 1,
+            stopped: Vec::new(),
+            contact: false,
+            wall,
+            rows: Vec::new(),
+        };
+        match &self.kind {
+            Kind::Case(case, _) => {
+                let run = Run::open(&directory)?;
+                set_up.title.clone_from(&case.title);
+                set_up.input_hash.clone_from(&run.manifest.input_hash);
+                set_up.contact = run.had_dynamic_contact();
+                if run.manifest.status == Status::Failed && !case.expects.iter().any(Expect::asks_whether_stopped) {
+                    set_up.stopped.push(run.manifest.reason.clone().unwrap_or_default());
+                }
+                set_up.rows = judge(&run, &case.expects).into_iter().map(|v| row(None, place.to_owned(), v)).collect();
+            }
+            Kind::Study(plan) => {
+                let mut manifest = plan.manifest.clone();
+                manifest.status = Status::Finished;
+                manifest.write(&directory)?;
+                let study = Study::open(&directory, &mut |_, _| ())?;
+                study.write_tables()?;
+                set_up.title.clone_from(&manifest.title);
+                set_up.input_hash.clone_from(&manifest.input_hash);
+                set_up.runs = manifest.arms.len();
+                set_up.contact = study.rows.iter().any(|r| r.contact);
+                for (arm, found) in manifest.arms.iter().zip(&study.rows) {
+                    if found.status == Some(Status::Failed) && !stop_expected(&manifest, &arm.name, &arm.expects()) {
+                        let reason = found.reason.as_deref().unwrap_or_default();
+                        set_up.stopped.push(format!("\"{}\": {reason}", arm.name));
+                    }
+                    let place = format!("{place}/{}", arm.directory);
+                    let mine = found.expectations.iter().cloned();
+                    set_up.rows.extend(mine.map(|v| row(Some(&arm.name), place.clone(), v)));
+                }
+                set_up.rows.extend(study.expectations.into_iter().map(|v| row(None, place.to_owned(), v)));
+            }
+        }
+        set_up.rows.retain(|row| !(fast && row.verdict.slow));
+        Ok(set_up)
+    }
+}
+
+/// Whether an expectation of the arm, or of the study about the arm, asks if it stopped.
+fn stop_expected(manifest: &StudyManifest, arm: &str, expects: &[Expect]) -> bool {
+    let about =
+        |e: &Expect| Question::parse(&e.what).is_ok_and(|q| q.asks_whether_stopped() && q.arms().contains(&Some(arm)));
+    expects.iter().any(Expect::asks_whether_stopped) || manifest.expects.iter().any(about)
+}

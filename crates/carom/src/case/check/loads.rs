@@ -1,0 +1,82 @@
+//! Loads and moving supports against the rest of the case: their sides and bodies, the time their tables cover, what a static run can have.
+
+use super::super::tree::Node;
+use super::Check;
+
+impl Check<'_> {
+    pub(super) fn loads(&mut self) {
+        let tables = self.tables("load");
+        for (i, table) in tables.iter().enumerate() {
+            let Some(table) = table.table() else { continue };
+            let on = table.get("on").and_then(Node::list).unwrap_or(&[]);
+            for (j, side) in on.iter().enumerate().filter_map(|(j, n)| Some((j, n.text()?))) {
+                self.side(side, format!("load[{i}].on[{j}]"));
+            }
+            if let Some(body) = table.get("body").and_then(Node::text) {
+                self.reference("body", body, format!("load[{i}].body"));
+            }
+        }
+        let draft = self.draft;
+        let Some(end) = draft.time.as_ref().map(|t| t.end) else { return };
+        for (i, load) in draft.loads.iter().enumerate() {
+            let Some(table) = load.as_ref().and_then(|l| l.table.as_ref()) else { continue };
+            let (first, last) = (table.times[0], table.times[table.times.len() - 1]);
+            // Times of the grid carry the rounding of n·Δt.
+            if first > 0.0 || last < end * (1.0 - 1e-12) {
+                let what = format!("the table \"{}\" does not cover the run", table.file);
+                let lines = format!("its first line is t = {first}, its last t = {last}");
+                let why = format!("{}: {lines}; the run goes from 0 to {end}", table.file);
+                self.add(format!("load[{i}].table"), what, why, "add lines to the table, or end the run earlier");
+            }
+        }
+    }
+
+    pub(super) fn motions(&mut self) {
+        for (i, table) in self.tables("support").iter().enumerate() {
+            let Some(table) = table.table() else { continue };
+            let moved = table.get("move").and_then(Node::table);
+            let fixed: Vec<_> =
+                table.get("fix").and_then(Node::list).unwrap_or(&[]).iter().filter_map(Node::text).collect();
+            let known = ["name", "on", "fix", "move"];
+            let misspelt = table.0.iter().any(|e| !known.contains(&e.key.as_str()))
+                || moved.is_some_and(|m| m.0.iter().any(|e| !["x", "y"].contains(&e.key.as_str())));
+            if !misspelt
+                && table.get("fix").is_none()
+                && moved.is_none_or(|m| m.0.is_empty())
+                && table.get("move").is_none_or(|m| m.table().is_some())
+            {
+                let what = "the support neither holds nor moves";
+                let why = "a support names directions in `fix`, in `move`, or in both";
+                self.problems.push(
+                    super::Problem::new(format!("support[{i}]"), what, why, "add `fix = [\"x\", \"y\"]`").at_key(),
+                );
+            }
+            for entry in moved.map_or(&[][..], |m| &m.0) {
+                let path = format!("support[{i}].move.{}", entry.key);
+                if fixed.contains(&entry.key.as_str()) {
+                    let what = format!("the direction {} is both fixed and moved", entry.key);
+                    self.add(path, what, "`fix` holds it, `move` gives its displacement", "leave it out of `fix`");
+                } else if entry.key == "y" && self.draft.dimension == Some(1) {
+                    self.add(path, "there is no direction y", "the case has dimension = 1", "use move = { x = … }");
+                }
+            }
+        }
+    }
+
+    /// Initial velocities where there is no inertia, or where another run has given them.
+    pub(super) fn velocities(&mut self) {
+        let draft = self.draft;
+        let is_static = draft.time.as_ref().is_some_and(|t| t.scheme.is_static());
+        let initial = self.document.root().get("initial").is_some();
+        let why = match (is_static, initial) {
+            (true, _) => "the scheme \"static\" has no velocities",
+            (false, true) => "[initial] says what the velocities are",
+            (false, false) => return,
+        };
+        for (i, body) in draft.bodies.iter().enumerate() {
+            if body.as_ref().is_some_and(|b| !b.velocity.iter().all(super::super::FormulaSpec::is_zero)) {
+                self.add(format!("body[{i}].velocity"), "the body has an initial velocity", why, "leave it out");
+            }
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! A table of amplitudes: a CSV file with the columns `t` and `value`, others ignored. Every mistake is told with its file and line.
+
+use std::path::Path;
+
+use super::load::TableSpec;
+
+/// More lines than this are no amplitude: the resolved case holds them all.
+const MOST_LINES: usize = 1_000_000;
+
+/// Reads the file at `path`, called `name` in messages.
+///
+/// # Errors
+/// In words, with the file's name and line.
+pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, String> {
+    let refused = |error: csv::Error| {
+        let line = error.position().map_or(String::new(), |p| format!(":{}", p.line()));
+        match error.kind() {
+            csv::ErrorKind::Io(io) if io.kind() == std::io::ErrorKind::NotFound => {
+                format!("there is no file {}", path.display())
+            }
+            csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+                format!("{name}{line}: {len} values, but the first line has {expected_len}")
+            }
+            _ => format!("{name}{line}: {error}"),
+        }
+    };
+    let mut reader =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_path(path).map_err(refused)?;
+    let headers = reader.headers().map_err(refused)?.clone();
+    let column = |wanted: &str| {
+        headers.iter().position(|h| h == wanted).ok_or_else(|| {
+            let found = headers.iter().collect::<Vec<_>>().join(", ");
+            format!("{name}:1: there is no column `{wanted}`; the columns are: {found}")
+        })
+    };
+    let columns = [column("t")?, column("value")?];
+    let mut table = TableSpec { file: name.to_owned(), times: Vec::new(), values: Vec::new() };
+    for record in reader.records() {
+        let record = record.map_err(refused)?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let number = |k: usize| {
+            let text = record.get(columns[k]).unwrap_or_default();
+            let wrong = || format!("{name}:{line}: `{}` is not a finite number: {text:?}", ["t", "value"][k]);
+            text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong)
+        };
+        let (time, value) = (number(0)?, number(1)?);
+        if let Some(before) = table.times.last().filter(|before| **before >= time) {
+            return Err(format!("{name}:{line}: the time {time} does not come after {before}"));
+        }
+        if table.times.len() == MOST_LINES {
+            return Err(format!("{name}:{line}: more than {MOST_LINES} lines"));
+        }
+        table.times.push(time);
+        table.values.push(value);
+    }
+    if table.times.len() < 2 {
+        return Err(format!("{name}: {} lines of numbers; at least two are needed", table.times.len()));
+    }
+    Ok(table)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(text: &str) -> Result<TableSpec, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        std::fs::write(&path, text).unwrap();
+        read(&path, "a.csv")
+    }
+
+    #[test]
+    fn a_table_is_linear_between_its_lines() {
+        let table = table("# a ramp\nvalue, t\n0, 0\n2, 0.5\n\n-2, 1.5\n").unwrap();
+        for (time, value) in [(0.0, 0.0), (0.25, 1.0), (0.5, 2.0), (1.0, 0.0), (1.5, -2.0)] {
+            assert_eq!(table.value(time), value);
+        }
+    }
+
+    #[test]
+    fn mistakes_name_file_and_line() {
+        for (text, message) in [
+            ("t,force\n0,1\n", "a.csv:1: there is no column `value`; the columns are: t, force"),
+            ("t,value\n0,1\n1,x\n", "a.csv:3: `value` is not a finite number: \"x\""),
+            ("t,value\n0,1\n1,nan\n", "a.csv:3: `value` is not a finite number: \"nan\""),
+            ("t,value\n0,1\n0,2\n", "a.csv:3: the time 0 does not come after 0"),
+            ("t,value\n0,1\n1\n", "a.csv:3: 1 values, but the first line has 2"),
+            ("t,value\n0,1\n", "a.csv: 1 lines of numbers; at least two are needed"),
+        ] {
+            assert_eq!(table(text).unwrap_err(), message);
+        }
+        assert!(read(Path::new("nowhere/b.csv"), "b.csv").unwrap_err().contains("there is no file nowhere/b.csv"));
+    }
+}

@@ -1,0 +1,116 @@
+//! `[initial] from`: positions, velocities and contact at the end of another run of the same meshes.
+//!
+//! The meshes are made again from the case that run was resolved with, and compared node by node: names alone would let a changed mesh pass.
+
+use carom_contact::Pair;
+use carom_record::{Manifest, Status, last_checkpoint};
+
+use crate::case::{Case, InitialSpec, Problem, Velocities};
+use crate::model::{Dimension, Model, Space};
+use crate::state::State;
+
+/// Where a run begins, if not in the reference positions.
+pub(crate) struct Before {
+    /// Positions.
+    pub(crate) y: Vec<f64>,
+    /// Velocities.
+    pub(crate) v: Vec<f64>,
+    /// Pairs of each contact of the new case.
+    pub(crate) pairs: Vec<Vec<Pair>>,
+}
+
+/// Reads the end of the run a case starts from.
+///
+/// # Errors
+/// There is no such run, it is not finished, or its bodies are not those of the case; all under `initial.from`.
+pub(crate) fn before<const D: usize>(spec: &InitialSpec, case: &Case, model: &Model<D>) -> Result<Before, Vec<Problem>>
+where
+    Space: Dimension<D>,
+{
+    let directory = spec.from.display();
+    let wrong = |what: String, why: String, help: &str| vec![Problem::new("initial.from", what, why, help)];
+    let unreadable = |why: String| {
+        let help = "name the directory of a finished run; the path counts from the folder of the case";
+        wrong(format!("the run {directory} cannot be started from"), why, help)
+    };
+    let manifest = Manifest::read(&spec.from).map_err(|e| unreadable(e.to_string()))?;
+    if manifest.status != Status::Finished {
+        let help = "let it finish with `carom resume`";
+        return Err(wrong(
+            format!("the run {directory} is not finished"),
+            format!("its status is {:?}", manifest.status),
+            help,
+        ));
+    }
+    let payload = last_checkpoint(&spec.from).map_err(|e| unreadable(e.to_string()))?;
+    let version = |e: String| unreadable(format!("it was made by Carom {}: {e}", manifest.version));
+    let old: Case = serde_json::from_value(manifest.case.clone()).map_err(|e| version(e.to_string()))?;
+    let state: State = postcard::from_bytes(&payload).map_err(|e| version(e.to_string()))?;
+    if old.dimension != D {
+        let why = format!("it has dimension {}, the case {D}", old.dimension);
+        return Err(wrong(
+            "the runs do not have the same dimension".into(),
+            why,
+            "start from a run of the same bodies",
+        ));
+    }
+
+    let mut before = Before { y: model.reference.clone(), v: vec![0.0; model.dofs()], pairs: Vec::new() };
+    let mut meshes = Vec::new();
+    let mut first = 0;
+    for body in &old.bodies {
+        let mesh =
+            Space::mesh(body).map_err(|why| unreadable(format!("the mesh of its body \"{}\": {why}", body.name)))?;
+        let nodes = mesh.nodes.len();
+        meshes.push((&body.name, first, mesh));
+        first += nodes;
+    }
+    if state.y.len() != first * D {
+        return Err(unreadable(format!("its state has {} nodes, its meshes {first}", state.y.len() / D)));
+    }
+    for part in &model.parts {
+        let mesh = part.body.mesh();
+        let Some((_, first, old)) = meshes.iter().find(|(name, ..)| **name == part.name) else {
+            let names: Vec<_> = meshes.iter().map(|(name, ..)| name.as_str()).collect();
+            let why = format!("its bodies are: {}", names.join(", "));
+            return Err(wrong(
+                format!("the run {directory} has no body \"{}\"", part.name),
+                why,
+                "start from a run of the same bodies",
+            ));
+        };
+        if old.nodes != mesh.nodes || old.cells != mesh.cells || old.element != mesh.element {
+            let count =
+                |m: &carom_solid::Mesh<D>| format!("{} nodes, {} cells {:?}", m.nodes.len(), m.cell_count(), m.element);
+            let why = format!(
+                "there it has {}, here {}; nodes and cells must be the same to the last digit",
+                count(old),
+                count(mesh)
+            );
+            return Err(wrong(
+                format!("body \"{}\" has another mesh in {directory}", part.name),
+                why,
+                "give both cases the same `mesh` and `element`",
+            ));
+        }
+        let (to, from) = (part.first_node * D, first * D);
+        let length = mesh.nodes.len() * D;
+        before.y[to..to + length].copy_from_slice(&state.y[from..from + length]);
+        if spec.velocities == Velocities::Keep {
+            before.v[to..to + length].copy_from_slice(&state.v[from..from + length]);
+        }
+    }
+    for (dof, fixed) in model.fixed.iter().enumerate() {
+        if *fixed {
+            before.v[dof] = 0.0;
+        }
+    }
+    for contact in &case.contacts {
+        let same = old
+            .contacts
+            .iter()
+            .position(|c| (&c.name, &c.secondary, &c.primary) == (&contact.name, &contact.secondary, &contact.primary));
+        before.pairs.push(same.and_then(|k| state.pairs.get(k).cloned()).unwrap_or_default());
+    }
+    Ok(before)
+}

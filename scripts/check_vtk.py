@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+"""VTK opens the fields of real runs: arrays and their units, times equal to n·Δt, the same values as the record's tables.
+
+    python scripts/check_vtk.py CAROM RUN        (needs: pip install vtk h5py)
+
+CAROM is the binary, RUN the directory of a finished run with VTU fields. Its case is run once more with `output.format = "vtkhdf"` and
+killed on the way; what is there then must open, and after `carom resume` all must equal RUN's fields.
+"""
+
+import csv
+import json
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+import h5py
+import vtk
+
+UNITS = {"displacement": "m", "velocity": "m/s", "stress": "Pa", "contact_pressure": "Pa"}
+STREAM = vtk.vtkStreamingDemandDrivenPipeline
+
+
+def values(grid):
+    """Point arrays as bytes."""
+    data = grid.GetPointData()
+    return {data.GetArrayName(i): bytes(memoryview(data.GetArray(i))) for i in range(data.GetNumberOfArrays())}
+
+
+def vtu(run, step_size):
+    """Times, grids; checks names, units and times of a run with VTU fields."""
+    times, grids = [], []
+    for entry in xml.parse(run / "fields.pvd").iter("DataSet"):
+        file = entry.get("file")
+        step = int(Path(file).stem)
+        assert float(entry.get("timestep")) == step * step_size, f"{file}: {entry.get('timestep')} is not {step}·Δt"
+        reader = vtk.vtkXMLUnstructuredGridReader()
+        reader.SetFileName(str(run / file))
+        reader.Update()
+        grid = reader.GetOutput()
+        for name, unit in UNITS.items():
+            found = grid.GetPointData().GetArray(name).GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL())
+            assert found == unit, f"{file}: {name} in {found}"
+        times.append(float(entry.get("timestep")))
+        grids.append(grid)
+    return times, grids
+
+
+def vtkhdf(run, step_size):
+    """The same of a run with its fields in one file, however far it has come."""
+    path = run / "fields.vtkhdf"
+    reader = vtk.vtkHDFReader()
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    with h5py.File(path) as file:
+        units = {name: array.attrs["units"].decode() for name, array in file["VTKHDF/PointData"].items()}
+    assert units == UNITS, units
+    times, grids = list(reader.GetOutputInformation(0).Get(STREAM.TIME_STEPS())), []
+    assert len(times) == reader.GetNumberOfSteps()
+    for i, instant in enumerate(times):
+        reader.SetStep(i)
+        reader.Update()
+        grid = vtk.vtkUnstructuredGrid()
+        grid.DeepCopy(reader.GetOutputDataObject(0))
+        step = grid.GetFieldData().GetArray("step").GetValue(0)
+        assert instant == step * step_size, f"{instant} is not {step}·Δt"
+        grids.append(grid)
+    return times, grids
+
+
+def against_tables(run, times, grids):
+    """Pressures are where contact.csv has nodes, and of the same values."""
+    pressures = {}
+    for row in csv.DictReader((run / "contact.csv").open()):
+        pressures.setdefault(float(row["time"]), {})[int(row["node"])] = float(row["pressure"])
+    touched = 0
+    for instant, grid in zip(times, grids):
+        array = grid.GetPointData().GetArray("contact_pressure")
+        found = {i: array.GetValue(i) for i in range(array.GetNumberOfValues()) if array.GetValue(i) != 0.0}
+        assert found == pressures.get(instant, {}), f"contact pressure at {instant}"
+        touched += bool(found)
+    assert touched > 0, "no instant has contact"
+    assert {grids[-1].GetCellType(i) for i in range(grids[-1].GetNumberOfCells())} == {69}
+    return touched
+
+
+def killed_and_resumed(carom, case, step_size, place):
+    """The case's fields in one file, written by a run that is killed on its way."""
+    run = place / "run"
+    command = [carom, "run", case, "--set", "output.format=vtkhdf", "--no-report", "--out", run]
+    # The debug and the release binary differ by ten in speed: wait for steps, not for seconds.
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    file = run / "fields.vtkhdf"
+    while process.poll() is None and not (file.exists() and (run / "contact.csv").stat().st_size > 1000):
+        time.sleep(0.001)
+    assert process.poll() is None, "the run ended before it could be killed"
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    times, _ = vtkhdf(run, step_size)
+    subprocess.run([carom, "resume", run, "--no-report"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return run, len(times)
+
+
+def main():
+    carom, finished = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
+    manifest = json.loads((finished / "manifest.json").read_text())
+    step_size = manifest["case"]["time"]["step"]
+    times, grids = vtu(finished, step_size)
+    touched = against_tables(finished, times, grids)
+    with tempfile.TemporaryDirectory() as place:
+        case = Path(place) / "case.toml"
+        case.write_text(manifest["source"]["text"])
+        run, seen = killed_and_resumed(carom, case, step_size, Path(place))
+        assert 0 < seen < len(times), f"{seen} of {len(times)} instants when killed"
+        again, one_file = vtkhdf(run, step_size)
+        assert again == times
+        for a, b in zip(grids, one_file):
+            assert values(a) == values(b), "VTU and VTKHDF differ"
+        for name in ("history.csv", "contact.csv"):
+            assert (run / name).read_bytes() == (finished / name).read_bytes(), f"{name} differs"
+        size = (run / "fields.vtkhdf").stat().st_size
+    print(f"{finished}: {len(times)} instants, {touched} in contact; one file of {size / 1e6:.2f} MB, open after a kill at {seen}")
+
+
+if __name__ == "__main__":
+    main()

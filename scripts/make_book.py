@@ -1,0 +1,402 @@
+#!/usr/bin/env python3
+"""Makes the book: what Carom itself prints goes to docs/book/src/generated/, then mdbook builds target/book/.
+
+    scripts/make_book.py [--carom target/release/carom] [--fast] [--verify DIR]
+
+keys.md        every key of the case file, from `carom schema`; for each a shipped case that uses it
+commands.md    `carom COMMAND --help`
+explain/       `carom explain`, of each scheme the pages show
+first-run.*    what `carom run cases/impact/impact.toml` prints and draws
+columns.md     columns of its history.csv, from its manifest
+metrics.md     metrics with definitions, from the pages of those runs
+activation.md, peak.md          docs/book/studies/, run
+FAMILY.md, FAMILY.svg           `carom verify --report --out DIR --markdown DIR`, and a figure of one of its runs; with --verify DIR, what it left there
+
+Every case of docs/book/examples/ is run too. What could not be made, links that lead nowhere, keys that no case uses: told at the end, exit code 1. Needs
+Python 3.11 and a built carom; without mdbook in the path the generated files are all that is made.
+"""
+
+import argparse
+import csv
+import html
+import html.parser
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+import urllib.parse
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BOOK = ROOT / "docs/book"
+GENERATED = BOOK / "src/generated"
+
+# Family: the case whose figure stands in its chapter, and the figure.
+FIGURES = {
+    "bar": ("single", "force"),
+    "free": ("spin", "energy"),
+    "order": ("", "energy"),
+    "invariance": ("", "bodies"),
+    "impact": ("impact", "bodies"),
+    "disc": ("offset", "bodies"),
+    "loads": ("", "bodies"),
+    "static": ("", "bodies"),
+}
+
+# Columns of a study's table in the book.
+STUDIES = {
+    "activation": ["peak_force", "force_roughness", "restitution", "energy_lost", "energy_created", "rejected_steps"],
+    "peak": ["peak_force", "peak_mean_force", "impulse_x", "restitution", "energy_lost"],
+}
+
+problems = []
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("--carom", type=pathlib.Path, default=ROOT / "target/release/carom", help="the program")
+    options.add_argument("--fast", action="store_true", help="leave out what `carom verify --fast` leaves out")
+    options.add_argument("--verify", type=pathlib.Path, help="what an earlier `carom verify --report --out DIR --markdown DIR` left")
+    given = options.parse_args()
+    carom = given.carom.resolve()
+    if not carom.is_file():
+        sys.exit(f"{carom} is not there: build it with `cargo build --release`, or name it with --carom")
+
+    shutil.rmtree(GENERATED, ignore_errors=True)
+    (GENERATED / "explain").mkdir(parents=True)
+    with tempfile.TemporaryDirectory() as place:
+        place = pathlib.Path(place)
+        commands(carom)
+        explanations(carom)
+        keys(carom)
+        definitions = first_run(carom, place) | studies(carom, place) | examples(carom, place)
+        write("metrics.md", table(["Metric", "Definition"], [[f"`{n}`", d] for n, d in definitions.items()]))
+        verified(carom, given, place)
+    build()
+    for problem in problems:
+        print(f"missing: {problem}", file=sys.stderr)
+    sys.exit(1 if problems else 0)
+
+
+def run(carom, *arguments, accept=(0,)):
+    """Standard output of a command of carom; none, and a problem, if it failed."""
+    done = subprocess.run([carom, *map(str, arguments)], cwd=ROOT, capture_output=True, text=True, check=False)
+    if done.returncode in accept:
+        return done.stdout
+    said = (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[0]
+    problems.append(f"carom {' '.join(map(str, arguments))}: {said}")
+    return None
+
+
+def write(name, text):
+    (GENERATED / name).write_text(text, encoding="utf-8")
+
+
+def table(head, rows):
+    """A table in Markdown; cells are Markdown already."""
+    cell = lambda text: str(text).replace("|", "\\|").replace("\n", " ")
+    lines = [head, ["---"] * len(head), *rows]
+    return "".join(f"| {' | '.join(map(cell, line))} |\n" for line in lines) + "\n"
+
+
+def number(text):
+    """Five digits, as the summaries of carom print them."""
+    try:
+        return f"{float(text):.5g}".replace("e-0", "e-")
+    except ValueError:
+        return "–"
+
+
+# Commands and schemes
+
+
+def commands(carom):
+    help_text = run(carom, "--help") or ""
+    names = re.findall(r"^  ([a-z]+) ", help_text.split("Commands:")[-1].split("Options:")[0], re.M)
+    parts = []
+    for name in names:
+        if name != "help" and (text := run(carom, name, "--help")):
+            parts.append(f"## carom {name}\n\n```text\n{text.replace(carom.name, 'carom').strip()}\n```\n\n")
+    write("commands.md", "".join(parts))
+
+
+def explanations(carom):
+    """Pages ask for generated/explain/NAME.txt; NAME is the arguments of `carom explain`, joined with +."""
+    pages = "".join(page.read_text(encoding="utf-8") for page in (BOOK / "src").rglob("*.md"))
+    for name in sorted(set(re.findall(r"{{#include [./]*generated/explain/([^}\s]+)\.txt}}", pages))):
+        arguments = [] if name == "all" else name.split("+")
+        said = run(carom, "explain", *arguments)
+        if said is not None:
+            # The book is about Carom: what other codes do stays with the command.
+            write(f"explain/{name}.txt", said.split("\nelsewhere\n")[0].strip() + "\n")
+
+
+# Keys of the case file
+
+
+def keys(carom):
+    schema = json.loads(run(carom, "schema") or "{}")
+    uses = used_keys()
+    parts, unused = [], []
+    tables = []
+    collect("", schema, tables)
+    for path, spec, title in tables:
+        kind = next((f"[{key['const']}]" for key in spec["properties"].values() if "const" in key), "")
+        rows = []
+        for name, key in spec["properties"].items():
+            full = f"{path}{kind}.{name}".strip(".")
+            meaning, unit, paper = described(key)
+            default = toml(key["default"]) if "default" in key else "**required**" if name in spec["required"] else "–"
+            if paper:
+                default += f"; paper preset `{paper}`"
+            example = toml(key["examples"][0]) if key.get("examples") else toml(key["default"]) if "default" in key else ""
+            if "const" in key:
+                default, example = "–", toml(key["const"])
+            case = uses.get(full)
+            if case is None:
+                unused.append(full)
+            example = f"{name} = {example[1:-1]}" if example else ""
+            shown = "<br>".join(filter(None, [f"`{example}`" if example else "", f"`{case}`" if case else ""]))
+            rows.append([f"`{name}`", values(key), default, unit or "–", meaning, shown])
+        parts.append(f"## {title}\n\n{spec.get('description', '')}\n\n")
+        parts.append(f'<div class="keys">\n\n{table(["Key", "Values", "Default", "Unit", "Meaning", "Example"], rows)}</div>\n\n')
+    write("keys.md", "".join(parts))
+    if unused:
+        problems.append(f"a case that uses {', '.join(unused)}: add one to docs/book/examples/")
+
+
+def collect(path, spec, tables):
+    """Every table of the schema, in the order of the file: (path of keys, schema, heading)."""
+    last = path.rsplit(".", 1)[-1]
+    kinds = [key for key in spec.get("properties", {}).items() if "const" in key[1]]
+    if not path:
+        title = "The top level"
+    elif kinds:
+        title = f"`{last} = {{ {kinds[0][0]} = \"{kinds[0][1]['const']}\" }}`"
+    elif "." in path:
+        title = f"`{last} = {{ … }}` of `{path.split('.')[0]}`"
+    else:
+        title = f"`[[{path}]]`" if spec.get("list") else f"`[{path}]`"
+    tables.append((path, spec, title))
+    for name, key in spec.get("properties", {}).items():
+        inner = f"{path}.{name}".strip(".")
+        for one in [key, *key.get("oneOf", []), *key.get("anyOf", [])]:
+            if one.get("type") == "array" and one.get("items", {}).get("properties"):
+                collect(inner, {**one["items"], "list": True}, tables)
+            elif one.get("properties"):
+                collect(inner, one, tables)
+
+
+def described(key):
+    """Meaning, unit, and the default of the paper's preset, from one description."""
+    text = key.get("description", "")
+    paper = re.search(r" With preset = \"paper\": (.*)\.$", text)
+    text = text[: paper.start()] if paper else text
+    unit = re.search(r" Unit: ([^:]*)\.$", text)
+    text = text[: unit.start()] if unit else text
+    return text, unit and unit.group(1), paper and paper.group(1)
+
+
+def values(key):
+    """The values a key takes, in words."""
+    if "const" in key:
+        return "this one"
+    for several in ("oneOf", "anyOf"):
+        if several in key:
+            words = [f"`{'true' if one['const'] else 'false'}`" if isinstance(one.get("const"), bool) else values(one) for one in key[several]]
+            return " or ".join(dict.fromkeys(words))
+    if "enum" in key:
+        return " ".join(f"`{json.dumps(word, ensure_ascii=False)}`" for word in key["enum"])
+    kind = key.get("type")
+    if kind == "array":
+        items = key.get("items", {})
+        if items.get("properties"):
+            return "tables"
+        least, most = key.get("minItems"), key.get("maxItems")
+        count = "" if least is None else f"{least} " if least == most else f"{least} to {most} " if most else f"at least {least} "
+        return f"list: {count}of {values(items)}"
+    if kind in ("number", "integer"):
+        bounds = [("minimum", "≥"), ("exclusiveMinimum", ">"), ("maximum", "≤"), ("exclusiveMaximum", "<")]
+        told = [f"{sign} {key[name]:g}" for name, sign in bounds if name in key]
+        return " ".join(filter(None, [kind, ", ".join(told)]))
+    return {"object": "table", "string": "text", "boolean": "`true` `false`"}.get(kind, "–")
+
+
+def toml(value):
+    """A value as TOML, in code marks."""
+
+    def plain(value):
+        if isinstance(value, bool):
+            return "true" if value else "false"
+        if isinstance(value, dict):
+            return "{ " + ", ".join(f"{k} = {plain(v)}" for k, v in value.items()) + " }"
+        if isinstance(value, list):
+            return "[" + ", ".join(map(plain, value)) + "]"
+        return json.dumps(value, ensure_ascii=False)
+
+    return f"`{plain(value)}`"
+
+
+def used_keys():
+    """Path of a key, with [KIND] behind tables that have kinds or shapes: a shipped case, or an example of the book, that uses it."""
+    found = {}
+
+    def walk(path, value, case):
+        if isinstance(value, list):
+            for inner in value:
+                walk(path, inner, case)
+        elif isinstance(value, dict):
+            kind = value.get("kind", value.get("shape"))
+            for name, inner in value.items():
+                for full in [f"{path}.{name}", f"{path}[{kind}].{name}"]:
+                    found.setdefault(full.strip("."), case)
+                walk(f"{path}.{name}".strip("."), inner, case)
+
+    for case in [*sorted(ROOT.glob("cases/*/*.toml")), *sorted(BOOK.glob("examples/*.toml"))]:
+        content = tomllib.loads(case.read_text(encoding="utf-8"))
+        place = case.relative_to(ROOT)
+        if "case" not in content:
+            walk("", content, place)
+            continue
+        walk("", {"expect": content.get("expect", [])}, place)
+        for change in [*(arm.get("set", {}) for arm in content.get("arm", [])), content.get("grid", {})]:
+            for key, value in change.items():
+                # body.NAME.key is body.key.
+                path = re.sub(r"^(material|body|support|contact|probe)\.[^.]*\.", r"\1.", key)
+                found.setdefault(path, place)
+                walk(path, value, place)
+    return found
+
+
+# Runs of the book's own
+
+
+def first_run(carom, place):
+    out = place / "impact"
+    said = run(carom, "run", "cases/impact/impact.toml", "--out", out)
+    if said is None:
+        return {}
+    write("first-run.txt", said.replace(str(out), "runs/impact").strip() + "\n")
+    shutil.copy(out / "figures/bodies.svg", GENERATED / "first-run.svg")
+    manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+    rows = [[f"`{c['name']}`", c["unit"] or "–", c["description"]] for c in manifest["columns"]]
+    write("columns.md", table(["Column", "Unit", "Meaning"], rows))
+    return defined(out / "report.html")
+
+
+def defined(page):
+    """Names and definitions of metrics: first and last cell of the rows behind the word Definition."""
+    body = page.read_text(encoding="utf-8")
+    found = {}
+    for start in re.finditer(r"Definitions?</(th|summary)>", body):
+        for row in re.findall(r"<tr>(.*?)</tr>", body[start.end() : body.index("</table>", start.end())], re.S):
+            cells = [html.unescape(re.sub("<[^>]*>", "", cell)) for cell in re.findall(r"<td[^>]*>(.*?)</td>", row, re.S)]
+            if cells:
+                # Those of a probe's column are the same for every column.
+                found[re.sub(r"^.*:", "COLUMN:", cells[0])] = cells[-1]
+    return found
+
+
+def studies(carom, place):
+    definitions = {}
+    for name, columns in STUDIES.items():
+        out = place / name
+        if run(carom, "study", f"docs/book/studies/{name}.toml", "--out", out) is None:
+            continue
+        with open(out / "study.csv", encoding="utf-8", newline="") as file:
+            rows = [[row["arm"], *(number(row[c]) for c in columns)] for row in csv.DictReader(file)]
+        write(f"{name}.md", table(["Arm", *(f"`{c}`" for c in columns)], rows))
+        definitions |= defined(out / "study.html")
+    return definitions
+
+
+def examples(carom, place):
+    """Runs every case of docs/book/examples/."""
+    definitions = {}
+    for case in sorted(BOOK.glob("examples/*.toml")):
+        study = "case" in tomllib.loads(case.read_text(encoding="utf-8"))
+        out = place / f"example-{case.stem}"
+        said = run(carom, "study" if study else "run", case.relative_to(ROOT), "--out", out)
+        if said is not None:
+            if "NOT as expected" in said:
+                problems.append(f"what {case.name} expects: {said.strip()}")
+            definitions |= defined(out / ("study.html" if study else "report.html"))
+    return definitions
+
+
+# Verification
+
+
+def verified(carom, given, place):
+    out = given.verify
+    if out is None:
+        out = place / "verify"
+        fast = ["--fast"] if given.fast else []
+        # Missed expectations and stopped runs are rows of the tables.
+        run(carom, "verify", *fast, "--report", "--out", out, "--markdown", out, accept=(0, 1, 3))
+    for family, (case, figure) in FIGURES.items():
+        if (out / f"{family}.md").is_file():
+            shutil.copy(out / f"{family}.md", GENERATED)
+        else:
+            problems.append(f"{family}.md, the table of `carom verify`")
+        if found := figure_of(out, family, case, figure):
+            shutil.copy(found, GENERATED / f"{family}.svg")
+        else:
+            problems.append(f"figures/{figure}.svg of a run of the family {family}")
+
+
+def figure_of(out, family, case, figure):
+    """OUT/FAMILY/CASE/figures/FIGURE.svg, or that of the family's first case that has one."""
+    found = sorted((out / family).glob(f"**/figures/{figure}.svg"))
+    named = [path for path in found if path.parent.parent.name == case]
+    return next(iter(named + found), None)
+
+
+# mdbook
+
+
+def build():
+    if shutil.which("mdbook") is None:
+        print("no mdbook in the path (cargo install mdbook --locked): only docs/book/src/generated/ was made")
+        return
+    done = subprocess.run(["mdbook", "build", BOOK], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        problems.append(f"mdbook build: {done.stderr.strip()}")
+        return
+    site = ROOT / "target/book"
+    pages = {page.resolve(): Page(page) for page in site.rglob("*.html") if page.name not in ("print.html", "toc.html", "404.html")}
+    for path, page in pages.items():
+        for link in page.links:
+            place, anchor = urllib.parse.urldefrag(link)
+            if urllib.parse.urlparse(place).scheme:
+                continue
+            target = (path.parent / urllib.parse.unquote(place)).resolve() if place else path
+            known = pages.get(target)
+            if not target.exists() or (anchor and known and urllib.parse.unquote(anchor) not in known.anchors):
+                problems.append(f"the target of {link} in {path.name}")
+        if "{{#include" in page.text:
+            problems.append(f"what {path.name} includes")
+    print(site / "index.html")
+
+
+class Page(html.parser.HTMLParser):
+    """Links, anchors and text of a page."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.links, self.anchors, self.text = [], set(), path.read_text(encoding="utf-8")
+        self.feed(self.text)
+
+    def handle_starttag(self, tag, attrs):
+        attrs = dict(attrs)
+        self.anchors.update(filter(None, [attrs.get("id"), attrs.get("name")]))
+        link = attrs.get("href") if tag in ("a", "link") else attrs.get("src") if tag == "img" else None
+        if link:
+            self.links.append(link)
+
+
+if __name__ == "__main__":
+    main()
