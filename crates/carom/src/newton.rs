@@ -18,7 +18,7 @@ use crate::system::{Row, System};
 /// Penetration, as a fraction of L, that counts as touching.
 pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
 /// Below this step, relative to L, the next iterate may well be the last: its tangent is not formed before it is needed.
-const NEARLY_THERE: f64 = 1e-3;
+pub(crate) const NEARLY_THERE: f64 = 1e-3;
 /// Halvings of a Newton step that inverts a cell or makes the residual much worse.
 const HALVINGS: usize = 8;
 
@@ -104,7 +104,7 @@ pub struct Timings {
 }
 
 /// Runs `work` and adds the seconds it took to `clock`.
-fn timed<T>(clock: &mut f64, work: impl FnOnce() -> T) -> T {
+pub(crate) fn timed<T>(clock: &mut f64, work: impl FnOnce() -> T) -> T {
     let began = std::time::Instant::now();
     let done = work();
     *clock += began.elapsed().as_secs_f64();
@@ -246,16 +246,16 @@ pub(crate) fn add_gradient<const D: usize>(gap: &Linearised<D>, factor: f64, for
 }
 
 /// What the last digits of the positions alone make of the residual.
-fn round_off<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> f64 {
+pub(crate) fn round_off<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> f64 {
     let diagonal = work.system.diagonal(mass_factor(&work.stage), stiffness_factor(&work.stage));
     16.0 * f64::EPSILON * model.scale * diagonal.map(|d| d * d).sum::<f64>().sqrt()
 }
 
-fn mass_factor(stage: &Stage) -> f64 {
+pub(crate) fn mass_factor(stage: &Stage) -> f64 {
     stage.weights.mass * stage.acceleration.slope
 }
 
-fn stiffness_factor(stage: &Stage) -> f64 {
+pub(crate) fn stiffness_factor(stage: &Stage) -> f64 {
     stage.weights.internal * (1.0 - stage.average)
 }
 
@@ -386,7 +386,7 @@ fn take<const D: usize>(
     evaluate(model, state, trial, work, tangent)
 }
 
-fn max_abs(x: &[f64]) -> f64 {
+pub(crate) fn max_abs(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |m: f64, v| if v.is_finite() { m.max(v.abs()) } else { f64::INFINITY })
 }
 

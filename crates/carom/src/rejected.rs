@@ -56,6 +56,22 @@ pub enum Rejected {
         /// Penetration.
         depth: f64,
     },
+    /// The contact forces of an explicit step do not settle.
+    #[error("the contact forces of an explicit step did not settle in {rounds} rounds: a gap is still off by {gap:.3e}")]
+    Unsettled {
+        /// Linearisations made.
+        rounds: u32,
+        /// Largest error of a gap.
+        gap: f64,
+    },
+    /// Deeper than the scheme's law allows in one step.
+    #[error("a node penetrates by {depth:.3e}, more than the {bound:.3e} that the contact law explains in this step")]
+    Deep {
+        /// Deepest node.
+        depth: f64,
+        /// What the law allows.
+        bound: f64,
+    },
     /// A number is not finite.
     #[error("{what} is not finite")]
     NotFinite {
@@ -74,6 +90,8 @@ impl Rejected {
             Self::Cycle { .. } => "active-set-cycle",
             Self::Linear(_) => "linear-solver",
             Self::Stuck { .. } => "stuck-contact",
+            Self::Unsettled { .. } => "no-convergence",
+            Self::Deep { .. } => "penetration",
             Self::NotFinite { .. } => "not-finite",
         }
     }

@@ -8,7 +8,9 @@ use crate::newton::{Timings, Workspace};
 use crate::persistency::start;
 use crate::rejected::Rejected;
 use crate::state::State;
-use crate::stepper::{Implicit, Stepper};
+use crate::scheme::stepper;
+use crate::stability;
+use crate::stepper::Stepper;
 
 /// Halvings of Δt before the run stops.
 const MOST_HALVINGS: u32 = 12;
@@ -125,7 +127,7 @@ where
     /// Everything wrong with the case that only its meshes show.
     pub fn new(case: &Case, threads: usize) -> Result<Self, Vec<Problem>> {
         let model = build::<D>(case)?;
-        let problems = overlaps(&model);
+        let problems = [overlaps(&model), stability::too_long(case, &model)].concat();
         if !problems.is_empty() {
             return Err(problems);
         }
@@ -138,7 +140,7 @@ where
                 "check masses and supports",
             )]
         })?;
-        let stepper = Box::new(Implicit::new(case.time.scheme.kernel()?, case.newton.clone()));
+        let stepper = stepper(case, &model)?;
         let steps = (case.time.end / case.time.step).round() as u64;
         let guard = case.time.energy_guard;
         Ok(Self { model, state, dt: case.time.step, steps, stepper, work, guard })

@@ -41,6 +41,15 @@ impl Ledger {
     }
 }
 
+/// What an explicit scheme knows beyond the state's time: the step it has looked ahead with.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ahead {
+    /// v_{n+½}, of which y_{n+1} = y_n + Δt v_{n+½} is admissible.
+    pub velocity: Vec<f64>,
+    /// Its Δt; 0 where nothing is known yet. Another step begins anew from v_n.
+    pub dt: f64,
+}
+
 /// The state at the end of a step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
@@ -64,4 +73,6 @@ pub struct State {
     pub pairs: Vec<Vec<Pair>>,
     /// Energies and works.
     pub ledger: Ledger,
+    /// Of an explicit scheme.
+    pub ahead: Ahead,
 }

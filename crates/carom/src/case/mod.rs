@@ -286,6 +286,10 @@ pub struct ContactSpec {
     pub active_set: ActiveSetRule,
     /// Which gap decides activation.
     pub detection: Detection,
+    /// What contact holds: that of the scheme once resolved.
+    pub law: Option<ContactLaw>,
+    /// Newton's e, 0 … 1.
+    pub restitution: f64,
 }
 
 /// Primary side of a contact.
@@ -321,6 +325,16 @@ pub enum Persistency {
     Project,
     /// Nothing, as in the paper.
     None,
+}
+
+/// What a contact holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ContactLaw {
+    /// Positions: g ≥ 0 at the end of the step.
+    Position,
+    /// Velocities, by impulses: 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0 where the gap is predicted closed.
+    Velocity,
 }
 
 /// When the active set may change.

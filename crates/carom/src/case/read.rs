@@ -17,8 +17,8 @@ use super::suggest;
 use super::tree::{Node, Table};
 use super::view::{View, word};
 use super::{
-    Case, ContactSpec, ExpectSpec, MaterialSpec, NewtonSpec, OutputSpec, Preset, PrimarySpec, ProbeSpec, SchemeSpec,
-    SupportSpec, TimeSpec, Units,
+    Case, ContactSpec, ExpectSpec, MaterialSpec, NewtonSpec, OutputSpec, Persistency, Preset, PrimarySpec, ProbeSpec,
+    SchemeSpec, SupportSpec, TimeSpec, Units,
 };
 
 /// Tables read so far: `None` where one of them could not be.
@@ -102,6 +102,15 @@ impl<'a> Reader<'a> {
             body.gravity.resize(dimension, 0.0);
             body.velocity.resize(dimension, 0.0);
         }
+        let mut contacts: Vec<ContactSpec> = all(draft.contacts)?;
+        let time = draft.time?;
+        for contact in &mut contacts {
+            contact.law.get_or_insert(time.scheme.contact_law());
+            if time.scheme.nonsmooth().is_some() {
+                // Nothing is left to project: the law of the scheme itself makes velocities agree.
+                contact.persistency = Persistency::None;
+            }
+        }
         Some(Case {
             title: self.root.text("title").or(stem).unwrap_or_default(),
             dimension,
@@ -112,8 +121,8 @@ impl<'a> Reader<'a> {
             materials: all(draft.materials)?,
             bodies,
             supports: all(draft.supports)?,
-            contacts: all(draft.contacts)?,
-            time: draft.time?,
+            contacts,
+            time,
             newton: newton(self.one("newton")?)?,
             probes: all(draft.probes)?,
             output: output(self.one("output")?)?,
@@ -211,6 +220,8 @@ fn contact(v: View) -> Option<ContactSpec> {
         persistency: v.choice("persistency")?,
         active_set: v.choice("active_set")?,
         detection: v.choice("detection")?,
+        law: v.choice("law"),
+        restitution: v.number("restitution")?,
     })
 }
 
@@ -234,9 +245,10 @@ fn scheme(table: &Table, preset: Preset, path: &str, problems: &mut Vec<Problem>
     let v = View { table, keys: keys::SCHEMES.table(kind)?.keys, preset };
     let numbers = v.keys.iter().filter(|k| matches!(k.kind, Kind::Number(_)));
     let parameters = numbers.filter_map(|k| Some((k.name.to_owned(), v.number(k.name)?))).collect();
-    let forces = v.choice("forces")?;
+    // Schemes that average nothing have no such key.
+    let forces = v.choice("forces").unwrap_or_default();
     let spec = SchemeSpec { kind: kind.to_owned(), parameters, forces };
-    if let Err(error) = carom_time::scheme(kind, &spec.parameters, forces)
+    if let Err(error) = spec.integrator()
         && !problems.iter().any(|p| p.path.starts_with(path))
     {
         let help = match &error {

@@ -232,6 +232,7 @@ where
             force: spec.force,
             persistency: spec.persistency,
             within: spec.active_set == ActiveSetRule::Within,
+            restitution: spec.restitution,
         };
         let has_mass = |nodes: &[usize]| nodes.iter().any(|n| !massless[n * D]);
         let primary_has_mass = matches!(&spec.primary, PrimarySpec::Side(name)

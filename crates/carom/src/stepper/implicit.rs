@@ -101,7 +101,7 @@ pub(crate) fn averaged_contact_into<const D: usize>(
 }
 
 /// Secondary nodes active in `a` and not in `b`: (contact, global node).
-fn difference<const D: usize>(model: &Model<D>, a: &State, b: &State) -> Vec<(usize, usize)> {
+pub(crate) fn difference<const D: usize>(model: &Model<D>, a: &State, b: &State) -> Vec<(usize, usize)> {
     let mut nodes = Vec::new();
     for (k, contact) in model.contacts.iter().enumerate() {
         let active = |s: &State, node: usize| s.pairs[k].iter().any(|p| p.active && p.node == node);

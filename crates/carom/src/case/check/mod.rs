@@ -3,6 +3,7 @@
 mod contact;
 mod expect;
 mod memory;
+mod scheme;
 mod time;
 
 use super::columns;
@@ -26,6 +27,7 @@ pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Pr
     check.contacts();
     check.probes();
     check.time();
+    check.scheme();
     check.expects();
     check.memory();
 }

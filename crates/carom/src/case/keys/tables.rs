@@ -188,9 +188,24 @@ const CONTACT: Table = Table {
         )
         .default("\"closest-point\"")
         .paper("\"trajectory\""),
+        key(
+            "law",
+            Choice(&["position", "velocity"], &["predictor"]),
+            "What contact holds: positions, or velocities by impulses; the one of the scheme if left out.",
+        )
+        .optional()
+        .example("\"velocity\""),
+        key(
+            "restitution",
+            Number(RESTITUTION),
+            "Newton's e of a contact that holds velocities; of paoli-schatzman the share of the old position.",
+        )
+        .default("0.0"),
     ],
-    later: &["law", "restitution", "passes", "normals", "overlap", "stiffness", "between", "friction"],
+    later: &["passes", "normals", "overlap", "stiffness", "between", "friction"],
 };
+
+const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };
 
 const RIGID: Table = Table {
     name: "a rigid primary",
