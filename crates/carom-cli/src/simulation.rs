@@ -84,6 +84,8 @@ pub(crate) struct Facts {
     pub(crate) bodies: Vec<BodyFacts>,
     /// Steps a pressure wave takes through the smallest body.
     pub(crate) transit_steps: f64,
+    /// 2/ω_max, of explicit schemes.
+    pub(crate) stable_step: Option<f64>,
 }
 
 /// A body's mesh.
@@ -254,10 +256,12 @@ where
     carom::model::Space: carom::model::Dimension<D>,
 {
     let model = carom::model::build::<D>(case)?;
-    let overlaps = carom::model::overlaps(&model);
-    if !overlaps.is_empty() {
-        return Err(overlaps);
+    let problems = [carom::model::overlaps(&model), carom::stability::too_long(case, &model)].concat();
+    if !problems.is_empty() {
+        return Err(problems);
     }
+    let explicit = case.time.scheme.is_explicit();
+    let stable_step = explicit.then(|| carom::stability::stable_step(&model)).flatten().map(|stable| stable.power);
     let mut transit = f64::INFINITY;
     let mut bodies = Vec::new();
     for (part, spec) in model.parts.iter().zip(&case.bodies) {
@@ -287,5 +291,5 @@ where
             dofs: free,
         });
     }
-    Ok(Facts { bodies, transit_steps: transit })
+    Ok(Facts { bodies, transit_steps: transit, stable_step })
 }

@@ -107,6 +107,8 @@ impl<const D: usize> Stepper<D> for Impulsive {
         }
         rows.book(dt, &mut trial, &mut next);
         next.pairs = trial.pairs;
+        // Nodes that came in later in the step than was looked at are watched from now on.
+        gradients_into(model, &next.y, &mut next.pairs, &mut work.gaps)?;
         look(model, &state.y, &next.y, &mut next.pairs, &mut report.events)?;
         next.pairs.iter_mut().flatten().for_each(|pair| pair.active = pair.lambda < 0.0);
         next.ledger.potential = model.potential(&next.y);
@@ -285,7 +287,7 @@ impl<const D: usize> Rows<D> {
         work: &mut Workspace<D>,
     ) -> Result<Self, Rejected> {
         look(model, &state.y, &trial.y, &mut trial.pairs, events)?;
-        gradients_into(model, &trial.y, &trial.pairs, &mut work.gaps)?;
+        gradients_into(model, &trial.y, &mut trial.pairs, &mut work.gaps)?;
         for (pairs, gaps) in trial.pairs.iter_mut().zip(&work.gaps) {
             for (pair, gap) in pairs.iter_mut().zip(gaps) {
                 pair.active = gap.gap < -TIE * model.scale;

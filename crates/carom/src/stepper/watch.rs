@@ -48,20 +48,20 @@ pub(super) fn gap_at<const D: usize>(contact: &Contact<D>, pair: &mut Pair, y: &
     found.map_or(f64::INFINITY, |()| gap.gap)
 }
 
-/// Gaps and gradients of all pairs at `y`; contact points stay where they are.
+/// Gaps and gradients of all pairs at `y`, their contact points moved there.
 ///
 /// # Errors
 /// An active pair has no unique closest point.
 pub(super) fn gradients_into<const D: usize>(
     model: &Model<D>,
     y: &[f64],
-    pairs: &[Vec<Pair>],
+    pairs: &mut [Vec<Pair>],
     gaps: &mut [Vec<Linearised<D>>],
 ) -> Result<(), Rejected> {
     for (k, contact) in model.contacts.iter().enumerate() {
         gaps[k].resize(pairs[k].len(), Linearised::default());
-        for (pair, gap) in pairs[k].iter().zip(&mut gaps[k]) {
-            match contact.method.linearise(&mut pair.clone(), y.as_chunks::<D>().0, 0.0, gap) {
+        for (pair, gap) in pairs[k].iter_mut().zip(&mut gaps[k]) {
+            match contact.method.linearise(pair, y.as_chunks::<D>().0, 0.0, gap) {
                 Ok(()) => {}
                 Err(error) if pair.active => {
                     return Err(Rejected::Contact { contact: contact.name.clone(), error });
