@@ -68,11 +68,7 @@ pub fn complementarity(d: &[f64], b: &[f64], z: &mut Vec<f64>) -> Result<(), Lin
 }
 
 /// L of the submatrix of the chosen indices, D = L Lᵀ, packed row by row.
-fn cholesky(
-    chosen: &[usize],
-    entry: impl Fn(usize, usize) -> f64,
-    factor: &mut Vec<f64>,
-) -> Result<(), LinearError> {
+fn cholesky(chosen: &[usize], entry: impl Fn(usize, usize) -> f64, factor: &mut Vec<f64>) -> Result<(), LinearError> {
     factor.clear();
     for (r, &i) in chosen.iter().enumerate() {
         let row = factor.len();
@@ -149,6 +145,9 @@ mod tests {
         }
         complementarity(&[], &[], &mut z).unwrap();
         assert!(z.is_empty());
-        assert!(matches!(complementarity(&[1.0, 1.0, 1.0, 1.0], &[-1.0, -2.0], &mut z), Err(LinearError::Singular { pivot: 1, .. })));
+        assert!(matches!(
+            complementarity(&[1.0, 1.0, 1.0, 1.0], &[-1.0, -2.0], &mut z),
+            Err(LinearError::Singular { pivot: 1, .. })
+        ));
     }
 }

@@ -239,7 +239,8 @@ mod tests {
                 let q = omega_dt * omega_dt;
                 let (w, b) = (stage.weights, stage.before);
                 // Linear in d: mass·a(d) + internal·q (y + (1 − average) d) + known = 0.
-                let known = b.mass * a + b.internal * q * y + w.mass * stage.acceleration.at_start[0] + w.internal * q * y;
+                let known =
+                    b.mass * a + b.internal * q * y + w.mass * stage.acceleration.at_start[0] + w.internal * q * y;
                 let d = -known / (w.mass * stage.acceleration.slope + w.internal * q * (1.0 - stage.average));
                 v = stage.velocity.slope * d + stage.velocity.at_start[0];
                 a = stage.acceleration.slope * d + stage.acceleration.at_start[0];
@@ -272,7 +273,9 @@ mod tests {
             assert!((end - (v + p / mass)).abs() < 1e-13, "{scheme:?}: {end}");
             match scheme {
                 Impulse::MoreauJean { theta } => assert!((d - dt * (v + theta * p / mass)).abs() < 1e-14),
-                Impulse::GeneralizedAlpha(_) => assert!((d - dt * (v + 0.5 * p / mass)).abs() < 1e-14 && a.abs() < 1e-12),
+                Impulse::GeneralizedAlpha(_) => {
+                    assert!((d - dt * (v + 0.5 * p / mass)).abs() < 1e-14 && a.abs() < 1e-12)
+                }
             }
         }
     }

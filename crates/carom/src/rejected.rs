@@ -57,7 +57,9 @@ pub enum Rejected {
         depth: f64,
     },
     /// The contact forces of an explicit step do not settle.
-    #[error("the contact forces of an explicit step did not settle in {rounds} rounds: a gap is still off by {gap:.3e}")]
+    #[error(
+        "the contact forces of an explicit step did not settle in {rounds} rounds: a gap is still off by {gap:.3e}"
+    )]
     Unsettled {
         /// Linearisations made.
         rounds: u32,

@@ -7,9 +7,9 @@ use crate::model::{Dimension, Model, Space, build, overlaps};
 use crate::newton::{Timings, Workspace};
 use crate::persistency::start;
 use crate::rejected::Rejected;
-use crate::state::State;
 use crate::scheme::stepper;
 use crate::stability;
+use crate::state::State;
 use crate::stepper::Stepper;
 
 /// Halvings of Δt before the run stops.

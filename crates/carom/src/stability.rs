@@ -30,7 +30,8 @@ pub struct StableStep {
 pub fn stable_step<const D: usize>(model: &Model<D>) -> Option<StableStep> {
     let mut system = System::new(model, 1);
     system.internal_tangent(model, &model.reference, &mut vec![0.0; model.dofs()]).ok()?;
-    let mass: Vec<f64> = lumped(model).into_iter().zip(&model.fixed).filter(|(_, held)| !**held).map(|(m, _)| m).collect();
+    let mass: Vec<f64> =
+        lumped(model).into_iter().zip(&model.fixed).filter(|(_, held)| !**held).map(|(m, _)| m).collect();
     if mass.iter().any(|m| *m <= 0.0) {
         return None;
     }
@@ -72,7 +73,8 @@ fn largest_of_cells<const D: usize>(model: &Model<D>) -> Option<f64> {
         for cell in 0..mesh.cell_count() {
             cell_lumped_mass(&*part.body, cell, &mut work, &mut mass);
             part.body.cell_tangent(cell, y, &mut force, &mut tangent).ok()?;
-            let scaled = tangent.iter().enumerate().map(|(k, t)| t * t / (mass[k / (n * D) / D] * mass[k % (n * D) / D]));
+            let scaled =
+                tangent.iter().enumerate().map(|(k, t)| t * t / (mass[k / (n * D) / D] * mass[k % (n * D) / D]));
             largest = largest.max(scaled.sum::<f64>().sqrt());
         }
     }
@@ -87,7 +89,12 @@ pub fn too_long<const D: usize>(case: &Case, model: &Model<D>) -> Vec<Problem> {
     let step = case.time.step;
     let Some(stable) = stable_step(model) else {
         let why = "a cell is inverted at the start, or a free node has no mass";
-        return vec![Problem::new("time.scheme", "the stable step cannot be computed", why, "check meshes and densities")];
+        return vec![Problem::new(
+            "time.scheme",
+            "the stable step cannot be computed",
+            why,
+            "check meshes and densities",
+        )];
     };
     let longest = SAFETY * stable.power;
     if step <= longest {
@@ -99,5 +106,10 @@ pub fn too_long<const D: usize>(case: &Case, model: &Model<D>) -> Vec<Problem> {
         stable.power, stable.cell
     );
     let divided = case.time.end / (case.time.end / longest).ceil();
-    vec![Problem::new("time.step", what, why, format!("step = {divided:.6e} divides the end time; an implicit scheme has no such limit"))]
+    vec![Problem::new(
+        "time.step",
+        what,
+        why,
+        format!("step = {divided:.6e} divides the end time; an implicit scheme has no such limit"),
+    )]
 }

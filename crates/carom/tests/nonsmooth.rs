@@ -144,30 +144,26 @@ fn momentum(sim: &Simulation<2>, v: &[f64]) -> [f64; 3] {
     let mut p = vec![0.0; v.len()];
     sim.model.mass.multiply_into(v, &mut p);
     let y = sim.state.y.as_chunks::<2>().0;
-    p.as_chunks::<2>().0.iter().zip(y).fold([0.0; 3], |s, (p, y)| [s[0] + p[0], s[1] + p[1], s[2] + y[0] * p[1] - y[1] * p[0]])
+    p.as_chunks::<2>()
+        .0
+        .iter()
+        .zip(y)
+        .fold([0.0; 3], |s, (p, y)| [s[0] + p[0], s[1] + p[1], s[2] + y[0] * p[1] - y[1] * p[0]])
 }
 
 /// Momentum is kept through contact by every scheme. Explicit: the moment of v_{n+½} too, since every force at t_n balances at y_n; and the ledger's
-/// dissipation is what its doc says. Impulse schemes: energy never grows.
+/// dissipation is what its doc says.
 #[test]
 fn two_discs_keep_their_momentum() {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     for scheme in SCHEMES {
         let mut sim = simulation(DISCS, &[&format!("time.scheme={scheme}")], 1);
-        let explicit = sim.state.ahead.dt == 0.0 && (scheme.contains("central") || scheme.contains("paoli"));
+        let explicit = scheme.contains("central") || scheme.contains("paoli");
         let size = 1.5 * sim.model.parts.iter().map(|p| p.total_mass).sum::<f64>();
-        let (mut active, mut spin, mut dissipated) = (0, None, 0.0_f64);
+        let (mut active, mut spin) = (0, None);
         while !sim.finished() {
             let before = sim.state.clone();
-            if let Err(e) = sim.advance(&mut GridReport::default()) {
-                let mut gap = carom_contact::Linearised::default();
-                for pair in &before.pairs[0] {
-                    let mut q = *pair;
-                    let ok = sim.model.contacts[0].method.linearise(&mut q, before.y.as_chunks::<2>().0, 0.0, &mut gap);
-                    println!("{pair:?} {ok:?} xi {} gap {:e}", q.xi, gap.gap);
-                }
-                panic!("{scheme} {e}");
-            }
+            sim.advance(&mut GridReport::default()).unwrap();
             let state = &sim.state;
             active = active.max(state.pairs[0].iter().filter(|p| p.active).count());
             let total = momentum(&sim, &state.v);
@@ -183,16 +179,19 @@ fn two_discs_keep_their_momentum() {
                 let moved: Vec<f64> = state.y.iter().zip(&before.y).map(|(a, b)| a - b).collect();
                 let mean: Vec<f64> =
                     state.f_internal.iter().zip(&before.f_internal).map(|(a, b)| 0.5 * (a + b)).collect();
-                let expected = dot(&moved, &mean) - (state.ledger.strain - before.ledger.strain)
+                let expected = dot(&moved, &mean)
+                    - (state.ledger.strain - before.ledger.strain)
                     - 0.125 * sim.dt * sim.dt * (squares(state) - squares(&before));
                 let booked = state.ledger.dissipation() - before.ledger.dissipation();
                 assert!((booked - expected).abs() < 1e-12 * state.ledger.largest, "{scheme}: {booked:e} {expected:e}");
             }
-            dissipated = dissipated.min(state.ledger.total() - state.ledger.total_at_start);
             assert!(state.ledger.created() < 0.02 * state.ledger.largest, "{scheme} {:?}", state.ledger);
         }
         let impulse = sim.state.ledger.impulse;
-        let left: f64 = sim.model.parts[0].nodes().map(|n| sim.model.mass.row(n).map(|(_, m)| m).sum::<f64>() * sim.state.v[2 * n]).sum();
+        let left: f64 = sim.model.parts[0]
+            .nodes()
+            .map(|n| sim.model.mass.row(n).map(|(_, m)| m).sum::<f64>() * sim.state.v[2 * n])
+            .sum();
         let gained = left - 1.5 * sim.model.parts[0].total_mass;
         assert!((impulse[0] - gained).abs() < 1e-12 * size, "{scheme}: impulse {impulse:?}, gained {gained}");
         assert!(active >= 3 && left < -0.5 * 1.5 * sim.model.parts[0].total_mass, "{scheme}: {active} {left}");
@@ -204,7 +203,12 @@ fn two_discs_keep_their_momentum() {
 fn resuming_in_contact_and_threads_change_no_bit() {
     for scheme in SCHEMES {
         let restitution = if scheme.contains("central") { "0.0" } else { "0.5" };
-        let sets = [&format!("time.scheme={scheme}"), &format!("contact.strike.restitution={restitution}"), "time.end=0.3", "time.energy_guard=false"];
+        let sets = [
+            &format!("time.scheme={scheme}"),
+            &format!("contact.strike.restitution={restitution}"),
+            "time.end=0.3",
+            "time.energy_guard=false",
+        ];
         let sets: Vec<&str> = sets.iter().map(|s| &**s).collect();
         let mut whole = simulation(DISCS, &sets, 1);
         let mut bytes = Vec::new();
@@ -222,7 +226,7 @@ fn resuming_in_contact_and_threads_change_no_bit() {
     }
 }
 
-/// Newton's e between two discs thrown at each other: each scheme with it separates faster the larger e is.
+/// ½(Gv⁻ + Gv⁺)·P, the work of contact, is what e takes: nothing with e = 1 where every contact reflects.
 #[test]
 fn restitution_one_keeps_the_energy_of_moreau_and_jean() {
     let left = |e: &str| {
@@ -232,9 +236,7 @@ fn restitution_one_keeps_the_energy_of_moreau_and_jean() {
         let ledger = &sim.state.ledger;
         (ledger.total() / ledger.total_at_start, ledger.contact_work / ledger.total_at_start)
     };
-    // ½(Gv⁻ + Gv⁺)·P vanishes with e = 1 for one contact alone; coupled ones can only lose.
     let (inelastic, elastic) = (left("0.0"), left("1.0"));
-    println!("{inelastic:?} {elastic:?}");
     assert!(inelastic.1 < -1e-3 && elastic.1.abs() < 1e-10, "{inelastic:?} {elastic:?}");
     assert!((elastic.0 - 1.0).abs() < 0.01);
 }
@@ -242,7 +244,8 @@ fn restitution_one_keeps_the_energy_of_moreau_and_jean() {
 /// The stable step of a uniform bar of lumped linear elements is dx/c; of a mesh it lies between the bound by cells and the first blow-up.
 #[test]
 fn the_stable_step_is_where_central_differences_blow_up() {
-    let coarse = case(IMPACT, &[&COARSE[..], &["time.scheme={ kind = \"central-difference\" }", "time.step=3e-4"]].concat());
+    let coarse =
+        case(IMPACT, &[&COARSE[..], &["time.scheme={ kind = \"central-difference\" }", "time.step=3e-4"]].concat());
     let sim = Simulation::<2>::new(&coarse, 1).unwrap();
     let stable = stable_step(&sim.model).unwrap();
     assert!(stable.cell <= stable.power && stable.power < 3.0 * stable.cell, "{stable:?}");
@@ -256,19 +259,22 @@ fn the_stable_step_is_where_central_differences_blow_up() {
 /// The impact of the paper, explicit: indentation and end of contact are those of two unrelated codes.
 #[test]
 fn the_impact_by_central_differences() {
-    let lumped = ["body.cylinder.mass=lumped", "body.prism.mass=lumped", "time.scheme={ kind = \"central-difference\" }"];
+    let lumped =
+        ["body.cylinder.mass=lumped", "body.prism.mass=lumped", "time.scheme={ kind = \"central-difference\" }"];
     let mut sim = simulation(IMPACT, &[&lumped[..], &["time.step=1e-4"]].concat(), 1);
-    let top = (0..sim.model.dofs() / 2).find(|&n| sim.model.reference[2 * n] == 0.0 && (sim.model.reference[2 * n + 1] - 1.5).abs() < 1e-12).unwrap();
-    let (mut lowest, mut end, mut deepest) = (0.0_f64, 0.0, 0.0_f64);
+    let top = (0..sim.model.dofs() / 2)
+        .find(|&n| sim.model.reference[2 * n] == 0.0 && (sim.model.reference[2 * n + 1] - 1.5).abs() < 1e-12)
+        .unwrap();
+    let (mut lowest, mut end, mut created) = (0.0_f64, 0.0, 0.0_f64);
     while !sim.finished() {
         sim.advance(&mut GridReport::default()).unwrap();
         lowest = lowest.min(sim.state.y[2 * top + 1] - 1.5);
         if sim.state.pairs[0].iter().any(|p| p.active) {
             end = sim.state.time;
         }
-        deepest = deepest.max(sim.state.ledger.created() / sim.state.ledger.largest);
+        created = created.max(sim.state.ledger.created() / sim.state.ledger.largest);
     }
-    println!("lowest {lowest}, contact until {end}, created {deepest}");
     assert!((lowest + 0.783).abs() < 0.004, "{lowest}");
     assert!((end - 0.555).abs() < 0.003, "{end}");
+    assert!(created < 1e-8, "{created}");
 }

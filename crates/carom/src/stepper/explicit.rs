@@ -250,7 +250,8 @@ impl Explicit {
             }
         }
         let right = rows.iter().enumerate().map(|(i, &(k, p))| {
-            let done: f64 = rows.iter().enumerate().map(|(j, &(l, q))| -matrix[i * count + j] * pairs[l][q].lambda).sum();
+            let done: f64 =
+                rows.iter().enumerate().map(|(j, &(l, q))| -matrix[i * count + j] * pairs[l][q].lambda).sum();
             (1.0 + model.contacts[k].restitution) * work.gaps[k][p].gap / (dt * dt) - done
         });
         let right = right.collect();

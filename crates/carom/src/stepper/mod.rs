@@ -7,8 +7,8 @@ mod watch;
 
 pub use explicit::Explicit;
 pub use implicit::Implicit;
-pub use impulsive::Impulsive;
 pub(crate) use implicit::averaged_contact_into;
+pub use impulsive::Impulsive;
 
 use carom_contact::PairEvent;
 

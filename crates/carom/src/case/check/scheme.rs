@@ -43,7 +43,12 @@ impl Check<'_> {
             if self.massless(body) {
                 let what = format!("body `{}` has no mass, and {} divides by it", body.name, spec.kind);
                 let why = "its unknown is what forces and impulses do to velocities";
-                self.add(format!("body[{i}].material"), what, why, "a density > 0, or an implicit scheme of the α family");
+                self.add(
+                    format!("body[{i}].material"),
+                    what,
+                    why,
+                    "a density > 0, or an implicit scheme of the α family",
+                );
             } else if spec.is_explicit() && body.mass == MassKind::Consistent {
                 let what = format!("{} needs a lumped mass, and that of body `{}` is consistent", spec.kind, body.name);
                 let why = "an explicit step divides each force by the mass of its node; a consistent mass couples nodes and would \
@@ -82,7 +87,8 @@ impl Check<'_> {
         for (i, contact) in self.draft.contacts.iter().enumerate() {
             if let Some(e) = contact.as_ref().map(|c| c.restitution).filter(|e| *e != 0.0) {
                 let what = format!("{} has no restitution, and e = {e} was given", spec.kind);
-                let help = "leave restitution out, or use scheme moreau-jean, nonsmooth-generalized-alpha or paoli-schatzman";
+                let help =
+                    "leave restitution out, or use scheme moreau-jean, nonsmooth-generalized-alpha or paoli-schatzman";
                 self.add(format!("contact[{i}].restitution"), what, why, help);
             }
         }

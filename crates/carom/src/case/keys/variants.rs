@@ -227,8 +227,12 @@ pub const SCHEMES: Variants = Variants {
             Table {
                 name: "scheme \"moreau-jean\"",
                 doc: "The θ-method with impulses: contact holds velocities.",
-                keys: &[key("theta", Number(THETA), "Share of the new velocity and force: ½ is of order 2, 1 damps most.")
-                    .example("0.5")],
+                keys: &[key(
+                    "theta",
+                    Number(THETA),
+                    "Share of the new velocity and force: ½ is of order 2, 1 damps most.",
+                )
+                .example("0.5")],
                 later: &[],
             },
         ),
