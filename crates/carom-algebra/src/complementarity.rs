@@ -55,8 +55,8 @@ pub fn complementarity(d: &[f64], b: &[f64], z: &mut Vec<f64>) -> Result<(), Lin
         let Some(&last) = wrong.last() else { return Ok(()) };
         if wrong.len() < fewest {
             (fewest, patience) = (wrong.len(), PATIENCE);
-        } else if patience > 0 {
-            patience -= 1;
+        } else {
+            patience = patience.saturating_sub(1);
         }
         if patience > 0 {
             wrong.iter().for_each(|&i| positive[i] = !positive[i]);

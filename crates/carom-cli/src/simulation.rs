@@ -219,7 +219,7 @@ fn page(done: &recording::Outcome, options: Options) -> Result<Option<PathBuf>, 
 fn stopped_help(reason: &carom::Stopped) -> String {
     match reason {
         carom::Stopped::EnergyGuard { .. } => {
-            "use a scheme that dissipates (carom explain), keep persistency = \"project\", or look with time.energy_guard = false"
+            "use a scheme that dissipates (carom explain), keep persistency = \"project\", shorten an explicit step (compressed cells are stiffer), or look with time.energy_guard = false"
         }
         carom::Stopped::NoStep { .. } => "look at log.jsonl for what was tried; a finer mesh, a smaller step or a damped scheme may help",
     }

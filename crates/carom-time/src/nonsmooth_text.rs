@@ -5,6 +5,7 @@ use std::fmt::{Display, Formatter, Result};
 use serde::Serialize;
 
 use crate::explain::Accuracy;
+use crate::names::short;
 use crate::nonsmooth::{Impulse, Nonsmooth, nonsmooth};
 
 /// All of it.
@@ -62,7 +63,7 @@ pub fn explain_nonsmooth(scheme: &Nonsmooth) -> NonsmoothExplanation {
 fn accuracy(scheme: &Nonsmooth, steps_per_period: u32) -> Option<Accuracy> {
     let omega_dt = TAU / f64::from(steps_per_period);
     let (modulus, angle) = scheme.oscillation(omega_dt)?;
-    let damping = -modulus.ln() / angle;
+    let damping = 0.0 - modulus.ln() / angle;
     Some(Accuracy {
         steps_per_period,
         spectral_radius: modulus,
@@ -74,7 +75,7 @@ fn accuracy(scheme: &Nonsmooth, steps_per_period: u32) -> Option<Accuracy> {
 fn contact(scheme: &Nonsmooth) -> Vec<&'static str> {
     match scheme {
         Nonsmooth::CentralDifference => vec![
-            "no penetration at any step; the force at a step's start keeps its end out (forward increment)",
+            "the force at a step's start keeps the positions at its end out (forward increment): no penetration but for hand-overs of facets",
             "needs mass = \"lumped\" on every body; the stable step is computed, a longer one refused",
         ],
         Nonsmooth::PaoliSchatzman => vec![
@@ -104,8 +105,9 @@ fn conserves(scheme: &Nonsmooth) -> Vec<&'static str> {
 
 impl Display for NonsmoothExplanation {
     fn fmt(&self, f: &mut Formatter) -> Result {
-        let parameters: String = self.parameters.iter().map(|(key, value)| format!(", {key} = {value}")).collect();
-        writeln!(f, "{{ kind = \"{}\"{parameters} }}   {}\n  {}", self.kind, self.reference, self.summary)?;
+        write!(f, "{{ kind = \"{}\"", self.kind)?;
+        self.parameters.iter().try_for_each(|(key, value)| write!(f, ", {key} = {}", short(*value)))?;
+        writeln!(f, " }}   {}\n  {}", self.reference, self.summary)?;
         write!(f, "\norder {}   ", self.order)?;
         match (self.stable_omega_dt, self.rho_inf) {
             (Some(limit), _) => writeln!(f, "stable for ωΔt ≤ {limit} (linear motion)")?,

@@ -256,12 +256,13 @@ fn the_stable_step_is_where_central_differences_blow_up() {
     assert!(refused[0].what.contains(&format!("{:.4e}", SAFETY * stable.power)), "{refused:?}");
 }
 
-/// The impact of the paper, explicit: indentation and end of contact are those of two unrelated codes.
+/// The impact of the paper, explicit: indentation and end of contact are those of two unrelated codes. The step is 0.69 of the initial 2/ω_max; the cylinder
+/// stiffens in compression, and from about 0.8 of it energy grows until the guard stops the run.
 #[test]
 fn the_impact_by_central_differences() {
     let lumped =
         ["body.cylinder.mass=lumped", "body.prism.mass=lumped", "time.scheme={ kind = \"central-difference\" }"];
-    let mut sim = simulation(IMPACT, &[&lumped[..], &["time.step=1e-4"]].concat(), 1);
+    let mut sim = simulation(IMPACT, &[&lumped[..], &["time.step=4e-4"]].concat(), 1);
     let top = (0..sim.model.dofs() / 2)
         .find(|&n| sim.model.reference[2 * n] == 0.0 && (sim.model.reference[2 * n + 1] - 1.5).abs() < 1e-12)
         .unwrap();
@@ -276,5 +277,5 @@ fn the_impact_by_central_differences() {
     }
     assert!((lowest + 0.783).abs() < 0.004, "{lowest}");
     assert!((end - 0.555).abs() < 0.003, "{end}");
-    assert!(created < 1e-8, "{created}");
+    assert!(created < 1e-4, "{created}");
 }
