@@ -88,11 +88,10 @@ impl Rejected {
         match self {
             Self::Inverted { .. } => "inverted-cell",
             Self::Contact { .. } => "contact-geometry",
-            Self::NoConvergence { .. } => "no-convergence",
+            Self::NoConvergence { .. } | Self::Unsettled { .. } => "no-convergence",
             Self::Cycle { .. } => "active-set-cycle",
             Self::Linear(_) => "linear-solver",
             Self::Stuck { .. } => "stuck-contact",
-            Self::Unsettled { .. } => "no-convergence",
             Self::Deep { .. } => "penetration",
             Self::NotFinite { .. } => "not-finite",
         }

@@ -173,7 +173,7 @@ impl Impulsive {
                 Ok(())
             })?;
             work.timings.solve += clock;
-            self.impulses(shares, trial, rows, &correction, &columns, work, &mut impulses)?;
+            impulses_into(shares, trial, rows, &correction, &columns, work, &mut impulses)?;
             for (column, impulse) in columns.iter().zip(&impulses) {
                 for (x, c) in correction.iter_mut().zip(column) {
                     *x += shares.force * impulse * c;
@@ -203,35 +203,34 @@ impl Impulsive {
             }
         }
     }
+}
 
-    /// P of the linearised step: b and D from the answers to −r₀ and to each row.
-    #[allow(clippy::too_many_arguments)]
-    fn impulses<const D: usize>(
-        &self,
-        shares: ImpulseShares,
-        trial: &Trial,
-        rows: &Rows<D>,
-        correction: &[f64],
-        columns: &[Vec<f64>],
-        work: &Workspace<D>,
-        impulses: &mut Vec<f64>,
-    ) -> Result<(), Rejected> {
-        let count = rows.places.len();
-        let velocity = &work.stage.velocity;
-        let end: Vec<f64> = (0..correction.len())
-            .map(|i| velocity.slope * (trial.increment[i] + correction[i]) + velocity.at_start[i])
-            .collect();
-        let mut matrix = vec![0.0; count * count];
-        let mut right = vec![0.0; count];
-        for (i, gap) in rows.gaps.iter().enumerate() {
-            right[i] = along(gap, &end) + rows.restitution[i] * rows.before[i];
-            for j in 0..=i {
-                let direct = rows.released.get(j).map_or(0.0, |r| shares.velocity * along(gap, r));
-                matrix[i * count + j] = velocity.slope * shares.force * along(gap, &columns[j]) + direct;
-            }
+/// P of the linearised step: b and D from the answers to −r₀ and to each row.
+#[allow(clippy::too_many_arguments)]
+fn impulses_into<const D: usize>(
+    shares: ImpulseShares,
+    trial: &Trial,
+    rows: &Rows<D>,
+    correction: &[f64],
+    columns: &[Vec<f64>],
+    work: &Workspace<D>,
+    impulses: &mut Vec<f64>,
+) -> Result<(), Rejected> {
+    let count = rows.places.len();
+    let velocity = &work.stage.velocity;
+    let end: Vec<f64> = (0..correction.len())
+        .map(|i| velocity.slope * (trial.increment[i] + correction[i]) + velocity.at_start[i])
+        .collect();
+    let mut matrix = vec![0.0; count * count];
+    let mut right = vec![0.0; count];
+    for (i, gap) in rows.gaps.iter().enumerate() {
+        right[i] = along(gap, &end) + rows.restitution[i] * rows.before[i];
+        for j in 0..=i {
+            let direct = rows.released.get(j).map_or(0.0, |r| shares.velocity * along(gap, r));
+            matrix[i * count + j] = velocity.slope * shares.force * along(gap, &columns[j]) + direct;
         }
-        Ok(complementarity(&matrix, &right, impulses)?)
     }
+    Ok(complementarity(&matrix, &right, impulses)?)
 }
 
 /// Forces and residual at the trial, and the tangent of the bodies if asked for; the sum of the norms of the forces is returned.
