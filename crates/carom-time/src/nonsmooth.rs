@@ -274,7 +274,7 @@ mod tests {
             match scheme {
                 Impulse::MoreauJean { theta } => assert!((d - dt * (v + theta * p / mass)).abs() < 1e-14),
                 Impulse::GeneralizedAlpha(_) => {
-                    assert!((d - dt * (v + 0.5 * p / mass)).abs() < 1e-14 && a.abs() < 1e-12)
+                    assert!((d - dt * (v + 0.5 * p / mass)).abs() < 1e-14 && a.abs() < 1e-12);
                 }
             }
         }
