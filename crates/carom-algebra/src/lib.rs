@@ -1,11 +1,13 @@
 //! The algebra under Carom: small tensors, sparse symmetric systems and the checks by differences.
 
+mod complementarity;
 mod difference;
 mod faer_engine;
 mod linear;
 mod pattern;
 mod small;
 
+pub use complementarity::complementarity;
 pub use difference::jacobian_error;
 pub use faer_engine::FaerSolver;
 pub use linear::{Inertia, LinearError, LinearSolver, SolveReport};

@@ -6,6 +6,7 @@ use serde::Serialize;
 use crate::explain::{Accuracy, Explanation};
 use crate::family::scheme;
 use crate::names::short;
+use crate::nonsmooth_text::{NonsmoothExplanation, explain_all_nonsmooth};
 use crate::scheme::{ForceRule, Scheme};
 
 /// ξ and PE without noise of the last digits.
@@ -82,6 +83,8 @@ pub struct CatalogueRow {
 pub struct Catalogue {
     /// In the order of the catalogue.
     pub rows: Vec<CatalogueRow>,
+    /// Those with a contact law of their own.
+    pub nonsmooth: Vec<NonsmoothExplanation>,
 }
 
 /// Members shown of each kind.
@@ -131,7 +134,7 @@ pub fn explain_all() -> Catalogue {
             held_steps: told.held.steps,
         })
     };
-    Catalogue { rows: SHOWN.iter().filter_map(row).collect() }
+    Catalogue { rows: SHOWN.iter().filter_map(row).collect(), nonsmooth: explain_all_nonsmooth() }
 }
 
 impl Display for Catalogue {
@@ -151,6 +154,15 @@ impl Display for Catalogue {
             let (xi, pe) = (cell(row.accuracy.damping_ratio, 1.0), cell(row.accuracy.period_error, 100.0));
             let held = row.held_steps.map_or("∞".to_owned(), |steps| steps.to_string());
             writeln!(f, "{:>10}{:>10.3}{xi:>10}{:>10}{held:>10}", row.order, row.rho_inf, format!("{pe} %"))?;
+        }
+        writeln!(f, "\nwith a contact law of their own{:>51}{:>10}{:>10}{:>10}", "order", "ρ∞", "ξ(T/10)", "PE(T/10)")?;
+        for told in &self.nonsmooth {
+            let words: Vec<_> = told.parameters.iter().map(|(key, value)| format!("{key} {value:.3}")).collect();
+            let rho = told.rho_inf.map_or("ωΔt ≤ 2".to_owned(), |rho| format!("{rho:.3}"));
+            let tenth = told.accuracy.iter().find(|row| row.steps_per_period == 10);
+            let (xi, pe) = tenth.map_or((None, None), |row| (row.damping_ratio, row.period_error));
+            write!(f, "{:<32}{:<42}{:>8}{rho:>10}", told.kind, words.join(", "), told.order)?;
+            writeln!(f, "{:>10}{:>10}", cell(xi, 1.0), format!("{} %", cell(pe, 100.0)))?;
         }
         write!(
             f,

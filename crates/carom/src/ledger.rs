@@ -60,6 +60,21 @@ pub(crate) fn add_stage<const D: usize>(
     }
 }
 
+/// Work of the loads over a step of one stage whose balance is an average itself. `work` holds the converged evaluation.
+pub(crate) fn work_of_loads<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    increment: &[f64],
+    work: &Workspace<D>,
+) -> f64 {
+    if model.loads.is_empty() {
+        return 0.0;
+    }
+    let (now, before) = (work.stage.weights.external, work.stage.before.external);
+    let forces = work.forces.loads.iter().zip(&state.f_external);
+    increment.iter().zip(forces).map(|(moved, (load, old))| moved * (now * load + before * old)).sum()
+}
+
 /// Where the mean of a stage's forces is taken.
 enum Averaging {
     /// Without inertia, the mean of both ends.

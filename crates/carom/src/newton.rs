@@ -21,7 +21,7 @@ pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
 /// Gap, as a fraction of L, of nodes that touch before the first load step.
 const TOUCHING: f64 = 1e-9;
 /// Below this step, relative to L, the next iterate may well be the last: its tangent is not formed before it is needed.
-const NEARLY_THERE: f64 = 1e-3;
+pub(crate) const NEARLY_THERE: f64 = 1e-3;
 /// Halvings of a Newton step that inverts a cell or makes the residual much worse.
 const HALVINGS: usize = 8;
 
@@ -130,7 +130,7 @@ pub struct Timings {
 }
 
 /// Runs `work` and adds the seconds it took to `clock`.
-fn timed<T>(clock: &mut f64, work: impl FnOnce() -> T) -> T {
+pub(crate) fn timed<T>(clock: &mut f64, work: impl FnOnce() -> T) -> T {
     let began = std::time::Instant::now();
     let done = work();
     *clock += began.elapsed().as_secs_f64();
@@ -322,16 +322,16 @@ pub(crate) fn add_gradient<const D: usize>(gap: &Linearised<D>, factor: f64, for
 }
 
 /// What the last digits of the positions alone make of the residual.
-fn round_off<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> f64 {
+pub(crate) fn round_off<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> f64 {
     let diagonal = work.system.diagonal(mass_factor(&work.stage), stiffness_factor(&work.stage));
     16.0 * f64::EPSILON * model.scale * diagonal.map(|d| d * d).sum::<f64>().sqrt()
 }
 
-fn mass_factor(stage: &Stage) -> f64 {
+pub(crate) fn mass_factor(stage: &Stage) -> f64 {
     stage.weights.mass * stage.acceleration.slope
 }
 
-fn stiffness_factor(stage: &Stage) -> f64 {
+pub(crate) fn stiffness_factor(stage: &Stage) -> f64 {
     match stage.internal {
         Internal::Gradient => stage.weights.internal * (1.0 - stage.average),
         // Its tangent is that by the end of the step already.
@@ -339,7 +339,7 @@ fn stiffness_factor(stage: &Stage) -> f64 {
     }
 }
 
-fn follower_factor(stage: &Stage) -> f64 {
+pub(crate) fn follower_factor(stage: &Stage) -> f64 {
     stage.weights.external * (1.0 - stage.average)
 }
 
@@ -513,7 +513,7 @@ fn take<const D: usize>(
     evaluate(model, state, trial, work, tangent)
 }
 
-fn max_abs(x: &[f64]) -> f64 {
+pub(crate) fn max_abs(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |m: f64, v| if v.is_finite() { m.max(v.abs()) } else { f64::INFINITY })
 }
 

@@ -89,6 +89,15 @@ impl Means {
     }
 }
 
+/// What an explicit scheme knows beyond the state's time: the step it has looked ahead with.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ahead {
+    /// v_{n+½}, of which y_{n+1} = y_n + Δt v_{n+½} is admissible.
+    pub velocity: Vec<f64>,
+    /// Its Δt; 0 where nothing is known yet. Another step begins anew from v_n.
+    pub dt: f64,
+}
+
 /// The state at the end of a step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
@@ -116,4 +125,6 @@ pub struct State {
     pub ledger: Ledger,
     /// The step before, for a two-step scheme; none at the start and where contact has just begun.
     pub previous: Option<Previous>,
+    /// Of an explicit scheme.
+    pub ahead: Ahead,
 }

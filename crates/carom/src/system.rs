@@ -191,6 +191,11 @@ impl<const D: usize> System<D> {
             .map(move |&s| mass_factor * self.mass[s] + stiffness_factor * self.stiffness[s])
     }
 
+    /// out += K x over the free dofs, with the last tangent.
+    pub(crate) fn stiffness_product(&self, x: &[f64], out: &mut [f64]) {
+        self.base.multiply_add(&self.stiffness, x, out);
+    }
+
     /// Factors the system of the last tangents with these rows.
     pub(crate) fn factor(
         &mut self,

@@ -318,8 +318,6 @@ pub struct ContactSpec {
     pub enforcement: Enforcement,
     /// Stiffness of a penalty, in units of the secondary node's own.
     pub stiffness: f64,
-    /// What is constrained.
-    pub law: ContactLaw,
     /// When during a step the contact force acts.
     pub force: ForceTime,
     /// What happens to velocities where contact begins.
@@ -328,6 +326,10 @@ pub struct ContactSpec {
     pub active_set: ActiveSetRule,
     /// Which gap decides activation.
     pub detection: Detection,
+    /// What contact holds: that of the scheme once resolved.
+    pub law: Option<ContactLaw>,
+    /// Newton's e, 0 … 1.
+    pub restitution: f64,
 }
 
 /// Primary side of a contact.
@@ -363,6 +365,8 @@ pub enum ContactLaw {
     Position,
     /// The predictor y + Δt v, and positions at the end of the step.
     Predictor,
+    /// Velocities, by impulses: 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0 where the gap is predicted closed.
+    Velocity,
 }
 
 /// When during a step the contact force acts.

@@ -277,7 +277,7 @@ where
             },
         };
         let light = |part: usize| case.bodies[part].mass.is_redistributed();
-        let projects = spec.law == ContactLaw::Position
+        let projects = spec.law == Some(ContactLaw::Position)
             && spec.enforcement == Enforcement::Multiplier
             && !case.time.scheme.is_static()
             && !light(secondary.part)
@@ -286,7 +286,7 @@ where
             name: spec.name.clone(),
             penalty: (spec.enforcement == Enforcement::Penalty)
                 .then(|| method.secondary().iter().map(|&node| spec.stiffness * node_stiffness(parts, node)).collect()),
-            predictor: spec.law == ContactLaw::Predictor,
+            predictor: spec.law == Some(ContactLaw::Predictor),
             method,
             primary_part,
             secondary_facets: secondary.facets,
@@ -296,6 +296,7 @@ where
             // projected, a massive side would be given the velocity of the light one.
             persistency: if projects { spec.persistency } else { Persistency::None },
             within: spec.active_set == ActiveSetRule::Within,
+            restitution: spec.restitution,
         };
         let has_mass = |nodes: &[usize]| nodes.iter().any(|n| !massless[n * D]);
         let primary_has_mass = matches!(&spec.primary, PrimarySpec::Side(name)
@@ -378,7 +379,7 @@ fn massless_refusals<const D: usize>(case: &Case, parts: &[Part<D>], massless: &
     let touches =
         |name: &str| name.split_once('.').is_some_and(|(body, _)| parts.iter().any(|p| light(p) && p.name == body));
     for (k, contact) in case.contacts.iter().enumerate() {
-        if contact.law == ContactLaw::Predictor {
+        if contact.law == Some(ContactLaw::Predictor) {
             let why = "the predictor is projected with the mass as weight";
             let help = "law = \"position\", which needs no cure where contact nodes have no mass";
             problems.push(Problem::new(format!("contact[{k}].law"), what("law = \"predictor\""), why, help));

@@ -65,6 +65,8 @@ pub struct Contact<const D: usize> {
     pub persistency: Persistency,
     /// Whether the active set may change before Newton has converged.
     pub within: bool,
+    /// Newton's e; 0 unless the scheme treats contact itself.
+    pub restitution: f64,
 }
 
 /// A named support: the dofs whose reaction is recorded.

@@ -185,7 +185,12 @@ impl Implicit {
 }
 
 /// Loads at the time the stage's internal forces are taken at, and the motions of supports at its end.
-fn begin<const D: usize>(model: &Model<D>, state: &State, to: f64, work: &mut Workspace<D>) -> Result<(), Rejected> {
+pub(super) fn begin<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    to: f64,
+    work: &mut Workspace<D>,
+) -> Result<(), Rejected> {
     let average = work.stage.average;
     let time = if average == 0.0 { to } else { (1.0 - average) * to + average * state.time };
     if !model.loads.is_empty() {
@@ -256,7 +261,7 @@ pub(crate) fn averaged_contact_into<const D: usize>(
 }
 
 /// Secondary nodes active in `a` and not in `b`: (contact, global node).
-fn difference<const D: usize>(model: &Model<D>, a: &State, b: &State) -> Vec<(usize, usize)> {
+pub(crate) fn difference<const D: usize>(model: &Model<D>, a: &State, b: &State) -> Vec<(usize, usize)> {
     let mut nodes = Vec::new();
     for (k, contact) in model.contacts.iter().enumerate() {
         let active = |s: &State, node: usize| s.pairs[k].iter().any(|p| p.active && p.node == node);

@@ -7,7 +7,8 @@ impl Check<'_> {
     /// Laws and ways to keep them that have no meaning together, or not with the scheme.
     fn law(&mut self, i: usize, contact: &ContactSpec) {
         let path = |key: &str| format!("contact[{i}].{key}");
-        let (predictor, penalty) = (contact.law == ContactLaw::Predictor, contact.enforcement == Enforcement::Penalty);
+        let (predictor, penalty) =
+            (contact.law == Some(ContactLaw::Predictor), contact.enforcement == Enforcement::Penalty);
         let tables = self.tables("contact");
         let given = |key: &str| tables.get(i).and_then(|n| n.table()?.get(key)).is_some();
         if contact.persistency == Persistency::Project && given("persistency") && (predictor || penalty) {

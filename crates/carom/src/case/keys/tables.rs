@@ -257,10 +257,12 @@ const CONTACT: Table = Table {
             .default("10.0"),
         key(
             "law",
-            Choice(&["position", "predictor"], &["velocity"]),
-            "What a contact constrains: positions at the end, or those and the predictor y + Δt v (contact-stabilised).",
+            Choice(&["position", "predictor", "velocity"], &[]),
+            "What contact holds: positions at the end, those and the predictor y + Δt v (contact-stabilised), or velocities by impulses; the one of \
+             the scheme if left out.",
         )
-        .default("\"position\""),
+        .optional()
+        .example("\"position\""),
         key(
             "force",
             Choice(&["alpha_f", "end"], &[]),
@@ -288,9 +290,17 @@ const CONTACT: Table = Table {
         )
         .default("\"closest-point\"")
         .paper("\"trajectory\""),
+        key(
+            "restitution",
+            Number(RESTITUTION),
+            "Newton's e of a contact that holds velocities; of paoli-schatzman the share of the old position.",
+        )
+        .default("0.0"),
     ],
-    later: &["restitution", "passes", "normals", "overlap", "between", "friction"],
+    later: &["passes", "normals", "overlap", "between", "friction"],
 };
+
+const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };
 
 const RIGID: Table = Table {
     name: "a rigid primary",

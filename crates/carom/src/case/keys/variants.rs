@@ -128,6 +128,7 @@ const ROUND: &[Key] = &[
 ];
 
 const RHO_INF: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };
+const THETA: Range = Range { low: Some((0.5, true)), high: Some((1.0, true)) };
 const BELOW_ONE: Range = Range { low: None, high: Some((1.0, false)) };
 const ALPHA: Range = Range { low: Some((0.0, true)), high: Some((1.0, false)) };
 const FORCES: Key = key(
@@ -231,6 +232,48 @@ pub const SCHEMES: Variants = Variants {
             ),
         ),
         (
+            "central-difference",
+            without_parameters(
+                "scheme \"central-difference\"",
+                "Explicit central differences, lumped mass; contact by forward increments.",
+            ),
+        ),
+        (
+            "paoli-schatzman",
+            without_parameters(
+                "scheme \"paoli-schatzman\"",
+                "Explicit, lumped mass; contact with the restitution of [[contact]].",
+            ),
+        ),
+        (
+            "moreau-jean",
+            Table {
+                name: "scheme \"moreau-jean\"",
+                doc: "The θ-method with impulses: contact holds velocities.",
+                keys: &[key(
+                    "theta",
+                    Number(THETA),
+                    "Share of the new velocity and force: ½ is of order 2, 1 damps most.",
+                )
+                .example("0.5")],
+                later: &[],
+            },
+        ),
+        (
+            "nonsmooth-generalized-alpha",
+            Table {
+                name: "scheme \"nonsmooth-generalized-alpha\"",
+                doc: "Chung–Hulbert between impacts, impulses at them.",
+                keys: &[key(
+                    "rho_inf",
+                    Number(RHO_INF),
+                    "Spectral radius at infinite frequency: 0 damps it within steps, 1 not at all.",
+                )
+                .example("0.8")],
+                later: &[],
+            },
+        ),
+        (
             "static",
             without_parameters(
                 "scheme \"static\"",
@@ -239,6 +282,6 @@ pub const SCHEMES: Variants = Variants {
         ),
     ],
     or: None,
-    later: &["central-difference", "moreau-jean", "nonsmooth-generalized-alpha", "paoli-schatzman"],
+    later: &[],
     later_keys: &[],
 };
