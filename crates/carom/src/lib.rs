@@ -3,6 +3,8 @@
 mod balance;
 pub mod case;
 mod cells;
+mod held;
+mod kept;
 mod ledger;
 pub mod model;
 mod newton;

@@ -3,17 +3,20 @@
 //! Converged means, all at once: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus the round-off the system's diagonal stands for); |g| ≤ 1e-12·L on every active pair;
 //! no pair penetrates, pulls, or has slid off its facet. Nothing less is accepted.
 
+use std::sync::Arc;
+
 use carom_algebra::LinearError;
 use carom_contact::{ActiveSet, Contender, Linearised, Pair, PairEvent};
 use carom_time::Stage;
 
 use crate::balance::{Forces, contact_weights, residual_into};
-use crate::case::NewtonSpec;
+use crate::case::{NewtonSpec, TangentRule};
+use crate::kept::{Keeper, Kept, Point};
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::state::State;
-use crate::system::{Row, System};
+use crate::system::{HoldError, Row, System};
 
 /// Penetration, as a fraction of L, that counts as touching.
 pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
@@ -42,6 +45,8 @@ pub(crate) struct Effort {
     pub iterations: u32,
     /// Events of the pairs, with the place of their contact.
     pub events: Vec<(usize, PairEvent)>,
+    /// The kept factor's point.
+    pub kept: Kept,
 }
 
 /// Scratch that is rebuilt at will and never changes a bit of a result.
@@ -59,6 +64,7 @@ pub struct Workspace<const D: usize> {
     /// Wall time by phase.
     pub timings: Timings,
     residual: Vec<f64>,
+    right: Vec<f64>,
     at: Vec<f64>,
     correction: Vec<f64>,
     multipliers: Vec<f64>,
@@ -82,6 +88,7 @@ impl<const D: usize> Workspace<D> {
             stage: Stage::default(),
             timings: Timings::default(),
             residual: zeros.clone(),
+            right: Vec::new(),
             at: zeros.clone(),
             correction: zeros,
             multipliers: Vec::new(),
@@ -131,8 +138,10 @@ pub(crate) fn solve_stage<const D: usize>(
     let mut sets: Vec<ActiveSet> =
         model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect();
     timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))?;
-    let mut measure = evaluate(model, state, trial, work, true)?;
-    let mut has_tangent = true;
+    let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
+    let mut keeper = Keeper::new(&state.kept, settings.tangent == TangentRule::Kept, mass, stiffness);
+    let mut measure = begin(model, state, trial, work, &mut keeper)?;
+    let mut has_tangent = keeper.full;
     let mut step = f64::INFINITY;
     loop {
         let settled = step <= settings.tolerance * model.scale
@@ -141,12 +150,13 @@ pub(crate) fn solve_stage<const D: usize>(
         let mut changed = change_sets(model, &mut sets, trial, work, settled)?;
         if settled && !changed {
             if !timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))? {
+                effort.kept = keeper.finish();
                 return Ok(effort);
             }
             sets.iter_mut().for_each(ActiveSet::restart);
             changed = true;
         }
-        if effort.iterations as usize >= settings.max_iterations {
+        if keeper.exhausted(settings.max_iterations) {
             stuck(model, trial, work)?;
             return Err(Rejected::NoConvergence {
                 iterations: effort.iterations,
@@ -154,17 +164,114 @@ pub(crate) fn solve_stage<const D: usize>(
                 residual: measure.residual / measure.forces.max(f64::MIN_POSITIVE),
             });
         }
-        if changed || !has_tangent {
-            measure = evaluate(model, state, trial, work, !has_tangent)?;
+        if changed {
+            measure = evaluate(model, state, trial, work, keeper.full && !has_tangent)?;
+            has_tangent = keeper.full;
         }
         let rows = independent_rows(model, &trial.pairs, work);
-        linear_step(model, work, &rows)?;
+        if keeper.full || !kept_step(model, work, &rows, &mut keeper)? {
+            if !has_tangent {
+                measure = evaluate(model, state, trial, work, true)?;
+            }
+            linear_step(model, work, &rows)?;
+        }
         step = max_abs(&work.correction);
         effort.iterations += 1;
-        let may_be_last = step <= NEARLY_THERE * model.scale;
-        measure = advance(model, state, trial, work, &rows, !may_be_last, (!changed).then_some(measure))?;
-        has_tangent = !may_be_last;
+        keeper.observe(step, settings.tolerance * model.scale, changed);
+        let tangent = keeper.full && step > NEARLY_THERE * model.scale;
+        measure = advance(model, state, trial, work, &rows, tangent, (!changed).then_some(measure))?;
+        has_tangent = tangent;
     }
+}
+
+/// The first evaluation, and the kept factor where there is one to keep.
+fn begin<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    trial: &mut Trial,
+    work: &mut Workspace<D>,
+    keeper: &mut Keeper,
+) -> Result<Measure, Rejected> {
+    if !keeper.full {
+        let measure = evaluate(model, state, trial, work, false)?;
+        let held = match keeper.kept.point.clone().filter(|_| !keeper.due) {
+            Some(point) => hold(model, work, &point)?,
+            None => renew(model, work, &[], keeper)?,
+        };
+        if held {
+            return Ok(measure);
+        }
+        keeper.refused();
+    }
+    work.system.release();
+    evaluate(model, state, trial, work, true)
+}
+
+/// Makes the factor of a point; whether there is one.
+fn hold<const D: usize>(model: &Model<D>, work: &mut Workspace<D>, point: &Arc<Point>) -> Result<bool, Rejected> {
+    let (system, scratch) = (&mut work.system, &mut work.correction);
+    match timed(&mut work.timings.factor, || system.hold(model, point, scratch)) {
+        Ok(()) => Ok(true),
+        Err(HoldError::Linear(_)) => Ok(false),
+        Err(HoldError::Inverted((body, inverted))) => Err(Rejected::Inverted { body, inverted }),
+    }
+}
+
+/// Makes a factor at the present positions; whether there is one.
+fn renew<const D: usize>(
+    model: &Model<D>,
+    work: &mut Workspace<D>,
+    rows: &[(usize, usize)],
+    keeper: &mut Keeper,
+) -> Result<bool, Rejected> {
+    let boundary = {
+        let rows = linearised(model, work, rows);
+        work.system.boundary(model, &work.at, &rows, keeper.kept.point.as_deref())
+    };
+    let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
+    let point = Arc::new(Point { at: work.at.clone(), mass, stiffness, boundary });
+    let held = hold(model, work, &point)?;
+    if held {
+        keeper.renewed(point);
+    }
+    Ok(held)
+}
+
+/// Solves with the kept factor, made anew where that is due; false where there is none.
+fn kept_step<const D: usize>(
+    model: &Model<D>,
+    work: &mut Workspace<D>,
+    rows: &[(usize, usize)],
+    keeper: &mut Keeper,
+) -> Result<bool, Rejected> {
+    let mut fresh = false;
+    loop {
+        if !fresh && (keeper.due || !work.system.covers(&linearised(model, work, rows))) {
+            if !renew(model, work, rows, keeper)? {
+                break;
+            }
+            fresh = true;
+        }
+        if try_kept(model, work, rows).is_ok() {
+            return Ok(true);
+        }
+        if fresh {
+            break;
+        }
+        keeper.due = true;
+    }
+    keeper.refused();
+    work.system.release();
+    Ok(false)
+}
+
+fn linearised<'a, const D: usize>(
+    model: &Model<D>,
+    work: &'a Workspace<D>,
+    rows: &[(usize, usize)],
+) -> Vec<Row<'a, D>> {
+    let weight = |k: usize| contact_weights(&work.stage, model.contacts[k].force).0;
+    rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k) }).collect()
 }
 
 /// Brings the pairs up to date with the trial's positions; whether that asks for another solve.
@@ -309,6 +416,24 @@ fn stuck<const D: usize>(model: &Model<D>, trial: &Trial, work: &Workspace<D>) -
         }
     }
     Ok(())
+}
+
+/// Solves for `work.correction` and `work.multipliers` with the kept factor.
+fn try_kept<const D: usize>(
+    model: &Model<D>,
+    work: &mut Workspace<D>,
+    rows: &[(usize, usize)],
+) -> Result<(), LinearError> {
+    let weight = |k: usize| contact_weights(&work.stage, model.contacts[k].force).0;
+    let gaps: Vec<Row<D>> = rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k) }).collect();
+    let right: Vec<f64> = gaps.iter().map(|row| -row.weight * row.gap.gap).collect();
+    timed(&mut work.timings.factor, || work.system.constrain(model, &gaps))?;
+    work.right.clear();
+    work.right.extend(work.residual.iter().map(|r| -r));
+    let (system, forces) = (&mut work.system, &work.right);
+    timed(&mut work.timings.solve, || {
+        system.solve(model, forces, &right, &mut work.correction, &mut work.multipliers)
+    })
 }
 
 /// Solves for `work.correction` and `work.multipliers`.

@@ -199,6 +199,7 @@ where
             }
         };
         let mut primary_part = None;
+        let mut surface = secondary.nodes.clone();
         let method: Box<dyn ContactMethod<D>> = match &spec.primary {
             PrimarySpec::Plane { point, normal } => {
                 let array = |v: &[f64]| std::array::from_fn(|i| v[i]);
@@ -216,6 +217,7 @@ where
                 }
                 Ok(primary) => {
                     primary_part = Some(primary.part);
+                    surface.extend(&primary.nodes);
                     Space::between(spec, &secondary.nodes, &primary.facets, primary.outward)
                 }
                 Err(problem) => {
@@ -224,11 +226,14 @@ where
                 }
             },
         };
+        surface.sort_unstable();
+        surface.dedup();
         let contact = Contact {
             name: spec.name.clone(),
             method,
             primary_part,
             secondary_facets: secondary.facets,
+            surface,
             force: spec.force,
             persistency: spec.persistency,
             within: spec.active_set == ActiveSetRule::Within,

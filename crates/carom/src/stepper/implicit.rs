@@ -48,6 +48,7 @@ impl<const D: usize> Stepper<D> for Implicit {
             }
         }
         next.pairs.clone_from(&trial.pairs);
+        next.kept = effort.kept;
         next.f_internal.clone_from(&work.forces.internal);
         let mut strain = trial.strain;
         if work.stage.average != 0.0 {
