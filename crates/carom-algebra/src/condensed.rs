@@ -340,3 +340,61 @@ fn condense(
     let product = MatMut::from_column_major_slice_mut(schur, kept, kept);
     matmul(product, Accum::Replace, lower, lower.transpose(), 1.0, Par::Seq);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Saddle;
+
+    /// A grid of m × m nodes with two dofs each, springs to neighbours and between the dofs.
+    fn grid(m: usize) -> (Pattern, Vec<f64>, Vec<usize>) {
+        let mut entries = Vec::new();
+        for (a, (row, column)) in (0..m * m).map(|a| (a, (a / m, a % m))) {
+            entries.extend([(2 * a, 2 * a, 5.0), (2 * a + 1, 2 * a + 1, 6.0), (2 * a + 1, 2 * a, 0.5)]);
+            for b in [(column + 1 < m).then_some(a + 1), (row + 1 < m).then_some(a + m)].into_iter().flatten() {
+                entries.extend([(2 * b, 2 * a, -1.0), (2 * b + 1, 2 * a + 1, -1.2)]);
+            }
+        }
+        let pattern = Pattern::from_entries(2 * m * m, entries.iter().map(|&(i, j, _)| (i, j)));
+        let mut values = vec![0.0; pattern.len()];
+        for (i, j, v) in entries {
+            values[pattern.slot(i, j).unwrap()] += v;
+        }
+        (pattern, values, (0..2 * m * m).map(|i| i / 2).collect())
+    }
+
+    #[test]
+    fn solves_with_any_choice_of_last_unknowns() {
+        for (m, last) in [(1, vec![0]), (3, vec![]), (9, vec![7, 20, 21, 22, 80, 3]), (9, (0..162).collect())] {
+            let (pattern, values, groups) = grid(m);
+            let n = pattern.size();
+            let exact: Vec<f64> = (0..n).map(|i| (i as f64 * 0.7).sin()).collect();
+            let mut rhs = vec![0.0; n];
+            pattern.multiply_add(&values, &exact, &mut rhs);
+            let mut condensed = Condensed::default();
+            condensed.analyse(&pattern, &groups, &last).unwrap();
+            condensed.fill(|k| values[k]);
+            condensed.factor().unwrap();
+            assert_eq!(condensed.kept(), last.len());
+            let (mut x, mut out) = (Vec::new(), vec![0.0; n]);
+            condensed.eliminate_into(&rhs, &mut x);
+            let mut saddle = Saddle::default();
+            saddle.begin(condensed.schur(), condensed.kept(), 0);
+            saddle.factor().unwrap();
+            saddle.solve(condensed.kept_part(&mut x), &mut []);
+            condensed.substitute_into(&mut x, &mut out);
+            let error = out.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(error < 1e-13, "{m} {}: {error:e}", last.len());
+        }
+    }
+
+    #[test]
+    fn an_indefinite_matrix_is_refused() {
+        let (pattern, mut values, groups) = grid(4);
+        values[pattern.slot(5, 5).unwrap()] = -1.0;
+        let mut condensed = Condensed::default();
+        condensed.analyse(&pattern, &groups, &[30, 31]).unwrap();
+        condensed.fill(|k| values[k]);
+        assert!(matches!(condensed.factor(), Err(LinearError::Singular { .. })));
+    }
+}

@@ -13,11 +13,14 @@ use faer::linalg::cholesky::llt::factor::{
     LltError, LltParams, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
 };
 use faer::linalg::matmul::matmul;
-use faer::prelude::{Reborrow, ReborrowMut};
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
+use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, MatMut, MatRef, Par, Spec};
 
 use crate::linear::LinearError;
+
+/// What is left of a row, as a share of its square, when it repeats the others.
+const DEPENDENT: f64 = 1e-14;
 
 /// Buffers and factors of the saddle point.
 #[derive(Default)]
@@ -68,7 +71,12 @@ impl Saddle {
         self.small.resize(m * m, 0.0);
         let product = MatMut::from_column_major_slice_mut(&mut self.small, m, m);
         matmul(product, Accum::Replace, t.rb().transpose(), t.rb(), 1.0, Par::Seq);
-        cholesky(&mut self.small, m, &mut self.scratch, &mut self.room)
+        let diagonal: Vec<f64> = (0..m).map(|i| self.small[i * m + i]).collect();
+        cholesky(&mut self.small, m, &mut self.scratch, &mut self.room)?;
+        let dependent = |&i: &usize| self.small[i * m + i].powi(2) <= DEPENDENT * diagonal[i];
+        (0..m).find(dependent).map_or(Ok(()), |i| {
+            Err(LinearError::Singular { size: n + m, pivot: n + i, value: -self.small[i * m + i].powi(2) })
+        })
     }
 
     /// Overwrites `b` with x and `c` with λ.
@@ -111,5 +119,41 @@ fn cholesky(
         Err(LltError::NonPositivePivot { index }) => {
             Err(LinearError::Singular { size: n, pivot: index, value: matrix[index * n + index] })
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meets_both_lines_of_the_system_and_refuses_dependent_rows() {
+        let (n, m) = (7, 3);
+        let entry = |i: usize, j: usize| if i == j { 4.0 } else { 1.0 / (1.0 + (i as f64 - j as f64).abs()) };
+        let stiffness: Vec<f64> = (0..n * n).map(|k| entry(k % n, k / n)).collect();
+        let row = |r: usize, j: usize| ((r * 5 + j).pow(2) as f64 * 1.3).sin();
+        let mut saddle = Saddle::default();
+        saddle.begin(&stiffness, n, m);
+        saddle.add(4, 2, 0.25);
+        for r in 0..m {
+            (0..n).for_each(|j| saddle.add_row(r, j, row(r, j)));
+        }
+        saddle.factor().unwrap();
+        let b: Vec<f64> = (0..n).map(|i| i as f64 - 2.0).collect();
+        let c = [0.3, -0.1, 0.7];
+        let (mut x, mut multipliers) = (b.clone(), c.to_vec());
+        saddle.solve(&mut x, &mut multipliers);
+        for i in 0..n {
+            let changed = |j: usize| if (i, j) == (4, 2) || (i, j) == (2, 4) { 0.25 } else { 0.0 };
+            let upper: f64 = (0..n).map(|j| (entry(i, j) + changed(j)) * x[j]).sum();
+            let lower: f64 = (0..m).map(|r| row(r, i) * multipliers[r]).sum();
+            assert!((upper + lower - b[i]).abs() < 1e-13);
+        }
+        for r in 0..m {
+            assert!(((0..n).map(|j| row(r, j) * x[j]).sum::<f64>() - c[r]).abs() < 1e-13);
+        }
+        saddle.begin(&stiffness, n, 2);
+        (0..2).for_each(|r| saddle.add_row(r, 0, 1.0));
+        assert!(saddle.factor().is_err());
     }
 }

@@ -17,6 +17,8 @@ const RENEWAL: f64 = 6.0;
 const SLOW: f64 = 0.5;
 /// Steps that take the full tangent after one that was not positive definite.
 const REST: u32 = 16;
+/// ln of what the first correction of a step is to shrink by.
+const DIGITS: f64 = 18.0;
 /// Iterations with a kept tangent that count as one towards the allowed number.
 const KEPT_COUNT: f64 = 3.0;
 
@@ -38,8 +40,9 @@ pub struct Point {
 pub struct Kept {
     pub(crate) point: Option<Arc<Point>>,
     steps: u32,
-    iterations: u32,
-    last: u32,
+    /// Iterations a step would take at the contraction seen, in all and in the last step.
+    spent: f64,
+    last: f64,
     /// Steps left with the full tangent.
     rest: u32,
 }
@@ -56,8 +59,9 @@ pub(crate) struct Keeper {
     fresh: bool,
     /// Size of the last correction with the present factor and active set.
     previous: Option<f64>,
-    spent: f64,
-    count: u32,
+    /// Slowest contraction of this step.
+    contraction: f64,
+    counted: f64,
 }
 
 impl Keeper {
@@ -67,15 +71,14 @@ impl Keeper {
         let resting = kept.rest > 0;
         kept.rest = kept.rest.saturating_sub(1);
         let fits = kept.point.as_ref().is_some_and(|p| p.mass == mass && p.stiffness == stiffness);
-        let mean = (RENEWAL + f64::from(kept.iterations)) / f64::from(kept.steps.max(1));
-        let due = !fits || (kept.steps > 0 && f64::from(kept.last) > mean);
-        Self { kept, full: !keep || resting, due, fresh: false, previous: None, spent: 0.0, count: 0 }
+        let due = !fits || (kept.steps > 0 && kept.last > (RENEWAL + kept.spent) / f64::from(kept.steps));
+        Self { kept, full: !keep || resting, due, fresh: false, previous: None, contraction: 0.0, counted: 0.0 }
     }
 
     /// A new factor was made.
     pub(crate) fn renewed(&mut self, point: Arc<Point>) {
         self.kept = Kept { point: Some(point), ..Kept::default() };
-        (self.due, self.fresh, self.previous) = (false, true, None);
+        (self.due, self.fresh, self.previous, self.contraction) = (false, true, None, 0.0);
     }
 
     /// The tangent is not positive definite: full ones for a while.
@@ -86,13 +89,13 @@ impl Keeper {
 
     /// Takes note of a correction of size `step`; `goal` is the size that ends the iteration, `changed` whether the active set or facets just changed.
     pub(crate) fn observe(&mut self, step: f64, goal: f64, changed: bool) {
-        self.count += 1;
-        self.spent += if self.full || self.fresh { 1.0 } else { KEPT_COUNT.recip() };
+        self.counted += if self.full || self.fresh { 1.0 } else { KEPT_COUNT.recip() };
         self.fresh = false;
         if let Some(previous) = self.previous.filter(|_| !changed)
             && step > goal
         {
             let contraction = step / previous;
+            self.contraction = self.contraction.max(contraction);
             let left = (step / goal).ln() / -contraction.min(SLOW).ln();
             self.due = contraction > SLOW || left > RENEWAL;
         }
@@ -101,14 +104,14 @@ impl Keeper {
 
     /// Whether all allowed iterations are spent.
     pub(crate) fn exhausted(&self, allowed: usize) -> bool {
-        self.spent > allowed as f64 - 0.5
+        self.counted > allowed as f64 - 0.5
     }
 
     /// What the next step is to know.
     pub(crate) fn finish(mut self) -> Kept {
         self.kept.steps += 1;
-        self.kept.iterations += self.count;
-        self.kept.last = self.count;
+        self.kept.last = DIGITS / -self.contraction.clamp(1e-3, SLOW).ln();
+        self.kept.spent += self.kept.last;
         self.kept
     }
 }

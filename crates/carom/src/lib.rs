@@ -18,6 +18,7 @@ mod state;
 mod stepper;
 mod system;
 
+pub use kept::{Kept, Point};
 pub use newton::{Timings, Workspace};
 pub use persistency::start;
 pub use rejected::Rejected;

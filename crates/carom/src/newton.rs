@@ -22,6 +22,10 @@ use crate::system::{HoldError, Row, System};
 pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
 /// Below this step, relative to L, the next iterate may well be the last: its tangent is not formed before it is needed.
 const NEARLY_THERE: f64 = 1e-3;
+/// Below this step, relative to L, facets are handed over before the iteration with a kept tangent has converged.
+const CLOSE: f64 = 1e-5;
+/// How much smaller than the tolerance the residual gets with a kept tangent.
+const KEPT_DIGITS: f64 = 1e-3;
 /// Halvings of a Newton step that inverts a cell or makes the residual much worse.
 const HALVINGS: usize = 8;
 
@@ -142,12 +146,21 @@ pub(crate) fn solve_stage<const D: usize>(
     let mut keeper = Keeper::new(&state.kept, settings.tangent == TangentRule::Kept, mass, stiffness);
     let mut measure = begin(model, state, trial, work, &mut keeper)?;
     let mut has_tangent = keeper.full;
-    let mut step = f64::INFINITY;
+    let (mut step, mut shrinking) = (f64::INFINITY, 1.0_f64);
     loop {
-        let settled = step <= settings.tolerance * model.scale
-            && measure.residual <= settings.tolerance * measure.forces + round_off(model, work)
+        // What a kept tangent leaves over shrinks with the residual, not with its square: the balance is taken three digits further.
+        let (next, digits) = if keeper.full { (step, 1.0) } else { (step * shrinking.min(1.0), KEPT_DIGITS) };
+        let settled = next <= settings.tolerance * model.scale
+            && measure.residual <= digits * settings.tolerance * measure.forces + round_off(model, work)
             && measure.gap <= GAP_TOLERANCE * model.scale;
         let mut changed = change_sets(model, &mut sets, trial, work, settled)?;
+        if !keeper.full && !settled && !changed && step <= CLOSE * model.scale {
+            // Where a node will slide to is known long before the last digits are.
+            changed = timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))?;
+            if changed {
+                sets.iter_mut().for_each(ActiveSet::restart);
+            }
+        }
         if settled && !changed {
             if !timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))? {
                 effort.kept = keeper.finish();
@@ -178,8 +191,10 @@ pub(crate) fn solve_stage<const D: usize>(
         step = max_abs(&work.correction);
         effort.iterations += 1;
         keeper.observe(step, settings.tolerance * model.scale, changed);
+        let before = measure.residual;
         let tangent = keeper.full && step > NEARLY_THERE * model.scale;
         measure = advance(model, state, trial, work, &rows, tangent, (!changed).then_some(measure))?;
+        shrinking = measure.residual / before.max(f64::MIN_POSITIVE);
         has_tangent = tangent;
     }
 }
@@ -212,7 +227,7 @@ fn hold<const D: usize>(model: &Model<D>, work: &mut Workspace<D>, point: &Arc<P
     let (system, scratch) = (&mut work.system, &mut work.correction);
     match timed(&mut work.timings.factor, || system.hold(model, point, scratch)) {
         Ok(()) => Ok(true),
-        Err(HoldError::Linear(_)) => Ok(false),
+        Err(HoldError::Indefinite) => Ok(false),
         Err(HoldError::Inverted((body, inverted))) => Err(Rejected::Inverted { body, inverted }),
     }
 }
@@ -431,9 +446,7 @@ fn try_kept<const D: usize>(
     work.right.clear();
     work.right.extend(work.residual.iter().map(|r| -r));
     let (system, forces) = (&mut work.system, &work.right);
-    timed(&mut work.timings.solve, || {
-        system.solve(model, forces, &right, &mut work.correction, &mut work.multipliers)
-    })
+    timed(&mut work.timings.solve, || system.solve(model, forces, &right, &mut work.correction, &mut work.multipliers))
 }
 
 /// Solves for `work.correction` and `work.multipliers`.

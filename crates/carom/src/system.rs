@@ -27,7 +27,7 @@ pub(crate) enum HoldError {
     /// A cell is inverted.
     Inverted((String, Inverted)),
     /// The matrix is not positive definite.
-    Linear(LinearError),
+    Indefinite,
 }
 
 /// One active contact row: its linearised gap and the weight of its contact force.
@@ -157,19 +157,14 @@ impl<const D: usize> System<D> {
     ///
     /// # Errors
     /// A cell is inverted there, or the matrix is not positive definite.
-    pub(crate) fn hold(
-        &mut self,
-        model: &Model<D>,
-        point: &Arc<Point>,
-        force: &mut [f64],
-    ) -> Result<(), HoldError> {
+    pub(crate) fn hold(&mut self, model: &Model<D>, point: &Arc<Point>, force: &mut [f64]) -> Result<(), HoldError> {
         if self.held.point.as_ref() == Some(point) {
             return Ok(());
         }
         self.internal_tangent(model, &point.at, force).map_err(HoldError::Inverted)?;
         self.factorisations += 1;
         let parts = (self.mass.as_slice(), self.stiffness.as_slice());
-        self.held.factor(model, &self.base, point, parts).map_err(HoldError::Linear)
+        self.held.factor(model, &self.base, point, parts).map_err(|_| HoldError::Indefinite)
     }
 
     /// Forgets the kept factor.
