@@ -8,6 +8,9 @@
 //! solve on B, backward. The factor is kept while B's neighbourhood changes as it likes. B is one vertex of the graph that is ordered (approximate
 //! minimum degree), then moved to the end.
 
+// A loop is compiled for wide registers only where it is inlined into `wide`.
+#![allow(clippy::inline_always)]
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltParams, LltRegularization};
 use faer::linalg::matmul::matmul;

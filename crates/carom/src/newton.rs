@@ -11,6 +11,7 @@ use carom_time::Stage;
 
 use crate::balance::{Forces, contact_weights, residual_into};
 use crate::case::{NewtonSpec, TangentRule};
+use crate::held::boundary;
 use crate::kept::{Keeper, Kept, Point};
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -241,7 +242,7 @@ fn renew<const D: usize>(
 ) -> Result<bool, Rejected> {
     let boundary = {
         let rows = linearised(model, work, rows);
-        work.system.boundary(model, &work.at, &rows, keeper.kept.point.as_deref())
+        boundary(model, work.at.as_chunks::<D>().0, &rows, keeper.kept.point.as_deref())
     };
     let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
     let point = Arc::new(Point { at: work.at.clone(), mass, stiffness, boundary });

@@ -15,7 +15,7 @@ use carom_contact::Linearised;
 use carom_solid::Inverted;
 
 use crate::cells::Cells;
-use crate::held::{Held, boundary};
+use crate::held::Held;
 use crate::kept::Point;
 use crate::model::Model;
 
@@ -170,11 +170,6 @@ impl<const D: usize> System<D> {
     /// Forgets the kept factor.
     pub(crate) fn release(&mut self) {
         self.held.point = None;
-    }
-
-    /// Nodes a new factor should leave for last.
-    pub(crate) fn boundary(&self, model: &Model<D>, y: &[f64], rows: &[Row<D>], last: Option<&Point>) -> Vec<usize> {
-        boundary(model, y.as_chunks::<D>().0, rows, last)
     }
 
     /// Whether the kept factor can take these rows.
