@@ -102,7 +102,8 @@ impl Held {
     /// Takes the rows up for solves with the kept tangent.
     pub(crate) fn prepare<const D: usize>(&mut self, model: &Model<D>, rows: &[Row<D>]) -> Result<(), LinearError> {
         self.of_mass = false;
-        self.constrain(model, rows, true)
+        // A multiplier far from its value can bend the sides too much: without second derivatives there still is a descent.
+        self.constrain(model, rows, true).or_else(|_| self.constrain(model, rows, false))
     }
 
     /// The dense system on the boundary.

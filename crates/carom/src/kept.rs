@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 const RENEWAL: f64 = 6.0;
 /// Contraction that is taken for convergence with a kept tangent; slower is not.
 const SLOW: f64 = 0.5;
-/// Steps that take the full tangent after one that was not positive definite.
-const REST: u32 = 16;
+/// Most steps that take the full tangent after refusals in a row: none after the first, then 1, 3, 7, 15.
+const LONGEST_REST: u32 = 15;
 /// ln of what the first correction of a step is to shrink by.
 const DIGITS: f64 = 18.0;
 /// Iterations with a kept tangent that count as one towards the allowed number.
@@ -45,6 +45,8 @@ pub struct Kept {
     last: f64,
     /// Steps left with the full tangent.
     rest: u32,
+    /// Rest after the next refusal.
+    next_rest: u32,
 }
 
 /// The policy during one solve.
@@ -83,7 +85,8 @@ impl Keeper {
 
     /// The tangent is not positive definite: full ones for a while.
     pub(crate) fn refused(&mut self) {
-        self.kept = Kept { rest: REST, ..Kept::default() };
+        let rest = self.kept.next_rest;
+        self.kept = Kept { rest, next_rest: (2 * rest + 1).min(LONGEST_REST), ..Kept::default() };
         self.full = true;
     }
 
