@@ -188,6 +188,11 @@ impl Condensed {
         Ok(())
     }
 
+    /// Gives the memory of the matrix back once it is factored for good; it is analysed anew before another is set.
+    pub fn seal(&mut self) {
+        (self.rows, self.slots, self.values) = (Vec::new(), Vec::new(), Vec::new());
+    }
+
     /// S, column by column.
     pub fn schur(&self) -> &[f64] {
         &self.schur

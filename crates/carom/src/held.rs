@@ -94,6 +94,7 @@ impl Held {
         if self.mass.analyse(model, pattern, &boundary)? {
             self.mass.condensed.fill(|k| mass[k]);
             self.mass.condensed.factor().inspect_err(|_| self.mass.boundary = None)?;
+            self.mass.condensed.seal();
         }
         self.of_mass = true;
         self.constrain(model, rows, false)

@@ -157,9 +157,13 @@ pub(crate) fn solve_stage<const D: usize>(
         let mut changed = change_sets(model, &mut sets, trial, work, settled)?;
         if !keeper.full && !settled && !changed && step <= CLOSE * model.scale {
             // Where a node will slide to is known long before the last digits are.
+            let pairs = trial.pairs.clone();
             changed = timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))?;
             if changed {
                 sets.iter_mut().for_each(ActiveSet::restart);
+            } else {
+                // Open pairs may have come and gone: the gaps at hand belong to the old ones.
+                trial.pairs = pairs;
             }
         }
         if settled && !changed {
