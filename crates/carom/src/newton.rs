@@ -187,7 +187,7 @@ pub(crate) fn solve_stage<const D: usize>(
             has_tangent = keeper.full;
         }
         let rows = independent_rows(model, &trial.pairs, work);
-        if keeper.full || !kept_step(model, work, &rows, &mut keeper)? {
+        if keeper.full || !kept_step(model, state, work, &rows, &mut keeper)? {
             if !has_tangent {
                 measure = evaluate(model, state, trial, work, true)?;
             }
@@ -216,7 +216,7 @@ fn begin<const D: usize>(
         let measure = evaluate(model, state, trial, work, false)?;
         let held = match keeper.kept.point.clone().filter(|_| !keeper.due) {
             Some(point) => hold(model, work, &point)?,
-            None => renew(model, work, &[], keeper)?,
+            None => renew(model, state, work, &[], keeper)?,
         };
         if held {
             return Ok(measure);
@@ -237,9 +237,10 @@ fn hold<const D: usize>(model: &Model<D>, work: &mut Workspace<D>, point: &Arc<P
     }
 }
 
-/// Makes a factor at the present positions; whether there is one.
+/// Makes a factor at the present positions, or else at the start of the step; whether there is one.
 fn renew<const D: usize>(
     model: &Model<D>,
+    state: &State,
     work: &mut Workspace<D>,
     rows: &[(usize, usize)],
     keeper: &mut Keeper,
@@ -249,17 +250,21 @@ fn renew<const D: usize>(
         boundary(model, work.at.as_chunks::<D>().0, &rows, keeper.kept.point.as_deref())
     };
     let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
-    let point = Arc::new(Point { at: work.at.clone(), mass, stiffness, boundary });
-    let held = hold(model, work, &point)?;
-    if held {
-        keeper.renewed(point);
+    // An iterate far from the solution may have no positive definite tangent; the state the step began with nearly always has.
+    for at in [work.at.clone(), state.y.clone()] {
+        let point = Arc::new(Point { at, mass, stiffness, boundary: boundary.clone() });
+        if hold(model, work, &point)? {
+            keeper.renewed(point);
+            return Ok(true);
+        }
     }
-    Ok(held)
+    Ok(false)
 }
 
 /// Solves with the kept factor, made anew where that is due; false where there is none.
 fn kept_step<const D: usize>(
     model: &Model<D>,
+    state: &State,
     work: &mut Workspace<D>,
     rows: &[(usize, usize)],
     keeper: &mut Keeper,
@@ -267,7 +272,7 @@ fn kept_step<const D: usize>(
     let mut fresh = false;
     loop {
         if !fresh && (keeper.due || !work.system.covers(&linearised(model, work, rows))) {
-            if !renew(model, work, rows, keeper)? {
+            if !renew(model, state, work, rows, keeper)? {
                 break;
             }
             fresh = true;
