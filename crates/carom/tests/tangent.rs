@@ -1,5 +1,7 @@
 //! The kept and the full tangent lead to the same history.
 
+#![allow(clippy::unwrap_used)]
+
 use carom::case::{Document, read};
 use carom::{GridReport, Simulation, State};
 
