@@ -3,6 +3,8 @@
 use carom_contact::Pair;
 use serde::{Deserialize, Serialize};
 
+use crate::kept::Kept;
+
 /// Energies and works, design.md §5: cumulative from the start of the run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
@@ -127,4 +129,6 @@ pub struct State {
     pub previous: Option<Previous>,
     /// Of an explicit scheme.
     pub ahead: Ahead,
+    /// What the kept factor was made of.
+    pub kept: Kept,
 }

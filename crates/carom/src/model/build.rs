@@ -251,6 +251,7 @@ where
             }
         };
         let mut primary_part = None;
+        let mut surface = secondary.nodes.clone();
         let method: Box<dyn ContactMethod<D>> = match &spec.primary {
             PrimarySpec::Plane { point, normal } => {
                 let array = |v: &[f64]| std::array::from_fn(|i| v[i]);
@@ -268,6 +269,7 @@ where
                 }
                 Ok(primary) => {
                     primary_part = Some(primary.part);
+                    surface.extend(&primary.nodes);
                     Space::between(spec, &secondary.nodes, &primary.facets, primary.outward)
                 }
                 Err(problem) => {
@@ -282,6 +284,8 @@ where
             && !case.time.scheme.is_static()
             && !light(secondary.part)
             && !primary_part.is_some_and(light);
+        surface.sort_unstable();
+        surface.dedup();
         let contact = Contact {
             name: spec.name.clone(),
             penalty: (spec.enforcement == Enforcement::Penalty)
@@ -290,6 +294,7 @@ where
             method,
             primary_part,
             secondary_facets: secondary.facets,
+            surface,
             // Other schemes take the contact force at the ends of their stages: there is nothing to average.
             force: if averages { spec.force } else { ForceTime::AlphaF },
             // A predictor that respects the contact, a spring, load steps, and nodes without mass that follow the other side leave nothing to project:

@@ -59,6 +59,8 @@ pub struct Contact<const D: usize> {
     pub penalty: Option<Vec<f64>>,
     /// Whether the predictor y + Δt v is kept out of the primary too.
     pub predictor: bool,
+    /// Nodes of both sides, ascending.
+    pub surface: Vec<usize>,
     /// Averaged with α_f or taken at the end.
     pub force: ForceTime,
     /// What happens to velocities where contact begins.

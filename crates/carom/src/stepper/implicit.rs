@@ -5,7 +5,7 @@ use carom_time::{Before, Internal, Kernel, Memory, Stage, Weights};
 
 use super::{Accepted, StepReport, Stepper};
 use crate::balance::known_into;
-use crate::case::{ForceTime, NewtonSpec};
+use crate::case::{ForceTime, NewtonSpec, TangentRule};
 use crate::ledger;
 use crate::model::{Model, dot};
 use crate::newton::{GAP_TOLERANCE, Trial, Workspace, add_gradient, solve_stage};
@@ -21,7 +21,11 @@ pub struct Implicit {
 
 impl Implicit {
     /// A stepper of a kernel.
-    pub fn new(kernel: Box<dyn Kernel>, newton: NewtonSpec) -> Self {
+    pub fn new(kernel: Box<dyn Kernel>, mut newton: NewtonSpec) -> Self {
+        if kernel.stages() > 1 {
+            // The matrix changes from stage to stage: there is no one factor to keep.
+            newton.tangent = TangentRule::Full;
+        }
         Self { kernel, newton }
     }
 }
@@ -69,6 +73,7 @@ impl<const D: usize> Stepper<D> for Implicit {
             let effort = solve_stage(model, state, before, &self.newton, &mut trial, work)?;
             report.newton += effort.iterations;
             report.events.extend(effort.events);
+            next.kept = effort.kept;
             ledger::add_stage(model, state, previous, &trial.pairs, dt, work);
             next.a.clone_from(&work.acceleration);
             work.stage.velocity.value_into(&trial.increment, &mut next.v);
