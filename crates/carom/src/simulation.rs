@@ -3,7 +3,7 @@
 use carom_contact::PairEvent;
 
 use crate::case::{Case, Problem};
-use crate::initial::before;
+use crate::initial::{Before, before};
 use crate::model::{Dimension, Model, Space, build, overlaps};
 use crate::newton::{Timings, Workspace};
 use crate::rejected::Rejected;
@@ -129,6 +129,8 @@ where
         let model = &simulation.model;
         let before = if let Some(initial) = &case.initial {
             Some(before(initial, case, model)?)
+        } else if let Some(motion) = &model.loads.manufactured {
+            Some(Before::of(motion, model)?)
         } else {
             let problems = overlaps(model);
             if !problems.is_empty() {

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Makes cases/static/cylinders.msh, the mesh of the Hertz problems, with Gmsh.
+"""Makes the meshes of cases/static with Gmsh: cylinders.msh of the Hertz problems, and ring.msh.
 
     pip install gmsh==4.15.2        (its wheel needs libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1)
-    python3 scripts/make_hertz_mesh.py
+    python3 scripts/make_static_meshes.py
 
 A quarter of a cylinder of radius 1 that touches y = 0 at the origin, finer there, and its mirror image below: node for node, so that the nodes of two
-equal cylinders match. Surfaces `upper` and `lower`; curves `arc`, `axis` (x = 0) and `cut` (|y| = 1).
+equal cylinders match. Surfaces `upper` and `lower`; curves `arc`, `axis` (x = 0) and `cut` (|y| = 1). And the quarter x, y > 0 of a ring of radii 1 and 2, of third order: surface `ring`; curves
+`inner`, `outer`, `bottom` (y = 0) and `left` (x = 0).
 """
 
 from pathlib import Path
@@ -40,12 +41,25 @@ def quarter():
     return nodes, groups
 
 
-def main():
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    gmsh.option.setNumber("General.NumThreads", 1)
-    nodes, groups = quarter()
-    gmsh.finalize()
+def ring():
+    geo = gmsh.model.geo
+    center, *corners = (geo.addPoint(x, y, 0, 0.25) for x, y in ((0, 0), (1, 0), (2, 0), (0, 2), (0, 1)))
+    a, b, c, d = corners
+    curves = {"bottom": geo.addLine(a, b), "outer": geo.addCircleArc(b, center, c), "left": geo.addLine(c, d), "inner": geo.addCircleArc(d, center, a)}
+    surface = geo.addPlaneSurface([geo.addCurveLoop(list(curves.values()))])
+    geo.synchronize()
+    gmsh.model.addPhysicalGroup(2, [surface], name="ring")
+    for name, curve in curves.items():
+        gmsh.model.addPhysicalGroup(1, [curve], name=name)
+    gmsh.model.mesh.generate(2)
+    gmsh.model.mesh.setOrder(3)
+    gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
+    path = ROOT / "cases/static/ring.msh"
+    gmsh.write(str(path))
+    print(f"{path.relative_to(ROOT)}: {path.stat().st_size} bytes, {len(gmsh.model.mesh.getNodes()[0])} nodes")
+
+
+def cylinders(nodes, groups):
     number = {tag: i + 1 for i, tag in enumerate(nodes)}
     places, cells = [], []
     for part, (surface, sign) in enumerate((("upper", 1), ("lower", -1))):
@@ -72,6 +86,16 @@ def main():
     path = ROOT / "cases/static/cylinders.msh"
     path.write_text("\n".join(lines) + "\n")
     print(f"{path.relative_to(ROOT)}: {path.stat().st_size} bytes, {len(places)} nodes")
+
+
+def main():
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("General.NumThreads", 1)
+    ring()
+    gmsh.clear()
+    cylinders(*quarter())
+    gmsh.finalize()
 
 
 if __name__ == "__main__":
