@@ -357,7 +357,13 @@ fn unknown(what: &str) -> String {
 
 /// Names of metrics that need no column.
 pub fn metric_names() -> Vec<&'static str> {
-    DEFINITIONS.iter().chain(&PRESSURE_DEFINITIONS).chain(&WORK_DEFINITIONS).map(|(name, _)| *name).chain(["stopped"]).collect()
+    DEFINITIONS
+        .iter()
+        .chain(&PRESSURE_DEFINITIONS)
+        .chain(&WORK_DEFINITIONS)
+        .map(|(name, _)| *name)
+        .chain(["stopped"])
+        .collect()
 }
 
 fn no_arms(arm: Option<&str>) -> Result<(), String> {

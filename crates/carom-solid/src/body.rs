@@ -50,7 +50,12 @@ pub trait Body<const D: usize>: Send + Sync {
     fn each_volume_point(&self, cell: usize, visit: &mut dyn FnMut(&[f64], &[f64; D], f64));
 
     /// Visits the same points with the reference position, the position and H = ∂y/∂X − 1 there, and the reference volume (× thickness).
-    fn each_moved_point(&self, cell: usize, y: &[[f64; D]], visit: &mut dyn FnMut(&[f64; D], &[f64; D], &[[f64; D]; D], f64));
+    fn each_moved_point(
+        &self,
+        cell: usize,
+        y: &[[f64; D]],
+        visit: &mut dyn FnMut(&[f64; D], &[f64; D], &[[f64; D]; D], f64),
+    );
 
     /// Divergence ∂Pᵢᴶ/∂Xᴶ of the first Piola–Kirchhoff stress of a motion with H = ∂y/∂X − 1 and second derivatives ∂²yₖ/∂Xᴶ∂Xᴸ = `second[k][J][L]`;
     /// the determinant J as an error if it is not positive.

@@ -32,11 +32,8 @@ fn nominal(body: &dyn Body<2>, y: &[[f64; 2]], xi: [f64; 2], place: [f64; 2]) ->
 #[test]
 fn the_divergence_of_the_stress_by_differences() {
     let (lambda, mu) = (2.0, 1.5);
-    let laws = [
-        Law::NeoHookean { lambda, mu },
-        Law::SaintVenantKirchhoff { lambda, mu },
-        Law::LinearElastic { lambda, mu },
-    ];
+    let laws =
+        [Law::NeoHookean { lambda, mu }, Law::SaintVenantKirchhoff { lambda, mu }, Law::LinearElastic { lambda, mu }];
     for law in laws {
         for stress in [false, true] {
             let mesh = generate::rectangle(Element::T6, [0.0, 0.0], [1.0, 1.0], [1, 1]).unwrap();

@@ -448,7 +448,9 @@ fn a_changing_load_creates_nothing() {
     };
     let (most, booked, last) = created(r#"{ kind = "newmark", beta = 0.25, gamma = 0.5 }"#);
     assert!(most < 1e-12 && last.abs() < 1e-12 && booked.abs() > 1e-3, "{most:e} {booked:e} {last:e}");
-    for scheme in [r#"{ kind = "hu" }"#, r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#, r#"{ kind = "hht", alpha = 0.25 }"#] {
+    for scheme in
+        [r#"{ kind = "hu" }"#, r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#, r#"{ kind = "hht", alpha = 0.25 }"#]
+    {
         let (most, ..) = created(scheme);
         assert!(most < 2e-3, "{scheme}: {most:e}");
     }
@@ -459,7 +461,8 @@ fn a_changing_load_creates_nothing() {
 #[test]
 fn a_moved_support_creates_nothing() {
     let support = "[[support]]\non = [\"bar.left\"]\nmove = { x = \"0.05*(1 - cos(4*t))\" }\n";
-    for scheme in [r#"{ kind = "newmark", beta = 0.25, gamma = 0.5 }"#, r#"{ kind = "chung-hulbert", rho_inf = 0.8 }"#] {
+    for scheme in [r#"{ kind = "newmark", beta = 0.25, gamma = 0.5 }"#, r#"{ kind = "chung-hulbert", rho_inf = 0.8 }"#]
+    {
         let [coarse, fine] = [0.04, 0.02].map(|step| {
             let mut sim = bar(&[&body(8, "consistent"), support, &time(4.0, step, scheme)].concat());
             let mut most = f64::NEG_INFINITY;

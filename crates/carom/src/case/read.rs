@@ -131,11 +131,7 @@ impl<'a> Reader<'a> {
             supports: all(draft.supports)?,
             loads: all(draft.loads)?,
             initial: self.root.has("initial").then(|| initial(self.one("initial")?, folder)).flatten(),
-            manufactured: self
-                .root
-                .has("manufactured")
-                .then(|| self.one("manufactured")?.formulas("y"))
-                .flatten(),
+            manufactured: self.root.has("manufactured").then(|| self.one("manufactured")?.formulas("y")).flatten(),
             contacts: all(draft.contacts)?,
             time: draft.time?,
             newton: newton(self.one("newton")?)?,

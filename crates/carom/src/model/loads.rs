@@ -45,7 +45,8 @@ pub struct LoadsAt {
 impl<const D: usize> Loads<D> {
     /// The loads of a case; names and formulas have been checked when it was read.
     pub(super) fn build(case: &Case, parts: &[Part<D>], problems: &mut Vec<Problem>) -> Self {
-        let mut loads = Self { tractions: Vec::new(), pressures: Vec::new(), body_forces: Vec::new(), manufactured: None };
+        let mut loads =
+            Self { tractions: Vec::new(), pressures: Vec::new(), body_forces: Vec::new(), manufactured: None };
         if let Some(y) = &case.manufactured {
             match y.iter().map(|f| f.formula(&load_variables(D))).collect::<Result<Vec<_>, _>>() {
                 Ok(y) => loads.manufactured = y.try_into().ok().map(Manufactured::new),

@@ -80,7 +80,12 @@ impl Check<'_> {
         for (i, body) in self.draft.bodies.iter().enumerate() {
             let Some(body) = body else { continue };
             if body.gravity.iter().any(|g| *g != 0.0) {
-                self.add(format!("body[{i}].gravity"), "a manufactured motion has no gravity of its own", why, "leave it out");
+                self.add(
+                    format!("body[{i}].gravity"),
+                    "a manufactured motion has no gravity of its own",
+                    why,
+                    "leave it out",
+                );
             }
             if !body.velocity.iter().all(super::super::FormulaSpec::is_zero) {
                 let what = "a manufactured motion has no initial velocity of its own";

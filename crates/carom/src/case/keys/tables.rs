@@ -246,11 +246,9 @@ const INITIAL: Table = Table {
 const MANUFACTURED: Table = Table {
     name: "[manufactured]",
     doc: "A motion of all bodies: the load is ρÿ − Div P, the nodes of the boundary move with it, and history.csv gets error_l2 and error_h1.",
-    keys: &[
-        key("y", Formulas(IN_SPACE_AND_TIME), "Positions at the time t of the places X, Y.")
-            .unit("length")
-            .example("[\"X + 0.1*sin(X + 2*Y)*t\", \"Y - 0.1*cos(X*Y)*t\"]"),
-    ],
+    keys: &[key("y", Formulas(IN_SPACE_AND_TIME), "Positions at the time t of the places X, Y.")
+        .unit("length")
+        .example("[\"X + 0.1*sin(X + 2*Y)*t\", \"Y - 0.1*cos(X*Y)*t\"]")],
     later: &[],
 };
 

@@ -144,7 +144,11 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     // a motion that is given
     (
         &["manufactured.y=[\"X\", \"Y + sin(\"]"],
-        &["the formula of `y`", "a manufactured motion has no support of its own", "a manufactured motion has no contact"],
+        &[
+            "the formula of `y`",
+            "a manufactured motion has no support of its own",
+            "a manufactured motion has no contact",
+        ],
     ),
     (&["manufactured.y=[\"X\"]"], &["`y` must be a list of 2 numbers or formulas"]),
     (&["expect=[{ what = \"last error_l2\", at_most = 0 }]"], &["no column `error_l2`"]),
