@@ -6,11 +6,13 @@
 //! secondary and primary changes no metric. An impulse is a difference of the recorded `contact_impulse`, which the time
 //! integrator accumulated; a mean force over a window w is [P(t + w) − P(t)]/w, not a mean of samples.
 
+mod pressure;
 mod work;
 
 use std::borrow::Cow;
 
 use crate::History;
+pub use pressure::{PRESSURE_DEFINITIONS, hertz, of_pressure};
 pub use work::{COLUMN_DEFINITIONS, WORK_DEFINITIONS, column_roughness, of_run, probe_columns};
 
 /// A metric of a run.

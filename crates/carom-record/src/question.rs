@@ -15,7 +15,7 @@
 use std::borrow::Cow;
 
 use crate::expression::{self, Expression, Token, tokens};
-use crate::metrics::{self, DEFINITIONS, WORK_DEFINITIONS};
+use crate::metrics::{self, DEFINITIONS, PRESSURE_DEFINITIONS, WORK_DEFINITIONS};
 use crate::{History, Run, Status};
 
 /// Two times are one if they differ by less than this fraction of the span of the first record.
@@ -357,7 +357,13 @@ fn unknown(what: &str) -> String {
 
 /// Names of metrics that need no column.
 pub fn metric_names() -> Vec<&'static str> {
-    DEFINITIONS.iter().chain(&WORK_DEFINITIONS).map(|(name, _)| *name).chain(["stopped"]).collect()
+    DEFINITIONS
+        .iter()
+        .chain(&PRESSURE_DEFINITIONS)
+        .chain(&WORK_DEFINITIONS)
+        .map(|(name, _)| *name)
+        .chain(["stopped"])
+        .collect()
 }
 
 fn no_arms(arm: Option<&str>) -> Result<(), String> {
@@ -411,9 +417,13 @@ impl Records for Run {
         if name == "stopped" {
             return Ok(f64::from(u8::from(self.manifest.status == Status::Failed)));
         }
-        if WORK_DEFINITIONS.iter().any(|(work, _)| *work == name) {
-            let found = metrics::of_run(self).into_iter().find(|m| m.name == name).and_then(|m| m.value);
-            return found.ok_or_else(|| format!("the manifest has no {name}"));
+        let named = |list: &[(&str, &str)]| list.iter().any(|(one, _)| *one == name);
+        let found = || metrics::of_run(self).into_iter().find(|m| m.name == name).and_then(|m| m.value);
+        if named(&WORK_DEFINITIONS) {
+            return found().ok_or_else(|| format!("the manifest has no {name}"));
+        }
+        if named(&PRESSURE_DEFINITIONS) {
+            return found().ok_or_else(|| format!("there is no {name}: it is of the end of a static run in contact"));
         }
         metric(&self.history, name)
     }

@@ -4,7 +4,7 @@
 //! Σ|xᵢ₊₁ − xᵢ|, range is max − min. One hump that ends where it began has 0, a monotone column −1/2, one that goes up and down k
 //! times through its whole range k − 1. It sees rows, not steps: a coarser `history_every` hides what lies between them.
 
-use super::{Metric, all, extreme, first_episode, total_variation};
+use super::{Metric, all, extreme, first_episode, of_pressure, total_variation};
 use crate::{History, Run};
 
 /// Metrics of the work, with definitions.
@@ -39,10 +39,11 @@ pub fn probe_columns(run: &Run) -> Vec<&str> {
     columns.filter(|c| c.rsplit_once('.').is_some_and(|(probe, _)| names.contains(&probe))).collect()
 }
 
-/// Everything a study tabulates: [`all`], then the columns of the probes, then the work.
+/// Everything a study tabulates: [`all`], the pressure at the end of a static run, then the columns of the probes, then the work.
 pub fn of_run(run: &Run) -> Vec<Metric> {
     let history = &run.history;
     let mut metrics = all(history);
+    metrics.extend(of_pressure(run));
     for column in probe_columns(run) {
         for (what, definition) in COLUMN_DEFINITIONS {
             let values = history.column(column).unwrap_or_default();
