@@ -57,7 +57,8 @@ def main():
             survived.append(fault["name"])
     if given.markdown:
         lines = [["Fault", "In", "Seen first by"], ["---"] * 3, *rows]
-        given.markdown.write_text("".join(f"| {' | '.join(cell.replace('|', '\\|') for cell in line)} |\n" for line in lines), encoding="utf-8")
+        lines = [" | ".join(cell.replace("|", "\\|") for cell in line) for line in lines]
+        given.markdown.write_text("".join(f"| {line} |\n" for line in lines), encoding="utf-8")
     print(f"{len(rows)} faults, {len(survived)} survived{': ' + ', '.join(survived) if survived else ''}")
     sys.exit(1 if survived else 0)
 
