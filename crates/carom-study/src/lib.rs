@@ -7,6 +7,7 @@
 mod arms;
 mod expects;
 mod file;
+mod matched;
 mod plan;
 mod run;
 mod schema;
