@@ -78,16 +78,27 @@ impl Scale {
         let factors: &[f64] = if high - low < 1.2 { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let decades = (low.floor() as i64..=high.ceil() as i64).filter(|d| d % every == 0);
         let tick = |d: i64, f: &f64| {
-            let label = if *f == 1.0 { format!("10^{{{}}}", d.to_string().replace('-', "−")) } else { format!("{f}·10^{{{}}}", d.to_string().replace('-', "−")) };
+            let label = if *f == 1.0 {
+                format!("10^{{{}}}", d.to_string().replace('-', "−"))
+            } else {
+                format!("{f}·10^{{{}}}", d.to_string().replace('-', "−"))
+            };
             (d as f64 + f.log10(), label)
         };
-        let ticks = decades.flat_map(|d| factors.iter().map(move |f| tick(d, f))).filter(|(x, _)| (low..=high).contains(x));
+        let ticks =
+            decades.flat_map(|d| factors.iter().map(move |f| tick(d, f))).filter(|(x, _)| (low..=high).contains(x));
         Self { axis: Axis { low, high, ticks: ticks.collect(), exponent: 0 }, log }
     }
 
     /// 0 at the low end, 1 at the high end; NaN where there is no such point.
     fn position(&self, value: f64) -> f64 {
-        self.axis.position(if !self.log { value } else if value > 0.0 { value.log10() } else { f64::NAN })
+        self.axis.position(if !self.log {
+            value
+        } else if value > 0.0 {
+            value.log10()
+        } else {
+            f64::NAN
+        })
     }
 }
 
@@ -129,29 +140,53 @@ impl Plot {
         const BELOW: f64 = 34.0;
         let across = self.across.max(1) as f64;
         let cell = WIDTH / across;
-        let (wide, high) = (cell - LEFT - RIGHT, if across > 2.0 { 150.0 } else if across > 1.0 { 230.0 } else { 320.0 });
+        let (wide, high) = (
+            cell - LEFT - RIGHT,
+            if across > 2.0 {
+                150.0
+            } else if across > 1.0 {
+                230.0
+            } else {
+                320.0
+            },
+        );
         let rows = self.panes.len().div_ceil(self.across.max(1));
         let legend = self.legend();
         let lines = legend_lines(&legend);
         let height = rows as f64 * (TOP + high + BELOW) + 22.0 + 18.0 * lines.len() as f64 + 6.0;
         let mut out = open(&self.name, WIDTH, height);
-        let x_axis = Scale::new(self.x_range(), (wide / 58.0).max(2.0), !self.log[0] , self.log[0]);
+        let x_axis = Scale::new(self.x_range(), (wide / 58.0).max(2.0), !self.log[0], self.log[0]);
         for (i, pane) in self.panes.iter().enumerate() {
-            let (x0, y0) = ((i % self.across.max(1)) as f64 * cell + LEFT, (i / self.across.max(1)) as f64 * (TOP + high + BELOW) + TOP);
+            let (x0, y0) = (
+                (i % self.across.max(1)) as f64 * cell + LEFT,
+                (i / self.across.max(1)) as f64 * (TOP + high + BELOW) + TOP,
+            );
             let y_axis = Scale::new(self.y_range(pane), (high / 40.0).max(2.0), false, self.log[1]);
             let to_x = |x: f64| x0 + wide * x_axis.position(x);
             let to_y = |y: f64| y0 + high * (1.0 - y_axis.position(y));
             let id = format!("{}-{i}", self.name.replace(|c: char| !c.is_alphanumeric(), "-"));
-            let _ = writeln!(out, "<clipPath id=\"{id}\"><rect x=\"{x0:.1}\" y=\"{y0:.1}\" width=\"{wide:.1}\" height=\"{high:.1}\"/></clipPath>");
+            let _ = writeln!(
+                out,
+                "<clipPath id=\"{id}\"><rect x=\"{x0:.1}\" y=\"{y0:.1}\" width=\"{wide:.1}\" height=\"{high:.1}\"/></clipPath>"
+            );
             if let Some([x, low, up]) = &pane.band {
                 let there = x.iter().zip(up).map(|(x, y)| (to_x(*x), to_y(*y)));
                 let back = x.iter().zip(low).rev().map(|(x, y)| (to_x(*x), to_y(*y)));
-                let points: Vec<String> = there.chain(back).filter(|p| p.0.is_finite() && p.1.is_finite()).map(|p| format!("{:.1} {:.1}", p.0, p.1)).collect();
-                let _ = writeln!(out, "<path clip-path=\"url(#{id})\" d=\"M{}z\" fill=\"#cfcfcf\" stroke=\"#cfcfcf\" stroke-width=\"2.5\" stroke-linejoin=\"round\"/>", points.join("L"));
+                let points: Vec<String> = there
+                    .chain(back)
+                    .filter(|p| p.0.is_finite() && p.1.is_finite())
+                    .map(|p| format!("{:.1} {:.1}", p.0, p.1))
+                    .collect();
+                let _ = writeln!(
+                    out,
+                    "<path clip-path=\"url(#{id})\" d=\"M{}z\" fill=\"#cfcfcf\" stroke=\"#cfcfcf\" stroke-width=\"2.5\" stroke-linejoin=\"round\"/>",
+                    points.join("L")
+                );
             }
             for (value, label) in &y_axis.axis.ticks {
                 let y = y0 + high * (1.0 - y_axis.axis.position(*value));
-                let _ = writeln!(out, "<path d=\"M{x0:.1} {y:.1}h{wide:.1}\" stroke=\"#dddddd\" stroke-width=\"0.6\"/>");
+                let _ =
+                    writeln!(out, "<path d=\"M{x0:.1} {y:.1}h{wide:.1}\" stroke=\"#dddddd\" stroke-width=\"0.6\"/>");
                 write_text(&mut out, x0 - 6.0, y + 4.0, "text-anchor=\"end\" font-size=\"11\"", label);
             }
             let bottom = y0 + high;
@@ -161,14 +196,31 @@ impl Plot {
                 write_text(&mut out, x, bottom + 16.0, "text-anchor=\"middle\" font-size=\"11\"", label);
             }
             marks(&mut out, pane, &to_x, (y0, bottom), (x0, x0 + wide));
-            let _ = writeln!(out, "<path d=\"M{x0:.1} {y0:.1}v{high:.1}h{wide:.1}\" fill=\"none\" stroke=\"#222\" stroke-width=\"0.9\"/>");
+            let _ = writeln!(
+                out,
+                "<path d=\"M{x0:.1} {y0:.1}v{high:.1}h{wide:.1}\" fill=\"none\" stroke=\"#222\" stroke-width=\"0.9\"/>"
+            );
             for curve in &pane.curves {
                 draw(&mut out, curve, &id, &to_x, &to_y);
             }
-            write_text(&mut out, x0, y0 - 9.0, "font-size=\"12\" font-weight=\"600\"", &fitted(&pane.title, wide, 12.0));
+            write_text(
+                &mut out,
+                x0,
+                y0 - 9.0,
+                "font-size=\"12\" font-weight=\"600\"",
+                &fitted(&pane.title, wide, 12.0),
+            );
             if !pane.y_label.is_empty() {
-                let label = if y_axis.axis.exponent == 0 { pane.y_label.clone() } else { with_unit(&pane.y_label, &scaled("", y_axis.axis.exponent)) };
-                let place = format!("text-anchor=\"middle\" font-size=\"12\" transform=\"translate({:.1} {:.1}) rotate(-90)\"", x0 - LEFT + 13.0, y0 + 0.5 * high);
+                let label = if y_axis.axis.exponent == 0 {
+                    pane.y_label.clone()
+                } else {
+                    with_unit(&pane.y_label, &scaled("", y_axis.axis.exponent))
+                };
+                let place = format!(
+                    "text-anchor=\"middle\" font-size=\"12\" transform=\"translate({:.1} {:.1}) rotate(-90)\"",
+                    x0 - LEFT + 13.0,
+                    y0 + 0.5 * high
+                );
                 write_text(&mut out, 0.0, 0.0, &place, &label);
             }
         }
@@ -181,7 +233,10 @@ impl Plot {
             for i in line {
                 let (label, number, marked) = legend[*i];
                 let (color, dashes, marker) = style(number);
-                let _ = writeln!(out, "<path d=\"M{x:.1} {y:.1}h26\" stroke=\"{color}\" stroke-width=\"1.8\" stroke-dasharray=\"{dashes}\"/>");
+                let _ = writeln!(
+                    out,
+                    "<path d=\"M{x:.1} {y:.1}h26\" stroke=\"{color}\" stroke-width=\"1.8\" stroke-dasharray=\"{dashes}\"/>"
+                );
                 if marked {
                     mark(&mut out, marker, color, x + 13.0, y);
                 }
@@ -216,8 +271,11 @@ impl Plot {
     pub(crate) fn script(&self) -> String {
         let name = &self.name;
         let labels: Vec<String> = self.panes.iter().map(|p| format!("{:?}", plain(&p.y_label))).collect();
-        let marks: Vec<String> =
-            self.panes.iter().map(|p| format!("{:?}", p.marks.iter().map(|m| (m.0, plain(&m.1))).collect::<Vec<_>>())).collect();
+        let marks: Vec<String> = self
+            .panes
+            .iter()
+            .map(|p| format!("{:?}", p.marks.iter().map(|m| (m.0, plain(&m.1))).collect::<Vec<_>>()))
+            .collect();
         let scales = self.log.map(|log| if log { "log" } else { "linear" });
         format!(
             "#!/usr/bin/env python3\n\"\"\"Draws {name}.csv again: python3 {name}.py  (needs matplotlib)\"\"\"\nimport csv, pathlib\nimport matplotlib.pyplot as plt\n\n\
@@ -297,15 +355,28 @@ fn legend_lines(legend: &[(&str, usize, bool)]) -> Vec<Vec<usize>> {
     lines
 }
 
-fn marks(out: &mut String, pane: &Pane, to_x: &dyn Fn(f64) -> f64, (top, bottom): (f64, f64), (left, right): (f64, f64)) {
+fn marks(
+    out: &mut String,
+    pane: &Pane,
+    to_x: &dyn Fn(f64) -> f64,
+    (top, bottom): (f64, f64),
+    (left, right): (f64, f64),
+) {
     for (x, word) in &pane.marks {
         let x = to_x(*x);
         if !(left..=right).contains(&x) {
             continue;
         }
-        let _ = writeln!(out, "<path d=\"M{x:.1} {top:.1}V{bottom:.1}\" stroke=\"#777\" stroke-width=\"0.8\" stroke-dasharray=\"2 2\"/>");
+        let _ = writeln!(
+            out,
+            "<path d=\"M{x:.1} {top:.1}V{bottom:.1}\" stroke=\"#777\" stroke-width=\"0.8\" stroke-dasharray=\"2 2\"/>"
+        );
         if !word.is_empty() {
-            let place = format!("font-size=\"10\" fill=\"#555\" text-anchor=\"end\" transform=\"translate({:.1} {:.1}) rotate(-90)\"", x - 3.0, top + 4.0);
+            let place = format!(
+                "font-size=\"10\" fill=\"#555\" text-anchor=\"end\" transform=\"translate({:.1} {:.1}) rotate(-90)\"",
+                x - 3.0,
+                top + 4.0
+            );
             write_text(out, 0.0, 0.0, &place, word);
         }
     }
@@ -348,7 +419,8 @@ mod tests {
     use super::*;
 
     fn plot() -> Plot {
-        let curve = Curve { label: "Hu, \"a\"".into(), style: 9, x: vec![1e-3, 1e-2], y: vec![0.0, 2e-4], marked: true };
+        let curve =
+            Curve { label: "Hu, \"a\"".into(), style: 9, x: vec![1e-3, 1e-2], y: vec![0.0, 2e-4], marked: true };
         Plot {
             name: "error-cost".into(),
             caption: String::new(),
@@ -370,7 +442,10 @@ mod tests {
 
     #[test]
     fn the_table_has_every_number() {
-        assert_eq!(plot().csv(), "pane,curve,x,y\n\"one\",\"Hu, \"\"a\"\"\",0.001,0.0\n\"one\",\"Hu, \"\"a\"\"\",0.01,0.0002\n");
+        assert_eq!(
+            plot().csv(),
+            "pane,curve,x,y\n\"one\",\"Hu, \"\"a\"\"\",0.001,0.0\n\"one\",\"Hu, \"\"a\"\"\",0.01,0.0002\n"
+        );
         assert!(plot().script().contains("time t$_{\\\\mathrm{c}}$ (s)"));
     }
 
