@@ -138,7 +138,7 @@ impl FaerSolver {
 }
 
 /// Elimination order: AMD on the graph of groups, each group expanded in ascending order.
-fn grouped_ordering(pattern: &Pattern, groups: &[usize]) -> Result<(Vec<usize>, Vec<usize>), String> {
+pub(crate) fn grouped_ordering(pattern: &Pattern, groups: &[usize]) -> Result<(Vec<usize>, Vec<usize>), String> {
     let n = pattern.size();
     let count = groups.iter().max().map_or(0, |g| g + 1);
     let entries = (0..n).flat_map(|j| pattern.column(j).iter().map(move |&i| (groups[i], groups[j])));

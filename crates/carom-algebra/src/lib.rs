@@ -1,13 +1,19 @@
 //! The algebra under Carom: small tensors, sparse symmetric systems and the checks by differences.
 
+mod condensed;
 mod difference;
 mod faer_engine;
 mod linear;
 mod pattern;
+mod saddle;
+mod simd;
 mod small;
 
+pub use condensed::Condensed;
 pub use difference::jacobian_error;
 pub use faer_engine::FaerSolver;
 pub use linear::{Inertia, LinearError, LinearSolver, SolveReport};
 pub use pattern::Pattern;
+pub use saddle::Saddle;
+pub use simd::wide;
 pub use small::{Mat, Vector};

@@ -189,8 +189,12 @@ fn work(out: &mut String, run: &Run) {
             writeln!(out, "<tr><td>{}</td><td class=\"n\">{count}</td><td></td></tr>", escape(&name.replace('_', " ")));
     }
     for (phase, seconds) in &m.timings {
+        let each = match m.counters.get("steps") {
+            Some(&steps) if steps > 0 => format!("s, {} ms a step", number(1e3 * seconds / steps as f64)),
+            _ => "s".into(),
+        };
         let (phase, seconds) = (escape(&phase.replace('_', " ")), number(*seconds));
-        let _ = writeln!(out, "<tr><td>{phase}</td><td class=\"n\">{seconds}</td><td>s</td></tr>");
+        let _ = writeln!(out, "<tr><td>{phase}</td><td class=\"n\">{seconds}</td><td>{each}</td></tr>");
     }
     out.push_str("</table>\n");
 }

@@ -3,7 +3,9 @@
 mod balance;
 pub mod case;
 mod cells;
+mod held;
 mod initial;
+mod kept;
 mod ledger;
 pub mod model;
 mod newton;
@@ -18,6 +20,7 @@ mod state;
 mod stepper;
 mod system;
 
+pub use kept::{Kept, Point};
 pub use newton::{Timings, Workspace};
 pub use rejected::Rejected;
 pub use simulation::{GridReport, LogEvent, Simulation, Stopped};

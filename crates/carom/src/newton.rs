@@ -3,17 +3,21 @@
 //! Converged means, all at once: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus the round-off the system's diagonal stands for); |g| ≤ 1e-12·L on every active pair;
 //! no pair penetrates, pulls, or has slid off its facet. Nothing less is accepted.
 
+use std::sync::Arc;
+
 use carom_algebra::LinearError;
 use carom_contact::{ActiveSet, Contender, Linearised, Pair, PairEvent};
 use carom_time::Stage;
 
 use crate::balance::{Forces, contact_weights, mean_acceleration, residual_into};
-use crate::case::NewtonSpec;
+use crate::case::{NewtonSpec, TangentRule};
+use crate::held::boundary;
+use crate::kept::{Keeper, Kept, Point};
 use crate::model::{LoadsAt, Model, Prescribed};
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::state::State;
-use crate::system::{Row, System};
+use crate::system::{HoldError, Row, System};
 
 /// Penetration, as a fraction of L, that counts as touching.
 pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
@@ -21,6 +25,10 @@ pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
 const TOUCHING: f64 = 1e-9;
 /// Below this step, relative to L, the next iterate may well be the last: its tangent is not formed before it is needed.
 const NEARLY_THERE: f64 = 1e-3;
+/// Below this step, relative to L, facets are handed over before the iteration with a kept tangent has converged.
+const CLOSE: f64 = 1e-5;
+/// How much smaller than the tolerance the residual gets with a kept tangent.
+const KEPT_DIGITS: f64 = 1e-3;
 /// Halvings of a Newton step that inverts a cell or makes the residual much worse.
 const HALVINGS: usize = 8;
 
@@ -44,6 +52,8 @@ pub(crate) struct Effort {
     pub iterations: u32,
     /// Events of the pairs, with the place of their contact.
     pub events: Vec<(usize, PairEvent)>,
+    /// The kept factor's point.
+    pub kept: Kept,
 }
 
 /// Scratch that is rebuilt at will and never changes a bit of a result.
@@ -70,6 +80,7 @@ pub struct Workspace<const D: usize> {
     remaining: Vec<f64>,
     /// ∂f_int/∂y · remaining.
     pull: Vec<f64>,
+    right: Vec<f64>,
     at: Vec<f64>,
     correction: Vec<f64>,
     multipliers: Vec<f64>,
@@ -98,6 +109,7 @@ impl<const D: usize> Workspace<D> {
             motions: Vec::new(),
             remaining: zeros.clone(),
             pull: zeros.clone(),
+            right: Vec::new(),
             at: zeros.clone(),
             correction: zeros,
             multipliers: Vec::new(),
@@ -147,25 +159,41 @@ pub(crate) fn solve_stage<const D: usize>(
     let mut sets: Vec<ActiveSet> =
         model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect();
     timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))?;
-    let mut measure = evaluate(model, state, trial, work, true)?;
+    let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
+    let mut keeper = Keeper::new(&state.kept, settings.tangent == TangentRule::Kept && keeps(model, work), mass, stiffness);
+    let mut measure = begin(model, state, trial, work, &mut keeper)?;
     if work.stage.is_static() && touch(model, trial, work) {
         measure = evaluate(model, state, trial, work, false)?;
     }
-    let mut has_tangent = true;
-    let mut step = f64::INFINITY;
+    let mut has_tangent = keeper.full;
+    let (mut step, mut shrinking) = (f64::INFINITY, 1.0_f64);
     loop {
-        let settled = step <= settings.tolerance * model.scale
-            && measure.residual <= settings.tolerance * measure.forces + round_off(model, work)
+        // What a kept tangent leaves over shrinks with the residual, not with its square: the balance is taken three digits further.
+        let (next, digits) = if keeper.full { (step, 1.0) } else { (step * shrinking.min(1.0), KEPT_DIGITS) };
+        let settled = next <= settings.tolerance * model.scale
+            && measure.residual <= digits * settings.tolerance * measure.forces + round_off(model, work)
             && measure.gap <= GAP_TOLERANCE * model.scale;
         let mut changed = change_sets(model, &mut sets, trial, work, settled)?;
+        if !keeper.full && !settled && !changed && step <= CLOSE * model.scale {
+            // Where a node will slide to is known long before the last digits are.
+            let pairs = trial.pairs.clone();
+            changed = timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))?;
+            if changed {
+                sets.iter_mut().for_each(ActiveSet::restart);
+            } else {
+                // Open pairs may have come and gone: the gaps at hand belong to the old ones.
+                trial.pairs = pairs;
+            }
+        }
         if settled && !changed {
             if !timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))? {
+                effort.kept = keeper.finish();
                 return Ok(effort);
             }
             sets.iter_mut().for_each(ActiveSet::restart);
             changed = true;
         }
-        if effort.iterations as usize >= settings.max_iterations {
+        if keeper.exhausted(settings.max_iterations) {
             stuck(model, trial, work)?;
             return Err(Rejected::NoConvergence {
                 iterations: effort.iterations,
@@ -173,17 +201,127 @@ pub(crate) fn solve_stage<const D: usize>(
                 residual: measure.residual / measure.forces.max(f64::MIN_POSITIVE),
             });
         }
-        if changed || !has_tangent {
-            measure = evaluate(model, state, trial, work, !has_tangent)?;
+        if changed {
+            measure = evaluate(model, state, trial, work, keeper.full && !has_tangent)?;
+            has_tangent = keeper.full;
         }
         let rows = independent_rows(model, &trial.pairs, work);
-        linear_step(model, work, &rows)?;
+        if keeper.full || !kept_step(model, state, work, &rows, &mut keeper)? {
+            if !has_tangent {
+                measure = evaluate(model, state, trial, work, true)?;
+            }
+            linear_step(model, work, &rows)?;
+        }
         step = max_abs(&work.correction);
         effort.iterations += 1;
-        let may_be_last = step <= NEARLY_THERE * model.scale;
-        measure = advance(model, state, trial, work, &rows, !may_be_last, (!changed).then_some(measure))?;
-        has_tangent = !may_be_last;
+        keeper.observe(step, settings.tolerance * model.scale, changed);
+        let before = measure.residual;
+        let tangent = keeper.full && step > NEARLY_THERE * model.scale;
+        measure = advance(model, state, trial, work, &rows, tangent, (!changed).then_some(measure))?;
+        shrinking = measure.residual / before.max(f64::MIN_POSITIVE);
+        has_tangent = tangent;
     }
+}
+
+/// Whether a tangent of another time serves: not where the iteration itself moves supports, loads turn with the body, or nothing but the
+/// tangent holds a body.
+fn keeps<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> bool {
+    work.motions.is_empty() && !model.loads.follow() && !work.stage.is_static()
+}
+
+/// The first evaluation, and the kept factor where there is one to keep.
+fn begin<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    trial: &mut Trial,
+    work: &mut Workspace<D>,
+    keeper: &mut Keeper,
+) -> Result<Measure, Rejected> {
+    if !keeper.full {
+        let measure = evaluate(model, state, trial, work, false)?;
+        let held = match keeper.kept.point.clone().filter(|_| !keeper.due) {
+            Some(point) => hold(model, work, &point)?,
+            None => renew(model, state, work, &[], keeper)?,
+        };
+        if held {
+            return Ok(measure);
+        }
+        keeper.refused();
+    }
+    work.system.release();
+    evaluate(model, state, trial, work, true)
+}
+
+/// Makes the factor of a point; whether there is one.
+fn hold<const D: usize>(model: &Model<D>, work: &mut Workspace<D>, point: &Arc<Point>) -> Result<bool, Rejected> {
+    let (system, scratch) = (&mut work.system, &mut work.correction);
+    match timed(&mut work.timings.factor, || system.hold(model, point, scratch)) {
+        Ok(()) => Ok(true),
+        Err(HoldError::Indefinite) => Ok(false),
+        Err(HoldError::Inverted((body, inverted))) => Err(Rejected::Inverted { body, inverted }),
+    }
+}
+
+/// Makes a factor at the present positions, or else at the start of the step; whether there is one.
+fn renew<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    work: &mut Workspace<D>,
+    rows: &[(usize, usize)],
+    keeper: &mut Keeper,
+) -> Result<bool, Rejected> {
+    let boundary = {
+        let rows = linearised(model, work, rows);
+        boundary(model, work.at.as_chunks::<D>().0, &rows, keeper.kept.point.as_deref())
+    };
+    let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
+    // An iterate far from the solution may have no positive definite tangent; the state the step began with nearly always has.
+    for at in [work.at.clone(), state.y.clone()] {
+        let point = Arc::new(Point { at, mass, stiffness, boundary: boundary.clone() });
+        if hold(model, work, &point)? {
+            keeper.renewed(point);
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// Solves with the kept factor, made anew where that is due; false where there is none.
+fn kept_step<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    work: &mut Workspace<D>,
+    rows: &[(usize, usize)],
+    keeper: &mut Keeper,
+) -> Result<bool, Rejected> {
+    let mut fresh = false;
+    loop {
+        if !fresh && (keeper.due || !work.system.covers(&linearised(model, work, rows))) {
+            if !renew(model, state, work, rows, keeper)? {
+                break;
+            }
+            fresh = true;
+        }
+        if try_kept(model, work, rows).is_ok() {
+            return Ok(true);
+        }
+        if fresh {
+            break;
+        }
+        keeper.due = true;
+    }
+    keeper.refused();
+    work.system.release();
+    Ok(false)
+}
+
+fn linearised<'a, const D: usize>(
+    model: &Model<D>,
+    work: &'a Workspace<D>,
+    rows: &[(usize, usize)],
+) -> Vec<Row<'a, D>> {
+    let weight = |k: usize| contact_weights(&work.stage, model.contacts[k].force).0;
+    rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k) }).collect()
 }
 
 /// Brings the pairs up to date with the trial's positions; whether that asks for another solve.
@@ -362,6 +500,22 @@ fn stuck<const D: usize>(model: &Model<D>, trial: &Trial, work: &Workspace<D>) -
         }
     }
     Ok(())
+}
+
+/// Solves for `work.correction` and `work.multipliers` with the kept factor.
+fn try_kept<const D: usize>(
+    model: &Model<D>,
+    work: &mut Workspace<D>,
+    rows: &[(usize, usize)],
+) -> Result<(), LinearError> {
+    let weight = |k: usize| contact_weights(&work.stage, model.contacts[k].force).0;
+    let gaps: Vec<Row<D>> = rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k) }).collect();
+    let right: Vec<f64> = gaps.iter().map(|row| -row.weight * row.gap.gap).collect();
+    timed(&mut work.timings.factor, || work.system.constrain(model, &gaps))?;
+    work.right.clear();
+    work.right.extend(work.residual.iter().map(|r| -r));
+    let (system, forces) = (&mut work.system, &work.right);
+    timed(&mut work.timings.solve, || system.solve(model, forces, &right, &mut work.correction, &mut work.multipliers))
 }
 
 /// Solves for `work.correction` and `work.multipliers`.

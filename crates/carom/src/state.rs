@@ -3,6 +3,8 @@
 use carom_contact::Pair;
 use serde::{Deserialize, Serialize};
 
+use crate::kept::Kept;
+
 /// Energies and works, design.md §5: cumulative from the start of the run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
@@ -66,4 +68,6 @@ pub struct State {
     pub pairs: Vec<Vec<Pair>>,
     /// Energies and works.
     pub ledger: Ledger,
+    /// What the kept factor was made of.
+    pub kept: Kept,
 }

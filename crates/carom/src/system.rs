@@ -11,15 +11,27 @@
 //! Bodies have a pattern of their own, made once, with the slots of every cell; contact entries are merged in when the set of rows changes, and only then is
 //! the system analysed again. The pattern is a function of the rows alone: a resumed run eliminates in the same order.
 
+use std::sync::Arc;
+
 use carom_algebra::{FaerSolver, Inertia, LinearError, LinearSolver, Pattern};
 use carom_contact::Linearised;
 use carom_solid::Inverted;
 
 use crate::cells::Cells;
+use crate::held::Held;
+use crate::kept::Point;
 use crate::model::{LoadsAt, Model};
 
 /// Slot of an entry that is not stored: upper triangle, or a held dof.
 const SKIP: u32 = u32::MAX;
+
+/// Why a factor is not to be had at a point.
+pub(crate) enum HoldError {
+    /// A cell is inverted.
+    Inverted((String, Inverted)),
+    /// The matrix is not positive definite.
+    Indefinite,
+}
 
 /// One active contact row: its linearised gap and the weight of its contact force.
 pub(crate) struct Row<'a, const D: usize> {
@@ -49,6 +61,9 @@ pub(crate) struct System<const D: usize> {
     solver: FaerSolver,
     rhs: Vec<f64>,
     solution: Vec<f64>,
+    held: Held,
+    /// Whether the last factor is the kept tangent's or a condensed mass matrix.
+    condensed: bool,
     /// Factorisations so far.
     pub factorisations: u64,
 }
@@ -110,6 +125,8 @@ impl<const D: usize> System<D> {
             solver: FaerSolver::default(),
             rhs: Vec::new(),
             solution: Vec::new(),
+            held: Held::default(),
+            condensed: false,
             factorisations: 0,
             base,
         }
@@ -184,6 +201,36 @@ impl<const D: usize> System<D> {
             .map(move |&s| mass_factor * self.mass[s] + stiffness_factor * self.stiffness[s])
     }
 
+    /// Makes the factor of a point, unless it is there already.
+    ///
+    /// # Errors
+    /// A cell is inverted there, or the matrix is not positive definite.
+    pub(crate) fn hold(&mut self, model: &Model<D>, point: &Arc<Point>, force: &mut [f64]) -> Result<(), HoldError> {
+        if self.held.point.as_ref() == Some(point) {
+            return Ok(());
+        }
+        self.internal_tangent(model, &point.at, force, None).map_err(HoldError::Inverted)?;
+        self.factorisations += 1;
+        let parts = (self.mass.as_slice(), self.stiffness.as_slice());
+        self.held.factor(model, &self.base, point, parts).map_err(|_| HoldError::Indefinite)
+    }
+
+    /// Forgets the kept factor.
+    pub(crate) fn release(&mut self) {
+        self.held.point = None;
+    }
+
+    /// Whether the kept factor can take these rows.
+    pub(crate) fn covers(&self, rows: &[Row<D>]) -> bool {
+        self.held.covers(rows)
+    }
+
+    /// Takes the rows up for solves with the kept factor.
+    pub(crate) fn constrain(&mut self, model: &Model<D>, rows: &[Row<D>]) -> Result<(), LinearError> {
+        self.condensed = true;
+        self.held.prepare(model, rows)
+    }
+
     /// Factors the system of the last tangents with these rows.
     pub(crate) fn factor(
         &mut self,
@@ -193,6 +240,7 @@ impl<const D: usize> System<D> {
         follower_factor: f64,
         rows: &[Row<D>],
     ) -> Result<Inertia, LinearError> {
+        self.condensed = false;
         self.analyse(model, rows)?;
         let values = self.solver.values();
         values.fill(0.0);
@@ -232,6 +280,12 @@ impl<const D: usize> System<D> {
 
     /// Factors [M Gᵀ; G 0] over the free dofs that have mass; massless ones keep a unit diagonal and stay out of the rows.
     pub(crate) fn factor_mass(&mut self, model: &Model<D>, rows: &[Row<D>]) -> Result<Inertia, LinearError> {
+        self.factorisations += 1;
+        self.condensed = !model.massless.contains(&true);
+        if self.condensed {
+            self.held.factor_mass(model, &self.base, &self.mass, rows)?;
+            return Ok(Inertia { positive: self.base.size(), negative: rows.len(), zero: 0 });
+        }
         self.analyse(model, rows)?;
         let values = self.solver.values();
         values.fill(0.0);
@@ -260,7 +314,6 @@ impl<const D: usize> System<D> {
                 }
             }
         }
-        self.factorisations += 1;
         self.solver.factor()
     }
 
@@ -273,6 +326,9 @@ impl<const D: usize> System<D> {
         increment: &mut [f64],
         multipliers: &mut Vec<f64>,
     ) -> Result<(), LinearError> {
+        if self.condensed {
+            return self.held.solve(model, forces, gaps, increment, multipliers);
+        }
         let n = self.base.size();
         self.rhs.clear();
         self.rhs.extend(model.free.iter().map(|&dof| forces[dof]));

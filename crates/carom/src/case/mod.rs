@@ -400,6 +400,20 @@ pub struct NewtonSpec {
     pub tolerance: f64,
     /// Iterations before a step is rejected.
     pub max_iterations: usize,
+    /// Whether factors are kept over iterations and steps.
+    #[serde(default)]
+    pub tangent: TangentRule,
+}
+
+/// When the tangent is formed and factored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TangentRule {
+    /// When the kept one no longer pays.
+    #[default]
+    Kept,
+    /// In every iteration.
+    Full,
 }
 
 /// A point whose quantities become columns.

@@ -299,7 +299,11 @@ pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, Case
 }
 
 fn newton(v: View) -> Option<NewtonSpec> {
-    Some(NewtonSpec { tolerance: v.number("tolerance")?, max_iterations: v.count("max_iterations")? })
+    Some(NewtonSpec {
+        tolerance: v.number("tolerance")?,
+        max_iterations: v.count("max_iterations")?,
+        tangent: v.choice("tangent")?,
+    })
 }
 
 fn output(v: View) -> Option<OutputSpec> {

@@ -247,6 +247,7 @@ where
             }
         };
         let mut primary_part = None;
+        let mut surface = secondary.nodes.clone();
         let method: Box<dyn ContactMethod<D>> = match &spec.primary {
             PrimarySpec::Plane { point, normal } => {
                 let array = |v: &[f64]| std::array::from_fn(|i| v[i]);
@@ -264,6 +265,7 @@ where
                 }
                 Ok(primary) => {
                     primary_part = Some(primary.part);
+                    surface.extend(&primary.nodes);
                     Space::between(spec, &secondary.nodes, &primary.facets, primary.outward)
                 }
                 Err(problem) => {
@@ -272,11 +274,14 @@ where
                 }
             },
         };
+        surface.sort_unstable();
+        surface.dedup();
         let contact = Contact {
             name: spec.name.clone(),
             method,
             primary_part,
             secondary_facets: secondary.facets,
+            surface,
             // Without inertia nothing is averaged.
             force: if case.time.scheme.is_static() { case::ForceTime::AlphaF } else { spec.force },
             persistency: spec.persistency,

@@ -9,7 +9,7 @@ use crate::case::MassKind;
 #[derive(Clone, Debug, Default)]
 pub struct Mass {
     starts: Vec<usize>,
-    columns: Vec<usize>,
+    columns: Vec<u32>,
     values: Vec<f64>,
     directions: usize,
 }
@@ -48,12 +48,14 @@ impl Mass {
         for row in &mut rows {
             row.sort_by_key(|e| e.0);
             for &(column, value) in row.iter() {
-                if mass.columns.len() > mass.starts[mass.starts.len() - 1] && mass.columns.last() == Some(&column) {
+                if mass.columns.len() > mass.starts[mass.starts.len() - 1]
+                    && mass.columns.last() == Some(&(column as u32))
+                {
                     if let Some(last) = mass.values.last_mut() {
                         *last += value;
                     }
                 } else {
-                    mass.columns.push(column);
+                    mass.columns.push(column as u32);
                     mass.values.push(value);
                 }
             }
@@ -65,7 +67,7 @@ impl Mass {
     /// Entries (row, column, value) of a node's row, columns ascending.
     pub fn row(&self, node: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let range = self.starts[node]..self.starts[node + 1];
-        self.columns[range.clone()].iter().copied().zip(self.values[range].iter().copied())
+        self.columns[range.clone()].iter().map(|&column| column as usize).zip(self.values[range].iter().copied())
     }
 
     /// Number of nodes.
@@ -75,16 +77,25 @@ impl Mass {
 
     /// out = M x over all dofs.
     pub fn multiply_into(&self, x: &[f64], out: &mut [f64]) {
-        let d = self.directions;
-        for node in 0..self.nodes() {
-            let target = &mut out[node * d..(node + 1) * d];
-            target.fill(0.0);
-            for k in self.starts[node]..self.starts[node + 1] {
-                let (column, value) = (self.columns[k], self.values[k]);
-                for i in 0..d {
-                    target[i] += value * x[column * d + i];
+        match self.directions {
+            1 => self.multiply::<1>(x, out),
+            2 => self.multiply::<2>(x, out),
+            _ => self.multiply::<3>(x, out),
+        }
+    }
+
+    fn multiply<const D: usize>(&self, x: &[f64], out: &mut [f64]) {
+        let x = x.as_chunks::<D>().0;
+        for (range, out) in self.starts.windows(2).zip(out.as_chunks_mut::<D>().0) {
+            let range = range[0]..range[1];
+            let mut sum = [0.0; D];
+            for (&column, value) in self.columns[range.clone()].iter().zip(&self.values[range]) {
+                let x = &x[column as usize];
+                for i in 0..D {
+                    sum[i] += value * x[i];
                 }
             }
+            *out = sum;
         }
     }
 

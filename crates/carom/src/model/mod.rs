@@ -54,6 +54,8 @@ pub struct Contact<const D: usize> {
     pub primary_part: Option<usize>,
     /// Facets of the secondary side in global nodes: for consistent weights.
     pub secondary_facets: Vec<Vec<usize>>,
+    /// Nodes of both sides, ascending.
+    pub surface: Vec<usize>,
     /// Averaged with α_f or taken at the end.
     pub force: ForceTime,
     /// What happens to velocities where contact begins.

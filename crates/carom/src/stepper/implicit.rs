@@ -61,6 +61,7 @@ impl<const D: usize> Stepper<D> for Implicit {
         }
         next.pairs.clone_from(&trial.pairs);
         next.f_external.clone_from(&work.forces.loads);
+        next.kept = effort.kept;
         next.f_internal.clone_from(&work.forces.internal);
         let mut strain = trial.strain;
         if work.stage.average != 0.0 {

@@ -330,6 +330,12 @@ const NEWTON: Table = Table {
         )
         .default("1e-9"),
         key("max_iterations", Count(1), "Iterations before a step is rejected.").default("20"),
+        key(
+            "tangent",
+            Choice(&["kept", "full"], &[]),
+            "The factored tangent is kept over iterations and steps while that pays, or formed in every iteration.",
+        )
+        .default("\"kept\""),
     ],
     later: &[],
 };

@@ -1,0 +1,159 @@
+//! A small dense saddle point by two Cholesky factors,
+//!
+//! ```text
+//! [ S  Gᵀ ] [x]   [b]      S = L Lᵀ,  T = L⁻¹Gᵀ,  z = L⁻¹b,  TᵀT λ = Tᵀz − c,  x = L⁻ᵀ(z − Tλ).
+//! [ G  0  ] [λ] = [c]
+//! ```
+//!
+//! S positive definite and G of full rank make both factors exist; the saddle then has as many negative eigenvalues as rows (Benzi, Golub, Liesen,
+//! Acta Numerica 14 (2005), §3.4).
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{
+    LltError, LltParams, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
+};
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
+use faer::prelude::{Reborrow, ReborrowMut};
+use faer::{Accum, MatMut, MatRef, Par, Spec};
+
+use crate::linear::LinearError;
+
+/// What is left of a row, as a share of its square, when it repeats the others.
+const DEPENDENT: f64 = 1e-14;
+
+/// Buffers and factors of the saddle point.
+#[derive(Default)]
+pub struct Saddle {
+    size: usize,
+    count: usize,
+    /// S, then L; column-major.
+    stiffness: Vec<f64>,
+    /// Gᵀ, then T; a column per row of G.
+    rows: Vec<f64>,
+    /// TᵀT, then its factor.
+    small: Vec<f64>,
+    scratch: Option<MemBuffer>,
+    room: usize,
+}
+
+impl Saddle {
+    /// Begins with S (column-major, symmetric) and `count` empty rows.
+    pub fn begin(&mut self, stiffness: &[f64], size: usize, count: usize) {
+        (self.size, self.count) = (size, count);
+        self.stiffness.clear();
+        self.stiffness.extend_from_slice(stiffness);
+        self.rows.clear();
+        self.rows.resize(size * count, 0.0);
+    }
+
+    /// S(i, j) += value; only the lower triangle i ≥ j counts.
+    pub fn add(&mut self, i: usize, j: usize, value: f64) {
+        self.stiffness[j * self.size + i] += value;
+    }
+
+    /// G(row, j) += value.
+    pub fn add_row(&mut self, row: usize, j: usize, value: f64) {
+        self.rows[row * self.size + j] += value;
+    }
+
+    /// Factors.
+    ///
+    /// # Errors
+    /// S is not positive definite, or the rows depend on each other.
+    pub fn factor(&mut self) -> Result<(), LinearError> {
+        let (n, m) = (self.size, self.count);
+        cholesky(&mut self.stiffness, n, &mut self.scratch, &mut self.room)?;
+        let lower = MatRef::from_column_major_slice(&self.stiffness, n, n);
+        let mut t = MatMut::from_column_major_slice_mut(&mut self.rows, n, m);
+        solve_lower_triangular_in_place(lower, t.rb_mut(), Par::Seq);
+        self.small.clear();
+        self.small.resize(m * m, 0.0);
+        let product = MatMut::from_column_major_slice_mut(&mut self.small, m, m);
+        matmul(product, Accum::Replace, t.rb().transpose(), t.rb(), 1.0, Par::Seq);
+        let diagonal: Vec<f64> = (0..m).map(|i| self.small[i * m + i]).collect();
+        cholesky(&mut self.small, m, &mut self.scratch, &mut self.room)?;
+        let dependent = |&i: &usize| self.small[i * m + i].powi(2) <= DEPENDENT * diagonal[i];
+        (0..m).find(dependent).map_or(Ok(()), |i| {
+            Err(LinearError::Singular { size: n + m, pivot: n + i, value: -self.small[i * m + i].powi(2) })
+        })
+    }
+
+    /// Overwrites `b` with x and `c` with λ.
+    pub fn solve(&self, b: &mut [f64], c: &mut [f64]) {
+        let (n, m) = (self.size, self.count);
+        let lower = MatRef::from_column_major_slice(&self.stiffness, n, n);
+        let t = MatRef::from_column_major_slice(&self.rows, n, m);
+        let small = MatRef::from_column_major_slice(&self.small, m, m);
+        let mut x = MatMut::from_column_major_slice_mut(b, n, 1);
+        let mut multipliers = MatMut::from_column_major_slice_mut(c, m, 1);
+        solve_lower_triangular_in_place(lower, x.rb_mut(), Par::Seq);
+        for i in 0..m {
+            multipliers[(i, 0)] = -multipliers[(i, 0)];
+        }
+        matmul(multipliers.rb_mut(), Accum::Add, t.transpose(), x.rb(), 1.0, Par::Seq);
+        solve_lower_triangular_in_place(small, multipliers.rb_mut(), Par::Seq);
+        solve_upper_triangular_in_place(small.transpose(), multipliers.rb_mut(), Par::Seq);
+        matmul(x.rb_mut(), Accum::Add, t, multipliers.rb(), -1.0, Par::Seq);
+        solve_upper_triangular_in_place(lower.transpose(), x.rb_mut(), Par::Seq);
+    }
+}
+
+fn cholesky(
+    matrix: &mut [f64],
+    n: usize,
+    scratch: &mut Option<MemBuffer>,
+    room: &mut usize,
+) -> Result<(), LinearError> {
+    if scratch.is_none() || *room < n {
+        let space = cholesky_in_place_scratch::<f64>(2 * n, Par::Seq, Spec::<LltParams, f64>::default());
+        let engine = |e| LinearError::Engine { size: n, reason: format!("{e:?}") };
+        *scratch = Some(MemBuffer::try_new(space).map_err(engine)?);
+        *room = 2 * n;
+    }
+    let Some(scratch) = scratch else { return Ok(()) };
+    let target = MatMut::from_column_major_slice_mut(matrix, n, n);
+    let stack = MemStack::new(scratch);
+    match cholesky_in_place(target, LltRegularization::default(), Par::Seq, stack, Spec::default()) {
+        Ok(_) => Ok(()),
+        Err(LltError::NonPositivePivot { index }) => {
+            Err(LinearError::Singular { size: n, pivot: index, value: matrix[index * n + index] })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meets_both_lines_of_the_system_and_refuses_dependent_rows() {
+        let (n, m) = (7, 3);
+        let entry = |i: usize, j: usize| if i == j { 4.0 } else { 1.0 / (1.0 + (i as f64 - j as f64).abs()) };
+        let stiffness: Vec<f64> = (0..n * n).map(|k| entry(k % n, k / n)).collect();
+        let row = |r: usize, j: usize| ((r * 5 + j).pow(2) as f64 * 1.3).sin();
+        let mut saddle = Saddle::default();
+        saddle.begin(&stiffness, n, m);
+        saddle.add(4, 2, 0.25);
+        for r in 0..m {
+            (0..n).for_each(|j| saddle.add_row(r, j, row(r, j)));
+        }
+        saddle.factor().unwrap();
+        let b: Vec<f64> = (0..n).map(|i| i as f64 - 2.0).collect();
+        let c = [0.3, -0.1, 0.7];
+        let (mut x, mut multipliers) = (b.clone(), c.to_vec());
+        saddle.solve(&mut x, &mut multipliers);
+        for i in 0..n {
+            let changed = |j: usize| if (i, j) == (4, 2) || (i, j) == (2, 4) { 0.25 } else { 0.0 };
+            let upper: f64 = (0..n).map(|j| (entry(i, j) + changed(j)) * x[j]).sum();
+            let lower: f64 = (0..m).map(|r| row(r, i) * multipliers[r]).sum();
+            assert!((upper + lower - b[i]).abs() < 1e-13);
+        }
+        for r in 0..m {
+            assert!(((0..n).map(|j| row(r, j) * x[j]).sum::<f64>() - c[r]).abs() < 1e-13);
+        }
+        saddle.begin(&stiffness, n, 2);
+        (0..2).for_each(|r| saddle.add_row(r, 0, 1.0));
+        assert!(saddle.factor().is_err());
+    }
+}

@@ -1,0 +1,36 @@
+//! Loops in the widest registers the machine has. Lanes never mix across widths: the bits are the same on every machine.
+
+// A loop is compiled for wide registers only where it is inlined into `wide`.
+#![allow(clippy::inline_always)]
+
+/// Lanes of a reduction; fixed, so that its order of summation is.
+const LANES: usize = 8;
+
+/// Calls `work` compiled for the widest vector instructions of this processor.
+#[inline(always)]
+pub fn wide<R>(work: impl FnOnce() -> R) -> R {
+    pulp::Arch::new().dispatch(work)
+}
+
+/// y += a x.
+#[inline(always)]
+pub(crate) fn add_scaled(y: &mut [f64], a: f64, x: &[f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += a * x;
+    }
+}
+
+/// x·y, summed in eight strands.
+#[inline(always)]
+pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
+    let (x, x_rest) = x.as_chunks::<LANES>();
+    let (y, y_rest) = y.as_chunks::<LANES>();
+    let mut strands = [0.0; LANES];
+    for (x, y) in x.iter().zip(y) {
+        for l in 0..LANES {
+            strands[l] += x[l] * y[l];
+        }
+    }
+    let rest: f64 = x_rest.iter().zip(y_rest).map(|(x, y)| x * y).sum();
+    strands.iter().sum::<f64>() + rest
+}

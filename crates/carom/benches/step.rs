@@ -1,0 +1,141 @@
+//! What a step is made of, on the job of `cases/perf/disc-2k.toml` in mid-contact: cells, detection, gaps, assembly and factor, solve, whole steps.
+//!
+//!     cargo bench -p carom            times; instruction counts with valgrind --tool=callgrind on the same binary
+
+use std::hint::black_box;
+
+use carom::case::{Document, read};
+use carom::{GridReport, Simulation};
+use carom_algebra::{Condensed, Pattern};
+use carom_contact::Linearised;
+use divan::{Bencher, counter::ItemsCount};
+
+fn main() {
+    divan::main();
+}
+
+/// The job at a time with about a dozen nodes in contact.
+fn in_contact() -> Simulation<2> {
+    let text = include_str!("../../../cases/perf/disc-2k.toml");
+    let case =
+        read(&Document::parse("disc-2k.toml", text, &[]).expect("the case is in the repository")).expect("valid");
+    let mut sim = Simulation::<2>::new(&case, 1).expect("valid");
+    while sim.state.step < 60 {
+        sim.advance(&mut GridReport::default()).expect("the job runs");
+    }
+    sim
+}
+
+#[divan::bench]
+fn forces_of_all_cells(bencher: Bencher) {
+    let sim = in_contact();
+    let mut force = vec![0.0; sim.model.dofs()];
+    let cells: usize = sim.model.parts.iter().map(|p| p.body.mesh().cell_count()).sum();
+    let bencher = bencher.counter(ItemsCount::new(cells));
+    bencher.bench_local(|| sim.model.internal_force(black_box(&sim.state.y), &mut force).is_ok());
+}
+
+#[divan::bench]
+fn tangents_of_all_cells(bencher: Bencher) {
+    let sim = in_contact();
+    let (mut force, mut tangent) = ([0.0; 20], [0.0; 400]);
+    let cells: usize = sim.model.parts.iter().map(|p| p.body.mesh().cell_count()).sum();
+    let bencher = bencher.counter(ItemsCount::new(cells));
+    bencher.bench_local(|| {
+        for part in &sim.model.parts {
+            let y = &sim.state.y.as_chunks::<2>().0[part.nodes()];
+            for cell in 0..part.body.mesh().cell_count() {
+                black_box(part.body.cell_tangent(cell, y, &mut force, &mut tangent).is_ok());
+            }
+        }
+    });
+}
+
+#[divan::bench]
+fn mass_times_vector(bencher: Bencher) {
+    let sim = in_contact();
+    let mut out = vec![0.0; sim.model.dofs()];
+    bencher.bench_local(|| sim.model.mass.multiply_into(black_box(&sim.state.v), &mut out));
+}
+
+#[divan::bench]
+fn detection(bencher: Bencher) {
+    let sim = in_contact();
+    let y = sim.state.y.as_chunks::<2>().0;
+    bencher.bench_local(|| {
+        let mut pairs = sim.state.pairs[0].clone();
+        sim.model.contacts[0].method.detect(y, black_box(y), &mut pairs, &mut Vec::new()).is_ok()
+    });
+}
+
+#[divan::bench]
+fn gaps(bencher: Bencher) {
+    let sim = in_contact();
+    let y = sim.state.y.as_chunks::<2>().0;
+    let mut gap = Linearised::default();
+    bencher.counter(ItemsCount::new(sim.state.pairs[0].len())).bench_local(|| {
+        for pair in &sim.state.pairs[0] {
+            black_box(
+                sim.model.contacts[0].method.linearise(&mut pair.clone(), black_box(y), pair.lambda, &mut gap).is_ok(),
+            );
+        }
+    });
+}
+
+/// The consistent mass over all dofs: the pattern of the tangent, and positive definite.
+fn mass_matrix(sim: &Simulation<2>) -> (Pattern, Vec<f64>, Vec<usize>, Vec<usize>) {
+    let mass = &sim.model.mass;
+    let entries = (0..mass.nodes()).flat_map(|a| mass.row(a).map(move |(b, value)| (a, b, value)));
+    let entries: Vec<_> = entries
+        .filter(|(a, b, _)| a >= b)
+        .flat_map(|(a, b, v)| (0..2).map(move |i| (2 * a + i, 2 * b + i, v)))
+        .collect();
+    let pattern = Pattern::from_entries(sim.model.dofs(), entries.iter().map(|&(i, j, _)| (i, j)));
+    let mut values = vec![0.0; pattern.len()];
+    for (i, j, value) in entries {
+        values[pattern.slot(i, j).expect("just made")] += value;
+    }
+    let groups = (0..sim.model.dofs()).map(|dof| dof / 2).collect();
+    let last = sim.model.contacts[0].surface.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
+    (pattern, values, groups, last)
+}
+
+#[divan::bench]
+fn ordering_and_analysis(bencher: Bencher) {
+    let (pattern, _, groups, last) = mass_matrix(&in_contact());
+    bencher.bench_local(|| Condensed::default().analyse(black_box(&pattern), &groups, &last).is_ok());
+}
+
+#[divan::bench]
+fn factor(bencher: Bencher) {
+    let (pattern, values, groups, last) = mass_matrix(&in_contact());
+    let mut condensed = Condensed::default();
+    condensed.analyse(&pattern, &groups, &last).expect("memory");
+    bencher.bench_local(|| {
+        condensed.fill(|k| values[k]);
+        condensed.factor().is_ok()
+    });
+}
+
+#[divan::bench]
+fn solve(bencher: Bencher) {
+    let (pattern, values, groups, last) = mass_matrix(&in_contact());
+    let mut condensed = Condensed::default();
+    condensed.analyse(&pattern, &groups, &last).expect("memory");
+    condensed.fill(|k| values[k]);
+    condensed.factor().expect("positive definite");
+    let (right, mut x, mut out) = (vec![1.0; pattern.size()], Vec::new(), vec![0.0; pattern.size()]);
+    bencher.bench_local(|| {
+        condensed.eliminate_into(black_box(&right), &mut x);
+        condensed.substitute_into(&mut x, &mut out);
+    });
+}
+
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn ten_steps(bencher: Bencher) {
+    bencher.with_inputs(in_contact).bench_local_values(|mut sim| {
+        for _ in 0..10 {
+            black_box(sim.advance(&mut GridReport::default()).is_ok());
+        }
+    });
+}

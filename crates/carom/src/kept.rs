@@ -1,0 +1,120 @@
+//! When a factored tangent is kept, and when it is made anew.
+//!
+//! Newton's iteration with a tangent of an earlier point contracts linearly, ‖Δyᵏ⁺¹‖ ≈ θ ‖Δyᵏ‖, and costs a residual and a solve; a new tangent costs
+//! as much as about [`RENEWAL`] of those (Deuflhard, Newton Methods for Nonlinear Problems, §2.1.1). It is made anew within a step where θ promises that
+//! more iterations are left than it costs, and at the beginning of a step where the last one took more than the mean cost since it was made: the rule
+//! that makes this mean least when iterations become more and more.
+//!
+//! The factor is a function of the [`Point`] in the state alone, so a resumed run goes on with the same bits.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+/// Cost of forming and factoring a tangent, in iterations with a kept one.
+const RENEWAL: f64 = 6.0;
+/// Contraction that is taken for convergence with a kept tangent; slower is not.
+const SLOW: f64 = 0.5;
+/// Most steps that take the full tangent after refusals in a row: none after the first, then 1, 3, 7, 15.
+const LONGEST_REST: u32 = 15;
+/// ln of what the first correction of a step is to shrink by.
+const DIGITS: f64 = 18.0;
+/// Iterations with a kept tangent that count as one towards the allowed number.
+const KEPT_COUNT: f64 = 3.0;
+
+/// All that the factor is made of.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    /// Positions of the internal tangent.
+    pub(crate) at: Vec<f64>,
+    /// Factor of the mass matrix.
+    pub(crate) mass: f64,
+    /// Factor of the internal tangent.
+    pub(crate) stiffness: f64,
+    /// Nodes that are eliminated last, ascending: contact acts on them alone.
+    pub(crate) boundary: Vec<usize>,
+}
+
+/// The point of the kept factor and what has been spent since it was made.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Kept {
+    pub(crate) point: Option<Arc<Point>>,
+    steps: u32,
+    /// Iterations a step would take at the contraction seen, in all and in the last step.
+    spent: f64,
+    last: f64,
+    /// Steps left with the full tangent.
+    rest: u32,
+    /// Rest after the next refusal.
+    next_rest: u32,
+}
+
+/// The policy during one solve.
+#[derive(Debug)]
+pub(crate) struct Keeper {
+    pub(crate) kept: Kept,
+    /// The full tangent is taken in every iteration.
+    pub(crate) full: bool,
+    /// A new tangent is wanted before the next solve.
+    pub(crate) due: bool,
+    /// The present tangent was made at the present iterate.
+    fresh: bool,
+    /// Size of the last correction with the present factor and active set.
+    previous: Option<f64>,
+    /// Slowest contraction of this step.
+    contraction: f64,
+    counted: f64,
+}
+
+impl Keeper {
+    /// The policy at the start of a solve with these factors of mass and stiffness.
+    pub(crate) fn new(kept: &Kept, keep: bool, mass: f64, stiffness: f64) -> Self {
+        let mut kept = kept.clone();
+        let resting = kept.rest > 0;
+        kept.rest = kept.rest.saturating_sub(1);
+        let fits = kept.point.as_ref().is_some_and(|p| p.mass == mass && p.stiffness == stiffness);
+        let due = !fits || (kept.steps > 0 && kept.last > (RENEWAL + kept.spent) / f64::from(kept.steps));
+        Self { kept, full: !keep || resting, due, fresh: false, previous: None, contraction: 0.0, counted: 0.0 }
+    }
+
+    /// A new factor was made.
+    pub(crate) fn renewed(&mut self, point: Arc<Point>) {
+        self.kept = Kept { point: Some(point), ..Kept::default() };
+        (self.due, self.fresh, self.previous, self.contraction) = (false, true, None, 0.0);
+    }
+
+    /// The tangent is not positive definite: full ones for a while.
+    pub(crate) fn refused(&mut self) {
+        let rest = self.kept.next_rest;
+        self.kept = Kept { rest, next_rest: (2 * rest + 1).min(LONGEST_REST), ..Kept::default() };
+        self.full = true;
+    }
+
+    /// Takes note of a correction of size `step`; `goal` is the size that ends the iteration, `changed` whether the active set or facets just changed.
+    pub(crate) fn observe(&mut self, step: f64, goal: f64, changed: bool) {
+        self.counted += if self.full || self.fresh { 1.0 } else { KEPT_COUNT.recip() };
+        self.fresh = false;
+        if let Some(previous) = self.previous.filter(|_| !changed)
+            && step > goal
+        {
+            let contraction = step / previous;
+            self.contraction = self.contraction.max(contraction);
+            let left = (step / goal).ln() / -contraction.min(SLOW).ln();
+            self.due = contraction > SLOW || left > RENEWAL;
+        }
+        self.previous = Some(step);
+    }
+
+    /// Whether all allowed iterations are spent.
+    pub(crate) fn exhausted(&self, allowed: usize) -> bool {
+        self.counted > allowed as f64 - 0.5
+    }
+
+    /// What the next step is to know.
+    pub(crate) fn finish(mut self) -> Kept {
+        self.kept.steps += 1;
+        self.kept.last = DIGITS / -self.contraction.clamp(1e-3, SLOW).ln();
+        self.kept.spent += self.kept.last;
+        self.kept
+    }
+}

@@ -1,0 +1,34 @@
+//! The kept and the full tangent lead to the same history.
+
+#![allow(clippy::unwrap_used)]
+
+use carom::case::{Document, read};
+use carom::{GridReport, Simulation, State};
+
+/// The last state of a coarse impact, and the contact force of every step.
+fn history(tangent: &str) -> (State, Vec<[f64; 2]>) {
+    let text = include_str!("../../../cases/impact/impact.toml");
+    let coarse = ["body.cylinder.mesh.size=0.2", "body.prism.mesh.cells=[4,2]"];
+    let sets = [&coarse[..], &[tangent]].concat().into_iter().map(String::from).collect::<Vec<_>>();
+    let case = read(&Document::parse("impact.toml", text, &sets).unwrap()).unwrap();
+    let mut sim = Simulation::<2>::new(&case, 1).unwrap();
+    let mut forces = Vec::new();
+    while !sim.finished() {
+        sim.advance(&mut GridReport::default()).unwrap();
+        forces.push(sim.state.contact_forces[0]);
+    }
+    (sim.state, forces)
+}
+
+#[test]
+fn kept_and_full_tangents_lead_to_the_same_history() {
+    let (kept, forces) = history("newton.tangent=kept");
+    let (full, wanted) = history("newton.tangent=full");
+    let largest = wanted.iter().map(|f| f[1].abs()).fold(0.0, f64::max);
+    assert!(largest > 1.0);
+    let worst = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let force = worst(forces.as_flattened(), wanted.as_flattened()) / largest;
+    let place = worst(&kept.y, &full.y);
+    assert!(force < 1e-6 && place < 1e-8, "force {force:e}, place {place:e}");
+    assert_eq!(kept.step, full.step);
+}
