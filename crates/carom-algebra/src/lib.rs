@@ -1,5 +1,6 @@
 //! The algebra under Carom: small tensors, sparse symmetric systems and the checks by differences.
 
+mod complementarity;
 mod condensed;
 mod difference;
 mod faer_engine;
@@ -9,6 +10,7 @@ mod saddle;
 mod simd;
 mod small;
 
+pub use complementarity::complementarity;
 pub use condensed::Condensed;
 pub use difference::jacobian_error;
 pub use faer_engine::FaerSolver;

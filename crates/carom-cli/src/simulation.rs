@@ -84,6 +84,8 @@ pub(crate) struct Facts {
     pub(crate) bodies: Vec<BodyFacts>,
     /// Steps a pressure wave takes through the smallest body.
     pub(crate) transit_steps: f64,
+    /// 2/ω_max, of explicit schemes.
+    pub(crate) stable_step: Option<f64>,
 }
 
 /// A body's mesh.
@@ -217,7 +219,7 @@ fn page(done: &recording::Outcome, options: Options) -> Result<Option<PathBuf>, 
 fn stopped_help(reason: &carom::Stopped) -> String {
     match reason {
         carom::Stopped::EnergyGuard { .. } => {
-            "use a scheme that dissipates (carom explain), keep persistency = \"project\", or look with time.energy_guard = false"
+            "use a scheme that dissipates (carom explain), keep persistency = \"project\", shorten an explicit step (compressed cells are stiffer), or look with time.energy_guard = false"
         }
         carom::Stopped::NoStep { .. } => "look at log.jsonl for what was tried; a finer mesh, a smaller step or a damped scheme may help",
     }
@@ -254,11 +256,14 @@ where
     carom::model::Space: carom::model::Dimension<D>,
 {
     let model = carom::model::build::<D>(case)?;
-    let overlaps = carom::model::overlaps(&model);
     // Where another run ended, its contacts have kept the bodies apart.
-    if case.initial.is_none() && !overlaps.is_empty() {
-        return Err(overlaps);
+    let overlaps = if case.initial.is_none() { carom::model::overlaps(&model) } else { Vec::new() };
+    let problems = [overlaps, carom::stability::too_long(case, &model)].concat();
+    if !problems.is_empty() {
+        return Err(problems);
     }
+    let explicit = case.time.scheme.is_explicit();
+    let stable_step = explicit.then(|| carom::stability::stable_step(&model)).flatten().map(|stable| stable.power);
     let mut transit = f64::INFINITY;
     let mut bodies = Vec::new();
     for (part, spec) in model.parts.iter().zip(&case.bodies) {
@@ -288,5 +293,5 @@ where
             dofs: free,
         });
     }
-    Ok(Facts { bodies, transit_steps: transit })
+    Ok(Facts { bodies, transit_steps: transit, stable_step })
 }

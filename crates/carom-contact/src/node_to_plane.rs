@@ -64,7 +64,15 @@ pub(crate) fn watch_every_node(nodes: usize, pairs: &mut Vec<Pair>) {
     let mut known = known.into_iter().peekable();
     for node in 0..nodes {
         let old = known.next_if(|p| p.node == node);
-        pairs.push(old.unwrap_or(Pair { node, facet: 0, xi: 0.0, active: false, lambda: 0.0, left: None }));
+        pairs.push(old.unwrap_or(Pair {
+            node,
+            facet: 0,
+            xi: 0.0,
+            active: false,
+            lambda: 0.0,
+            start: None,
+            left: None,
+        }));
     }
 }
 

@@ -176,7 +176,7 @@ impl ContactMethod<2> for NodeToSegment {
                     continue;
                 }
                 if let Some((facet, xi, crossed)) = self.candidate(node, before, now) {
-                    let pair = Pair { node: k, facet, xi, active: false, lambda: 0.0, left: None };
+                    let pair = Pair { node: k, facet, xi, active: false, lambda: 0.0, start: None, left: None };
                     match self.detection {
                         Detection::ClosestPoint => {
                             // A candidate that is already behind must be looked at again by the solver.

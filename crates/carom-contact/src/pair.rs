@@ -22,6 +22,8 @@ pub struct Pair {
     pub active: bool,
     /// Multiplier; zero unless active.
     pub lambda: f64,
+    /// Gap at the step's start as an energy-conserving penalty counts it: carried, since Δg = ∇g·Δy at the middle holds to second order only.
+    pub start: Option<f64>,
     /// Facet it was handed over from in the present step; it does not go back within the step.
     pub left: Option<usize>,
 }

@@ -18,7 +18,7 @@ fn scene(order: usize, height: f64) -> (NodeToSegment, Vec<[f64; 2]>) {
 }
 
 fn pair() -> Pair {
-    Pair { node: 0, facet: 0, xi: 0.1, active: true, lambda: -3.0, left: None }
+    Pair { node: 0, facet: 0, xi: 0.1, active: true, lambda: -3.0, start: None, left: None }
 }
 
 fn linearised(contact: &NodeToSegment, y: &[[f64; 2]], lambda: f64) -> Linearised<2> {

@@ -215,7 +215,7 @@ fn theory(study: &Study) -> Option<Plot> {
     let curve = |column: usize| {
         let (names, table) = (&names, &table);
         names.iter().enumerate().map(move |(style, name)| {
-            let of = table.iter().filter(|r| r[0] == *name);
+            let of = table.iter().filter(|r| &r[0] == *name);
             let points = of.filter_map(|r| Some((r[1].parse::<f64>().ok()?, r[column].parse::<f64>().ok()?)));
             let (x, y) = points.unzip();
             Curve { label: (*name).to_owned(), style, x, y, marked: false }

@@ -49,7 +49,9 @@ pub(crate) fn show(out: &mut String, study: &Study) {
         writeln!(out, "<section class=\"verdict\"><h2>Recommended: {}{at}</h2>\n<p>{goal}.</p>\n<dl>", escape(name));
     let mut entry = |head: &str, lines: &[String]| {
         let _ = write!(out, "<dt>{head}</dt>");
-        lines.iter().for_each(|line| drop(write!(out, "<dd>{}</dd>", html(line))));
+        for line in lines {
+            let _ = write!(out, "<dd>{}</dd>", html(line));
+        }
         out.push('\n');
     };
     entry("Why", &verdict.reasons);

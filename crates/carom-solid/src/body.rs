@@ -40,6 +40,17 @@ pub trait Body<const D: usize>: Send + Sync {
         tangent: &mut [f64],
     ) -> Result<f64, Inverted>;
 
+    /// Discrete gradient of the strain energy between `before` and `now`: overwrites `force` with f such that f·(now − before) = U(now) − U(before) to
+    /// round-off, and `tangent`, if asked for, with the symmetric part of ∂f/∂now. U(now) is returned.
+    fn cell_between(
+        &self,
+        cell: usize,
+        before: &[[f64; D]],
+        now: &[[f64; D]],
+        force: &mut [f64],
+        tangent: Option<&mut [f64]>,
+    ) -> Result<f64, Inverted>;
+
     /// Consistent mass of a cell between its nodes (`N²`, row-major): ∫ρ₀ φᵃφᵇ dΩ₀.
     fn cell_mass(&self, cell: usize, mass: &mut [f64]);
 

@@ -1,6 +1,7 @@
 //! Bodies: meshes, shapes, quadrature, materials and cell forces of the positional finite element method.
 
 mod body;
+mod discrete_gradient;
 mod factory;
 pub mod generate;
 pub mod gmsh;

@@ -14,6 +14,7 @@ use std::marker::PhantomData;
 use carom_algebra::{Mat, Vector};
 
 use crate::body::{Body, Inverted, PointState};
+use crate::discrete_gradient::{Moduli, between, moduli_of, scaled, symmetric_part};
 use crate::material::{Material, NotPositive};
 use crate::mesh::{Element, Mesh};
 use crate::quadrature::Rule;
@@ -142,7 +143,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
                 f[a] += stress.apply(&g[a]);
             }
             if let Some(blocks) = &mut blocks {
-                add_tangent(&self.law, &point, g, w, blocks);
+                add_tangent(&scaled(moduli_of(&self.law, &point), w), g, blocks);
             }
         }
         force.as_chunks_mut().0.copy_from_slice(&f.map(|f| f.0));
@@ -174,18 +175,9 @@ fn check<const D: usize, const N: usize>(mesh: &Mesh<D>, density: f64, thickness
     }
 }
 
-/// `blocks[b][a]` += w Kᵃᵇ for a ≤ b. K is bilinear in the gradients: the law is asked for unit vectors only.
+/// `blocks[b][a]` += Kᵃᵇ for a ≤ b, from moduli that hold the weight. K is bilinear in the gradients: the law is asked for unit vectors only.
 #[inline]
-fn add_tangent<const D: usize, const N: usize, L: Material<D>>(
-    law: &L,
-    point: &L::Point,
-    g: &[Vector<D>; N],
-    w: f64,
-    blocks: &mut [[Mat<D>; N]; N],
-) {
-    let unit = Mat::<D>::identity().0.map(Vector);
-    let moduli: [[Mat<D>; D]; D] =
-        std::array::from_fn(|j| std::array::from_fn(|l| law.tangent(point, &unit[j], &unit[l]) * w));
+fn add_tangent<const D: usize, const N: usize>(moduli: &Moduli<D>, g: &[Vector<D>; N], blocks: &mut [[Mat<D>; N]; N]) {
     for b in 0..N {
         let half: [Mat<D>; D] = std::array::from_fn(|j| {
             let mut sum = Mat::ZERO;
@@ -200,6 +192,21 @@ fn add_tangent<const D: usize, const N: usize, L: Material<D>>(
                 sum += half[j] * g[a][j];
             }
             blocks[b][a] += sum;
+        }
+    }
+}
+
+/// Both halves of a symmetric matrix from the blocks a ≤ b.
+fn spread<const D: usize, const N: usize>(blocks: &[[Mat<D>; N]; N], tangent: &mut [f64]) {
+    for b in 0..N {
+        for a in 0..=b {
+            for i in 0..D {
+                for j in 0..D {
+                    let (row, column) = (a * D + i, b * D + j);
+                    tangent[row * N * D + column] = blocks[b][a].0[i][j];
+                    tangent[column * N * D + row] = blocks[b][a].0[i][j];
+                }
+            }
         }
     }
 }
@@ -222,16 +229,38 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
     ) -> Result<f64, Inverted> {
         let mut blocks = [[Mat::<D>::ZERO; N]; N];
         let energy = self.integrate(cell, y, force, Some(&mut blocks))?;
-        for b in 0..N {
-            for a in 0..=b {
-                for i in 0..D {
-                    for j in 0..D {
-                        let (row, column) = (a * D + i, b * D + j);
-                        tangent[row * N * D + column] = blocks[b][a].0[i][j];
-                        tangent[column * N * D + row] = blocks[b][a].0[i][j];
-                    }
-                }
+        spread(&blocks, tangent);
+        Ok(energy)
+    }
+
+    fn cell_between(
+        &self,
+        cell: usize,
+        before: &[[f64; D]],
+        now: &[[f64; D]],
+        force: &mut [f64],
+        tangent: Option<&mut [f64]>,
+    ) -> Result<f64, Inverted> {
+        let (u, next) = (self.displacements(cell, before), self.displacements(cell, now));
+        let mut f = [Vector::<D>::ZERO; N];
+        let mut blocks = [[Mat::<D>::ZERO; N]; N];
+        let mut energy = 0.0;
+        for q in self.start[cell]..self.start[cell + 1] {
+            let (g, w) = (&self.gradients[q], self.weights[q]);
+            let (end, stress, moduli) = between(&self.law, [&gradient(&u, g), &gradient(&next, g)], tangent.is_some())
+                .map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
+            energy += w * end;
+            let stress = stress * w;
+            for a in 0..N {
+                f[a] += stress.apply(&g[a]);
             }
+            if let Some(moduli) = moduli {
+                add_tangent(&scaled(symmetric_part(&moduli), w), g, &mut blocks);
+            }
+        }
+        force.as_chunks_mut().0.copy_from_slice(&f.map(|f| f.0));
+        if let Some(tangent) = tangent {
+            spread(&blocks, tangent);
         }
         Ok(energy)
     }

@@ -12,6 +12,7 @@ mod plan;
 mod run;
 mod schema;
 mod suite;
+mod theory;
 mod verify;
 
 pub use plan::{Plan, PlannedArm};

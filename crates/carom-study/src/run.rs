@@ -11,7 +11,7 @@ use carom::recording::{self, End, Options, Progress, RunError};
 use carom_record::study::{Study, StudyManifest};
 use carom_record::{RecordError, Status};
 
-use crate::{Plan, matched};
+use crate::{Plan, matched, theory};
 
 /// What happens to an arm, told by its number.
 #[derive(Clone, Debug)]
@@ -96,6 +96,9 @@ pub fn start(
     };
     make(directory.join("arms"))?;
     plan.manifest.write(directory)?;
+    if plan.manifest.goal.is_some() {
+        theory::write(plan, directory)?;
+    }
     go_on(directory, jobs, observe, stop)
 }
 

@@ -5,12 +5,16 @@
 //! v = v_s + Δt [(1 − γ) a_s + γ a]
 //! ```
 use crate::scheme::{ForceRule, Scheme};
-use crate::stage::{Kernel, Memory, Stage, Weights};
+use crate::stage::{Internal, Kernel, Memory, Stage, Weights};
 
 /// One implicit solve per step. The acceleration carried from step to step is the algorithmic one: deriving it anew from the balance costs an order.
 impl Kernel for Scheme {
     fn stages(&self) -> usize {
         1
+    }
+
+    fn has_predictor(&self) -> bool {
+        true
     }
 
     fn stage_into(&self, _k: usize, dt: f64, memory: &Memory, stage: &mut Stage) {
@@ -30,6 +34,8 @@ impl Kernel for Scheme {
         let (mass, old_mass) = (1.0 - self.alpha_m, self.alpha_m);
         let (new, old) = (1.0 - self.alpha_f, self.alpha_f);
         // Contact is averaged as forces under both rules: its constraint holds at the step's end.
+        stage.mean = [0.0, old, new];
+        stage.internal = Internal::Gradient;
         (stage.weights, stage.before, stage.average) = match self.forces {
             ForceRule::AverageForces => (
                 Weights { mass, internal: new, external: new, contact: new },

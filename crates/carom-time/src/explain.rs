@@ -3,8 +3,11 @@ use std::f64::consts::TAU;
 
 use serde::Serialize;
 
+use crate::map;
 use crate::names::{Elsewhere, Name, elsewhere, info, names};
+use crate::oscillator::Oscillator;
 use crate::scheme::{ForceRule, Scheme};
+use crate::stage::{Kernel, Stage};
 
 /// Below this a root counts as zero, and 1 minus it as one.
 const NOTHING: f64 = 1e-9;
@@ -45,8 +48,8 @@ pub struct Held {
 /// All of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Explanation {
-    /// The four parameters and the rule.
-    pub scheme: Scheme,
+    /// The four parameters and the rule, of a member of the α family.
+    pub scheme: Option<Scheme>,
     /// Ways to ask for it.
     pub names: Vec<Name>,
     /// Where it was published.
@@ -97,10 +100,76 @@ pub fn explain(scheme: &Scheme) -> Explanation {
         held: held(scheme),
         remarks: scheme.remarks(),
         elsewhere: elsewhere(scheme, &names),
-        scheme: *scheme,
+        scheme: Some(*scheme),
         names,
         references,
     }
+}
+
+/// Explains any other kernel, by the numbers its map gives.
+pub(crate) fn explain_kernel(kernel: &dyn Kernel, name: &Name) -> Explanation {
+    let rho_inf = map::spectral_radius_at_infinity(kernel);
+    let sweep = || (-20..40).map(|k| map::spectral_radius(kernel, 1.3_f64.powi(k)));
+    let lossless = sweep().all(|rho| (rho - 1.0).abs() < 1e-6);
+    let energy = if lossless {
+        "energy: no mode of linear motion is damped"
+    } else {
+        "energy: dissipates, high frequencies most; see the damping above"
+    };
+    Explanation {
+        scheme: None,
+        names: vec![name.clone()],
+        references: info(name.kind).map(|info| info.reference).into_iter().collect(),
+        conventions: vec![Convention { name: "spectral radius at infinity", values: vec![("ρ∞", rho_inf)] }],
+        order: map::order(kernel),
+        a_stable: sweep().all(|rho| rho <= 1.0 + 1e-7),
+        rho_inf,
+        accuracy: [5, 10, 20, 50, 100].map(|steps| accuracy_of(kernel, steps)).into(),
+        conserves: vec!["momentum: exactly", energy],
+        held: held_of(kernel),
+        remarks: kernel.notes().iter().map(ToString::to_string).collect(),
+        elsewhere: Vec::new(),
+    }
+}
+
+pub(crate) fn accuracy_of(kernel: &dyn Kernel, steps_per_period: u32) -> Accuracy {
+    let omega_dt = TAU / f64::from(steps_per_period);
+    let pair = map::principal(kernel, omega_dt);
+    Accuracy {
+        steps_per_period,
+        spectral_radius: map::spectral_radius(kernel, omega_dt),
+        damping_ratio: pair.map(|pair| pair.damping_ratio),
+        period_error: pair.map(|pair| pair.period_error),
+    }
+}
+
+/// What a held dof does, by the map with its position held: v₀ = 1 at the start, Δt = 1, λ = −m a.
+pub(crate) fn held_of(kernel: &dyn Kernel) -> Held {
+    let radius = map::spectral_radius_at_infinity(kernel);
+    if radius >= 1.0 - NOTHING {
+        let text = "its velocity and acceleration do not settle: needs persistency = \"project\", law = \"predictor\" or a penalty";
+        return Held { radius, steps: None, text: text.to_owned() };
+    }
+    let share = if radius < NOTHING { NOTHING } else { 0.01 };
+    let free = Oscillator { mass: 1.0, stiffness: 0.0, force: 0.0 };
+    let (mut motion, mut before, mut last) = ([0.0, 1.0, 0.0], None, 0);
+    for n in 1..=10_000 {
+        let next = free.held_step_after(kernel, 1.0, before, motion, &mut Stage::default(), 0.0);
+        before = kernel.two_step().then_some([next[0] - motion[0], motion[1]]);
+        if next[2].abs() >= share {
+            last = n;
+        }
+        motion = next;
+    }
+    let steps = last + 1;
+    let text = if radius < NOTHING {
+        format!("its acceleration and contact force are clean after {steps} steps")
+    } else {
+        format!(
+            "its acceleration and contact force fade by {radius:.3} a step after impact, below 1 % of v₀/Δt after {steps} steps"
+        )
+    };
+    Held { radius, steps: Some(steps), text }
 }
 
 pub(crate) fn accuracy(scheme: &Scheme, steps_per_period: u32) -> Accuracy {

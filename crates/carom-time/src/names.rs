@@ -56,7 +56,7 @@ pub(crate) fn names(of: &Scheme) -> Vec<Name> {
         let clean = |x: f64| if (x - x.round()).abs() < 1e-14 { x.round() + 0.0 } else { x };
         let parameters: BTreeMap<_, _> = parameters.iter().map(|&(key, value)| (key, clean(value))).collect();
         let given = parameters.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();
-        let made = scheme(kind, &given, of.forces).ok().filter(same)?;
+        let made = scheme(kind, &given, of.forces).ok()?.alpha().filter(same)?;
         (made.forces == of.forces).then_some(Name { kind: info(kind)?.name, parameters })
     });
     made.collect()

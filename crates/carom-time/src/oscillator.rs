@@ -1,5 +1,5 @@
 //! One degree of freedom, m a + k u = f: the smallest thing a kernel can drive, and the place to measure what its analysis claims.
-use crate::stage::{Affine, Kernel, Memory, Stage, Weights};
+use crate::stage::{Affine, Before, Kernel, Memory, Stage, Weights};
 
 /// m a + k u = f with constant f, driven by any kernel.
 ///
@@ -31,12 +31,37 @@ impl Oscillator {
 
     /// One step of size `dt`; `stage` is scratch.
     pub fn step(&self, kernel: &dyn Kernel, dt: f64, start: Motion, stage: &mut Stage) -> Motion {
-        run(kernel, dt, start, stage, |stage| self.increment(stage, start))
+        self.step_after(kernel, dt, None, start, stage)
+    }
+
+    /// One step of a two-step kernel: `before` is the increment over the step before and the velocity at its start.
+    pub fn step_after(
+        &self,
+        kernel: &dyn Kernel,
+        dt: f64,
+        before: Option<[f64; 2]>,
+        start: Motion,
+        stage: &mut Stage,
+    ) -> Motion {
+        run(kernel, dt, before, start, stage, |stage| self.increment(stage, start))
     }
 
     /// One step with the position imposed at the end of every stage: a dof held by a contact.
     pub fn held_step(&self, kernel: &dyn Kernel, dt: f64, start: Motion, stage: &mut Stage, u: f64) -> Motion {
-        run(kernel, dt, start, stage, |_| u - start[0])
+        self.held_step_after(kernel, dt, None, start, stage, u)
+    }
+
+    /// As [`Self::held_step`], for a two-step kernel.
+    pub fn held_step_after(
+        &self,
+        kernel: &dyn Kernel,
+        dt: f64,
+        before: Option<[f64; 2]>,
+        start: Motion,
+        stage: &mut Stage,
+        u: f64,
+    ) -> Motion {
+        run(kernel, dt, before, start, stage, |_| u - start[0])
     }
 
     /// ½ m v² + ½ k u² − f u.
@@ -55,12 +80,20 @@ impl Oscillator {
     }
 }
 
-fn run(kernel: &dyn Kernel, dt: f64, start: Motion, stage: &mut Stage, increment: impl Fn(&Stage) -> f64) -> Motion {
+fn run(
+    kernel: &dyn Kernel,
+    dt: f64,
+    before: Option<[f64; 2]>,
+    start: Motion,
+    stage: &mut Stage,
+    increment: impl Fn(&Stage) -> f64,
+) -> Motion {
     let one = std::slice::from_ref::<f64>;
+    let before = before.as_ref().map(|[d, v]| Before { increment: one(d), velocity: one(v) });
     let mut motions = vec![start];
     for k in 0..kernel.stages() {
         let states: Vec<_> = motions.iter().map(|[u, v, a]| (one(u), one(v), one(a))).collect();
-        kernel.stage_into(k, dt, &Memory { states: &states }, stage);
+        kernel.stage_into(k, dt, &Memory { states: &states, before }, stage);
         let d = increment(stage);
         let at = |map: &Affine| map.slope * d + map.at_start[0];
         motions.push([start[0] + d, at(&stage.velocity), at(&stage.acceleration)]);

@@ -154,7 +154,7 @@ fn finite(key: &'static str, value: f64) -> Result<f64, SchemeError> {
     }
 }
 
-fn in_unit_interval(rho_inf: f64) -> Result<f64, SchemeError> {
+pub(crate) fn in_unit_interval(rho_inf: f64) -> Result<f64, SchemeError> {
     if (0.0..=1.0).contains(&rho_inf) {
         Ok(rho_inf)
     } else {

@@ -7,7 +7,7 @@
 //! v = velocity.slope d + velocity.at_start,   a = acceleration.slope d + acceleration.at_start,   d = y − y_s
 //! ```
 //!
-//! with f_int at (1 − average) y + average y_s and f_cont = Gᵀλ at y. Time knows neither space nor contact.
+//! with f_int at (1 − average) y + average y_s, or a discrete gradient between y_s and y, and f_cont = Gᵀλ at y. Time knows neither space nor contact.
 //!
 //! The maps take the increment d since the step's start, and a solver should keep d as its unknown: as a function of y the
 //! acceleration carries the last digit of y divided by Δt². Free fall from y = 1.5 over 400 steps of 1.875e-3 errs by
@@ -44,6 +44,16 @@ impl Affine {
     }
 }
 
+/// How internal forces follow from positions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Internal {
+    /// ∂U/∂y at one configuration, (1 − average) y + average y_s.
+    #[default]
+    Gradient,
+    /// A discrete gradient between y_s and y: its work over y − y_s is U(y) − U(y_s) exactly.
+    DiscreteGradient,
+}
+
 /// One implicit solve.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stage {
@@ -59,6 +69,11 @@ pub struct Stage {
     pub before: Weights,
     /// Internal forces are taken at (1 − average) y + average y_s; external forces at that time too.
     pub average: f64,
+    /// Rule of the internal forces.
+    pub internal: Internal,
+    /// What the stage adds to the mean of a force over the step, as the step's own velocity update weighs it: shares of the mean over the step before, of
+    /// the force at the step's start, of the force at the stage's end. Over all stages they add up to one.
+    pub mean: [f64; 3],
 }
 
 impl Stage {
@@ -73,12 +88,38 @@ impl Stage {
 pub struct Memory<'a> {
     /// (y, v, a) at the step's start, then at each finished stage's end; flat, one entry per dof.
     pub states: &'a [(&'a [f64], &'a [f64], &'a [f64])],
+    /// The step before, where it had the same size and nothing happened since; only for kernels that ask for it.
+    pub before: Option<Before<'a>>,
+}
+
+/// What a two-step scheme needs of the step before.
+#[derive(Clone, Copy, Debug)]
+pub struct Before<'a> {
+    /// Increment of positions over that step: kept, not formed from rounded positions.
+    pub increment: &'a [f64],
+    /// Velocity at its start.
+    pub velocity: &'a [f64],
 }
 
 /// An implicit integrator as a list of stages.
-pub trait Kernel: Send + Sync {
+pub trait Kernel: Send + Sync + std::fmt::Debug {
     /// Stages of a step.
     fn stages(&self) -> usize;
+
+    /// Whether it uses the step before. Its first step, and every one after something abrupt, has none: [`Memory::before`] is empty.
+    fn two_step(&self) -> bool {
+        false
+    }
+
+    /// Whether its only stage is Newmark's y = y_s + Δt v_s + Δt² (…), so that a contact law may put another position in place of y_s + Δt v_s.
+    fn has_predictor(&self) -> bool {
+        false
+    }
+
+    /// What it conserves or costs beyond what linear analysis measures, one sentence each.
+    fn notes(&self) -> &'static [&'static str] {
+        &[]
+    }
 
     /// Fills stage `k` (from 0) of a step of size `dt`. Reuses the buffers of `stage`.
     fn stage_into(&self, k: usize, dt: f64, memory: &Memory, stage: &mut Stage);

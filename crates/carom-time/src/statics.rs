@@ -1,6 +1,7 @@
 //! Equilibrium without inertia, f_int + f_cont − f_ext = 0 at the end of every step: t is the load parameter.
 
-use crate::stage::{Kernel, Memory, Stage, Weights};
+use crate::backward_euler::at_the_end;
+use crate::stage::{Kernel, Memory, Stage};
 
 /// The name it goes by in a case file.
 pub const STATIC: &str = "static";
@@ -16,10 +17,8 @@ impl Kernel for Static {
 
     fn stage_into(&self, _k: usize, _dt: f64, memory: &Memory, stage: &mut Stage) {
         let dofs = memory.states[0].0.len();
-        stage.end = 1.0;
-        stage.average = 0.0;
-        stage.weights = Weights { mass: 0.0, internal: 1.0, external: 1.0, contact: 1.0 };
-        stage.before = Weights::default();
+        at_the_end(stage, 1.0, [0.0, 0.0, 1.0]);
+        stage.weights.mass = 0.0;
         for map in [&mut stage.velocity, &mut stage.acceleration] {
             map.slope = 0.0;
             map.at_start.clear();
@@ -34,11 +33,11 @@ mod tests {
 
     #[test]
     fn the_end_of_a_load_step_is_an_equilibrium_at_rest() {
-        let memory = Memory { states: &[(&[1.0, 2.0], &[3.0, 4.0], &[5.0, 6.0])] };
+        let memory = Memory { states: &[(&[1.0, 2.0], &[3.0, 4.0], &[5.0, 6.0])], before: None };
         let mut stage = Stage::default();
         Static.stage_into(0, 0.1, &memory, &mut stage);
         let mut v = [9.0; 2];
         stage.velocity.value_into(&[1.0, 1.0], &mut v);
-        assert_eq!((v, stage.before, stage.is_static()), ([0.0; 2], Weights::default(), true));
+        assert_eq!((v, stage.before, stage.is_static()), ([0.0; 2], crate::Weights::default(), true));
     }
 }

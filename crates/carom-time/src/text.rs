@@ -3,9 +3,10 @@ use std::fmt::{Display, Formatter, Result};
 
 use serde::Serialize;
 
-use crate::explain::{Accuracy, Explanation, accuracy, held};
+use crate::explain::{Accuracy, Explanation};
 use crate::family::scheme;
 use crate::names::short;
+use crate::nonsmooth_text::{NonsmoothExplanation, explain_all_nonsmooth};
 use crate::scheme::{ForceRule, Scheme};
 
 /// ξ and PE without noise of the last digits.
@@ -28,12 +29,13 @@ fn list<T: Display>(f: &mut Formatter, title: &str, items: &[T]) -> Result {
 
 impl Display for Explanation {
     fn fmt(&self, f: &mut Formatter) -> Result {
-        let rule = match self.scheme.forces {
-            ForceRule::AverageForces => "forces averaged",
-            ForceRule::AverageState => "state averaged",
+        let rule = match self.scheme.map(|scheme| scheme.forces) {
+            None => "",
+            Some(ForceRule::AverageForces) => "forces averaged   ",
+            Some(ForceRule::AverageState) => "state averaged   ",
         };
         if let Some((name, others)) = self.names.split_first() {
-            writeln!(f, "{name}   {rule}   {}", self.references.join("; "))?;
+            writeln!(f, "{name}   {rule}{}", self.references.join("; "))?;
             list(f, "the same as", others)?;
         }
         writeln!(f, "\nparameters")?;
@@ -64,8 +66,8 @@ pub struct CatalogueRow {
     pub kind: &'static str,
     /// The parameters shown, in words.
     pub parameters: String,
-    /// What they make.
-    pub scheme: Scheme,
+    /// What they make, in the α family.
+    pub scheme: Option<Scheme>,
     /// Order on smooth motion.
     pub order: u8,
     /// Spectral radius at infinity.
@@ -81,6 +83,8 @@ pub struct CatalogueRow {
 pub struct Catalogue {
     /// In the order of the catalogue.
     pub rows: Vec<CatalogueRow>,
+    /// Those with a contact law of their own.
+    pub nonsmooth: Vec<NonsmoothExplanation>,
 }
 
 /// Members shown of each kind.
@@ -98,6 +102,12 @@ const SHOWN: &[(&str, &[(&str, f64)])] = &[
     ("chung-hulbert", &[("rho_inf", 0.1)]),
     ("chung-hulbert", &[("rho_inf", 0.0)]),
     ("generalized-alpha", &[("alpha_m", 0.5), ("alpha_f", 0.5), ("beta", 0.25), ("gamma", 0.5)]),
+    ("backward-euler", &[]),
+    ("bdf2", &[]),
+    ("tr-bdf2", &[]),
+    ("bathe", &[("rho_inf", 0.0)]),
+    ("bathe", &[("rho_inf", 0.6)]),
+    ("energy-momentum", &[]),
 ];
 
 /// The catalogue as a table.
@@ -113,17 +123,18 @@ pub fn explain_all() -> Catalogue {
         // Raw parameters stand in their columns.
         let shown = if parameters.len() > 2 { &[] } else { parameters };
         let words: Vec<_> = shown.iter().map(|(key, value)| format!("{key} {value}")).collect();
+        let told = scheme.explain();
         Some(CatalogueRow {
             kind,
             parameters: words.join(", "),
-            scheme,
-            order: scheme.order(),
-            rho_inf: scheme.spectral_radius_at_infinity(),
-            accuracy: accuracy(&scheme, 10),
-            held_steps: held(&scheme).steps,
+            scheme: told.scheme,
+            order: told.order,
+            rho_inf: told.rho_inf,
+            accuracy: told.accuracy.into_iter().find(|a| a.steps_per_period == 10)?,
+            held_steps: told.held.steps,
         })
     };
-    Catalogue { rows: SHOWN.iter().filter_map(row).collect() }
+    Catalogue { rows: SHOWN.iter().filter_map(row).collect(), nonsmooth: explain_all_nonsmooth() }
 }
 
 impl Display for Catalogue {
@@ -133,11 +144,25 @@ impl Display for Catalogue {
         heads.iter().try_for_each(|head| write!(f, "{head:>10}"))?;
         writeln!(f)?;
         for row in &self.rows {
-            let Scheme { alpha_m, alpha_f, beta, gamma, .. } = row.scheme;
-            write!(f, "{:<18}{:<24}{alpha_m:>10.4}{alpha_f:>10.4}{beta:>10.4}{gamma:>10.4}", row.kind, row.parameters)?;
+            write!(f, "{:<18}{:<24}", row.kind, row.parameters)?;
+            match row.scheme {
+                Some(Scheme { alpha_m, alpha_f, beta, gamma, .. }) => {
+                    write!(f, "{alpha_m:>10.4}{alpha_f:>10.4}{beta:>10.4}{gamma:>10.4}")?;
+                }
+                None => write!(f, "{:>10}{:>10}{:>10}{:>10}", "–", "–", "–", "–")?,
+            }
             let (xi, pe) = (cell(row.accuracy.damping_ratio, 1.0), cell(row.accuracy.period_error, 100.0));
             let held = row.held_steps.map_or("∞".to_owned(), |steps| steps.to_string());
             writeln!(f, "{:>10}{:>10.3}{xi:>10}{:>10}{held:>10}", row.order, row.rho_inf, format!("{pe} %"))?;
+        }
+        writeln!(f, "\nwith a contact law of their own{:>51}{:>10}{:>10}{:>10}", "order", "ρ∞", "ξ(T/10)", "PE(T/10)")?;
+        for told in &self.nonsmooth {
+            let words: Vec<_> = told.parameters.iter().map(|(key, value)| format!("{key} {value:.3}")).collect();
+            let rho = told.rho_inf.map_or("ωΔt ≤ 2".to_owned(), |rho| format!("{rho:.3}"));
+            let tenth = told.accuracy.iter().find(|row| row.steps_per_period == 10);
+            let (xi, pe) = tenth.map_or((None, None), |row| (row.damping_ratio, row.period_error));
+            write!(f, "{:<32}{:<42}{:>8}{rho:>10}", told.kind, words.join(", "), told.order)?;
+            writeln!(f, "{:>10}{:>10}", cell(xi, 1.0), format!("{} %", cell(pe, 100.0)))?;
         }
         write!(
             f,

@@ -257,7 +257,7 @@ fn the_balance_weights_are_those_of_eq_15() {
     let scheme = ch(0.1);
     let one = [0.0];
     let mut stage = Stage::default();
-    scheme.stage_into(0, 0.1, &Memory { states: &[(&one, &one, &one)] }, &mut stage);
+    scheme.stage_into(0, 0.1, &Memory { states: &[(&one, &one, &one)], before: None }, &mut stage);
     let (w, b) = (stage.weights, stage.before);
     assert_eq!(
         [w.mass, w.internal, w.external, w.contact],
@@ -270,7 +270,7 @@ fn the_balance_weights_are_those_of_eq_15() {
     scheme.with_forces(ForceRule::AverageState).stage_into(
         0,
         0.1,
-        &Memory { states: &[(&one, &one, &one)] },
+        &Memory { states: &[(&one, &one, &one)], before: None },
         &mut stage,
     );
     let (w, b) = (stage.weights, stage.before);

@@ -78,7 +78,7 @@ fn the_midpoint_rule_keeps_the_moment_of_momentum() {
         let mut a = force(y);
         let (start, mut stage, mut worst) = (moment(&y, &v), Stage::default(), 0.0f64);
         for _ in 0..200 {
-            scheme.stage_into(0, 0.05, &Memory { states: &[(&y, &v, &a)] }, &mut stage);
+            scheme.stage_into(0, 0.05, &Memory { states: &[(&y, &v, &a)], before: None }, &mut stage);
             let (w, b, slope) = (stage.weights, stage.before, stage.acceleration.slope);
             let mut d = [0.0; 2];
             // w.mass a(d) + b.mass a_s = w.internal f + b.internal f_s by fixed-point iteration on d.

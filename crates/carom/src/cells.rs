@@ -32,16 +32,22 @@ impl Cells {
         Self { pool, block: vec![empty; BLOCK] }
     }
 
-    /// Calls `add(cell, force, tangent)` for every cell in order; the strain energy of the body is returned.
+    /// Calls `add(cell, force, tangent)` for every cell in order; the strain energy of the body is returned. With `before`, the forces are the discrete
+    /// gradient from there to `y`.
     pub(crate) fn for_each<const D: usize>(
         &mut self,
         body: &dyn Body<D>,
+        before: Option<&[[f64; D]]>,
         y: &[[f64; D]],
         mut add: impl FnMut(usize, &[f64], &[f64]),
     ) -> Result<f64, Inverted> {
         let (count, dofs) = (body.mesh().cell_count(), body.mesh().element.nodes() * D);
         let compute = |cell: usize, out: &mut Contribution| {
-            out.strain = body.cell_tangent(cell, y, &mut out.force[..dofs], &mut out.tangent[..dofs * dofs]);
+            let (force, tangent) = (&mut out.force[..dofs], &mut out.tangent[..dofs * dofs]);
+            out.strain = match before {
+                None => body.cell_tangent(cell, y, force, tangent),
+                Some(before) => body.cell_between(cell, before, y, force, Some(tangent)),
+            };
         };
         let mut strain = 0.0;
         for first in (0..count).step_by(BLOCK) {

@@ -1,24 +1,171 @@
 //! Where the energy of a step went (design.md §5): exact for eq. (15), because it uses the same averaged forces.
 //!
 //! ```text
-//! F̄ = (1−α_f) F_{s+1} + α_f F_s,   Δy = y_{s+1} − y_s
+//! F̄ = (1−α_f) F_{s+1} + α_f F_s,   Δy = y_{s+1} − y_s                    F̄ of other kernels: the mean their velocity update makes, `Stage::mean`
 //! external_work += Δy·F̄_ext (beyond the potential) + Δy_moved·R̄ + Δy/Δt·M J        contact_work += −Δy·F̄_cont
 //! ```
 //!
-//! R̄ is the residual of eq. (15) at moved dofs, the force of their supports. J = v_{s+1} − v_s − Δt ā at moved dofs is what their velocities change
-//! beyond their averaged acceleration ā: where a motion's velocity jumps, the impulse M J is the support's too, and its work is that of the mean
+//! R̄ is the mean residual of the balance at moved dofs, the force of their supports. J = v_{s+1} − v_s − Δt ā at moved dofs is what their velocities
+//! change beyond their mean acceleration ā: where a motion's velocity jumps, the impulse M J is the support's too, and its work is that of the mean
 //! velocity. Load steps without inertia take the mean of both ends, F̄ = (F_{s+1} + F_s)/2: exact where forces are linear in the displacements.
 //!
-//! The increment of the dissipation then equals (Δy·F̄_int − ΔU) − (γ+α_m−1) Δy·MΔa + Δt² (β−γ/2) Δa·M(a_s + γΔa) to round-off (Krenk 2006).
+//! The increment of the dissipation of the α family then equals (Δy·F̄_int − ΔU) − (γ+α_m−1) Δy·MΔa + Δt² (β−γ/2) Δa·M(a_s + γΔa) to round-off
+//! (Krenk 2006).
 
-use carom_contact::Linearised;
+use carom_contact::{Linearised, Pair};
+use carom_time::{Stage, Weights};
 
-use crate::balance::{contact_weights, mean_acceleration};
+use crate::balance::mean_acceleration;
+use crate::case::ForceTime;
 use crate::model::{Model, dot};
 use crate::newton::Workspace;
-use crate::state::State;
+use crate::state::{Means, Previous, State};
 
-/// Books a solved step into `next`, before any projection. `work` holds the converged evaluation.
+/// Adds what a solved stage gives to the means over the step (`work.means`, cleared before the first stage). `work` holds the converged evaluation,
+/// `previous` the step before of a two-step scheme.
+pub(crate) fn add_stage<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    previous: Option<&Previous>,
+    pairs: &[Vec<Pair>],
+    dt: f64,
+    work: &mut Workspace<D>,
+) {
+    let stage = &work.stage;
+    let [old, start, now] = stage.mean;
+    let before = previous.map(|previous| (old, &previous.means));
+    let contact = Shares { now: now / stage.weights.contact, start, massless: stage.weights.external.recip() };
+    let means = &mut work.means;
+    contact.add(model, stage, &work.forces.contact, &state.f_contact, &mut means.contact);
+    for (k, contact) in model.contacts.iter().enumerate() {
+        let (now, start) = if contact.force == ForceTime::End { (1.0, 0.0) } else { (now, start) };
+        let force = secondary_force(&pairs[k], &work.gaps[k]);
+        for i in 0..2 {
+            means.impulse[i] += dt * (now * force[i] + start * state.contact_forces[k][i]);
+        }
+    }
+    if !model.loads.is_empty() {
+        let loads = match averaging(stage) {
+            Averaging::BothEnds => Shares { now: 0.5, start: 0.5, massless: 0.5 },
+            Averaging::Ends => Shares { now, start, massless: 1.0 },
+            Averaging::Within => Shares { now: stage.weights.external, start: stage.before.external, massless: 1.0 },
+        };
+        loads.add(model, stage, &work.forces.loads, &state.f_external, &mut means.loads);
+    }
+    if let Some((old, before)) = before {
+        add_old(model, old, before, means);
+    }
+    if !work.motions.is_empty() {
+        add_supports(model, state, before, work);
+    }
+}
+
+/// Work of the loads over a step of one stage whose balance is an average itself. `work` holds the converged evaluation.
+pub(crate) fn work_of_loads<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    increment: &[f64],
+    work: &Workspace<D>,
+) -> f64 {
+    if model.loads.is_empty() {
+        return 0.0;
+    }
+    let (now, before) = (work.stage.weights.external, work.stage.before.external);
+    let forces = work.forces.loads.iter().zip(&state.f_external);
+    increment.iter().zip(forces).map(|(moved, (load, old))| moved * (now * load + before * old)).sum()
+}
+
+/// Where the mean of a stage's forces is taken.
+enum Averaging {
+    /// Without inertia, the mean of both ends.
+    BothEnds,
+    /// The balance is that of the stage's end: [`Stage::mean`] weighs the ends.
+    Ends,
+    /// The balance is an average itself.
+    Within,
+}
+
+fn averaging(stage: &Stage) -> Averaging {
+    if stage.is_static() {
+        Averaging::BothEnds
+    } else if stage.before == Weights::default() && stage.average == 0.0 {
+        Averaging::Ends
+    } else {
+        Averaging::Within
+    }
+}
+
+/// Shares of a force at the stage's end and at the step's start; at dofs without inertia, where there is nothing to average with, of that at the
+/// step's end.
+struct Shares {
+    now: f64,
+    start: f64,
+    massless: f64,
+}
+
+impl Shares {
+    fn add<const D: usize>(&self, model: &Model<D>, stage: &Stage, now: &[f64], start: &[f64], mean: &mut [f64]) {
+        for i in 0..mean.len() {
+            if !model.massless[i] || stage.is_static() {
+                mean[i] += self.now * now[i] + self.start * start[i];
+            } else if stage.end == 1.0 {
+                mean[i] = self.massless * now[i];
+            }
+        }
+    }
+}
+
+/// The share of the step before, in the first stage of a two-step scheme.
+fn add_old<const D: usize>(model: &Model<D>, old: f64, before: &Means, means: &mut Means) {
+    for i in (0..model.dofs()).filter(|&i| !model.massless[i]) {
+        means.contact[i] += old * before.contact[i];
+        means.loads[i] += old * before.loads[i];
+    }
+    (0..2).for_each(|i| means.impulse[i] += old * before.impulse[i]);
+}
+
+/// Forces and accelerations of the supports that move.
+fn add_supports<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    before: Option<(f64, &Means)>,
+    work: &mut Workspace<D>,
+) {
+    let stage = &work.stage;
+    let (now, start) = match averaging(stage) {
+        Averaging::BothEnds => (0.5, 0.5),
+        Averaging::Ends => (stage.mean[2], stage.mean[1]),
+        Averaging::Within => (1.0, 0.0),
+    };
+    // What was left for the supports at the step's start.
+    let mut left = vec![0.0; if start == 0.0 { 0 } else { model.dofs() }];
+    if start != 0.0 {
+        model.mass.multiply_into(&state.a, &mut left);
+        for i in model.motions.dofs() {
+            left[i] += state.f_internal[i] + state.f_contact[i] - model.gravity[i] - state.f_external[i];
+        }
+    }
+    let means = &mut work.means;
+    for moved in &work.motions {
+        let i = moved.dof;
+        if model.massless[i] && !stage.is_static() {
+            means.supports[i] = work.residual[i] / stage.weights.external;
+            continue;
+        }
+        means.supports[i] += now * work.residual[i] + left.get(i).map_or(0.0, |left| start * left);
+        means.accelerations[i] += match averaging(stage) {
+            Averaging::BothEnds => 0.0,
+            Averaging::Ends => now * moved.motion[2] + start * state.a[i],
+            Averaging::Within => mean_acceleration(stage, moved.motion[2], state.a[i]),
+        };
+        if let Some((old, before)) = before {
+            means.supports[i] += old * before.supports[i];
+            means.accelerations[i] += old * before.accelerations[i];
+        }
+    }
+}
+
+/// Books a solved step into `next`, before any projection.
 pub(crate) fn account<const D: usize>(
     model: &Model<D>,
     state: &State,
@@ -28,53 +175,24 @@ pub(crate) fn account<const D: usize>(
     dt: f64,
     work: &Workspace<D>,
 ) {
-    let (weights, before) = (work.stage.weights, work.stage.before);
-    for i in 0..increment.len() {
-        let averaged = if model.massless[i] {
-            work.forces.contact[i] / weights.external
-        } else {
-            work.forces.contact[i] + before.contact * state.f_contact[i]
-        };
-        next.ledger.contact_work -= increment[i] * averaged;
+    let means = &work.means;
+    for (moved, force) in increment.iter().zip(&means.contact) {
+        next.ledger.contact_work -= moved * force;
     }
-    next.ledger.external_work += work_of_loads(model, state, next, increment, work);
+    // What went into springs is not lost: it is counted with the strain energy.
+    next.ledger.contact_work += work.springs - next.ledger.springs;
+    next.ledger.springs = work.springs;
+    if !model.loads.is_empty() {
+        next.ledger.external_work += dot(increment, &means.loads);
+    }
     if !work.motions.is_empty() {
         next.ledger.external_work += work_of_motions(model, state, next, increment, dt, work);
     }
     book_contact_forces(model, next);
-    for (k, contact) in model.contacts.iter().enumerate() {
-        let (now, before) = contact_weights(&work.stage, contact.force);
-        for i in 0..2 {
-            next.ledger.impulse[i] += dt * (now * next.contact_forces[k][i] + before * state.contact_forces[k][i]);
-        }
-    }
-    next.ledger.strain = strain;
+    (0..2).for_each(|i| next.ledger.impulse[i] += means.impulse[i]);
+    next.ledger.strain = strain + work.springs;
     next.ledger.potential = model.potential(&next.y);
     book_kinetic(model, next);
-}
-
-/// Δy·F̄ of the loads.
-fn work_of_loads<const D: usize>(
-    model: &Model<D>,
-    state: &State,
-    next: &State,
-    increment: &[f64],
-    work: &Workspace<D>,
-) -> f64 {
-    if model.loads.is_empty() {
-        return 0.0;
-    }
-    let (now, before) = (work.stage.weights.external, work.stage.before.external);
-    let averaged = |i: usize| {
-        if work.stage.is_static() {
-            0.5 * (next.f_external[i] + state.f_external[i])
-        } else if model.massless[i] {
-            next.f_external[i]
-        } else {
-            now * work.forces.loads[i] + before * state.f_external[i]
-        }
-    };
-    (0..increment.len()).map(|i| increment[i] * averaged(i)).sum()
 }
 
 /// Work of the supports that move.
@@ -86,22 +204,28 @@ fn work_of_motions<const D: usize>(
     dt: f64,
     work: &Workspace<D>,
 ) -> f64 {
+    let sum = dot(increment, &work.means.supports);
     if work.stage.is_static() {
-        // Without inertia the force of a support is what is left of the others; contact at the step's start is known as far as it is averaged.
-        let left = |s: &State, i: usize| s.f_internal[i] + s.f_contact[i] - model.gravity[i] - s.f_external[i];
-        return model.motions.dofs().map(|i| 0.5 * increment[i] * (left(next, i) + left(state, i))).sum();
+        return sum;
     }
-    let weights = work.stage.weights;
     let mut jump = vec![0.0; increment.len()];
-    let mut sum = 0.0;
     for i in model.motions.dofs() {
-        let force = if model.massless[i] { work.residual[i] / weights.external } else { work.residual[i] };
-        sum += increment[i] * force;
-        jump[i] = next.v[i] - state.v[i] - dt * mean_acceleration(&work.stage, next.a[i], state.a[i]);
+        jump[i] = next.v[i] - state.v[i] - dt * work.means.accelerations[i];
     }
     let mut impulse = vec![0.0; increment.len()];
     model.mass.multiply_into(&jump, &mut impulse);
     sum + dot(increment, &impulse) / dt
+}
+
+/// Force on a secondary side, −Σ λ ∂g/∂y_N, from gaps that are linearised already.
+fn secondary_force<const D: usize>(pairs: &[Pair], gaps: &[Linearised<D>]) -> [f64; 2] {
+    let mut force = [0.0; 2];
+    for (pair, gap) in pairs.iter().zip(gaps).filter(|(pair, _)| pair.active) {
+        for i in 0..D.min(2) {
+            force[i] -= pair.lambda * gap.gradient[0][i];
+        }
+    }
+    force
 }
 
 /// Kinetic energy of the velocities, and the largest energy so far.

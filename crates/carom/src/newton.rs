@@ -7,16 +7,17 @@ use std::sync::Arc;
 
 use carom_algebra::LinearError;
 use carom_contact::{ActiveSet, Contender, Linearised, Pair, PairEvent};
-use carom_time::Stage;
+use carom_time::{Internal, Stage};
 
 use crate::balance::{Forces, contact_weights, mean_acceleration, residual_into};
 use crate::case::{NewtonSpec, TangentRule};
 use crate::held::boundary;
 use crate::kept::{Keeper, Kept, Point};
 use crate::model::{LoadsAt, Model, Prescribed};
+use crate::penalty::{self, Configuration};
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
-use crate::state::State;
+use crate::state::{Means, State};
 use crate::system::{HoldError, Row, System};
 
 /// Penetration, as a fraction of L, that counts as touching.
@@ -24,7 +25,7 @@ pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
 /// Gap, as a fraction of L, of nodes that touch before the first load step.
 const TOUCHING: f64 = 1e-9;
 /// Below this step, relative to L, the next iterate may well be the last: its tangent is not formed before it is needed.
-const NEARLY_THERE: f64 = 1e-3;
+pub(crate) const NEARLY_THERE: f64 = 1e-3;
 /// Below this step, relative to L, facets are handed over before the iteration with a kept tangent has converged.
 const CLOSE: f64 = 1e-5;
 /// How much smaller than the tolerance the residual gets with a kept tangent.
@@ -66,8 +67,14 @@ pub struct Workspace<const D: usize> {
     pub(crate) acceleration: Vec<f64>,
     /// Linearised gaps of every pair of every contact.
     pub(crate) gaps: Vec<Vec<Linearised<D>>>,
+    /// ∂λ/∂g of every pair of every contact that is a spring now; 0 of the others.
+    pub(crate) stiffnesses: Vec<Vec<f64>>,
+    /// Energy of the springs of penalties at the last evaluation.
+    pub(crate) springs: f64,
     /// The stage being solved.
     pub(crate) stage: Stage,
+    /// Means over the step, as far as its stages are solved.
+    pub(crate) means: Means,
     /// Wall time by phase.
     pub timings: Timings,
     /// r of the last evaluation over all dofs: at held ones, the force of their support.
@@ -102,7 +109,10 @@ impl<const D: usize> Workspace<D> {
             },
             acceleration: zeros.clone(),
             gaps: vec![Vec::new(); model.contacts.len()],
+            stiffnesses: vec![Vec::new(); model.contacts.len()],
+            springs: 0.0,
             stage: Stage::default(),
+            means: Means::new(model.dofs()),
             timings: Timings::default(),
             residual: zeros.clone(),
             loads: LoadsAt::default(),
@@ -132,7 +142,7 @@ pub struct Timings {
 }
 
 /// Runs `work` and adds the seconds it took to `clock`.
-fn timed<T>(clock: &mut f64, work: impl FnOnce() -> T) -> T {
+pub(crate) fn timed<T>(clock: &mut f64, work: impl FnOnce() -> T) -> T {
     let began = std::time::Instant::now();
     let done = work();
     *clock += began.elapsed().as_secs_f64();
@@ -147,10 +157,11 @@ struct Measure {
     gap: f64,
 }
 
-/// Solves the stage in `work.stage` from the guess in `trial`.
+/// Solves the stage in `work.stage` from the guess in `trial`. `before`: positions at the end of the stage before, for trajectories.
 pub(crate) fn solve_stage<const D: usize>(
     model: &Model<D>,
     state: &State,
+    before: &[f64],
     settings: &NewtonSpec,
     trial: &mut Trial,
     work: &mut Workspace<D>,
@@ -158,9 +169,10 @@ pub(crate) fn solve_stage<const D: usize>(
     let mut effort = Effort::default();
     let mut sets: Vec<ActiveSet> =
         model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect();
-    timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))?;
+    timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
     let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
-    let mut keeper = Keeper::new(&state.kept, settings.tangent == TangentRule::Kept && keeps(model, work), mass, stiffness);
+    let keep = settings.tangent == TangentRule::Kept && keeps(model, work);
+    let mut keeper = Keeper::new(&state.kept, keep, mass, stiffness);
     let mut measure = begin(model, state, trial, work, &mut keeper)?;
     if work.stage.is_static() && touch(model, trial, work) {
         measure = evaluate(model, state, trial, work, false)?;
@@ -177,7 +189,7 @@ pub(crate) fn solve_stage<const D: usize>(
         if !keeper.full && !settled && !changed && step <= CLOSE * model.scale {
             // Where a node will slide to is known long before the last digits are.
             let pairs = trial.pairs.clone();
-            changed = timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))?;
+            changed = timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
             if changed {
                 sets.iter_mut().for_each(ActiveSet::restart);
             } else {
@@ -186,7 +198,7 @@ pub(crate) fn solve_stage<const D: usize>(
             }
         }
         if settled && !changed {
-            if !timed(&mut work.timings.contact, || detect(model, state, trial, &mut effort))? {
+            if !timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))? {
                 effort.kept = keeper.finish();
                 return Ok(effort);
             }
@@ -215,18 +227,22 @@ pub(crate) fn solve_stage<const D: usize>(
         step = max_abs(&work.correction);
         effort.iterations += 1;
         keeper.observe(step, settings.tolerance * model.scale, changed);
-        let before = measure.residual;
+        let residual = measure.residual;
         let tangent = keeper.full && step > NEARLY_THERE * model.scale;
         measure = advance(model, state, trial, work, &rows, tangent, (!changed).then_some(measure))?;
-        shrinking = measure.residual / before.max(f64::MIN_POSITIVE);
+        shrinking = measure.residual / residual.max(f64::MIN_POSITIVE);
         has_tangent = tangent;
     }
 }
 
-/// Whether a tangent of another time serves: not where the iteration itself moves supports, loads turn with the body, or nothing but the
-/// tangent holds a body.
+/// Whether a tangent of another time serves: not where the iteration itself moves supports, loads turn with the body, nothing but the tangent holds a
+/// body, forces are a discrete gradient or springs, or a predictor is projected between the steps.
 fn keeps<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> bool {
-    work.motions.is_empty() && !model.loads.follow() && !work.stage.is_static()
+    work.motions.is_empty()
+        && !model.loads.follow()
+        && !work.stage.is_static()
+        && work.stage.internal == Internal::Gradient
+        && model.contacts.iter().all(|contact| contact.penalty.is_none() && !contact.predictor)
 }
 
 /// The first evaluation, and the kept factor where there is one to keep.
@@ -321,17 +337,17 @@ fn linearised<'a, const D: usize>(
     rows: &[(usize, usize)],
 ) -> Vec<Row<'a, D>> {
     let weight = |k: usize| contact_weights(&work.stage, model.contacts[k].force).0;
-    rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k) }).collect()
+    rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k), compliance: 0.0 }).collect()
 }
 
 /// Brings the pairs up to date with the trial's positions; whether that asks for another solve.
 fn detect<const D: usize>(
     model: &Model<D>,
-    state: &State,
+    before: &[f64],
     trial: &mut Trial,
     effort: &mut Effort,
 ) -> Result<bool, Rejected> {
-    let (before, now) = (state.y.as_chunks::<D>().0, trial.y.as_chunks::<D>().0);
+    let (before, now) = (before.as_chunks::<D>().0, trial.y.as_chunks::<D>().0);
     let mut changed = false;
     for (k, contact) in model.contacts.iter().enumerate() {
         let mut events = Vec::new();
@@ -353,7 +369,8 @@ fn evaluate<const D: usize>(
     tangent: bool,
 ) -> Result<Measure, Rejected> {
     let stage = &work.stage;
-    let share = 1.0 - stage.average;
+    let between = stage.internal == Internal::DiscreteGradient;
+    let share = if between { 1.0 } else { 1.0 - stage.average };
     for i in 0..trial.y.len() {
         trial.y[i] = state.y[i] + trial.increment[i];
         work.at[i] = state.y[i] + share * trial.increment[i];
@@ -365,12 +382,20 @@ fn evaluate<const D: usize>(
     let inverted = |(body, inverted)| Rejected::Inverted { body, inverted };
     let (system, at, force) = (&mut work.system, &work.at, &mut work.forces.internal);
     let pull = (!work.motions.is_empty()).then_some((&work.remaining[..], &mut work.pull[..]));
-    trial.strain = timed(&mut work.timings.assembly, || {
-        if tangent { system.internal_tangent(model, at, force, pull) } else { model.internal_force(at, force) }
+    trial.strain = timed(&mut work.timings.assembly, || match (tangent, between) {
+        (true, _) => system.internal_tangent(model, between.then_some(&state.y), at, force, pull),
+        (false, true) => model.internal_between(&state.y, at, force),
+        (false, false) => model.internal_force(at, force),
     })
     .map_err(inverted)?;
+    if between {
+        // Springs that conserve energy act along the normals at the middle of the step, and pressures on the side as it lies there.
+        for i in 0..trial.y.len() {
+            work.at[i] = state.y[i] + 0.5 * trial.increment[i];
+        }
+    }
     if !model.loads.is_empty() {
-        model.loads.force_into(&work.loads, at, &mut work.forces.loads);
+        model.loads.force_into(&work.loads, &work.at, &mut work.forces.loads);
     }
     stage.acceleration.value_into(&trial.increment, &mut work.acceleration);
     if !stage.is_static() {
@@ -385,10 +410,31 @@ fn evaluate<const D: usize>(
 
     let y = trial.y.as_chunks::<D>().0;
     work.forces.contact.fill(0.0);
+    work.springs = 0.0;
     let mut measure = Measure::default();
     for (k, contact) in model.contacts.iter().enumerate() {
         let weight = contact_weights(stage, contact.force).0;
         work.gaps[k].resize(trial.pairs[k].len(), Linearised::default());
+        work.stiffnesses[k].clear();
+        work.stiffnesses[k].resize(trial.pairs[k].len(), 0.0);
+        if let Some(penalty) = &contact.penalty {
+            let at = Configuration {
+                start: &state.y,
+                middle: between.then_some(&work.at),
+                end: &trial.y,
+                moved: &trial.increment,
+            };
+            for (p, (pair, gap)) in trial.pairs[k].iter_mut().zip(&mut work.gaps[k]).enumerate() {
+                let spring = penalty::spring(&*contact.method, penalty[pair.node], pair, &at, gap)
+                    .map_err(|error| Rejected::Contact { contact: contact.name.clone(), error })?;
+                work.stiffnesses[k][p] = spring.stiffness;
+                work.springs += spring.energy;
+                if pair.active {
+                    add_gradient(gap, weight * pair.lambda, &mut work.forces.contact);
+                }
+            }
+            continue;
+        }
         for (pair, gap) in trial.pairs[k].iter_mut().zip(&mut work.gaps[k]) {
             match contact.method.linearise(pair, y, pair.lambda, gap) {
                 Ok(()) => {}
@@ -419,20 +465,24 @@ pub(crate) fn add_gradient<const D: usize>(gap: &Linearised<D>, factor: f64, for
 }
 
 /// What the last digits of the positions alone make of the residual.
-fn round_off<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> f64 {
+pub(crate) fn round_off<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> f64 {
     let diagonal = work.system.diagonal(mass_factor(&work.stage), stiffness_factor(&work.stage));
     16.0 * f64::EPSILON * model.scale * diagonal.map(|d| d * d).sum::<f64>().sqrt()
 }
 
-fn mass_factor(stage: &Stage) -> f64 {
+pub(crate) fn mass_factor(stage: &Stage) -> f64 {
     stage.weights.mass * stage.acceleration.slope
 }
 
-fn stiffness_factor(stage: &Stage) -> f64 {
-    stage.weights.internal * (1.0 - stage.average)
+pub(crate) fn stiffness_factor(stage: &Stage) -> f64 {
+    match stage.internal {
+        Internal::Gradient => stage.weights.internal * (1.0 - stage.average),
+        // Its tangent is that by the end of the step already.
+        Internal::DiscreteGradient => stage.weights.internal,
+    }
 }
 
-fn follower_factor(stage: &Stage) -> f64 {
+pub(crate) fn follower_factor(stage: &Stage) -> f64 {
     stage.weights.external * (1.0 - stage.average)
 }
 
@@ -442,7 +492,9 @@ fn touch<const D: usize>(model: &Model<D>, trial: &mut Trial, work: &Workspace<D
         return false;
     }
     let mut changed = false;
-    for (pairs, gaps) in trial.pairs.iter_mut().zip(&work.gaps) {
+    // A spring holds nothing before it is pressed.
+    let constraints = model.contacts.iter().map(|contact| contact.penalty.is_none());
+    for ((pairs, gaps), _) in trial.pairs.iter_mut().zip(&work.gaps).zip(constraints).filter(|(_, holds)| *holds) {
         for (pair, _) in pairs.iter_mut().zip(gaps).filter(|(_, gap)| gap.gap <= TOUCHING * model.scale) {
             (pair.active, changed) = (true, true);
         }
@@ -459,7 +511,8 @@ fn change_sets<const D: usize>(
     settled: bool,
 ) -> Result<bool, Rejected> {
     let mut changed = false;
-    for (k, set) in sets.iter_mut().enumerate() {
+    // A spring presses or does not by its gap alone.
+    for (k, set) in sets.iter_mut().enumerate().filter(|(k, _)| model.contacts[*k].penalty.is_none()) {
         let secondary = model.contacts[k].method.secondary();
         let stiffness = stiffness_of_touch(model, work);
         let contenders: Vec<Contender> = trial.pairs[k]
@@ -490,7 +543,7 @@ fn stiffness_of_touch<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> 
 /// Names an active pair that no row holds: supports leave it no way out.
 fn stuck<const D: usize>(model: &Model<D>, trial: &Trial, work: &Workspace<D>) -> Result<(), Rejected> {
     let rows = independent_rows(model, &trial.pairs, work);
-    for (k, contact) in model.contacts.iter().enumerate() {
+    for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.penalty.is_none()) {
         for (p, pair) in trial.pairs[k].iter().enumerate().filter(|(_, pair)| pair.active) {
             let depth = -work.gaps[k][p].gap;
             if !rows.contains(&(k, p)) && depth > GAP_TOLERANCE * model.scale {
@@ -509,7 +562,8 @@ fn try_kept<const D: usize>(
     rows: &[(usize, usize)],
 ) -> Result<(), LinearError> {
     let weight = |k: usize| contact_weights(&work.stage, model.contacts[k].force).0;
-    let gaps: Vec<Row<D>> = rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k) }).collect();
+    let gaps: Vec<Row<D>> =
+        rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k), compliance: 0.0 }).collect();
     let right: Vec<f64> = gaps.iter().map(|row| -row.weight * row.gap.gap).collect();
     timed(&mut work.timings.factor, || work.system.constrain(model, &gaps))?;
     work.right.clear();
@@ -526,7 +580,12 @@ fn linear_step<const D: usize>(
 ) -> Result<(), Rejected> {
     let stage = &work.stage;
     let weight = |k: usize| contact_weights(stage, model.contacts[k].force).0;
-    let gaps: Vec<Row<D>> = rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k) }).collect();
+    let soft = |k: usize| model.contacts[k].penalty.is_some();
+    let compliance = |k: usize, p: usize| if soft(k) { work.stiffnesses[k][p].recip() } else { 0.0 };
+    let gaps: Vec<Row<D>> = rows
+        .iter()
+        .map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k), compliance: compliance(k, p) })
+        .collect();
     if stage.is_static() {
         model.check_held(&work.at, gaps.iter().map(|row| row.gap))?;
     }
@@ -537,11 +596,13 @@ fn linear_step<const D: usize>(
         return Err(LinearError::Singular { size, pivot: inertia.negative, value: 0.0 }.into());
     }
     let remaining = &work.remaining;
-    let closing = |gap: &Linearised<D>| {
+    let approach = |gap: &Linearised<D>| {
         let moved = |p: usize| (0..D).map(|i| gap.gradient[p][i] * remaining[gap.nodes[p] * D + i]).sum::<f64>();
-        gap.gap + (0..gap.count).map(moved).sum::<f64>()
+        (0..gap.count).map(moved).sum::<f64>()
     };
-    let right: Vec<f64> = rows.iter().map(|&(k, p)| -weight(k) * closing(&work.gaps[k][p])).collect();
+    // The multiplier of a spring is that of its gap already; only what moved supports still bring is missing.
+    let open = |k: usize, p: usize| if soft(k) { 0.0 } else { work.gaps[k][p].gap };
+    let right: Vec<f64> = rows.iter().map(|&(k, p)| -weight(k) * (open(k, p) + approach(&work.gaps[k][p]))).collect();
     for (r, pull) in work.residual.iter_mut().zip(&work.pull) {
         *r = -(*r + stiffness * pull);
     }
@@ -612,7 +673,7 @@ fn take<const D: usize>(
     evaluate(model, state, trial, work, tangent)
 }
 
-fn max_abs(x: &[f64]) -> f64 {
+pub(crate) fn max_abs(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |m: f64, v| if v.is_finite() { m.max(v.abs()) } else { f64::INFINITY })
 }
 

@@ -22,8 +22,8 @@ fn the_whole_tangent_with_contact_is_the_derivative_of_the_residual() {
         }
         let (model, state) = (&sim.model, &sim.state);
         let mut work = Workspace::new(model, 1);
-        let memory = Memory { states: &[(&state.y, &state.v, &state.a)] };
-        case.time.scheme.scheme().unwrap().stage_into(0, sim.dt, &memory, &mut work.stage);
+        let memory = Memory { states: &[(&state.y, &state.v, &state.a)], before: None };
+        case.time.scheme.integrator().unwrap().alpha().unwrap().stage_into(0, sim.dt, &memory, &mut work.stage);
         known_into(model, &work.stage, state, &mut work.forces);
         let wave = |i: usize, seed: f64| ((i as f64 + seed) * 12.9898).sin();
         let increment: Vec<f64> =
@@ -95,9 +95,9 @@ mesh = {{ shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [3, 2
         let sim = Simulation::<2>::new(&case, 1).unwrap();
         let (model, state) = (&sim.model, &sim.state);
         let mut work = Workspace::new(model, 1);
-        let memory = Memory { states: &[(&state.y, &state.v, &state.a)] };
+        let memory = Memory { states: &[(&state.y, &state.v, &state.a)], before: None };
         // Without inertia and with soft springs the pressure is a good part of the tangent.
-        case.time.scheme.scheme().unwrap().stage_into(0, 1e3, &memory, &mut work.stage);
+        case.time.scheme.kernel().unwrap().stage_into(0, 1e3, &memory, &mut work.stage);
         model.loads.at(&model.parts, model.dofs(), 0.1, &mut work.loads).unwrap();
         work.system.loads_tangent(model, &work.loads);
         known_into(model, &work.stage, state, &mut work.forces);

@@ -12,7 +12,7 @@ use carom_contact::Linearised;
 use crate::case::Persistency;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;
-use crate::newton::Workspace;
+use crate::newton::{Workspace, add_gradient};
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::state::State;
@@ -33,7 +33,8 @@ pub(crate) fn project<const D: usize>(
     linearise_all(model, state, work)?;
     let mut places = independent_rows(model, &state.pairs, work);
     places.retain(|&(k, _)| asks(k));
-    let rows: Vec<Row<D>> = places.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: 1.0 }).collect();
+    let rows: Vec<Row<D>> =
+        places.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: 1.0, compliance: 0.0 }).collect();
     let inertia = work.system.factor_mass(model, &rows)?;
     if inertia.negative < rows.len() {
         let size = model.free.len() + rows.len();
@@ -53,7 +54,7 @@ pub(crate) fn project<const D: usize>(
         }
     }
 
-    let (forces, bending) = drive(model, state, &rows);
+    let (forces, bending) = drive(model, state, &work.gaps, &places);
     work.system.solve(model, &forces, &bending, &mut change, &mut multipliers)?;
     take_accelerations(model, state, &change);
     for (&(k, p), lambda) in places.iter().zip(&multipliers) {
@@ -69,18 +70,29 @@ pub(crate) fn project<const D: usize>(
     Ok(jump)
 }
 
-/// Right-hand sides of M a + Gᵀλ = f_ext − f_int, G a = −v·∇²g·v, less what the accelerations of moving supports, in `state`, contribute.
-pub(crate) fn drive<const D: usize>(model: &Model<D>, state: &State, rows: &[Row<D>]) -> (Vec<f64>, Vec<f64>) {
+/// Right-hand sides of M a + Gᵀλ = f_ext − f_int, G a = −v·∇²g·v for the rows in `places`, less what the accelerations of moving supports, in `state`,
+/// and the forces of all other active pairs, springs among them, contribute.
+pub(crate) fn drive<const D: usize>(
+    model: &Model<D>,
+    state: &State,
+    gaps: &[Vec<Linearised<D>>],
+    places: &[(usize, usize)],
+) -> (Vec<f64>, Vec<f64>) {
     let dofs = model.dofs();
     let (mut moved, mut carried) = (vec![0.0; dofs], vec![0.0; dofs]);
     if !model.motions.is_empty() {
         model.motions.dofs().for_each(|dof| moved[dof] = state.a[dof]);
         model.mass.multiply_into(&moved, &mut carried);
     }
+    for (k, pairs) in state.pairs.iter().enumerate() {
+        for (p, pair) in pairs.iter().enumerate().filter(|(p, pair)| pair.active && !places.contains(&(k, *p))) {
+            add_gradient(&gaps[k][p], pair.lambda, &mut carried);
+        }
+    }
     let force = |i: usize| model.gravity[i] + state.f_external[i] - state.f_internal[i] - carried[i];
     let forces = (0..dofs).map(|i| if model.massless[i] { 0.0 } else { force(i) }).collect();
-    let bending = rows.iter().map(|row| -curvature(row.gap, &state.v) - rate(row.gap, &moved)).collect();
-    (forces, bending)
+    let bending = |gap: &Linearised<D>| -curvature(gap, &state.v) - rate(gap, &moved);
+    (forces, places.iter().map(|&(k, p)| bending(&gaps[k][p])).collect())
 }
 
 /// Accelerations of free dofs that have mass; moving supports keep theirs.

@@ -58,6 +58,14 @@ pub enum Rejected {
         /// Penetration.
         depth: f64,
     },
+    /// The mass matrix does not make every motion cost energy.
+    #[error(
+        "the mass matrix is negative in {directions} directions: redistributed mass needs more nodes behind the contact"
+    )]
+    NegativeMass {
+        /// Negative eigenvalues.
+        directions: usize,
+    },
     /// A load or a motion has no value.
     #[error(transparent)]
     NoValue(#[from] NoValue),
@@ -74,6 +82,24 @@ pub enum Rejected {
         /// Distance along the moved direction.
         distance: f64,
     },
+    /// The contact forces of an explicit step do not settle.
+    #[error(
+        "the contact forces of an explicit step did not settle in {rounds} rounds: a gap is still off by {gap:.3e}"
+    )]
+    Unsettled {
+        /// Linearisations made.
+        rounds: u32,
+        /// Largest error of a gap.
+        gap: f64,
+    },
+    /// Deeper than the scheme's law allows in one step.
+    #[error("a node penetrates by {depth:.3e}, more than the {bound:.3e} that the contact law explains in this step")]
+    Deep {
+        /// Deepest node.
+        depth: f64,
+        /// What the law allows.
+        bound: f64,
+    },
     /// A number is not finite.
     #[error("{what} is not finite")]
     NotFinite {
@@ -88,13 +114,15 @@ impl Rejected {
         match self {
             Self::Inverted { .. } => "inverted-cell",
             Self::Contact { .. } => "contact-geometry",
-            Self::NoConvergence { .. } => "no-convergence",
+            Self::NoConvergence { .. } | Self::Unsettled { .. } => "no-convergence",
             Self::Cycle { .. } => "active-set-cycle",
             Self::Linear(_) => "linear-solver",
             Self::Stuck { .. } => "stuck-contact",
+            Self::NegativeMass { .. } => "negative-mass",
             Self::NoValue(_) => "no-value",
             Self::Unheld(_) => "unheld-body",
             Self::Jump { .. } => "jump",
+            Self::Deep { .. } => "penetration",
             Self::NotFinite { .. } => "not-finite",
         }
     }

@@ -7,9 +7,11 @@ use crate::initial::before;
 use crate::model::{Dimension, Model, Space, build, overlaps};
 use crate::newton::{Timings, Workspace};
 use crate::rejected::Rejected;
+use crate::scheme::stepper;
+use crate::stability;
 use crate::start::start;
 use crate::state::State;
-use crate::stepper::{Implicit, Stepper};
+use crate::stepper::Stepper;
 
 /// Halvings of Δt before the run stops.
 const MOST_HALVINGS: u32 = 12;
@@ -127,15 +129,12 @@ where
     pub fn new(case: &Case, threads: usize) -> Result<Self, Vec<Problem>> {
         let mut simulation = Self::resume(case, threads, State::default())?;
         let model = &simulation.model;
-        let before = if let Some(initial) = &case.initial {
-            Some(before(initial, case, model)?)
-        } else {
-            let problems = overlaps(model);
-            if !problems.is_empty() {
-                return Err(problems);
-            }
-            None
-        };
+        let overlaps = if case.initial.is_none() { overlaps(model) } else { Vec::new() };
+        let problems = [overlaps, stability::too_long(case, model)].concat();
+        if !problems.is_empty() {
+            return Err(problems);
+        }
+        let before = case.initial.as_ref().map(|initial| before(initial, case, model)).transpose()?;
         let inertia = !case.time.scheme.is_static();
         simulation.state = start(model, inertia, before, &mut simulation.work).map_err(|rejected| {
             let (path, what, help) = match rejected {
@@ -157,7 +156,7 @@ where
     pub fn resume(case: &Case, threads: usize, state: State) -> Result<Self, Vec<Problem>> {
         let model = build::<D>(case)?;
         let work = Workspace::new(&model, threads);
-        let stepper = Box::new(Implicit::new(case.time.scheme.kernel()?, case.newton.clone()));
+        let stepper = stepper(case, &model)?;
         let steps = (case.time.end / case.time.step).round() as u64;
         // Load steps create nothing: what their works miss of the energies is the error of a sum over few steps.
         let guard = case.time.energy_guard.filter(|_| !case.time.scheme.is_static());

@@ -13,6 +13,7 @@ use crate::initial::Before;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;
 use crate::newton::Workspace;
+use crate::penalty::{self, Configuration};
 use crate::persistency::{drive, linearise_all, take_accelerations};
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
@@ -66,6 +67,8 @@ pub(crate) fn start<const D: usize>(
         }
     }
     linearise_all(model, &mut state, work)?;
+    state.ledger.springs = press(model, &mut state, work)?;
+    state.ledger.strain += state.ledger.springs;
     if inertia {
         accelerate(model, &mut state, work)?;
     }
@@ -78,15 +81,36 @@ pub(crate) fn start<const D: usize>(
     Ok(state)
 }
 
+/// Springs of penalties take the forces of their gaps; their energy is returned.
+fn press<const D: usize>(model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<f64, Rejected> {
+    let mut energy = 0.0;
+    for (k, contact) in model.contacts.iter().enumerate() {
+        let Some(stiffness) = &contact.penalty else { continue };
+        let at = Configuration { start: &state.y, middle: None, end: &state.y, moved: &[] };
+        for (pair, gap) in state.pairs[k].iter_mut().zip(&mut work.gaps[k]) {
+            // The gap an energy-conserving spring has counted is of the other run.
+            pair.start = None;
+            energy += penalty::spring(&*contact.method, stiffness[pair.node], pair, &at, gap)
+                .map_err(|error| Rejected::Contact { contact: contact.name.clone(), error })?
+                .energy;
+        }
+    }
+    Ok(energy)
+}
+
 /// Accelerations, and multipliers of what is closed.
 fn accelerate<const D: usize>(model: &Model<D>, state: &mut State, work: &mut Workspace<D>) -> Result<(), Rejected> {
     let has_mass = |gap: &Linearised<D>| gap.nodes[..gap.count].iter().any(|n| !model.massless[n * D]);
     let mut places = independent_rows(model, &state.pairs, work);
-    // A row without mass has no acceleration to ask for: its contact keeps the force it had.
-    places.retain(|&(k, p)| has_mass(&work.gaps[k][p]));
-    let rows: Vec<Row<D>> = places.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: 1.0 }).collect();
-    work.system.factor_mass(model, &rows)?;
-    let (forces, bending) = drive(model, state, &rows);
+    // A spring has the force of its gap. A row without mass has no acceleration to ask for: its contact keeps the force it had.
+    places.retain(|&(k, p)| model.contacts[k].penalty.is_none() && has_mass(&work.gaps[k][p]));
+    let rows: Vec<Row<D>> =
+        places.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: 1.0, compliance: 0.0 }).collect();
+    let inertia = work.system.factor_mass(model, &rows)?;
+    if inertia.negative > rows.len() {
+        return Err(Rejected::NegativeMass { directions: inertia.negative - rows.len() });
+    }
+    let (forces, bending) = drive(model, state, &work.gaps, &places);
     let (mut solved, mut multipliers) = (vec![0.0; model.dofs()], Vec::new());
     work.system.solve(model, &forces, &bending, &mut solved, &mut multipliers)?;
     take_accelerations(model, state, &solved);

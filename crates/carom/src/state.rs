@@ -10,8 +10,10 @@ use crate::kept::Kept;
 pub struct Ledger {
     /// ½ vᵀM v.
     pub kinetic: f64,
-    /// U.
+    /// U, of the bodies and of the springs of penalties.
     pub strain: f64,
+    /// The springs' part of it.
+    pub springs: f64,
     /// Potential of constant conservative loads.
     pub potential: f64,
     /// Total energy at the start.
@@ -43,6 +45,61 @@ impl Ledger {
     }
 }
 
+/// What a two-step scheme takes from the step before.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Previous {
+    /// Size of that step: one of another size does not go on from it.
+    pub dt: f64,
+    /// Increment of positions over it.
+    pub increment: Vec<f64>,
+    /// Velocities at its start.
+    pub velocity: Vec<f64>,
+    /// Means over it.
+    pub means: Means,
+}
+
+/// Means over a step, as its own velocity update weighs start and stages; flat over all dofs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Means {
+    /// Contact forces.
+    pub contact: Vec<f64>,
+    /// Loads, gravity apart.
+    pub loads: Vec<f64>,
+    /// Forces of moved supports; zero at other dofs.
+    pub supports: Vec<f64>,
+    /// Accelerations of moved supports; zero at other dofs.
+    pub accelerations: Vec<f64>,
+    /// Impulse of the contact forces on the secondary sides.
+    pub impulse: [f64; 2],
+}
+
+impl Means {
+    /// Nothing yet.
+    pub fn new(dofs: usize) -> Self {
+        let mut means = Self::default();
+        means.clear(dofs);
+        means
+    }
+
+    /// Back to nothing.
+    pub(crate) fn clear(&mut self, dofs: usize) {
+        for mean in [&mut self.contact, &mut self.loads, &mut self.supports, &mut self.accelerations] {
+            mean.clear();
+            mean.resize(dofs, 0.0);
+        }
+        self.impulse = [0.0; 2];
+    }
+}
+
+/// What an explicit scheme knows beyond the state's time: the step it has looked ahead with.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ahead {
+    /// v_{n+½}, of which y_{n+1} = y_n + Δt v_{n+½} is admissible.
+    pub velocity: Vec<f64>,
+    /// Its Δt; 0 where nothing is known yet. Another step begins anew from v_n.
+    pub dt: f64,
+}
+
 /// The state at the end of a step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
@@ -68,6 +125,10 @@ pub struct State {
     pub pairs: Vec<Vec<Pair>>,
     /// Energies and works.
     pub ledger: Ledger,
+    /// The step before, for a two-step scheme; none at the start and where contact has just begun.
+    pub previous: Option<Previous>,
+    /// Of an explicit scheme.
+    pub ahead: Ahead,
     /// What the kept factor was made of.
     pub kept: Kept,
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! [ K  Gᵀ ] [Δy]   [−r]        K = w.mass a' M + w.internal K_int − w.external K_ext + Σ w.contact λ ∇²g,   rows of G: w.contact ∇g
-//! [ G  0  ] [Δλ] = [−g]
+//! [ G −C  ] [Δλ] = [−g]       C = 0, or w.contact/(∂λ/∂g) of a spring
 //! ```
 //!
 //! Of the tangent of follower pressures, K_ext, the symmetric part is taken: all of it where the side is closed or its ends are held and the
@@ -39,6 +39,8 @@ pub(crate) struct Row<'a, const D: usize> {
     pub gap: &'a Linearised<D>,
     /// Weight of the contact force in the balance.
     pub weight: f64,
+    /// What a unit of multiplier gives of gap: 0 for a constraint, 1/(∂λ/∂g) for a spring.
+    pub compliance: f64,
 }
 
 /// The system and its solver.
@@ -149,11 +151,13 @@ impl<const D: usize> System<D> {
         });
     }
 
-    /// Internal forces over all dofs and the tangent ∂f_int/∂y of the free ones; the strain energy is returned. With `pull`, its second vector becomes
-    /// ∂f_int/∂y times its first, over all dofs.
+    /// Internal forces over all dofs and the tangent ∂f_int/∂y of the free ones; the strain energy is returned. With `before`, the forces are the discrete
+    /// gradient from there to `y`, and of their tangent the symmetric part is taken. With `pull`, its second vector becomes ∂f_int/∂y times its first,
+    /// over all dofs.
     pub(crate) fn internal_tangent(
         &mut self,
         model: &Model<D>,
+        before: Option<&[f64]>,
         y: &[f64],
         force: &mut [f64],
         mut pull: Option<(&[f64], &mut [f64])>,
@@ -168,6 +172,7 @@ impl<const D: usize> System<D> {
         for part in &model.parts {
             let mesh = part.body.mesh();
             let positions = &y.as_chunks::<D>().0[part.nodes()];
+            let before = before.map(|y| &y.as_chunks::<D>().0[part.nodes()]);
             let stiffness = &mut self.stiffness;
             let add = |cell: usize, f: &[f64], k: &[f64]| {
                 for (node, f) in mesh.cell(cell).iter().zip(f.as_chunks::<D>().0) {
@@ -188,8 +193,10 @@ impl<const D: usize> System<D> {
                     }
                 }
             };
-            strain +=
-                self.cells.for_each(&*part.body, positions, add).map_err(|inverted| (part.name.clone(), inverted))?;
+            strain += self
+                .cells
+                .for_each(&*part.body, before, positions, add)
+                .map_err(|inverted| (part.name.clone(), inverted))?;
         }
         Ok(strain)
     }
@@ -201,6 +208,11 @@ impl<const D: usize> System<D> {
             .map(move |&s| mass_factor * self.mass[s] + stiffness_factor * self.stiffness[s])
     }
 
+    /// out += K x over the free dofs, with the last tangent.
+    pub(crate) fn stiffness_product(&self, x: &[f64], out: &mut [f64]) {
+        self.base.multiply_add(&self.stiffness, x, out);
+    }
+
     /// Makes the factor of a point, unless it is there already.
     ///
     /// # Errors
@@ -209,7 +221,7 @@ impl<const D: usize> System<D> {
         if self.held.point.as_ref() == Some(point) {
             return Ok(());
         }
-        self.internal_tangent(model, &point.at, force, None).map_err(HoldError::Inverted)?;
+        self.internal_tangent(model, None, &point.at, force, None).map_err(HoldError::Inverted)?;
         self.factorisations += 1;
         let parts = (self.mass.as_slice(), self.stiffness.as_slice());
         self.held.factor(model, &self.base, point, parts).map_err(|_| HoldError::Indefinite)
@@ -251,6 +263,9 @@ impl<const D: usize> System<D> {
         let n = self.base.size();
         for (r, row) in rows.iter().enumerate() {
             let gap = row.gap;
+            if let Some(slot) = self.merged.slot(n + r, n + r) {
+                values[slot] -= row.weight * row.compliance;
+            }
             for p in 0..gap.count {
                 for i in 0..D {
                     let a = model.unknown[gap.nodes[p] * D + i];

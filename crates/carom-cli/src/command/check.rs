@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use carom::case::{Case, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec};
+use carom::stability::SAFETY;
 
 use crate::exit::{Exit, Failure};
 use crate::out;
@@ -80,6 +81,9 @@ fn table(case: &Case, facts: &Facts) -> String {
     lines.push(format!("  time     {steps} steps of {} to {}", short(case.time.step), short(case.time.end)));
     let transit = short(facts.transit_steps);
     lines.push(format!("           a pressure wave crosses the smallest body in {transit} steps"));
+    if let Some(stable) = facts.stable_step {
+        lines.push(format!("           the longest stable step is {}, of which {} is accepted", short(stable), SAFETY));
+    }
     lines.extend(case.warnings().iter().map(|warning| format!("  warning  {warning}")));
     lines.join("\n")
 }
@@ -102,7 +106,13 @@ fn counted(body: &BodyFacts) -> String {
 
 /// What the scheme's parameters imply.
 fn derived(spec: &SchemeSpec) -> Option<String> {
+    if let Some(scheme) = spec.nonsmooth() {
+        return Some(scheme.rho_inf().map_or_else(
+            || format!("order {}, explicit", scheme.order()),
+            |rho| format!("order {}, ρ∞ = {}, impulses", scheme.order(), short(rho)),
+        ));
+    }
     let scheme = carom_time::scheme(&spec.kind, &spec.parameters, spec.forces).ok()?;
-    let told = carom_time::explain(&scheme);
+    let told = scheme.explain();
     Some(format!("order {}, ρ∞ = {}", told.order, short(told.rho_inf)))
 }

@@ -15,7 +15,8 @@ Examples:
   carom explain
   carom explain chung-hulbert rho_inf=0.1
   carom explain newmark beta=0.25 gamma=0.5
-  carom explain hht alpha=0.05 forces=average-state")]
+  carom explain hht alpha=0.05 forces=average-state
+  carom explain moreau-jean theta=0.5")]
 pub(crate) struct Arguments {
     /// Kind, as in a case file; without one: all of them side by side
     scheme: Option<String>,
@@ -40,9 +41,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             help: "carom explain lists the time integrators".into(),
         });
     }
+    if let Some(scheme) = spec.nonsmooth() {
+        return tell(&carom_time::explain_nonsmooth(&scheme), arguments.json);
+    }
     let scheme = carom_time::scheme(&spec.kind, &spec.parameters, spec.forces)
         .map_err(|e| Failure::Argument { what: e.to_string(), help: String::new() })?;
-    tell(&carom_time::explain(&scheme), arguments.json)
+    tell(&scheme.explain(), arguments.json)
 }
 
 fn tell<T: Display + Serialize>(told: &T, json: bool) -> Result<Exit, Failure> {

@@ -23,6 +23,7 @@ pub struct Point<const D: usize>(Mat<D>);
 
 impl<const D: usize> Material<D> for LinearElastic {
     const ENERGY_DEGREE: usize = 2;
+    const OBJECTIVE: bool = false;
     type Point = Point<D>;
 
     #[inline]

@@ -30,6 +30,9 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     /// Degree of Ψ as a polynomial in F that is to be integrated exactly; 0 if it is none.
     const ENERGY_DEGREE: usize;
 
+    /// Whether Ψ depends on FᵀF alone; else it is quadratic in H.
+    const OBJECTIVE: bool = true;
+
     /// Kinematics at a point.
     type Point;
 

@@ -28,6 +28,7 @@ const E3: Vector<3> = Vector([0.0, 0.0, 1.0]);
 
 impl<L: Thickness> Material<2> for PlaneStress<L> {
     const ENERGY_DEGREE: usize = <L as Material<3>>::ENERGY_DEGREE;
+    const OBJECTIVE: bool = <L as Material<3>>::OBJECTIVE;
     type Point = <L as Material<3>>::Point;
 
     #[inline]

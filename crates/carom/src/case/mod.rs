@@ -188,6 +188,17 @@ pub enum MassKind {
     Consistent,
     /// Diagonal scaling (HRZ).
     Lumped,
+    /// None on the nodes of contacts; total, centre and second moments kept by the least change of the others.
+    Redistributed,
+    /// None on the nodes of contacts; what they lose goes to the next nodes, and the centre is not kept.
+    RedistributedNearest,
+}
+
+impl MassKind {
+    /// Whether nodes of contacts carry no mass.
+    pub fn is_redistributed(self) -> bool {
+        matches!(self, Self::Redistributed | Self::RedistributedNearest)
+    }
 }
 
 /// Source of a mesh: a built-in shape, or a file.
@@ -303,6 +314,10 @@ pub struct ContactSpec {
     pub secondary: String,
     /// What they are kept out of.
     pub primary: PrimarySpec,
+    /// How the constraint is kept.
+    pub enforcement: Enforcement,
+    /// Stiffness of a penalty, in units of the secondary node's own.
+    pub stiffness: f64,
     /// When during a step the contact force acts.
     pub force: ForceTime,
     /// What happens to velocities where contact begins.
@@ -311,6 +326,10 @@ pub struct ContactSpec {
     pub active_set: ActiveSetRule,
     /// Which gap decides activation.
     pub detection: Detection,
+    /// What contact holds: that of the scheme once resolved.
+    pub law: Option<ContactLaw>,
+    /// Newton's e, 0 … 1.
+    pub restitution: f64,
 }
 
 /// Primary side of a contact.
@@ -326,6 +345,28 @@ pub enum PrimarySpec {
         /// Direction out of the half-space, of any length > 0.
         normal: Vec<f64>,
     },
+}
+
+/// How a contact's constraint is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Enforcement {
+    /// Exactly, by a Lagrange multiplier.
+    Multiplier,
+    /// By springs of potential k/2 min(g, 0)².
+    Penalty,
+}
+
+/// What a contact constrains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ContactLaw {
+    /// Positions at the end of the step.
+    Position,
+    /// The predictor y + Δt v, and positions at the end of the step.
+    Predictor,
+    /// Velocities, by impulses: 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0 where the gap is predicted closed.
+    Velocity,
 }
 
 /// When during a step the contact force acts.

@@ -19,8 +19,8 @@ use super::suggest;
 use super::tree::{Entry, Node, Table};
 use super::view::{View, word};
 use super::{
-    Case, ContactSpec, ExpectSpec, InitialSpec, LoadSpec, MaterialSpec, NewtonSpec, OutputSpec, Preset, PrimarySpec,
-    ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
+    Case, ContactSpec, ExpectSpec, InitialSpec, LoadSpec, MaterialSpec, NewtonSpec, OutputSpec, Persistency, Preset,
+    PrimarySpec, ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
 };
 
 /// Tables read so far: `None` where one of them could not be.
@@ -119,6 +119,15 @@ impl<'a> Reader<'a> {
         for body in &mut bodies {
             body.gravity.resize(dimension, 0.0);
         }
+        let mut contacts: Vec<ContactSpec> = all(draft.contacts)?;
+        let time = draft.time?;
+        for contact in &mut contacts {
+            contact.law.get_or_insert(time.scheme.contact_law());
+            if time.scheme.nonsmooth().is_some() {
+                // Nothing is left to project: the law of the scheme itself makes velocities agree.
+                contact.persistency = Persistency::None;
+            }
+        }
         Some(Case {
             title: self.root.text("title").or(stem).unwrap_or_default(),
             dimension,
@@ -131,8 +140,8 @@ impl<'a> Reader<'a> {
             supports: all(draft.supports)?,
             loads: all(draft.loads)?,
             initial: self.root.has("initial").then(|| initial(self.one("initial")?, folder)).flatten(),
-            contacts: all(draft.contacts)?,
-            time: draft.time?,
+            contacts,
+            time,
             newton: newton(self.one("newton")?)?,
             probes: all(draft.probes)?,
             output: output(self.one("output")?)?,
@@ -234,10 +243,14 @@ fn contact(v: View) -> Option<ContactSpec> {
         name: v.text("name")?,
         secondary: v.text("secondary")?,
         primary,
+        enforcement: v.choice("enforcement")?,
+        stiffness: v.number("stiffness")?,
         force: v.choice("force")?,
         persistency: v.choice("persistency")?,
         active_set: v.choice("active_set")?,
         detection: v.choice("detection")?,
+        law: v.choice("law"),
+        restitution: v.number("restitution")?,
     })
 }
 
@@ -265,9 +278,10 @@ fn scheme(table: &Table, preset: Preset, path: &str, problems: &mut Vec<Problem>
         return Some(SchemeSpec { kind: kind.to_owned(), parameters: std::collections::BTreeMap::new(), forces });
     }
     let parameters = numbers.filter_map(|k| Some((k.name.to_owned(), v.number(k.name)?))).collect();
-    let forces = v.choice("forces")?;
+    let forces =
+        if v.keys.iter().any(|k| k.name == "forces") { v.choice("forces")? } else { carom_time::ForceRule::default() };
     let spec = SchemeSpec { kind: kind.to_owned(), parameters, forces };
-    if let Err(error) = carom_time::scheme(kind, &spec.parameters, forces)
+    if let Err(error) = spec.checked()
         && !problems.iter().any(|p| p.path.starts_with(path))
     {
         let help = match &error {

@@ -6,8 +6,10 @@ use carom_solid::Law;
 use super::dimension::{Dimension, Space};
 use super::formulas::value;
 use super::held::unheld;
-use super::{Contact, Loads, Mass, Model, Motions, Part, Probe, Support, exists_in};
-use crate::case::{self, ActiveSetRule, Case, Persistency, PrimarySpec, Problem};
+use super::{Contact, Loads, Mass, Model, Motions, Part, Probe, Support, exists_in, redistribution};
+use crate::case::{
+    self, ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, MassKind, Persistency, PrimarySpec, Problem,
+};
 
 /// A side in global node numbers.
 pub(super) struct Side {
@@ -65,7 +67,8 @@ where
     let loads = Loads::build(case, &parts, &mut problems);
 
     let kinds: Vec<_> = case.bodies.iter().map(|b| b.mass).collect();
-    let mass = Mass::assemble(&parts, &kinds);
+    let mut mass = Mass::assemble(&parts, &kinds);
+    problems.extend(redistributions(case, &parts, &reference, &mut mass));
     let massless: Vec<bool> = (0..dofs).map(|dof| mass.is_massless(dof / D)).collect();
     let gravity = gravity(case, &parts, &mass, dofs);
     let contacts = contacts(case, &parts, &massless, &mut problems);
@@ -73,7 +76,7 @@ where
     let is_static = case.time.scheme.is_static();
     let unheld = if is_static { unheld(&parts, &fixed, &contacts, &mut problems) } else { Vec::new() };
 
-    problems.extend(massless_refusals(case, &parts));
+    problems.extend(massless_refusals(case, &parts, &massless));
 
     let free: Vec<usize> = (0..dofs).filter(|&i| !fixed[i]).collect();
     let mut unknown = vec![usize::MAX; dofs];
@@ -237,6 +240,7 @@ fn contacts<const D: usize>(
 where
     Space: Dimension<D>,
 {
+    let averages = case.time.scheme.is_alpha();
     let mut contacts = Vec::new();
     for (k, spec) in case.contacts.iter().enumerate() {
         let secondary = match side(parts, &spec.secondary, &format!("contact[{k}].secondary")) {
@@ -274,18 +278,30 @@ where
                 }
             },
         };
+        let light = |part: usize| case.bodies[part].mass.is_redistributed();
+        let projects = spec.law == Some(ContactLaw::Position)
+            && spec.enforcement == Enforcement::Multiplier
+            && !case.time.scheme.is_static()
+            && !light(secondary.part)
+            && !primary_part.is_some_and(light);
         surface.sort_unstable();
         surface.dedup();
         let contact = Contact {
             name: spec.name.clone(),
+            penalty: (spec.enforcement == Enforcement::Penalty)
+                .then(|| method.secondary().iter().map(|&node| spec.stiffness * node_stiffness(parts, node)).collect()),
+            predictor: spec.law == Some(ContactLaw::Predictor),
             method,
             primary_part,
             secondary_facets: secondary.facets,
             surface,
-            // Without inertia nothing is averaged.
-            force: if case.time.scheme.is_static() { case::ForceTime::AlphaF } else { spec.force },
-            persistency: spec.persistency,
+            // Other schemes take the contact force at the ends of their stages: there is nothing to average.
+            force: if averages { spec.force } else { ForceTime::AlphaF },
+            // A predictor that respects the contact, a spring, load steps, and nodes without mass that follow the other side leave nothing to project:
+            // projected, a massive side would be given the velocity of the light one.
+            persistency: if projects { spec.persistency } else { Persistency::None },
             within: spec.active_set == ActiveSetRule::Within,
+            restitution: spec.restitution,
         };
         let has_mass = |nodes: &[usize]| nodes.iter().any(|n| !massless[n * D]);
         let primary_has_mass = matches!(&spec.primary, PrimarySpec::Side(name)
@@ -303,21 +319,78 @@ where
     contacts
 }
 
-/// A body without mass balances at s + 1 alone; rules that act inside the step have no meaning for it.
-fn massless_refusals<const D: usize>(case: &Case, parts: &[Part<D>]) -> Vec<Problem> {
+/// Mean over the directions of a node's diagonal of the tangent in the reference position.
+fn node_stiffness<const D: usize>(parts: &[Part<D>], node: usize) -> f64 {
+    let Some(part) = parts.iter().find(|part| part.nodes().contains(&node)) else { return 0.0 };
+    let mesh = part.body.mesh();
+    let n = mesh.element.nodes() * D;
+    let (mut force, mut tangent, mut sum) = (vec![0.0; n], vec![0.0; n * n], 0.0);
+    for cell in 0..mesh.cell_count() {
+        let Some(place) = mesh.cell(cell).iter().position(|&m| m + part.first_node == node) else { continue };
+        // The reference position is never inverted.
+        if part.body.cell_tangent(cell, &mesh.nodes, &mut force, &mut tangent).is_ok() {
+            sum += (place * D..(place + 1) * D).map(|i| tangent[i * n + i]).sum::<f64>() / D as f64;
+        }
+    }
+    sum
+}
+
+/// Takes the mass off the nodes of contacts, in the bodies that ask for it.
+fn redistributions<const D: usize>(case: &Case, parts: &[Part<D>], reference: &[f64], mass: &mut Mass) -> Vec<Problem> {
+    let mut light = vec![false; reference.len() / D];
+    for contact in &case.contacts {
+        let primary = if let PrimarySpec::Side(name) = &contact.primary { Some(name) } else { None };
+        for name in std::iter::once(&contact.secondary).chain(primary) {
+            // Names that are wrong are reported where contacts are made.
+            side(parts, name, "").into_iter().flat_map(|side| side.nodes).for_each(|node| light[node] = true);
+        }
+    }
     let mut problems = Vec::new();
-    let Some(part) = parts.iter().find(|p| p.massless) else { return problems };
-    let what = |rule: &str| format!("body \"{}\" has no mass, and {rule} needs it", part.name);
+    for (k, (part, spec)) in parts.iter().zip(&case.bodies).enumerate().filter(|(_, (_, b))| b.mass.is_redistributed())
+    {
+        let nearest = spec.mass == MassKind::RedistributedNearest;
+        let what = format!("the mass of body \"{}\" cannot be redistributed", part.name);
+        let path = format!("body[{k}].mass");
+        if !part.nodes().any(|node| light[node]) {
+            let why = "none of its sides belongs to a contact";
+            problems.push(Problem::new(path, what, why, "mass = \"consistent\""));
+        } else if let Err(why) =
+            redistribution::redistribute(mass, part.nodes(), &light, reference.as_chunks::<D>().0, nearest)
+        {
+            problems.push(Problem::new(path, what, why, "a finer mesh, or mass = \"consistent\""));
+        }
+    }
+    problems
+}
+
+/// A body without mass balances at s + 1 alone; rules that act inside the step have no meaning for it.
+fn massless_refusals<const D: usize>(case: &Case, parts: &[Part<D>], massless: &[bool]) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    let light = |part: &Part<D>| part.nodes().any(|node| massless[node * D]);
+    let Some(part) = parts.iter().find(|p| light(p)) else { return problems };
+    let what = |rule: &str| {
+        let which = if part.massless { "has no mass" } else { "has nodes without mass" };
+        format!("body \"{}\" {which}, and {rule} needs it", part.name)
+    };
+    let why = "its balance holds at the end of the step, not at the averaged state";
     if case.time.scheme.forces == carom_time::ForceRule::AverageState {
-        let why = "its balance holds at the end of the step, not at the averaged state";
         let help = "forces = \"average-forces\", or a small density";
         problems.push(Problem::new("time.scheme.forces", what("forces = \"average-state\""), why, help));
     }
+    if case.time.scheme.kind == "energy-momentum" {
+        let help = "a scheme that is not midpoint, such as bathe, or a small density";
+        problems.push(Problem::new("time.scheme.kind", what("kind = \"energy-momentum\""), why, help));
+    }
     let touches =
-        |name: &str| name.split_once('.').is_some_and(|(body, _)| parts.iter().any(|p| p.massless && p.name == body));
+        |name: &str| name.split_once('.').is_some_and(|(body, _)| parts.iter().any(|p| light(p) && p.name == body));
     for (k, contact) in case.contacts.iter().enumerate() {
+        if contact.law == Some(ContactLaw::Predictor) {
+            let why = "the predictor is projected with the mass as weight";
+            let help = "law = \"position\", which needs no cure where contact nodes have no mass";
+            problems.push(Problem::new(format!("contact[{k}].law"), what("law = \"predictor\""), why, help));
+        }
         let primary = matches!(&contact.primary, PrimarySpec::Side(name) if touches(name));
-        if contact.force == crate::case::ForceTime::End && (primary || touches(&contact.secondary)) {
+        if contact.force == ForceTime::End && (primary || touches(&contact.secondary)) {
             let why = "the share of the contact force on a massless side is that of its internal forces";
             let help = "force = \"alpha_f\", or a small density";
             problems.push(Problem::new(format!("contact[{k}].force"), what("force = \"end\""), why, help));

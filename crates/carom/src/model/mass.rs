@@ -25,7 +25,10 @@ impl Mass {
             let (mut local, mut diagonal) = (vec![0.0; n * n], vec![0.0; n]);
             for cell in 0..mesh.cell_count() {
                 match kind {
-                    MassKind::Consistent => part.body.cell_mass(cell, &mut local),
+                    // Of redistributed masses the nodes of contacts are made light afterwards.
+                    MassKind::Consistent | MassKind::Redistributed | MassKind::RedistributedNearest => {
+                        part.body.cell_mass(cell, &mut local);
+                    }
                     MassKind::Lumped => {
                         cell_lumped_mass(&*part.body, cell, &mut local, &mut diagonal);
                         local.fill(0.0);
@@ -68,6 +71,12 @@ impl Mass {
     pub fn row(&self, node: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let range = self.starts[node]..self.starts[node + 1];
         self.columns[range.clone()].iter().map(|&column| column as usize).zip(self.values[range].iter().copied())
+    }
+
+    /// The same for change.
+    pub(super) fn row_mut(&mut self, node: usize) -> impl Iterator<Item = (usize, &mut f64)> + '_ {
+        let range = self.starts[node]..self.starts[node + 1];
+        self.columns[range.clone()].iter().map(|&column| column as usize).zip(&mut self.values[range])
     }
 
     /// Number of nodes.

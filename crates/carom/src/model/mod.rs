@@ -8,6 +8,7 @@ mod loads;
 mod mass;
 mod motion;
 mod probe;
+mod redistribution;
 
 use carom_contact::ContactMethod;
 use carom_solid::{Body, Inverted};
@@ -54,6 +55,10 @@ pub struct Contact<const D: usize> {
     pub primary_part: Option<usize>,
     /// Facets of the secondary side in global nodes: for consistent weights.
     pub secondary_facets: Vec<Vec<usize>>,
+    /// Stiffness of a penalty for each secondary node; none where the constraint is kept by multipliers.
+    pub penalty: Option<Vec<f64>>,
+    /// Whether the predictor y + Δt v is kept out of the primary too.
+    pub predictor: bool,
     /// Nodes of both sides, ascending.
     pub surface: Vec<usize>,
     /// Averaged with α_f or taken at the end.
@@ -62,6 +67,8 @@ pub struct Contact<const D: usize> {
     pub persistency: Persistency,
     /// Whether the active set may change before Newton has converged.
     pub within: bool,
+    /// Newton's e; 0 unless the scheme treats contact itself.
+    pub restitution: f64,
 }
 
 /// A named support: the dofs whose reaction is recorded.
@@ -119,17 +126,35 @@ impl<const D: usize> Model<D> {
     /// # Errors
     /// The body's name and the cell that is inverted.
     pub fn internal_force(&self, y: &[f64], force: &mut [f64]) -> Result<f64, (String, Inverted)> {
+        self.add_cells(force, |part, cell, local| {
+            part.body.cell_force(cell, &y.as_chunks::<D>().0[part.nodes()], local)
+        })
+    }
+
+    /// Discrete gradient of the strain energy between positions, overwriting `force`; U(now) is returned.
+    ///
+    /// # Errors
+    /// The body's name and the cell that is inverted.
+    pub fn internal_between(&self, before: &[f64], now: &[f64], force: &mut [f64]) -> Result<f64, (String, Inverted)> {
+        self.add_cells(force, |part, cell, local| {
+            let [before, now] = [before, now].map(|y| &y.as_chunks::<D>().0[part.nodes()]);
+            part.body.cell_between(cell, before, now, local, None)
+        })
+    }
+
+    fn add_cells(
+        &self,
+        force: &mut [f64],
+        of_cell: impl Fn(&Part<D>, usize, &mut [f64]) -> Result<f64, Inverted>,
+    ) -> Result<f64, (String, Inverted)> {
         force.fill(0.0);
         let mut strain = 0.0;
         for part in &self.parts {
             let (body, first) = (&part.body, part.first_node);
-            let positions = &y.as_chunks::<D>().0[part.nodes()];
             let n = body.mesh().element.nodes();
             let mut local = [0.0; MAX_CELL_DOFS];
             for cell in 0..body.mesh().cell_count() {
-                strain += body
-                    .cell_force(cell, positions, &mut local[..n * D])
-                    .map_err(|inverted| (part.name.clone(), inverted))?;
+                strain += of_cell(part, cell, &mut local[..n * D]).map_err(|inverted| (part.name.clone(), inverted))?;
                 for (k, &node) in body.mesh().cell(cell).iter().enumerate() {
                     for i in 0..D {
                         force[(first + node) * D + i] += local[k * D + i];

@@ -1,9 +1,14 @@
 //! From the state at one time to the state at the next.
 
+mod explicit;
 mod implicit;
+mod impulsive;
+mod watch;
 
+pub use explicit::Explicit;
 pub use implicit::Implicit;
 pub(crate) use implicit::averaged_contact_into;
+pub use impulsive::Impulsive;
 
 use carom_contact::PairEvent;
 
@@ -46,6 +51,11 @@ impl Accepted {
             return Err(Rejected::NotFinite { what: "the energy" });
         }
         Ok(Self { state, report })
+    }
+
+    /// As [`Self::new`], for laws that let nodes penetrate: by no more than `bound`.
+    fn within(state: State, report: StepReport, depth: f64, bound: f64) -> Result<Self, Rejected> {
+        if depth > bound { Err(Rejected::Deep { depth, bound }) } else { Self::new(state, report) }
     }
 
     /// The state at the end of the step and what happened on the way.

@@ -4,6 +4,7 @@ mod contact;
 mod expect;
 mod loads;
 mod memory;
+mod scheme;
 mod time;
 
 use super::columns;
@@ -30,6 +31,7 @@ pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Pr
     check.contacts();
     check.probes();
     check.time();
+    check.scheme();
     check.expects();
     check.memory();
 }

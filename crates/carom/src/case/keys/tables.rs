@@ -131,8 +131,9 @@ const BODY: Table = Table {
         .example("[0.0, -1.0]"),
         key(
             "mass",
-            Choice(&["consistent", "lumped"], &["redistributed"]),
-            "Mass matrix: consistent, or diagonal by scaling (HRZ).",
+            Choice(&["consistent", "lumped", "redistributed", "redistributed-nearest"], &[]),
+            "Mass matrix: consistent, diagonal by scaling (HRZ), or without mass on the nodes of contacts: total, centre and second moments kept by the \
+             least change of the other nodes, or the lost mass given to the next nodes.",
         )
         .default("\"consistent\""),
     ],
@@ -246,8 +247,22 @@ const CONTACT: Table = Table {
         key("primary", SideOr(&RIGID), "Side, or rigid plane, they are kept out of.").example("\"prism.top\""),
         key("method", Choice(&["node-to-segment"], &["mortar"]), "Discretisation of the contact.")
             .default("\"node-to-segment\""),
-        key("enforcement", Choice(&["multiplier"], &["augmented", "penalty"]), "How the constraint is kept.")
-            .default("\"multiplier\""),
+        key(
+            "enforcement",
+            Choice(&["multiplier", "penalty"], &["augmented"]),
+            "How the constraint is kept: exactly, by a multiplier, or by springs whose energy counts as strain energy.",
+        )
+        .default("\"multiplier\""),
+        key("stiffness", Number(POSITIVE), "Of a penalty: times the reference stiffness of the secondary node.")
+            .default("10.0"),
+        key(
+            "law",
+            Choice(&["position", "predictor", "velocity"], &[]),
+            "What contact holds: positions at the end, those and the predictor y + Δt v (contact-stabilised), or velocities by impulses; the one of \
+             the scheme if left out.",
+        )
+        .optional()
+        .example("\"position\""),
         key(
             "force",
             Choice(&["alpha_f", "end"], &[]),
@@ -275,9 +290,17 @@ const CONTACT: Table = Table {
         )
         .default("\"closest-point\"")
         .paper("\"trajectory\""),
+        key(
+            "restitution",
+            Number(RESTITUTION),
+            "Newton's e of a contact that holds velocities; of paoli-schatzman the share of the old position.",
+        )
+        .default("0.0"),
     ],
-    later: &["law", "restitution", "passes", "normals", "overlap", "stiffness", "between", "friction"],
+    later: &["passes", "normals", "overlap", "between", "friction"],
 };
+
+const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };
 
 const RIGID: Table = Table {
     name: "a rigid primary",

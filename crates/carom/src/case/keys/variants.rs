@@ -128,6 +128,7 @@ const ROUND: &[Key] = &[
 ];
 
 const RHO_INF: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };
+const THETA: Range = Range { low: Some((0.5, true)), high: Some((1.0, true)) };
 const BELOW_ONE: Range = Range { low: None, high: Some((1.0, false)) };
 const ALPHA: Range = Range { low: Some((0.0, true)), high: Some((1.0, false)) };
 const FORCES: Key = key(
@@ -136,11 +137,15 @@ const FORCES: Key = key(
     "What is averaged over the step with α_f: the forces (eq. 15), or the state they are evaluated at.",
 )
 .default("\"average-forces\"");
-const SPECTRAL: &[Key] = &[
+const SPECTRAL_RADIUS: Key =
     key("rho_inf", Number(RHO_INF), "Spectral radius at infinite frequency: 0 damps it within steps, 1 not at all.")
-        .example("0.8"),
-    FORCES,
-];
+        .example("0.8");
+const SPECTRAL: &[Key] = &[SPECTRAL_RADIUS, FORCES];
+const RADIUS: &[Key] = &[SPECTRAL_RADIUS];
+
+const fn without_parameters(name: &'static str, doc: &'static str) -> Table {
+    Table { name, doc, keys: &[], later: &[] }
+}
 
 /// Time integrators.
 pub const SCHEMES: Variants = Variants {
@@ -204,26 +209,79 @@ pub const SCHEMES: Variants = Variants {
             },
         ),
         (
-            "static",
+            "backward-euler",
+            without_parameters("scheme \"backward-euler\"", "All forces at the end; first order, ρ∞ = 0."),
+        ),
+        ("bdf2", without_parameters("scheme \"bdf2\"", "Two-step backward differentiation; second order, ρ∞ = 0.")),
+        (
+            "tr-bdf2",
+            without_parameters(
+                "scheme \"tr-bdf2\"",
+                "Trapezoidal rule, then backward differentiation; second order, ρ∞ = 0.",
+            ),
+        ),
+        (
+            "bathe",
+            Table { name: "scheme \"bathe\"", doc: "Composite rule of Noh and Bathe.", keys: RADIUS, later: &[] },
+        ),
+        (
+            "energy-momentum",
+            without_parameters(
+                "scheme \"energy-momentum\"",
+                "Midpoint rule with a discrete gradient; conserves energy and momenta.",
+            ),
+        ),
+        (
+            "central-difference",
+            without_parameters(
+                "scheme \"central-difference\"",
+                "Explicit central differences, lumped mass; contact by forward increments.",
+            ),
+        ),
+        (
+            "paoli-schatzman",
+            without_parameters(
+                "scheme \"paoli-schatzman\"",
+                "Explicit, lumped mass; contact with the restitution of [[contact]].",
+            ),
+        ),
+        (
+            "moreau-jean",
             Table {
-                name: "scheme \"static\"",
-                doc: "Equilibrium at every step, without inertia: t is the load parameter.",
-                keys: &[],
+                name: "scheme \"moreau-jean\"",
+                doc: "The θ-method with impulses: contact holds velocities.",
+                keys: &[key(
+                    "theta",
+                    Number(THETA),
+                    "Share of the new velocity and force: ½ is of order 2, 1 damps most.",
+                )
+                .example("0.5")],
                 later: &[],
             },
         ),
+        (
+            "nonsmooth-generalized-alpha",
+            Table {
+                name: "scheme \"nonsmooth-generalized-alpha\"",
+                doc: "Chung–Hulbert between impacts, impulses at them.",
+                keys: &[key(
+                    "rho_inf",
+                    Number(RHO_INF),
+                    "Spectral radius at infinite frequency: 0 damps it within steps, 1 not at all.",
+                )
+                .example("0.8")],
+                later: &[],
+            },
+        ),
+        (
+            "static",
+            without_parameters(
+                "scheme \"static\"",
+                "Equilibrium at every step, without inertia: t is the load parameter.",
+            ),
+        ),
     ],
     or: None,
-    later: &[
-        "backward-euler",
-        "bdf2",
-        "tr-bdf2",
-        "bathe",
-        "energy-momentum",
-        "central-difference",
-        "moreau-jean",
-        "nonsmooth-generalized-alpha",
-        "paoli-schatzman",
-    ],
+    later: &[],
     later_keys: &[],
 };

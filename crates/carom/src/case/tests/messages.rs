@@ -70,7 +70,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["time.energy_guard=true"], &["a number > 0, or false, not `true`"]),
     // schemes
     (&["time.scheme.kind=chung-hulber"], &["did you mean `chung-hulbert`?"]),
-    (&["time.scheme.kind=bathe"], &["this version does not have `kind = \"bathe\"` yet"]),
+    (&["time.scheme={ kind = \"bathe\", rho_inf = 1.5 }"], &["`rho_inf` must be a number in [0, 1]"]),
     (&["time.scheme={ kind = \"hu\", rho_inf = 0.5 }"], &["unknown key `rho_inf` in scheme \"hu\"", "scheme \"wbz\""]),
     (&["time.scheme={ kind = \"newmark\", beta = 0.25 }"], &["needs `gamma`"]),
     (&["time.scheme={ kind = \"hht\", alpha = -0.1 }"], &["did you mean `alpha = 0.1`?"]),
@@ -143,11 +143,59 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["time.scheme={ kind = \"static\", rho_inf = 1 }"], &["unknown key `rho_inf` in scheme \"static\""]),
     // contact without mass
     (&["material.rubber.density=0"], &["nothing that touches in `strike` has mass", "persistency = \"none\""]),
+    // combinations without meaning
+    (
+        &["contact.strike.law=predictor", "time.scheme.kind=bathe"],
+        &["scheme `bathe` has no predictor to project", "several stages"],
+    ),
+    (
+        &["contact.strike.law=predictor", "contact.strike.enforcement=penalty"],
+        &["a penalty has no predictor to project"],
+    ),
+    (&["contact.strike.law=predictor", "contact.strike.persistency=project"], &["this projection has no meaning"]),
+    (
+        &["contact.strike.stiffness=3.0"],
+        &["this stiffness has no meaning", "only enforcement = \"penalty\" has springs"],
+    ),
+    // schemes with a contact law of their own
+    (&["contact.strike.restitution=0.5"], &["chung-hulbert has no restitution, and e = 0.5 was given", "moreau-jean"]),
+    (&["contact.strike.law=velocity"], &["law = \"velocity\" holds velocities", "the unknowns of chung-hulbert"]),
+    (&["time.scheme={ kind = \"moreau-jean\", theta = 0.4 }"], &["`theta` must be a number in [0.5, 1]"]),
+    (
+        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.law=position"],
+        &["law = \"position\" holds positions", "the unknowns of moreau-jean are velocities and impulses"],
+    ),
+    (
+        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.persistency=project"],
+        &["persistency = \"project\" has no meaning here", "leave it out"],
+    ),
+    (
+        &["time.scheme={ kind = \"central-difference\" }"],
+        &["central-difference needs a lumped mass, and that of body `cylinder` is consistent", "mass = \"lumped\""],
+    ),
+    (
+        &["time.scheme={ kind = \"paoli-schatzman\" }", "material.rubber.density=0", "contact.strike.persistency=none"],
+        &["body `cylinder` has no mass, and paoli-schatzman divides by it"],
+    ),
+    (
+        &[
+            "time.scheme={ kind = \"moreau-jean\", theta = 1.0 }",
+            "support=[{ on = [\"prism.bottom\"], move = { y = \"0.1*t\" } }]",
+        ],
+        &["moreau-jean has no supports that move", "chung-hulbert"],
+    ),
+    (
+        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.enforcement=penalty"],
+        &["enforcement = \"penalty\" has no meaning here"],
+    ),
+    (
+        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "body.prism.mass=redistributed"],
+        &["body `prism` has nodes without mass, and moreau-jean divides by it"],
+    ),
     // later versions
     (&["plane=axisymmetric"], &["this version does not have `plane = \"axisymmetric\"` yet"]),
     (&["contact.strike.method=mortar"], &["does not have `method = \"mortar\"` yet"]),
-    (&["contact.strike.enforcement=penalty"], &["use one of: multiplier"]),
-    (&["contact.strike.restitution=0.5"], &["this version does not have `restitution` yet"]),
+    (&["contact.strike.enforcement=augmented"], &["use one of: multiplier, penalty"]),
     (&["time.step={ initial = 1e-3 }"], &["`step` must be a number > 0, not a table", "A later version"]),
     (&["body.prism.mesh={ file = \"a.msh\", surface = \"prism\" }"], &["the mesh \"a.msh\" cannot be read"]),
     // shapes

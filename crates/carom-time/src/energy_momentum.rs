@@ -1,0 +1,45 @@
+//! The midpoint rule with a discrete gradient for the internal forces (Simo and Tarnow 1992, Gonzalez 2000):
+//!
+//! ```text
+//! M (v_{s+1} − v_s)/Δt + f(y_s, y_{s+1}) = f_ext,      y_{s+1} − y_s = Δt (v_s + v_{s+1})/2,      f·(y_{s+1} − y_s) = U_{s+1} − U_s
+//! ```
+//!
+//! Energy, momentum and moment of momentum of free motion are kept exactly, for any hyperelastic law and any rotation. Order 2, ρ∞ = 1. The acceleration
+//! it carries is the mean one of the step, (v_{s+1} − v_s)/Δt. A contact force acts at the end of the step.
+use crate::backward_euler::AT_THE_END;
+use crate::stage::{Internal, Kernel, Memory, Stage, Weights};
+
+/// The energy–momentum method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EnergyMomentum;
+
+impl Kernel for EnergyMomentum {
+    fn stages(&self) -> usize {
+        1
+    }
+
+    fn has_predictor(&self) -> bool {
+        true
+    }
+
+    fn notes(&self) -> &'static [&'static str] {
+        &[
+            "energy, momentum and moment of momentum of free motion: exactly, nonlinear too",
+            "energy of contact: exactly with enforcement = \"penalty\"",
+        ]
+    }
+
+    fn stage_into(&self, _k: usize, dt: f64, memory: &Memory, stage: &mut Stage) {
+        let (_, v, _) = memory.states[0];
+        stage.end = 1.0;
+        stage.mean = [0.0, 0.0, 1.0];
+        (stage.weights, stage.before, stage.average) = (AT_THE_END, Weights::default(), 0.5);
+        stage.internal = Internal::DiscreteGradient;
+        stage.velocity.slope = 2.0 / dt;
+        stage.velocity.at_start.clear();
+        stage.velocity.at_start.extend(v.iter().map(|v| -v));
+        stage.acceleration.slope = 2.0 / (dt * dt);
+        stage.acceleration.at_start.clear();
+        stage.acceleration.at_start.extend(v.iter().map(|v| -2.0 * v / dt));
+    }
+}

@@ -1,0 +1,145 @@
+//! Kernels outside the α family: tabulated damping, rational functions of the published rules, measured order, free fall.
+
+#![allow(clippy::unwrap_used)]
+
+use std::f64::consts::TAU;
+
+use carom_time::{BackwardEuler, Bathe, Bdf2, EnergyMomentum, Kernel, Oscillator, Scheme, Stage, map};
+
+fn all() -> Vec<(Box<dyn Kernel>, u8, f64)> {
+    vec![
+        (Box::new(BackwardEuler), 1, 0.0),
+        (Box::new(Bdf2), 2, 0.0),
+        (Box::new(Bathe::new(0.0).unwrap()), 2, 0.0),
+        (Box::new(Bathe::new(0.6).unwrap()), 2, 0.6),
+        (Box::new(Bathe::new(1.0).unwrap()), 2, 1.0),
+        (Box::new(EnergyMomentum), 2, 1.0),
+    ]
+}
+
+/// One run of a kernel: (u, v) after `steps`.
+fn run(kernel: &dyn Kernel, oscillator: Oscillator, dt: f64, steps: u32, u: f64, v: f64) -> Vec<[f64; 3]> {
+    let (mut motion, mut before, mut stage) = (oscillator.start(u, v), None, Stage::default());
+    let mut path = vec![motion];
+    for _ in 0..steps {
+        let next = oscillator.step_after(kernel, dt, before, motion, &mut stage);
+        before = kernel.two_step().then_some([next[0] - motion[0], motion[1]]);
+        motion = next;
+        path.push(motion);
+    }
+    path
+}
+
+/// Noh and Bathe 2019, theory: ρ∞ = 0 damps 8.7e-4 and lengthens 1.6 % at ten steps a period.
+#[test]
+fn the_composite_rule_damps_as_tabulated() {
+    let at = map::principal(&Bathe::new(0.0).unwrap(), TAU / 10.0).unwrap();
+    assert!((at.damping_ratio - 8.7e-4).abs() < 5e-6, "{at:?}");
+    assert!((at.period_error - 0.016).abs() < 5e-4, "{at:?}");
+}
+
+#[test]
+fn order_and_rho_inf_are_the_published_ones() {
+    for (kernel, order, rho_inf) in all() {
+        assert_eq!(map::order(&*kernel), order, "{kernel:?}");
+        let got = map::spectral_radius_at_infinity(&*kernel);
+        // A double root is known to half the digits.
+        assert!((got - rho_inf).abs() < 1e-7, "{kernel:?}: {got}");
+        assert!((map::spectral_radius(&*kernel, 1e6) - rho_inf).abs() < 2e-3, "{kernel:?}");
+    }
+}
+
+/// Errors of u and v against cos ωt over one period, halving the step: nothing of the kernel but its steps.
+#[test]
+fn the_measured_order_is_the_published_one() {
+    let oscillator = Oscillator { mass: 1.0, stiffness: 1.0, force: 0.0 };
+    for (kernel, order, _) in all() {
+        let error = |steps: u32| {
+            let dt = TAU / f64::from(steps);
+            let path = run(&*kernel, oscillator, dt, steps, 1.0, 0.0);
+            let at =
+                |n: usize| (path[n][0] - (n as f64 * dt).cos()).abs().max((path[n][1] + (n as f64 * dt).sin()).abs());
+            (0..path.len()).map(at).fold(0.0, f64::max)
+        };
+        let slope = (error(800) / error(1600)).log2();
+        assert!((slope - f64::from(order)).abs() < 0.05, "{kernel:?}: {slope}");
+    }
+}
+
+type Complex = (f64, f64);
+
+fn div(a: Complex, b: Complex) -> Complex {
+    let n = b.0 * b.0 + b.1 * b.1;
+    ((a.0 * b.0 + a.1 * b.1) / n, (a.1 * b.0 - a.0 * b.1) / n)
+}
+
+/// Stability functions of the rules on y' = iω y, from textbooks: backward Euler 1/(1 − z), midpoint (1 + z/2)/(1 − z/2), TR-BDF2 (Hosea and Shampine 1996).
+#[test]
+fn principal_roots_are_the_textbook_stability_functions() {
+    for omega_dt in [0.05, 0.3, 1.0, 2.0] {
+        let z = (0.0, omega_dt);
+        let g = 2.0 - 2f64.sqrt();
+        let trapezoidal = div((1.0, 0.5 * g * z.1), (1.0, -0.5 * g * z.1));
+        let (a, b) = (1.0 / (g * (2.0 - g)), (1.0 - g) * (1.0 - g) / (g * (2.0 - g)));
+        let tr_bdf2 = div((a * trapezoidal.0 - b, a * trapezoidal.1), (1.0, -(1.0 - g) / (2.0 - g) * z.1));
+        let bdf2: Complex = {
+            // (3 r² − 4 r + 1)/2 = z r²: the root that is 1 at z = 0.
+            let p = (3.0, -2.0 * z.1);
+            // √(4 − 3 + 2z), the root with a positive real part.
+            let d: Complex = (1.0, 2.0 * z.1);
+            let m = d.0.hypot(d.1);
+            let root = ((0.5 * (m + d.0)).sqrt(), (0.5 * (m - d.0)).sqrt());
+            div((2.0 + root.0, root.1), p)
+        };
+        let cases: [(&dyn Kernel, Complex); 4] = [
+            (&BackwardEuler, div((1.0, 0.0), (1.0, -z.1))),
+            (&EnergyMomentum, div((1.0, 0.5 * z.1), (1.0, -0.5 * z.1))),
+            (&Bathe::new(0.0).unwrap(), tr_bdf2),
+            (&Bdf2, bdf2),
+        ];
+        for (kernel, want) in cases {
+            let got = map::principal(kernel, omega_dt).unwrap();
+            let (modulus, angle) = (want.0.hypot(want.1), want.1.atan2(want.0));
+            assert!((got.modulus - modulus).abs() < 1e-9, "{kernel:?} at {omega_dt}: {} for {modulus}", got.modulus);
+            assert!((omega_dt / (1.0 + got.period_error) - angle).abs() < 1e-9, "{kernel:?} at {omega_dt}");
+        }
+    }
+}
+
+/// The numeric map of a member of the α family is its closed matrix.
+#[test]
+fn the_numeric_map_is_the_closed_one_where_there_is_one() {
+    for scheme in [Scheme::chung_hulbert(0.3).unwrap(), Scheme::hu(), Scheme::hht(0.2).unwrap()] {
+        for omega_dt in [0.1, 1.0, 7.0] {
+            let (got, want) = (map::amplification(&scheme, omega_dt), scheme.amplification(omega_dt));
+            for i in 0..3 {
+                for j in 0..3 {
+                    assert!((got[i][j] - want[i][j]).abs() < 1e-12 * (1.0 + want[i][j].abs()), "{scheme:?}");
+                }
+            }
+            let (a, b) = (map::principal(&scheme, omega_dt).unwrap(), scheme.principal(omega_dt).unwrap());
+            assert!((a.damping_ratio - b.damping_ratio).abs() < 1e-6 && (a.period_error - b.period_error).abs() < 1e-6);
+        }
+    }
+}
+
+/// Second-order rules reproduce a parabola; backward Euler adds g Δt²/2 to the fall in every step, and BDF2, which begins with one such step, ¾ g Δt² in all.
+#[test]
+fn free_fall_errs_by_what_the_rules_say() {
+    const G: f64 = -9.81;
+    let (dt, steps) = (1.875e-3, 400);
+    let fall = Oscillator { mass: 0.25, stiffness: 0.0, force: 0.25 * G };
+    for (kernel, _, _) in all() {
+        let name = format!("{kernel:?}");
+        for (n, [y, v, _]) in run(&*kernel, fall, dt, steps, 1.5, 0.3).into_iter().enumerate() {
+            let t = n as f64 * dt;
+            let lead = match name.as_str() {
+                "BackwardEuler" => 0.5 * G * dt * dt * n as f64,
+                "Bdf2" => 0.75 * G * dt * dt * (1.0 - 3f64.powi(-(n as i32))),
+                _ => 0.0,
+            };
+            let error = y - (1.5 + 0.3 * t + 0.5 * G * t * t + lead);
+            assert!(error.abs() < 2e-12 && (v - (0.3 + G * t)).abs() < 1e-11, "{name}, step {n}: {error:e}");
+        }
+    }
+}

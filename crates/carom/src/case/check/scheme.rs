@@ -1,0 +1,127 @@
+//! What a scheme asks of masses and contacts: combinations without meaning, each with its reason.
+
+use carom_time::Nonsmooth;
+
+use super::super::{ContactLaw, MassKind, SchemeSpec};
+use super::Check;
+
+impl Check<'_> {
+    pub(super) fn scheme(&mut self) {
+        let draft = self.draft;
+        let Some(spec) = draft.time.as_ref().map(|time| &time.scheme) else { return };
+        if let Some(scheme) = spec.nonsmooth() {
+            self.masses(spec);
+            self.still_supports(spec);
+            self.rules_of_stages(spec);
+            self.restitutions(spec, scheme);
+        } else if spec.checked().is_ok() {
+            self.no_restitution(spec, "the balance at the end of a step holds positions");
+        }
+        for (i, contact) in draft.contacts.iter().enumerate() {
+            let Some(law) = contact.as_ref().and_then(|c| c.law).filter(|law| *law != spec.contact_law()) else {
+                continue;
+            };
+            if law == ContactLaw::Predictor && spec.nonsmooth().is_none() {
+                // Whether an implicit scheme has a predictor is asked with the contacts.
+                continue;
+            }
+            let (what, why, help) = match law {
+                ContactLaw::Velocity => (
+                    "law = \"velocity\" holds velocities by impulses",
+                    format!("the unknowns of {} are positions and forces", spec.kind),
+                    "leave law out, or use scheme moreau-jean or nonsmooth-generalized-alpha",
+                ),
+                ContactLaw::Predictor => (
+                    "this scheme has no predictor to project",
+                    format!("{} has its own rule for contact", spec.kind),
+                    "leave law out, or use a scheme such as energy-momentum or chung-hulbert",
+                ),
+                ContactLaw::Position => (
+                    "law = \"position\" holds positions",
+                    format!("the unknowns of {} are velocities and impulses", spec.kind),
+                    "leave law out, or use another scheme (carom explain lists them)",
+                ),
+            };
+            self.add(format!("contact[{i}].law"), what, why, help);
+        }
+    }
+
+    /// Every dof needs mass; an explicit scheme needs a diagonal one.
+    fn masses(&mut self, spec: &SchemeSpec) {
+        for (i, body) in self.draft.bodies.iter().enumerate() {
+            let Some(body) = body else { continue };
+            if self.massless(body) {
+                let what = format!("body `{}` has no mass, and {} divides by it", body.name, spec.kind);
+                let why = "its unknown is what forces and impulses do to velocities";
+                self.add(
+                    format!("body[{i}].material"),
+                    what,
+                    why,
+                    "a density > 0, or an implicit scheme of the α family",
+                );
+            } else if body.mass.is_redistributed() {
+                let what = format!("body `{}` has nodes without mass, and {} divides by it", body.name, spec.kind);
+                let why = "its unknown is what forces and impulses do to velocities";
+                self.add(format!("body[{i}].mass"), what, why, "mass = \"lumped\"");
+            } else if spec.is_explicit() && body.mass == MassKind::Consistent {
+                let what = format!("{} needs a lumped mass, and that of body `{}` is consistent", spec.kind, body.name);
+                let why = "an explicit step divides each force by the mass of its node; a consistent mass couples nodes and would \
+                           be a system to solve in every step";
+                let path = format!("body[{i}]");
+                let given = self.tables("body").get(i).and_then(|b| b.table()?.get("mass")).is_some();
+                let path = if given { format!("{path}.mass") } else { path };
+                self.add(path, what, why, format!("give body `{}` mass = \"lumped\"", body.name));
+            }
+        }
+    }
+
+    /// These schemes hold positions at rest only.
+    fn still_supports(&mut self, spec: &SchemeSpec) {
+        for (i, support) in self.draft.supports.iter().enumerate() {
+            if support.as_ref().is_some_and(|s| !s.moves.is_empty()) {
+                let what = format!("{} has no supports that move", spec.kind);
+                let why = "the work and the impulse of a support are booked for implicit schemes only as yet";
+                let help = "fix it, push with a [[load]], or use an implicit scheme such as chung-hulbert";
+                self.add(format!("support[{i}].move"), what, why, help);
+            }
+        }
+    }
+
+    /// Rules about averages and projections, where they are given and there is nothing they could mean.
+    fn rules_of_stages(&mut self, spec: &SchemeSpec) {
+        for (i, contact) in self.tables("contact").iter().enumerate() {
+            let word = |key| contact.table().and_then(|t| t.get(key)?.text());
+            if word("force") == Some("end") {
+                let why = format!("{} averages no forces: there is one per step, or one impulse", spec.kind);
+                self.add(format!("contact[{i}].force"), "force = \"end\" has no meaning here", why, "leave it out");
+            }
+            if word("enforcement") == Some("penalty") {
+                let why = format!("{} has its own rule for contact, by forces or impulses without springs", spec.kind);
+                let what = "enforcement = \"penalty\" has no meaning here";
+                self.add(format!("contact[{i}].enforcement"), what, why, "leave it out");
+            }
+            if word("persistency") == Some("project") {
+                let why = format!("{} has its own rule for velocities where contact begins", spec.kind);
+                let what = "persistency = \"project\" has no meaning here";
+                self.add(format!("contact[{i}].persistency"), what, why, "leave it out, or \"none\"");
+            }
+        }
+    }
+
+    fn restitutions(&mut self, spec: &SchemeSpec, scheme: Nonsmooth) {
+        if scheme == Nonsmooth::CentralDifference {
+            self.no_restitution(spec, "its force keeps the next positions out of contact, and no more");
+        }
+    }
+
+    fn no_restitution(&mut self, spec: &SchemeSpec, why: &str) {
+        for (i, contact) in self.draft.contacts.iter().enumerate() {
+            if let Some(e) = contact.as_ref().map(|c| c.restitution).filter(|e| *e != 0.0) {
+                let what = format!("{} has no restitution, and e = {e} was given", spec.kind);
+                let help =
+                    "leave restitution out, or use scheme moreau-jean, nonsmooth-generalized-alpha or paoli-schatzman";
+                self.add(format!("contact[{i}].restitution"), what, why, help);
+            }
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! Kernels through the real stepper: their maps, their orders, their booked impulse, their memory.
+
+#![allow(clippy::unwrap_used)]
+
+use carom::case::{Document, read};
+use carom::{GridReport, Means, Previous, Simulation, State};
+use carom_time::map;
+
+/// A spring of one cell, its left end held.
+const SPRING: &str = r#"
+dimension = 1
+[[material]]
+name = "steel"
+law = "linear-elastic"
+density = 4.0
+young = 50.0
+poisson = 0.0
+[[body]]
+name = "bar"
+material = "steel"
+element = "L2"
+mesh = { shape = "interval", min = 0.0, max = 1.0, cells = 1 }
+mass = "lumped"
+[[support]]
+on = ["bar.left"]
+fix = ["x"]
+[time]
+end = 1.0
+step = 0.125
+scheme = { kind = "hu" }
+energy_guard = false
+"#;
+
+fn simulation(text: &str, sets: &[&str]) -> Simulation<1> {
+    let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
+    let document = Document::parse("case.toml", text, &sets).unwrap_or_else(|e| panic!("{e}"));
+    let case = read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)));
+    Simulation::<1>::new(&case, 1).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)))
+}
+
+fn run(mut sim: Simulation<1>) -> State {
+    while !sim.finished() {
+        sim.advance(&mut GridReport::default()).unwrap();
+    }
+    sim.state
+}
+
+/// One dof through the solver is the amplification matrix the analysis is made of: every entry, so every invariant.
+#[test]
+fn one_dof_is_amplified_as_the_analysis_says() {
+    let (dt, mass, stiffness) = (0.125, 2.0, 50.0_f64);
+    let omega_dt = dt * (stiffness / mass).sqrt();
+    for scheme in [
+        r#"{ kind = "chung-hulbert", rho_inf = 0.3 }"#,
+        r#"{ kind = "backward-euler" }"#,
+        r#"{ kind = "bdf2" }"#,
+        r#"{ kind = "tr-bdf2" }"#,
+        r#"{ kind = "bathe", rho_inf = 0.6 }"#,
+        r#"{ kind = "energy-momentum" }"#,
+    ] {
+        let scheme = format!("time.scheme={scheme}");
+        let document = Document::parse("case.toml", SPRING, std::slice::from_ref(&scheme)).unwrap();
+        let kernel = read(&document).unwrap().time.scheme.kernel().unwrap();
+        let want = map::amplification(&*kernel, omega_dt);
+        for column in 0..want.len() {
+            let mut sim = simulation(SPRING, &[&scheme]);
+            let mut unit = [0.0; 5];
+            unit[column] = 1e-3;
+            let [u, v, a, d, w] = unit;
+            (sim.state.y[1], sim.state.v[1], sim.state.a[1]) = (1.0 + u, v / dt, a / (dt * dt));
+            sim.state.f_internal = vec![-stiffness * u, stiffness * u];
+            sim.state.previous =
+                Some(Previous { dt, increment: vec![0.0, d], velocity: vec![0.0, w / dt], means: Means::new(2) });
+            sim.advance(&mut GridReport::default()).unwrap();
+            let now = [sim.state.y[1] - 1.0, dt * sim.state.v[1], dt * dt * sim.state.a[1]];
+            for row in 0..3 {
+                let error = now[row] / 1e-3 - want[row][column];
+                assert!(error.abs() < 1e-10, "{scheme} ({row}, {column}): {error:e}");
+            }
+        }
+    }
+}
+
+/// A neo-Hookean bar that rings by tens of per cent: order by halving the step twice.
+#[test]
+fn the_observed_order_on_a_nonlinear_oscillation_is_the_claimed_one() {
+    for (scheme, order) in [
+        (r#"{ kind = "backward-euler" }"#, 1.0),
+        (r#"{ kind = "bdf2" }"#, 2.0),
+        (r#"{ kind = "tr-bdf2" }"#, 2.0),
+        (r#"{ kind = "bathe", rho_inf = 0.5 }"#, 2.0),
+        (r#"{ kind = "energy-momentum" }"#, 2.0),
+    ] {
+        let end = |step: f64| {
+            let sets = [
+                format!("time.scheme={scheme}"),
+                format!("time.step={step:?}"),
+                "material.steel.law=\"neo-hookean\"".into(),
+                "body.bar.mesh.cells=3".into(),
+                "newton.tolerance=1e-12".into(),
+            ];
+            let mut sim = simulation(SPRING, &sets.each_ref().map(String::as_str));
+            for node in 0..4 {
+                sim.state.v[node] = 1.5 * node as f64 / 3.0;
+            }
+            run(sim)
+        };
+        // Backward Euler reaches its asymptote late.
+        let step = if order == 1.0 { 1.25e-4 } else { 2e-3 };
+        let [coarse, middle, fine] = [step, 0.5 * step, 0.25 * step].map(end);
+        let away = |a: &State, b: &State| {
+            a.y.iter().zip(&b.y).chain(a.v.iter().zip(&b.v)).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
+        };
+        let observed = (away(&coarse, &middle) / away(&middle, &fine)).log2();
+        assert!((observed - order).abs() < 0.1, "{scheme}: {observed:.3}");
+    }
+}
+
+const BAR: &str = include_str!("../../../cases/bar/single.toml");
+
+/// The impulse booked is the momentum the wall gave: the quadrature is the velocity update's own, stage by stage.
+#[test]
+fn the_booked_impulse_is_the_change_of_momentum() {
+    for sets in [
+        [r#"time.scheme={ kind = "backward-euler" }"#, "contact.wall.active_set=\"within\""],
+        [r#"time.scheme={ kind = "bdf2" }"#, "contact.wall.active_set=\"within\""],
+        [r#"time.scheme={ kind = "bdf2" }"#, "contact.wall.persistency=\"project\""],
+        [r#"time.scheme={ kind = "bathe", rho_inf = 0.4 }"#, "contact.wall.persistency=\"project\""],
+        [r#"time.scheme={ kind = "tr-bdf2" }"#, "contact.wall.active_set=\"within\""],
+        [r#"time.scheme={ kind = "energy-momentum" }"#, "contact.wall.law=\"predictor\""],
+        [r#"time.scheme={ kind = "energy-momentum" }"#, "contact.wall.enforcement=\"penalty\""],
+    ] {
+        let sim = simulation(BAR, &sets);
+        let momentum = |state: &State| {
+            let mut p = vec![0.0; state.v.len()];
+            sim.model.mass.multiply_into(&state.v, &mut p);
+            p.iter().sum::<f64>()
+        };
+        let start = momentum(&sim.state);
+        let end = run(simulation(BAR, &sets));
+        let error = momentum(&end) - start - end.ledger.impulse[0];
+        assert!(
+            end.ledger.impulse[0] > 150.0 && error.abs() < 1e-7,
+            "{sets:?}: {error:e} of {}",
+            end.ledger.impulse[0]
+        );
+    }
+}
+
+/// With a conserving penalty nothing is lost and the ledger says so; the predictor's loss is booked as the contact's.
+#[test]
+fn what_contact_laws_cost_is_booked_as_contact_work() {
+    const CONSERVING: &str = r#"time.scheme={ kind = "energy-momentum" }"#;
+    let penalty = run(simulation(BAR, &[CONSERVING, "contact.wall.enforcement=\"penalty\""])).ledger;
+    assert!(penalty.contact_work.abs() < 1e-7 && penalty.dissipation().abs() < 1e-7, "{penalty:?}");
+    let predictor = run(simulation(BAR, &[CONSERVING, "contact.wall.law=\"predictor\""])).ledger;
+    assert!(predictor.contact_work < -1.0 && predictor.dissipation().abs() < 1e-7, "{predictor:?}");
+}
+
+/// A checkpoint taken in the middle of contact holds what a two-step scheme and a conserving penalty carry.
+#[test]
+fn a_checkpoint_holds_the_memory_of_schemes_and_springs() {
+    for sets in [
+        [r#"time.scheme={ kind = "bdf2" }"#, "time.end=0.8"],
+        [r#"time.scheme={ kind = "bathe", rho_inf = 0.4 }"#, "time.end=0.8"],
+        [r#"time.scheme={ kind = "energy-momentum" }"#, "contact.wall.enforcement=\"penalty\""],
+    ] {
+        let mut sim = simulation(BAR, &sets);
+        for _ in 0..190 {
+            sim.advance(&mut GridReport::default()).unwrap();
+        }
+        assert!(sim.state.pairs[0].iter().any(|p| p.active));
+        let bytes = postcard::to_stdvec(&sim.state).unwrap();
+        let straight = run(sim);
+        let resumed = run(simulation(BAR, &sets).resumed(postcard::from_bytes(&bytes).unwrap()));
+        assert_eq!(straight, resumed, "{sets:?}");
+    }
+}
