@@ -10,23 +10,15 @@
 //! half right or left of an axis of symmetry, and c is that node's place. Multipliers come as λ/weight, the mean pressure near a node. Of several
 //! contacts the one that carries most is meant.
 
-use super::Metric;
+use super::extreme;
 use crate::{ContactRow, Run};
-
-/// Metrics of the pressure at the end of a static run, with definitions.
-pub const PRESSURE_DEFINITIONS: [(&str, &str); 4] = [
-    ("pressure_min", "smallest pressure of the nodes in contact at the end of a static run"),
-    ("pressure_max", "largest pressure of the nodes in contact at the end of a static run"),
-    ("hertz_peak", "p₀ of Hertz's ellipse through the pressures at the end of a static run, by least squares of p²"),
-    ("hertz_half_width", "half-width a of that ellipse"),
-];
 
 /// Peak and half-width of the ellipse closest to pressures at places.
 ///
 /// Needs three different places (two in a half model); none where the best parabola has no peak.
 pub fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
     let (first, last) = (places.iter().copied().reduce(f64::min)?, places.iter().copied().reduce(f64::max)?);
-    let top = super::extreme(pressures, f64::gt).map(|(i, _)| places[i])?;
+    let top = extreme(pressures, f64::gt).map(|(i, _)| places[i])?;
     let half = top == first || top == last;
     // Places from −1 to 1 keep the normal equations well conditioned.
     let (middle, scale) = if half { (top, last - first) } else { (0.5 * (first + last), 0.5 * (last - first)) };
@@ -87,34 +79,31 @@ fn last_rows(run: &Run) -> Vec<&ContactRow<'static>> {
     rows.into_iter().filter(|r| r.contact == most).collect()
 }
 
-/// The pressure at the end of a static run; nothing of a motion, or without contact.
-pub fn of_pressure(run: &Run) -> Vec<Metric> {
+/// Places along the contact and pressures there, at the end of a static run; nothing of a motion, or without contact.
+fn at_rest(run: &Run) -> Option<(Vec<f64>, Vec<f64>)> {
     let kind = run.manifest.case.pointer("/time/scheme/kind").and_then(|k| k.as_str());
     let rows = if kind == Some("static") { last_rows(run) } else { Vec::new() };
-    if rows.is_empty() {
-        return Vec::new();
-    }
-    let pressures: Vec<f64> = rows.iter().map(|r| r.pressure).collect();
     // The tangent to the mean normal.
     let [x, y] = rows.iter().fold([0.0, 0.0], |n, r| std::array::from_fn(|i| n[i] + r.normal[i]));
     let length = f64::hypot(x, y);
-    let places: Vec<f64> = rows.iter().map(|r| (y * r.point[0] - x * r.point[1]) / length).collect();
-    let fit = hertz(&places, &pressures);
-    let stress = run.manifest.columns.iter().find(|c| c.name.contains(".sigma_")).map_or("", |c| &c.unit);
-    let value = |name: &str| match name {
-        "pressure_min" => super::extreme(&pressures, f64::lt).map(|x| x.1),
-        "pressure_max" => super::extreme(&pressures, f64::gt).map(|x| x.1),
-        "hertz_peak" => fit.map(|f| f.0),
-        _ => fit.map(|f| f.1),
-    };
-    let unit = |name: &str| if name == "hertz_half_width" { run.history.unit("penetration") } else { stress };
-    let metric = |&(name, definition): &(&'static str, &'static str)| Metric {
-        name: name.into(),
-        value: value(name),
-        unit: unit(name).into(),
-        definition,
-    };
-    PRESSURE_DEFINITIONS.iter().map(metric).collect()
+    let places = rows.iter().map(|r| (y * r.point[0] - x * r.point[1]) / length).collect();
+    (!rows.is_empty()).then(|| (places, rows.iter().map(|r| r.pressure).collect()))
+}
+
+/// Smallest pressure of a node at the end of a static run.
+pub(crate) fn smallest(run: &Run) -> Option<f64> {
+    extreme(&at_rest(run)?.1, f64::lt).map(|x| x.1)
+}
+
+/// Largest pressure of a node at the end of a static run.
+pub(crate) fn largest(run: &Run) -> Option<f64> {
+    extreme(&at_rest(run)?.1, f64::gt).map(|x| x.1)
+}
+
+/// [`hertz`] of the pressures at the end of a static run.
+pub(crate) fn ellipse(run: &Run) -> Option<(f64, f64)> {
+    let (places, pressures) = at_rest(run)?;
+    hertz(&places, &pressures)
 }
 
 #[cfg(test)]

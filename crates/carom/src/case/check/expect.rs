@@ -1,6 +1,6 @@
 //! What expectations ask for must be in the record: columns, metrics, times of the run.
 
-use carom_record::question::{Form, Quantity, Question, Series, metric_names};
+use carom_record::question::{Form, Quantity, Question, Series, column_metric_names, metric_names};
 
 use super::super::document::joined;
 use super::super::suggest;
@@ -54,7 +54,10 @@ impl Check<'_> {
                     Quantity::Metric(name, arm) => {
                         arms.extend(arm);
                         match name.rsplit_once(':') {
-                            Some((column, "min" | "max" | "roughness")) => wanted.push(column.to_owned()),
+                            Some(("energy_lost", _)) => {}
+                            Some((column, what)) if column_metric_names().contains(&what) => {
+                                wanted.push(column.to_owned())
+                            }
                             _ => self.metric(&name, &known, &path),
                         }
                     }
