@@ -307,7 +307,6 @@ def studies(carom, place):
 
 def examples(carom, place):
     """Runs every case of docs/book/examples/, in the order of their names: one may begin where an earlier one ended."""
-    definitions = {}
     for case in sorted(BOOK.glob("examples/*.toml")):
         content = tomllib.loads(case.read_text(encoding="utf-8"))
         study = "case" in content
