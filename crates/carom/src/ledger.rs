@@ -190,7 +190,7 @@ pub(crate) fn account<const D: usize>(
     }
     let [done, change] = work_of_ends(model, state, next, increment, dt, work);
     next.ledger.work += done;
-    next.ledger.vague = next.ledger.vague.max(change.abs());
+    next.ledger.open += change;
     book_contact_forces(model, next);
     (0..2).for_each(|i| next.ledger.impulse[i] += means.impulse[i]);
     next.ledger.strain = strain + work.springs;
@@ -231,8 +231,8 @@ fn secondary_force<const D: usize>(pairs: &[Pair], gaps: &[Linearised<D>]) -> [f
     force
 }
 
-/// ∫F·dy of loads and moved supports over the step by the trapezoidal rule, what the guard holds energies against, and Δy·ΔF, what the force's change leaves
-/// open of it. The averaged forces of eq. (15) miss the trapezoidal work by (½ − α_f) Δy·ΔF in every step, though nothing is created.
+/// ∫F·dy of loads and moved supports over the step by the trapezoidal rule, what the guard holds energies against, and Δy·ΔF, what the force's change
+/// leaves open of it. The averaged forces of eq. (15) miss the trapezoidal work by (½ − α_f) Δy·ΔF in every step, though nothing is created.
 fn work_of_ends<const D: usize>(
     model: &Model<D>,
     state: &State,
