@@ -20,10 +20,8 @@ pub struct Ledger {
     pub total_at_start: f64,
     /// Work of loads that are not in the potential, of supports and of moving primaries.
     pub external_work: f64,
-    /// The same work by the trapezoidal rule, whatever the scheme averages: what `created` is measured against.
-    pub work: f64,
-    /// Σ Δy·ΔF: the work of these forces as they are at the ends of steps, less that of their starts. Where a load has only begun it is as large as the
-    /// work itself, and a scheme's own error may be too.
+    /// Σ Δy·ΔF of the loads: their work as they are at the ends of steps less that as they are at the starts, the scale of what no scheme knows better.
+    /// Where a load has only begun it is as large as the work itself.
     pub open: f64,
     /// Work of the contact forces on the bodies, and the jump of kinetic energy where contact begins.
     pub contact_work: f64,
@@ -46,7 +44,7 @@ impl Ledger {
 
     /// Energy that came from nowhere: what the guard watches.
     pub fn created(&self) -> f64 {
-        self.total() - self.total_at_start - self.work
+        self.total() - self.total_at_start - self.external_work
     }
 }
 

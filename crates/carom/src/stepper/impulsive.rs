@@ -24,7 +24,7 @@ use super::watch::{along, approach, carried, depth, gradients_into, look};
 use super::{Accepted, StepReport, Stepper};
 use crate::balance::{known_into, residual_into};
 use crate::case::NewtonSpec;
-use crate::ledger::{book_kinetic, work_of_loads};
+use crate::ledger::{book_kinetic, open_work, work_of_loads};
 use crate::model::Model;
 use crate::newton::{
     NEARLY_THERE, Trial, Workspace, add_gradient, follower_factor, mass_factor, max_abs, round_off, stiffness_factor,
@@ -118,6 +118,7 @@ impl<const D: usize> Stepper<D> for Impulsive {
                 .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
             model.loads_into(to, &next.y, &mut work.loads, &mut next.f_external)?;
         }
+        next.ledger.open += open_work(state, &next, &trial.increment);
         rows.book(dt, &mut trial, &mut next);
         next.pairs = trial.pairs;
         // Nodes that came in later in the step than was looked at are watched from now on.
