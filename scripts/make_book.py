@@ -10,6 +10,7 @@ first-run.*    what `carom run cases/impact/impact.toml` prints and draws
 columns.md     columns of its history.csv, from its manifest
 metrics.md     metrics with definitions, from the pages of those runs
 activation.md, peak.md          docs/book/studies/, run
+refine.md      what cases/impact/refine-*.toml found, with orders where there are any
 FAMILY.md, FAMILY.svg           `carom verify --report --out DIR --markdown DIR`, and a figure of one of its runs; with --verify DIR, what it left there
 
 Every case of docs/book/examples/ is run too. What could not be made, links that lead nowhere, keys that no case uses: told at the end, exit code 1. Needs
@@ -21,6 +22,7 @@ import csv
 import html
 import html.parser
 import json
+import math
 import pathlib
 import re
 import shutil
@@ -51,6 +53,10 @@ STUDIES = {
     "activation": ["peak_force", "force_roughness", "restitution", "energy_lost", "energy_created", "rejected_steps"],
     "peak": ["peak_force", "peak_mean_force", "impulse_x", "restitution", "energy_lost"],
 }
+
+# Studies of refinement, and the metrics of their tables.
+REFINEMENTS = {"refine-step": "The step halved", "refine-mesh": "The meshes halved"}
+REFINED = ["cylinder.center_y", "cylinder.velocity_y", "A.uy:min", "B.uy:min", "contact_end", "impulse_y", "restitution", "energy_lost", "peak_force", "peak_mean_force"]
 
 problems = []
 
@@ -346,6 +352,35 @@ def verified(carom, given, place):
             shutil.copy(found, GENERATED / f"{family}.svg")
         else:
             problems.append(f"figures/{figure}.svg of a run of the family {family}")
+    write("refine.md", "".join(refinement(out / f"impact/{name}/study.csv", title) for name, title in REFINEMENTS.items()))
+
+
+def refinement(path, title):
+    """A table of a study that halves a step three times."""
+    if not path.is_file():
+        problems.append(f"{path.name} of {path.parent.name}")
+        return f"{title}: not run.\n\n"
+    with open(path, encoding="utf-8", newline="") as file:
+        arms = list(csv.DictReader(file))
+    ends = [list(csv.DictReader(place.open(encoding="utf-8")))[-1] for place in sorted(path.parent.glob("arms/*/history.csv"))]
+    rows = []
+    for column in REFINED:
+        name, sources = (f"`{column}`", arms) if column in arms[0] else (f"`{column}`, at the end", ends)
+        values = [float(source[column]) for source in sources]
+        rows.append([name, *map(number, values), *verdict(values)])
+    return f"{title}:\n\n" + table(["", *(arm["arm"] for arm in arms), "Order", "Limit"], rows)
+
+
+def verdict(values):
+    """Order and limit of values at halved steps, as carom_record::order tells them."""
+    orders = []
+    for a, b, c in zip(values, values[1:], values[2:]):
+        quotient = (a - b) / (b - c) if b != c else 0.0
+        orders.append(math.log2(quotient) if quotient > 0.0 else None)
+    if None in orders or abs(orders[-1] - orders[-2]) > 0.3 or orders[-1] <= 0.0:
+        return ["no order", "–"]
+    distance = (values[-1] - values[-2]) / (2.0 ** orders[-1] - 1.0)
+    return [f"{orders[-1]:.2f}", f"{number(values[-1] + distance)} ± {number(1.25 * abs(distance))}"]
 
 
 def figure_of(out, family, case, figure):
