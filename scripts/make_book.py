@@ -8,7 +8,7 @@ commands.md    `carom COMMAND --help`
 explain/       `carom explain`, of each scheme the pages show
 first-run.*    what `carom run cases/impact/impact.toml` prints and draws
 columns.md     columns of its history.csv, from its manifest
-metrics.md     metrics with definitions, from the pages of those runs
+metrics.md     the table of metrics, from crates/carom-record/src/metrics/table.rs
 activation.md, peak.md          docs/book/studies/, run
 refine.md      what cases/impact/refine-*.toml found, with orders where there are any
 FAMILY.md, FAMILY.svg           `carom verify --report --out DIR --markdown DIR`, and a figure of one of its runs; with --verify DIR, what it left there
@@ -46,6 +46,7 @@ FIGURES = {
     "disc": ("offset", "bodies"),
     "loads": ("", "bodies"),
     "static": ("", "bodies"),
+    "manufactured": ("moving-block-orders", "energy"),
 }
 
 # Columns of a study's table in the book.
@@ -78,8 +79,10 @@ def main():
         commands(carom)
         explanations(carom)
         keys(carom)
-        definitions = first_run(carom, place) | studies(carom, place) | examples(carom, place)
-        write("metrics.md", table(["Metric", "Definition"], [[f"`{n}`", d] for n, d in definitions.items()]))
+        first_run(carom, place)
+        studies(carom, place)
+        examples(carom, place)
+        metrics()
         verified(carom, given, place)
     build()
     for problem in problems:
@@ -284,30 +287,21 @@ def first_run(carom, place):
     out = place / "impact"
     said = run(carom, "run", "cases/impact/impact.toml", "--out", out)
     if said is None:
-        return {}
+        return
     write("first-run.txt", said.replace(str(out), "runs/impact").strip() + "\n")
     shutil.copy(out / "figures/bodies.svg", GENERATED / "first-run.svg")
     manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
     rows = [[f"`{c['name']}`", c["unit"] or "–", c["description"]] for c in manifest["columns"]]
     write("columns.md", table(["Column", "Unit", "Meaning"], rows))
-    return defined(out / "report.html")
 
 
-def defined(page):
-    """Names and definitions of metrics: first and last cell of the rows behind the word Definition."""
-    body = page.read_text(encoding="utf-8")
-    found = {}
-    for start in re.finditer(r"Definitions?</(th|summary)>", body):
-        for row in re.findall(r"<tr>(.*?)</tr>", body[start.end() : body.index("</table>", start.end())], re.S):
-            cells = [html.unescape(re.sub("<[^>]*>", "", cell)) for cell in re.findall(r"<td[^>]*>(.*?)</td>", row, re.S)]
-            if cells:
-                # Those of a probe's column are the same for every column.
-                found[re.sub(r"^.*:", "COLUMN:", cells[0])] = cells[-1]
-    return found
+def metrics():
+    """The table of metrics is in the code."""
+    command = ["cargo", "run", "--quiet", "-p", "carom-record", "--example", "metrics"]
+    write("metrics.md", subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout)
 
 
 def studies(carom, place):
-    definitions = {}
     for name, columns in STUDIES.items():
         out = place / name
         if run(carom, "study", f"docs/book/studies/{name}.toml", "--out", out) is None:
@@ -315,22 +309,20 @@ def studies(carom, place):
         with open(out / "study.csv", encoding="utf-8", newline="") as file:
             rows = [[row["arm"], *(number(row[c]) for c in columns)] for row in csv.DictReader(file)]
         write(f"{name}.md", table(["Arm", *(f"`{c}`" for c in columns)], rows))
-        definitions |= defined(out / "study.html")
-    return definitions
 
 
 def examples(carom, place):
-    """Runs every case of docs/book/examples/."""
-    definitions = {}
+    """Runs every case of docs/book/examples/, in the order of their names: one may begin where an earlier one ended."""
     for case in sorted(BOOK.glob("examples/*.toml")):
-        study = "case" in tomllib.loads(case.read_text(encoding="utf-8"))
+        content = tomllib.loads(case.read_text(encoding="utf-8"))
+        study = "case" in content
         out = place / f"example-{case.stem}"
-        said = run(carom, "study" if study else "run", case.relative_to(ROOT), "--out", out)
+        before = content.get("initial", {}).get("from")
+        start = ["--set", f'initial.from="{place / f"example-{pathlib.Path(before).name}"}"'] if before else []
+        said = run(carom, "study" if study else "run", case.relative_to(ROOT), "--out", out, *start)
         if said is not None:
             if "NOT as expected" in said:
                 problems.append(f"what {case.name} expects: {said.strip()}")
-            definitions |= defined(out / ("study.html" if study else "report.html"))
-    return definitions
 
 
 # Verification

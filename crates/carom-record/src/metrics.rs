@@ -6,12 +6,23 @@
 //! secondary and primary changes no metric. An impulse is a difference of the recorded `contact_impulse`, which the time
 //! integrator accumulated; a mean force over a window w is [P(t + w) − P(t)]/w, not a mean of samples.
 
+mod compare;
+mod force;
+mod ledger;
+mod pressure;
+mod table;
 mod work;
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use crate::History;
-pub use work::{COLUMN_DEFINITIONS, WORK_DEFINITIONS, column_roughness, of_run, probe_columns};
+pub use compare::{deviation, excess_variation, phase_shift};
+pub use force::high_frequency;
+pub use ledger::energy_lost_at;
+pub use pressure::hertz;
+pub use table::{COLUMNS, Definition, HISTORY, PRESSURE, Unit, WORK, book_table, of_column};
+pub use work::{column_roughness, of_run, probe_columns};
 
 /// A metric of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,27 +37,42 @@ pub struct Metric {
     pub definition: &'static str,
 }
 
-/// Names and definitions, in the order of `all`.
-pub const DEFINITIONS: [(&str, &str); 15] = [
-    ("contact_start", "first recorded time with an active contact node"),
-    ("contact_end", "first recorded time without one after the first episode"),
-    ("contact_duration", "from start to end of the first episode"),
-    ("contact_episodes", "number of contact episodes; gaps under 2 % of the recorded time do not count"),
-    ("impulse_x", "x component of the contact impulse of the first episode, on the secondary side"),
-    ("impulse_y", "y component of the contact impulse of the first episode, on the secondary side"),
-    ("peak_force", "largest contact force of any recorded step (does not converge with the time step)"),
-    ("peak_mean_force", "largest contact force averaged over 1/16 of the first episode"),
-    ("force_roughness", "total variation of the contact force over what one rise and one fall need, minus 1"),
-    (
-        "restitution",
-        "velocity of the striker's centre along the impulse: after / before the first episode, sign reversed",
-    ),
-    ("apex", "highest rise of the striker's centre over its start, after the first episode"),
-    ("apex_time", "time of the apex"),
-    ("energy_lost", "energy lost by the end / largest kinetic + strain energy; negative: created"),
-    ("energy_created", "largest energy created at any time / largest kinetic + strain energy"),
-    ("penetration", "deepest penetration of a secondary node"),
-];
+/// What the metrics of a history are made of.
+pub struct Facts<'a> {
+    history: &'a History,
+    episodes: Vec<Episode>,
+    /// Rows of the first episode, from the one before it to the one that ends it.
+    rows: Option<Range<usize>>,
+    force: Vec<f64>,
+}
+
+impl<'a> Facts<'a> {
+    fn of(history: &'a History) -> Self {
+        let episodes = episodes(history, default_bridge(history));
+        let rows = episodes.first().map(|e| e.span(history));
+        Self { history, episodes, rows, force: contact_force(history) }
+    }
+
+    fn first(&self) -> Option<Episode> {
+        self.episodes.first().copied()
+    }
+
+    fn time(&self, row: usize) -> f64 {
+        self.history.times()[row]
+    }
+
+    fn duration(&self) -> Option<f64> {
+        let first = self.first()?;
+        Some(self.time(first.end?) - self.time(first.start))
+    }
+
+    /// Change of the impulse along an axis over the first episode.
+    fn impulse(&self, axis: usize) -> Option<f64> {
+        let p = *vector(self.history, "contact_impulse").get(axis)?;
+        let rows = self.rows.clone()?;
+        Some(p[rows.end - 1] - p[rows.start])
+    }
+}
 
 /// Row numbers of an episode: the first with contact, and the first after it without, if it ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +81,13 @@ pub struct Episode {
     pub start: usize,
     /// First row without; none when contact lasts to the end of the record.
     pub end: Option<usize>,
+}
+
+impl Episode {
+    /// Its rows, from the one before it to the one that ends it.
+    fn span(self, history: &History) -> Range<usize> {
+        self.start.saturating_sub(1)..self.end.map_or(history.times().len(), |end| end + 1)
+    }
 }
 
 /// Episodes of contact; gaps shorter than `bridge` (in time) belong to them.
@@ -182,65 +215,27 @@ fn apex(history: &History, episode: Episode) -> Option<(f64, f64)> {
     Some((t[i] - there / curvature, top - 0.5 * there * there / curvature - y[0]))
 }
 
-/// Lost at the end and created at the worst time, over the largest kinetic + strain energy.
-fn energy(history: &History) -> Option<(f64, f64)> {
-    let [kinetic, strain, total, work] =
-        ["kinetic", "strain", "total", "external_work"].map(|name| history.column(name));
-    let (kinetic, strain, total, work) = (kinetic?, strain?, total?, work?);
-    let scale = kinetic.iter().zip(strain).map(|(k, s)| k + s).reduce(f64::max).filter(|&s| s > 0.0)?;
-    let created: Vec<f64> = total.iter().zip(work).map(|(e, w)| (e - total[0] - w) / scale).collect();
-    Some((-*created.last()?, created.iter().copied().fold(0.0, f64::max)))
+/// Time at which the velocity of the striker's centre along the impulse of the first episode changes its sign, linear between rows.
+fn turning_time(facts: &Facts) -> Option<f64> {
+    let (history, rows) = (facts.history, facts.rows.clone()?);
+    let impulse = [facts.impulse(0), facts.impulse(1)];
+    let velocity = vector(history, &format!("{}.velocity", striker(history)?));
+    let along = |row: usize| velocity.iter().zip(impulse).map(|(v, p)| v[row] * p.unwrap_or_default()).sum::<f64>();
+    let before = (rows.start..rows.end - 1).find(|&i| along(i) < 0.0 && along(i + 1) >= 0.0)?;
+    let (a, b) = (along(before), along(before + 1));
+    Some(facts.time(before) + (facts.time(before + 1) - facts.time(before)) * a / (a - b))
 }
 
-/// Every named metric, in the order of `DEFINITIONS`.
+/// Every named metric, in the order of [`HISTORY`], and the energy lost at each impact.
 pub fn all(history: &History) -> Vec<Metric> {
-    let times = history.times();
-    let bridge = default_bridge(history);
-    let count = history.column("active").map(|_| episodes(history, bridge).len() as f64);
-    let episode = first_episode(history);
-    let start = episode.map(|e| times[e.start]);
-    let end = episode.and_then(|e| e.end).map(|i| times[i]);
-    let duration = end.zip(start).map(|(end, start)| end - start);
-    let rows = episode.map(|e| e.start.saturating_sub(1)..e.end.map_or(times.len(), |i| i + 1));
-    let impulse = |axis: usize| {
-        let p = *vector(history, "contact_impulse").get(axis)?;
-        let rows = rows.clone()?;
-        Some(p[rows.end - 1] - p[rows.start])
+    let facts = Facts::of(history);
+    let metric = |(definition, value): &(Definition, fn(&Facts) -> Option<f64>)| Metric {
+        name: definition.name.into(),
+        value: value(&facts),
+        unit: definition.unit.label(history),
+        definition: definition.meaning,
     };
-    let force = contact_force(history);
-    let peak = |name: &str| extreme(history.column(name)?, f64::gt).map(|(_, x)| x);
-    let apex = episode.and_then(|e| apex(history, e));
-    let value = |name: &str| match name {
-        "contact_start" => start,
-        "contact_end" => end,
-        "contact_duration" => duration,
-        "contact_episodes" => count,
-        "impulse_x" => impulse(0),
-        "impulse_y" => impulse(1),
-        "peak_force" => extreme(&force, f64::gt).map(|(_, x)| x),
-        "peak_mean_force" => duration.and_then(|d| peak_mean(times, &vector(history, "contact_impulse"), d / 16.0)),
-        "force_roughness" => rows.clone().and_then(|r| roughness(force.get(r)?)),
-        "restitution" => episode.and_then(|e| restitution(history, e)),
-        "apex" => apex.map(|a| a.1),
-        "apex_time" => apex.map(|a| a.0),
-        "energy_lost" => energy(history).map(|e| e.0),
-        "energy_created" => energy(history).map(|e| e.1),
-        _ => peak(name),
-    };
-    let unit = |name: &str| match name {
-        "contact_start" | "contact_end" | "contact_duration" | "apex_time" => history.unit("time"),
-        "impulse_x" | "impulse_y" => history.unit("contact_impulse_x"),
-        "peak_force" | "peak_mean_force" => history.unit("contact_force_x"),
-        "apex" | "penetration" => history.unit("penetration"),
-        _ => "",
-    };
-    let metric = |&(name, definition): &(&'static str, &'static str)| Metric {
-        name: name.into(),
-        value: value(name),
-        unit: unit(name).to_string(),
-        definition,
-    };
-    DEFINITIONS.iter().map(metric).collect()
+    HISTORY.iter().map(metric).collect()
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 //! FORM     := min · max · first · last · at T (linear between rows) · time of min · time of max
 //!             range (max − min) · drift (largest |c − c₀|) · peak (largest |c|) · rms (√ of the mean of c² over the rows)
 //! columns  := an expression in columns, each with `of "ARM"` in a study
-//! NAME     := a metric of `metrics`, COLUMN:min, COLUMN:max, COLUMN:roughness, or `stopped` (1 if the run could not go on, 0 if it ended)
+//! NAME     := a metric of `metrics`, COLUMN:min and the like, energy_lost:N, or `stopped` (1 if the run could not go on, 0 if it ended)
 //! ```
 //!
 //! An expression in columns of several arms has the rows whose times all of them recorded (to 1e-9 of the span); `by step` takes rows with
@@ -15,7 +15,7 @@
 use std::borrow::Cow;
 
 use crate::expression::{self, Expression, Token, tokens};
-use crate::metrics::{self, DEFINITIONS, WORK_DEFINITIONS};
+use crate::metrics::{self, COLUMNS, HISTORY, PRESSURE, WORK};
 use crate::{History, Run, Status};
 
 /// Two times are one if they differ by less than this fraction of the span of the first record.
@@ -355,9 +355,15 @@ fn unknown(what: &str) -> String {
     )
 }
 
+/// Names of the metrics of a column.
+pub fn column_metric_names() -> Vec<&'static str> {
+    COLUMNS.iter().map(|(d, _)| d.name).collect()
+}
+
 /// Names of metrics that need no column.
 pub fn metric_names() -> Vec<&'static str> {
-    DEFINITIONS.iter().chain(&WORK_DEFINITIONS).map(|(name, _)| *name).chain(["stopped"]).collect()
+    let history = HISTORY.iter().map(|(d, _)| d.name);
+    history.chain(PRESSURE.iter().chain(&WORK).map(|(d, _)| d.name)).chain(["stopped"]).collect()
 }
 
 fn no_arms(arm: Option<&str>) -> Result<(), String> {
@@ -366,14 +372,15 @@ fn no_arms(arm: Option<&str>) -> Result<(), String> {
 
 /// A metric of the history, or of one of its columns.
 pub(crate) fn metric(history: &History, name: &str) -> Result<f64, String> {
+    if let Some(n) = name.strip_prefix("energy_lost:") {
+        let n =
+            n.parse().map_err(|_| format!("`{n}` is no number of an impact: energy_lost:1 is that of the first"))?;
+        return metrics::energy_lost_at(history, n).ok_or_else(|| format!("this record has no impact {n} that ended"));
+    }
     if let Some((column, what)) = name.rsplit_once(':') {
-        let values = history.column(column).ok_or_else(|| no_column(column))?;
-        let value = match what {
-            "min" => metrics::extreme(values, f64::lt).map(|x| x.1),
-            "max" => metrics::extreme(values, f64::gt).map(|x| x.1),
-            "roughness" => metrics::column_roughness(history, column),
-            _ => return Err(format!("`{what}` is no metric of a column: min, max or roughness")),
-        };
+        history.column(column).ok_or_else(|| no_column(column))?;
+        let (_, value) = metrics::of_column(history, column, what)
+            .ok_or_else(|| format!("`{what}` is no metric of a column: {}", column_metric_names().join(", ")))?;
         return value.ok_or_else(|| format!("this record has no {what} of `{column}`"));
     }
     match metrics::all(history).into_iter().find(|m| m.name == name) {
@@ -411,9 +418,12 @@ impl Records for Run {
         if name == "stopped" {
             return Ok(f64::from(u8::from(self.manifest.status == Status::Failed)));
         }
-        if WORK_DEFINITIONS.iter().any(|(work, _)| *work == name) {
-            let found = metrics::of_run(self).into_iter().find(|m| m.name == name).and_then(|m| m.value);
-            return found.ok_or_else(|| format!("the manifest has no {name}"));
+        if let Some((_, value)) = WORK.iter().find(|(work, _)| work.name == name) {
+            return value(self).ok_or_else(|| format!("the manifest has no {name}"));
+        }
+        if let Some((_, value)) = PRESSURE.iter().find(|(pressure, _)| pressure.name == name) {
+            return value(self)
+                .ok_or_else(|| format!("there is no {name}: it is of the end of a static run in contact"));
         }
         metric(&self.history, name)
     }

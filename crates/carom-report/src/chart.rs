@@ -75,7 +75,7 @@ pub(crate) fn write_text(out: &mut String, x: f64, y: f64, extra: &str, label: &
 
 /// Points of a curve in pixels, thinned to what half a pixel can show: first, lowest, highest, last of each column of pixels.
 /// Gaps stay gaps.
-fn path(points: impl Iterator<Item = (f64, f64)>) -> String {
+pub(crate) fn path(points: impl Iterator<Item = (f64, f64)>) -> String {
     let mut out = String::new();
     let mut pen_up = true;
     let mut column: Vec<(f64, f64)> = Vec::new();

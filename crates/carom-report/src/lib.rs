@@ -11,14 +11,17 @@ mod chart;
 mod convergence;
 mod figures;
 mod labels;
+mod laboratory;
 mod page;
 mod palette;
 mod pen;
+mod plot;
 mod setup;
 mod study;
 mod study_page;
 mod symbols;
 mod text;
+mod verdict;
 mod verify_page;
 
 use std::fs;

@@ -4,19 +4,22 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use carom_record::Run;
-use carom_record::metrics::probe_columns;
+use carom_record::metrics::{contact_force, probe_columns};
 use carom_record::study::Study;
+use carom_record::study::reference::FORCE;
 
 use crate::chart::{Chart, Panel, Series};
 use crate::labels::{symbol, with_unit, words};
 use crate::palette::LINES;
-use crate::{ReportError, ReportSummary, publish, study_page};
+use crate::plot::Plot;
+use crate::{ReportError, ReportSummary, laboratory, publish, study_page};
 
 /// Curves of one figure; more arms make more figures.
 pub(crate) const MOST: usize = 8;
 
 /// Columns shown besides those of the probes: name, label, caption.
-const OTHERS: [(&str, &str, &str); 3] = [
+const OTHERS: [(&str, &str, &str); 4] = [
+    (FORCE, "|F|", "size of the contact force"),
     ("contact_impulse_x", "P_{x}", "contact impulse along x"),
     ("contact_impulse_y", "P_{y}", "contact impulse along y"),
     ("dissipation", "dissipation", "energy dissipated so far; negative: created"),
@@ -30,10 +33,17 @@ pub(crate) struct Figure {
 }
 
 /// A column of all arms, thinned.
-struct Column {
-    name: String,
-    unit: String,
-    curves: Vec<(usize, Vec<f64>, Vec<f64>)>,
+pub(crate) struct Column {
+    pub(crate) name: String,
+    pub(crate) unit: String,
+    pub(crate) curves: Vec<(usize, Vec<f64>, Vec<f64>)>,
+}
+
+/// What the records of the arms say of how they came about.
+#[derive(Default)]
+pub(crate) struct Origins {
+    /// Number of the arm, hash of its input, rejected steps, events that are no change of contact.
+    pub(crate) arms: Vec<(usize, String, u64, usize)>,
 }
 
 /// Makes figures, tables and page of a study directory, from the records alone; arm by arm, so that long histories do not add up.
@@ -43,30 +53,57 @@ struct Column {
 pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     let mut columns: Vec<Column> = Vec::new();
     let mut time = String::new();
+    let mut origins = Origins::default();
     let study = Study::open(directory, &mut |arm, run| {
         run.history.unit("time").clone_into(&mut time);
         collect(&mut columns, arm, run);
+        let told = run.log.iter().filter(|e| ["fallback", "cycle", "no-stress"].contains(&e.kind.as_str())).count();
+        let rejected = run.manifest.counters.get("rejected").copied().unwrap_or_default();
+        origins.arms.push((arm, run.manifest.input_hash.clone(), rejected, told));
     })?;
     study.write_tables()?;
+    let plots = laboratory::plots(&study, &columns, &time);
     let figures: Vec<Figure> = columns.iter().flat_map(|column| overlays(column, &study, &time)).collect();
-    let page = study_page::page(&study, &figures);
-    publish(directory, "study.html", &page, figures.iter().map(|f| (f.name.as_str(), f.svg.as_str())), Vec::new())
+    let page = study_page::page(&study, &plots, &figures, &origins);
+    let drawn = plots.iter().map(|p| (p.name.clone(), p.svg()));
+    let all: Vec<(String, String)> = drawn.chain(figures.iter().map(|f| (f.name.clone(), f.svg.clone()))).collect();
+    let summary =
+        publish(directory, "study.html", &page, all.iter().map(|(n, s)| (n.as_str(), s.as_str())), Vec::new())?;
+    for plot in &plots {
+        write_beside(directory, plot)?;
+    }
+    Ok(summary)
+}
+
+/// The table of a figure and the script that draws it again.
+fn write_beside(directory: &Path, plot: &Plot) -> Result<(), ReportError> {
+    for (ending, text) in [("csv", plot.csv()), ("py", plot.script())] {
+        let path = directory.join("figures").join(format!("{}.{ending}", plot.name));
+        std::fs::write(&path, text).map_err(|source| ReportError::Write { path, source })?;
+    }
+    Ok(())
 }
 
 fn collect(columns: &mut Vec<Column>, arm: usize, run: &Run) {
+    let force = contact_force(&run.history);
+    if force.iter().any(|f| *f > 0.0) {
+        let (x, y) = thinned(run.times(), &force);
+        let unit = run.history.unit("contact_force_x");
+        put(columns, FORCE, unit, (arm, x, y));
+    }
     let nonzero = |name: &&str| run.column(name).is_some_and(|c| c.iter().any(|x| *x != 0.0));
-    let others = OTHERS.iter().map(|other| other.0).filter(nonzero);
+    let others = OTHERS[1..].iter().map(|other| other.0).filter(nonzero);
     for name in probe_columns(run).into_iter().chain(others) {
         let Some(values) = run.column(name) else { continue };
         let (x, y) = thinned(run.times(), values);
-        match columns.iter_mut().find(|c| c.name == name) {
-            Some(column) => column.curves.push((arm, x, y)),
-            None => columns.push(Column {
-                name: name.to_owned(),
-                unit: run.history.unit(name).to_owned(),
-                curves: vec![(arm, x, y)],
-            }),
-        }
+        put(columns, name, run.history.unit(name), (arm, x, y));
+    }
+}
+
+fn put(columns: &mut Vec<Column>, name: &str, unit: &str, curve: (usize, Vec<f64>, Vec<f64>)) {
+    match columns.iter_mut().find(|c| c.name == name) {
+        Some(column) => column.curves.push(curve),
+        None => columns.push(Column { name: name.to_owned(), unit: unit.to_owned(), curves: vec![curve] }),
     }
 }
 
@@ -96,14 +133,19 @@ pub(crate) fn style(arm: usize) -> (&'static str, &'static str) {
     (LINES.get(i).copied().unwrap_or("#777777"), DASHES[i])
 }
 
-fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Figure> {
-    let (label, what) = match (OTHERS.iter().find(|o| o.0 == column.name), column.name.rsplit_once('.')) {
+/// Symbol and words of a column.
+pub(crate) fn named(column: &str) -> (String, String) {
+    match (OTHERS.iter().find(|o| o.0 == column), column.rsplit_once('.')) {
         (Some((_, label, caption)), _) => ((*label).to_string(), (*caption).to_string()),
         (None, Some((probe, quantity))) => {
             (symbol(quantity), format!("{} {} at {probe}", words(quantity), symbol(quantity)))
         }
-        _ => (column.name.clone(), column.name.clone()),
-    };
+        _ => (column.to_owned(), column.to_owned()),
+    }
+}
+
+fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Figure> {
+    let (label, what) = named(&column.name);
     let groups = study.rows.len().div_ceil(MOST);
     let figure = |group: usize| {
         let mine: Vec<_> = column.curves.iter().filter(|(arm, ..)| arm / MOST == group).collect();

@@ -6,19 +6,22 @@ use carom_record::Status;
 use carom_record::study::{Study, Verdict};
 
 use crate::convergence;
-use crate::study::{Figure, style};
+use crate::plot::Plot;
+use crate::study::{Figure, Origins, style};
 use crate::text::{escape, html};
+use crate::verdict;
 
 /// Arms in one table of metrics; more make more tables.
 const ACROSS: usize = 8;
 
 /// What the page of a run does not need.
-const CSS: &str = "td.undecided { color: #8a5a00; font-weight: 600; } th.n { text-align: right; } \
+const CSS: &str = ".verdict { border: 2px solid #0072b2; border-radius: 6px; padding: .2rem 1.1rem .6rem; margin: 1rem 0; background: #f4f9fd; } \
+.verdict.none { border-color: #8a5a00; background: #fdf8ee; } .verdict dt { font-weight: 600; margin-top: .5rem; } .verdict dd { margin-left: 1.2rem; } td.undecided { color: #8a5a00; font-weight: 600; } th.n { text-align: right; } \
 table.metrics td, table.metrics th { padding-right: .7rem; } svg.line { vertical-align: middle; } \
 @media print { body { -webkit-print-color-adjust: exact; print-color-adjust: exact; } .metrics { font-size: 8.5pt; } }\n";
 
 /// The page.
-pub(crate) fn page(study: &Study, figures: &[Figure]) -> String {
+pub(crate) fn page(study: &Study, plots: &[Plot], figures: &[Figure], origins: &Origins) -> String {
     let m = &study.manifest;
     let mut out = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
@@ -32,29 +35,36 @@ pub(crate) fn page(study: &Study, figures: &[Figure]) -> String {
         Status::Stopped | Status::Failed => ("stopped", "stopped: resumable"),
     };
     let _ = writeln!(out, "<p><span class=\"status {class}\">{word}</span></p>");
+    verdict::show(&mut out, study);
     arms(&mut out, study);
+    verdict::rankings(&mut out, study);
     claims(&mut out, &study.verdicts);
     expectations(&mut out, study);
     out.push_str("<h2>Figures</h2>\n");
-    for (i, figure) in figures.iter().enumerate() {
-        let (caption, name) = (html(&figure.caption), escape(&figure.name));
-        let link = format!("<a href=\"figures/{name}.svg\">figures/{name}.svg</a>");
+    let drawn = plots.iter().map(|p| (&p.caption, &p.name, p.svg(), true));
+    let all = drawn.chain(figures.iter().map(|f| (&f.caption, &f.name, f.svg.clone(), false)));
+    for (i, (caption, name, svg, table)) in all.enumerate() {
+        let (caption, name) = (html(caption), escape(name));
+        let ending = |e: &str| format!("<a href=\"figures/{name}.{e}\">figures/{name}.{e}</a>");
+        let link = if table { ["svg", "csv", "py"].map(ending).join(", ") } else { ending("svg") };
         let _ = writeln!(
             out,
             "<figure>\n{}<figcaption><b>Figure {}.</b> {caption} <span class=\"small\">({link})</span></figcaption>\n</figure>",
-            figure.svg,
+            svg,
             i + 1
         );
     }
     metrics(&mut out, study);
     convergence::show(&mut out, study);
+    verdict::phases(&mut out, study);
+    verdict::integrity(&mut out, study, origins);
     reproduce(&mut out, study);
     out.push_str("</body>\n</html>\n");
     out
 }
 
 /// A number in five digits, an exponent when far from one.
-fn number(x: f64) -> String {
+pub(crate) fn number(x: f64) -> String {
     let text = if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) {
         format!("{x:.3e}")
     } else if x.fract() == 0.0 {
@@ -177,6 +187,17 @@ fn metrics(out: &mut String, study: &Study) {
     out.push_str("</table></details>\n");
 }
 
+/// An entry for a bibliography that names the program and the input.
+fn bibtex(study: &Study) -> String {
+    let m = &study.manifest;
+    let (year, hash) = (m.created.get(..4).unwrap_or_default(), m.input_hash.get(..16).unwrap_or_default());
+    format!(
+        "@software{{carom,\n  title   = {{Carom: impact and contact by the positional finite element method}},\n  version = {{{}}},\n  year    = {{{year}}},\n  \
+         note    = {{study \"{}\", input {hash}}}\n}}",
+        m.version, m.title
+    )
+}
+
 fn reproduce(out: &mut String, study: &Study) {
     let m = &study.manifest;
     let case = escape(&m.source.case_path);
@@ -195,6 +216,7 @@ fn reproduce(out: &mut String, study: &Study) {
         escape(&m.source.study),
         escape(&m.source.case)
     );
+    let _ = writeln!(out, "<h2>To cite</h2>\n<pre>{}</pre>", escape(&bibtex(study)));
     for (path, text) in &m.source.others {
         let (path, text) = (escape(path), escape(text));
         let _ = writeln!(out, "<details><summary>The case file {path}</summary>\n<pre>{text}</pre></details>");

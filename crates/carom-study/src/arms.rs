@@ -1,11 +1,16 @@
 //! Arms of a study: those written down, then the product of the grid; and an arm's problems, shown where the arm was written.
 
 use carom::case::{Diagnostic, Document, Problem};
+use carom_record::study::design::Part;
 use toml_edit::Value;
 
-use crate::file::StudyFile;
+use crate::file::{FINE_NAME, StudyFile};
+
+/// By what the computed reference divides the smallest step where nothing is said.
+const REFINE: u32 = 8;
 
 /// What an arm changes, and where in the study file each change stands.
+#[derive(Clone)]
 pub(crate) struct Draft {
     pub(crate) name: String,
     /// Path of the arm.
@@ -16,6 +21,8 @@ pub(crate) struct Draft {
     pub(crate) case: Option<String>,
     /// Its expectations instead of the case's, as the override that puts them there, and their path.
     pub(crate) expect: (String, String),
+    /// What it is to the study.
+    pub(crate) part: Part,
 }
 
 /// All arms in their order. The last key of the grid varies fastest.
@@ -31,6 +38,7 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
             case: arm.case.clone(),
             expect: (expect, format!("{path}.expect")),
             path,
+            part: Part::default(),
         });
     }
     let combinations: usize = if file.grid.is_empty() { 0 } else { file.grid.iter().map(|(_, v)| v.len()).product() };
@@ -52,9 +60,44 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
             sets,
             case: None,
             expect: ("expect=[]".into(), "grid".into()),
+            part: Part::default(),
         });
     }
-    drafts
+    if file.design.is_some() { levels(&drafts, &file.steps) } else { drafts }
+}
+
+/// Every method of a design at each of its levels; at its own step where no steps are given.
+fn levels(methods: &[Draft], steps: &[f64]) -> Vec<Draft> {
+    let at = |(method, level): (&Draft, usize)| {
+        let part = Part { method: Some(method.name.clone()), level, fine: false };
+        let Some(step) = steps.get(level) else { return Draft { part, ..method.clone() } };
+        let mut sets = method.sets.clone();
+        // A step of the method's own gives way.
+        sets.retain(|(set, _)| !set.starts_with("time.step="));
+        sets.push((format!("time.step={step:?}"), format!("steps[{level}]")));
+        Draft { name: format!("{}, Δt {step:?}", method.name), sets, part, ..method.clone() }
+    };
+    let count = steps.len().max(1);
+    methods.iter().flat_map(|m| (0..count).map(move |level| (m, level))).map(at).collect()
+}
+
+/// The three runs of the computed reference, the coarsest first: at most `step` over `refine`, twice and four times that, whole steps up to `end`.
+pub(crate) fn fine(file: &StudyFile, step: f64, end: f64) -> Vec<Draft> {
+    let steps = 4.0 * (end / step * f64::from(file.refine.unwrap_or(REFINE)) / 4.0).ceil();
+    let default = || vec![("time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.1 }".to_owned(), "fine".to_owned())];
+    let set = |(key, value): &(String, Value)| (assignment(key, value), format!("fine.set.\"{key}\""));
+    let run = |times: f64| {
+        let mut sets: Vec<_> = file.fine.iter().map(set).collect();
+        if !file.fine.iter().any(|(key, _)| key.starts_with("time.scheme")) {
+            sets.extend(default());
+        }
+        sets.push((format!("time.step={:?}", end * times / steps), "fine".to_owned()));
+        let name = if times == 1.0 { FINE_NAME.to_owned() } else { format!("{FINE_NAME}, {times} Δt") };
+        let part = Part { method: None, level: 0, fine: true };
+        let expect = ("expect=[]".to_owned(), "fine".to_owned());
+        Draft { name, path: "reference".into(), sets, case: None, expect, part }
+    };
+    [4.0, 2.0, 1.0].map(run).into()
 }
 
 fn assignment(key: &str, value: &Value) -> String {

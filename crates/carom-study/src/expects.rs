@@ -1,7 +1,7 @@
 //! Expectations of a study must be in the records of its arms: names of arms, columns and metrics, keys that are numbers.
 
 use carom::case::{Case, Problem, history_columns};
-use carom_record::question::{Asked, Quantity, Question, Series, metric_names};
+use carom_record::question::{Asked, Quantity, Question, Series, column_metric_names, metric_names};
 use carom_record::{Expect, Expression, OrderOf};
 
 /// Adds what is wrong with a study's expectations.
@@ -33,7 +33,8 @@ fn series(series: &Series, arms: &[(&str, &Case)]) -> Result<(), String> {
 
 fn metric(name: &str, arm: Option<&str>, arms: &[(&str, &Case)]) -> Result<(), String> {
     match name.rsplit_once(':') {
-        Some((of, "min" | "max" | "roughness")) => {
+        Some(("energy_lost", _)) => here(arm, arms).map(drop),
+        Some((of, what)) if column_metric_names().contains(&what) => {
             column(&Asked { column: of.to_owned(), arm: arm.map(str::to_owned) }, arms)
         }
         _ if metric_names().contains(&name) => here(arm, arms).map(drop),

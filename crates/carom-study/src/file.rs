@@ -3,11 +3,30 @@
 
 use carom::case::{Asked, Document, Problem, read_expects};
 use carom_record::Expect;
+use carom_record::study::design::{Goal, Kind};
 use toml_edit::{Item, TableLike, Value};
 
-pub(crate) const KEYS: [&str; 7] = ["title", "case", "reference", "arm", "grid", "claim", "expect"];
+pub(crate) const KEYS: [&str; 13] = [
+    "title",
+    "case",
+    "design",
+    "steps",
+    "cost_of",
+    "goal",
+    "accuracy",
+    "reference",
+    "fine",
+    "arm",
+    "grid",
+    "claim",
+    "expect",
+];
+pub(crate) const FINE: [&str; 2] = ["set", "refine"];
 pub(crate) const ARM: [&str; 4] = ["name", "case", "set", "expect"];
 pub(crate) const CLAIM: [&str; 2] = ["text", "compare"];
+
+/// The reference that is computed where no arm has this name.
+pub(crate) const FINE_NAME: &str = "fine";
 
 /// A study file, read; what could not be read is a problem.
 #[derive(Default)]
@@ -16,6 +35,18 @@ pub(crate) struct StudyFile {
     /// Case of the arms that name none.
     pub(crate) case: Option<String>,
     pub(crate) reference: Option<String>,
+    /// What makes the arms comparable: they are methods then.
+    pub(crate) design: Option<Kind>,
+    /// Steps of the levels.
+    pub(crate) steps: Vec<f64>,
+    /// The method whose cost is matched.
+    pub(crate) cost_of: Option<String>,
+    pub(crate) goal: Option<Goal>,
+    pub(crate) accuracy: Option<f64>,
+    /// What the computed reference changes in the case.
+    pub(crate) fine: Vec<(String, Value)>,
+    /// By what it divides the smallest step.
+    pub(crate) refine: Option<u32>,
     pub(crate) arms: Vec<ArmEntry>,
     /// Keys with their values.
     pub(crate) grid: Vec<(String, Vec<Value>)>,
@@ -35,6 +66,13 @@ pub(crate) struct ArmEntry {
     pub(crate) expect: Option<String>,
 }
 
+impl StudyFile {
+    /// Whether the reference is to be computed: it is asked for, and no arm has its name.
+    pub(crate) fn computes_reference(&self, drafts: &[crate::arms::Draft]) -> bool {
+        self.reference.as_deref() == Some(FINE_NAME) && drafts.iter().all(|d| d.name != FINE_NAME)
+    }
+}
+
 /// Reads the keys of a study file.
 pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFile {
     let mut file = StudyFile::default();
@@ -44,6 +82,7 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
     known(root, &KEYS, "a study", "", problems);
     file.title = text(root, "title", "", problems);
     file.reference = text(root, "reference", "", problems);
+    comparison(root, &mut file, problems);
     let arms = tables(root, "arm", problems);
     let named = !arms.is_empty() && !root.contains_key("grid") && arms.iter().all(|arm| arm.contains_key("case"));
     match text(root, "case", "", problems) {
@@ -118,6 +157,68 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
         }
     }
     file
+}
+
+/// The keys that make arms comparable and rank them.
+fn comparison(root: &dyn TableLike, file: &mut StudyFile, problems: &mut Vec<Problem>) {
+    let kinds = [("matched-step", Kind::MatchedStep), ("matched-cost", Kind::MatchedCost)];
+    file.design = one_of(root, "design", &kinds, problems);
+    file.goal = one_of(root, "goal", &Goal::NAMES.map(|(name, goal, _)| (name, goal)), problems);
+    file.cost_of = text(root, "cost_of", "", problems);
+    let positive = |item: &Item| item.as_float().or_else(|| item.as_integer().map(|i| i as f64)).filter(|x| *x > 0.0);
+    if let Some(item) = root.get("accuracy") {
+        match positive(item) {
+            Some(value) => file.accuracy = Some(value),
+            None => problems.push(not("accuracy", "a positive number", "accuracy = 0.05")),
+        }
+    }
+    if let Some(item) = root.get("steps") {
+        let list =
+            item.as_array().map(|l| l.iter().map(|v| positive(&Item::Value(v.clone()))).collect::<Option<Vec<_>>>());
+        match list {
+            Some(Some(steps)) if !steps.is_empty() && steps.windows(2).all(|h| h[0] > h[1]) => file.steps = steps,
+            _ => problems.push(not("steps", "a list of falling positive numbers", "steps = [1e-3, 5e-4]")),
+        }
+    }
+    let lonely = [("steps", !file.steps.is_empty()), ("cost_of", file.cost_of.is_some())];
+    for (key, _) in lonely.iter().filter(|(_, given)| *given && !root.contains_key("design")) {
+        let why = "it says at which levels the methods of a design run";
+        let help = "add `design = \"matched-step\"`, or put steps into [grid]";
+        problems.push(Problem::new(*key, format!("`{key}` without a design"), why, help).at_key());
+    }
+    let Some(item) = root.get("fine") else { return };
+    let Some(table) = item.as_table_like() else {
+        problems.push(not("fine", "a table", "[fine]"));
+        return;
+    };
+    known(table, &FINE, "[fine]", "fine", problems);
+    match table.get("set").map(Item::as_table_like) {
+        Some(Some(values)) => flatten(values, "", &mut file.fine),
+        Some(None) => problems.push(not("fine.set", "a table", "set = { \"time.scheme\" = { kind = \"hu\" } }")),
+        None => {}
+    }
+    if let Some(item) = table.get("refine") {
+        match item.as_integer().and_then(|n| u32::try_from(n).ok()).filter(|n| *n > 0) {
+            Some(n) => file.refine = Some(n),
+            None => problems.push(not("fine.refine", "a positive whole number", "refine = 8")),
+        }
+    }
+    if file.reference.as_deref() != Some(FINE_NAME) {
+        let help = format!("add `reference = \"{FINE_NAME}\"`");
+        problems.push(Problem::new("fine", "[fine] is not used", "it describes a computed reference", help).at_key());
+    }
+}
+
+fn one_of<T: Copy>(root: &dyn TableLike, key: &str, known: &[(&str, T)], problems: &mut Vec<Problem>) -> Option<T> {
+    let word = text(root, key, "", problems)?;
+    let found = known.iter().find(|(name, _)| *name == word).map(|(_, value)| *value);
+    if found.is_none() {
+        let names = known.iter().map(|(name, _)| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+        let near = known.iter().min_by_key(|(name, _)| strsim::damerau_levenshtein(name, &word)).map_or("", |n| n.0);
+        let what = format!("there is no {key} \"{word}\"");
+        problems.push(Problem::new(key, what, format!("{key} is one of {names}"), format!("did you mean \"{near}\"?")));
+    }
+    found
 }
 
 /// Expectations of an arm: checked where they stand, and as the text that replaces those of its case.

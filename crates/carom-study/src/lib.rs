@@ -7,10 +7,12 @@
 mod arms;
 mod expects;
 mod file;
+mod matched;
 mod plan;
 mod run;
 mod schema;
 mod suite;
+mod theory;
 mod verify;
 
 pub use plan::{Plan, PlannedArm};

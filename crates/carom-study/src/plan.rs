@@ -1,10 +1,11 @@
 //! A study read and checked: every arm's case is resolved and its model built before anything is written.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 
 use carom::Simulation;
 use carom::case::{Case, CaseError, Diagnostic, Document, Problem, read};
+use carom_record::study::design::{Design, Goal};
 use carom_record::study::{Arm, Comparison, StudyManifest, StudySource};
 use carom_record::{Machine, Source, Status, now};
 
@@ -55,8 +56,11 @@ impl Plan {
             }
         }
         let mut found: Vec<Diagnostic> = Vec::new();
-        let mut planned = Vec::new();
-        for draft in &drafts {
+        let mut planned: Vec<(Draft, Vec<String>, Case, &Base)> = Vec::new();
+        let computed = file.computes_reference(&drafts);
+        let mut waiting: VecDeque<Draft> = drafts.into();
+        let mut methods = waiting.len();
+        while let Some(draft) = waiting.pop_front() {
             let Some(base) = draft.case.as_ref().or(file.case.as_ref()).and_then(|name| cases.get(name)) else {
                 continue;
             };
@@ -66,10 +70,17 @@ impl Plan {
                 Ok(case) => {
                     sets.pop();
                     planned.push((draft, sets, case, base));
+                    // The computed reference is finer than every method, which are known now.
+                    if computed && planned.len() == methods {
+                        let times = planned.iter().map(|(_, _, case, _)| case.time.step);
+                        let step = times.fold(f64::INFINITY, f64::min);
+                        waiting.extend(arms::fine(&file, step, planned[0].2.time.end));
+                        methods = 0;
+                    }
                 }
                 Err(error) => {
                     for diagnostic in diagnostics(error)? {
-                        let placed = arms::placed(&study, draft, &diagnostic, &base.diagnostics);
+                        let placed = arms::placed(&study, &draft, &diagnostic, &base.diagnostics);
                         if !found.contains(&placed) {
                             found.push(placed);
                         }
@@ -100,15 +111,29 @@ impl Plan {
         };
         let texts = std::iter::once(sources.case.clone()).chain(sources.others.values().cloned());
         let hash = Source { text: sources.study.clone(), sets: texts.collect() }.hash();
-        let arm = |(i, (draft, sets, case, _)): (usize, &(&Draft, Vec<String>, Case, &Base))| Arm {
+        let arm = |(i, (draft, sets, case, _)): (usize, &(Draft, Vec<String>, Case, &Base))| Arm {
             name: draft.name.clone(),
             directory: format!("arms/{:02}-{}", i + 1, arms::slug(&draft.name)),
             sets: sets.clone(),
             steps: case.time.steps() as u64,
+            part: draft.part.clone(),
             case_path: draft.case.clone(),
             case: serde_json::to_value(case).unwrap_or_default(),
         };
+        let design = file.design.map(|kind| {
+            let of = |level: usize| planned.iter().find(|(d, ..)| d.part.level == level && !d.part.fine);
+            let cost_of = file.cost_of.clone().or_else(|| of(0)?.0.part.method.clone()).unwrap_or_default();
+            let steps = if file.steps.is_empty() {
+                of(0).map(|p| p.2.time.step).into_iter().collect()
+            } else {
+                file.steps.clone()
+            };
+            Design { kind, cost_of, steps }
+        });
         let manifest = StudyManifest {
+            goal: file.goal.or(design.as_ref().map(|_| Goal::Trajectory)),
+            design,
+            accuracy: file.accuracy,
             status: Status::Running,
             title: file.title.unwrap_or(stem),
             version: env!("CARGO_PKG_VERSION").into(),
@@ -121,7 +146,7 @@ impl Plan {
             expects: file.expects,
             source: sources,
         };
-        let arm = |(_, sets, case, base): (&Draft, Vec<String>, Case, &Base)| PlannedArm {
+        let arm = |(_, sets, case, base): (Draft, Vec<String>, Case, &Base)| PlannedArm {
             case,
             source: Source { text: base.text.clone(), sets },
         };
@@ -171,15 +196,24 @@ fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) 
             problems.push(Problem::new(path, what, "tables, figures and claims tell them apart by name", "rename one"));
         }
     }
+    if let Some(name) = &file.cost_of
+        && !drafts.iter().any(|d| d.part.method.as_ref() == Some(name))
+    {
+        let methods: Vec<_> = file.arms.iter().map(|a| format!("\"{}\"", a.name)).collect();
+        let why = format!("the methods are: {}", methods.join(", "));
+        problems.push(Problem::new("cost_of", format!("no method is named \"{name}\""), why, "name one of them"));
+    }
     let known = || drafts.iter().map(|d| format!("\"{}\"", d.name)).collect::<Vec<_>>().join(", ");
     let exists = |name: &str| drafts.iter().any(|d| d.name == name);
-    if let Some(reference) = file.reference.as_deref().filter(|name| *name != "exact" && !exists(name)) {
+    if let Some(reference) =
+        file.reference.as_deref().filter(|name| !["exact", file::FINE_NAME].contains(name) && !exists(name))
+    {
         let what = format!("the reference \"{reference}\" is no arm");
         problems.push(Problem::new(
             "reference",
             what,
             format!("the arms are: {}", known()),
-            "name one of them, or \"exact\"",
+            "name one of them, \"exact\", or \"fine\" to have one computed",
         ));
     }
     for (i, claim) in file.claims.iter().enumerate() {

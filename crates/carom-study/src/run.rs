@@ -11,7 +11,7 @@ use carom::recording::{self, End, Options, Progress, RunError};
 use carom_record::study::{Study, StudyManifest};
 use carom_record::{RecordError, Status};
 
-use crate::Plan;
+use crate::{Plan, matched, theory};
 
 /// What happens to an arm, told by its number.
 #[derive(Clone, Debug)]
@@ -96,6 +96,9 @@ pub fn start(
     };
     make(directory.join("arms"))?;
     plan.manifest.write(directory)?;
+    if plan.manifest.goal.is_some() {
+        theory::write(plan, directory)?;
+    }
     go_on(directory, jobs, observe, stop)
 }
 
@@ -112,10 +115,13 @@ pub fn go_on(
     let mut manifest = StudyManifest::read(directory)?;
     manifest.status = Status::Running;
     manifest.write(directory)?;
+    let whole = matched::settle(&mut manifest, directory, jobs, observe, stop)?;
     let mut waiting = Vec::new();
     for (i, arm) in manifest.arms.iter().enumerate() {
         match manifest.state(directory, arm)?.0 {
             Some(Status::Finished | Status::Failed) => observe(&Event::Kept(i)),
+            // An arm whose step is not settled waits for the next time.
+            _ if !whole => {}
             state => waiting.push((i, state.is_some())),
         }
     }
@@ -177,7 +183,7 @@ fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 }
 
 /// One arm from where it is to its end.
-fn compute(
+pub(crate) fn compute(
     manifest: &StudyManifest,
     directory: &Path,
     i: usize,

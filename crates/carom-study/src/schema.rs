@@ -3,11 +3,14 @@
 use carom::case;
 use serde_json::{Map, Value, json};
 
-use crate::file::{ARM, CLAIM, KEYS};
+use carom_record::study::design::Goal;
+
+use crate::file::{ARM, CLAIM, FINE, KEYS};
 
 /// The schema of a study file.
 pub fn schema() -> Value {
     let text = |doc: &str| json!({ "type": "string", "description": doc });
+    let one_of = |doc: &str, words: &[&str]| json!({ "enum": words, "description": doc });
     let set = |values: Map<String, Value>, doc: &str| json!({ "type": "object", "description": doc, "patternProperties": values, "additionalProperties": false });
     let list = |(pattern, schema)| (pattern, json!({ "type": "array", "minItems": 1, "items": schema }));
     let set_doc =
@@ -23,7 +26,29 @@ pub fn schema() -> Value {
     let study = [
         text("Title of the page."),
         text("The case file, relative to this one."),
-        text("The arm others are compared with, or \"exact\"."),
+        one_of(
+            "What makes the arms comparable: they are methods then, each run at every one of `steps`, or at the step at which it costs what the method `cost_of` costs there.",
+            &["matched-step", "matched-cost"],
+        ),
+        json!({ "type": "array", "minItems": 1, "items": { "type": "number", "exclusiveMinimum": 0 }, "description": "Falling time steps of the levels of a design; the case's own step if left out." }),
+        text("The method whose cost the others are given, with matched cost; the first if left out."),
+        one_of("What arms are ranked by.", &Goal::NAMES.map(|(name, ..)| name)),
+        json!({ "type": "number", "exclusiveMinimum": 0, "description": "The error that is good enough, 0.05 if left out." }),
+        text(
+            "The arm others are compared with, \"exact\" for the formulas of [exact], or \"fine\" to have a fine one computed.",
+        ),
+        object(
+            "The computed reference.",
+            &FINE,
+            [
+                set(
+                    case::changes(),
+                    "Values of the case it replaces; Chung and Hulbert's scheme with ρ∞ = 0.1 if it names no scheme.",
+                ),
+                json!({ "type": "integer", "minimum": 1, "description": "Its step is the smallest of the study over this, 8 if left out." }),
+            ],
+            &[],
+        ),
         json!({ "type": "array", "items": object("A simulation.", &ARM, arm, &["name"]) }),
         set(case::changes().into_iter().map(list).collect(), "Lists of values; their product adds arms."),
         json!({ "type": "array", "items": object("A statement, confirmed or denied.", &CLAIM, claim, &CLAIM) }),

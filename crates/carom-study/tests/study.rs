@@ -163,7 +163,7 @@ fn wrong_study_files() {
     let first = |study: &str| wrong(study)[0].clone();
     let found = first("[[arm]]\nname = \"a\"\nsett = {}\n");
     assert_eq!((found.line, found.help.as_str()), (4, "did you mean `set`?"));
-    assert!(first("reference = \"fine\"\n[[arm]]\nname = \"a\"\n").what.contains("no arm"));
+    assert!(first("reference = \"finest\"\n[[arm]]\nname = \"a\"\n").what.contains("no arm"));
     assert!(first("[[arm]]\nname = \"a\"\n[[arm]]\nname = \"a\"\n").what.contains("two arms"));
     assert!(first("").what.contains("no arms"));
     assert!(first("[[arm]]\nname = 3\n").what.contains("`name` is not a text"));
@@ -174,4 +174,68 @@ fn wrong_study_files() {
     fs::write(&path, "case = \"none.toml\"\n[[arm]]\nname = \"a\"\n").unwrap();
     let told = Plan::read(&path).unwrap_err().to_string();
     assert!(told.contains("study.toml:1:8") && told.contains("none.toml"), "{told}");
+}
+
+/// Every method at every step, and a reference of three runs whose steps double, at most an eighth of the smallest: 0.4/0.005 · 8 = 640 steps.
+#[test]
+fn a_design_builds_its_arms_and_ranks_them() {
+    let (folder, path) = folder(
+        "design = \"matched-step\"\nsteps = [0.01, 0.005]\ngoal = \"energy\"\nreference = \"fine\"\n\
+         [[arm]]\nname = \"Hu\"\nset = { \"time.scheme\" = { kind = \"hu\" } }\n[[arm]]\nname = \"CH\"\n",
+    );
+    let plan = Plan::read(&path).unwrap();
+    let names: Vec<&str> = plan.manifest.arms.iter().map(|a| a.name.as_str()).collect();
+    assert_eq!(
+        names,
+        ["Hu, Δt 0.01", "Hu, Δt 0.005", "CH, Δt 0.01", "CH, Δt 0.005", "fine, 4 Δt", "fine, 2 Δt", "fine"]
+    );
+    assert_eq!(plan.manifest.arms.iter().map(|a| a.steps).collect::<Vec<_>>(), [40, 80, 40, 80, 160, 320, 640]);
+    let out = folder.path().join("out");
+    let study = start(&plan, &out, 2, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
+    let ranking = study.ranking.unwrap();
+    // Hu's scheme dissipates the vibration that the impact leaves: last at both steps, and the verdict says so.
+    let first: Vec<&str> = ranking.levels.iter().map(|l| study.rows[l[0].arm].name.as_str()).collect();
+    assert_eq!(first, ["CH, Δt 0.01", "CH, Δt 0.005"]);
+    assert_eq!(ranking.levels[0].len(), 2);
+    let verdict = ranking.verdict.unwrap();
+    assert_eq!(study.manifest.arms[verdict.arm].part.method.as_deref(), Some("CH"));
+    assert!(out.join("ranking.csv").is_file() && out.join("reference.csv").is_file());
+}
+
+/// A method that takes one solve a step and one that projects differ little: at twice the step of the case, matched cost gives it back.
+#[test]
+fn matched_cost_settles_and_resumes_at_the_same_steps() {
+    let (folder, path) = folder(
+        "design = \"matched-cost\"\ngoal = \"energy\"\n[[arm]]\nname = \"CH\"\n[[arm]]\nname = \"Hu\"\n\
+         set = { \"time.scheme\" = { kind = \"hu\" }, \"time.step\" = 0.02 }\n",
+    );
+    let plan = Plan::read(&path).unwrap();
+    let out = folder.path().join("out");
+    let study = start(&plan, &out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
+    let steps = |study: &carom_record::study::Study| study.manifest.arms.iter().map(|a| a.steps).collect::<Vec<_>>();
+    let settled = steps(&study);
+    assert!(study.rows.iter().all(|r| r.status == Some(Status::Finished)));
+    let pilot: serde_json::Value =
+        serde_json::from_slice(&fs::read(out.join("pilots/02-hu/pilot.json")).unwrap()).unwrap();
+    let trials = pilot["trials"].as_array().unwrap();
+    assert_eq!(trials[0]["steps"], 20);
+    assert_eq!(trials[pilot["settled"].as_u64().unwrap() as usize]["steps"], settled[1]);
+    // The arm is lost, its pilot record is not: the same steps again.
+    let again = go_on(&out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
+    assert_eq!(steps(&again), settled);
+    assert!((again.manifest.arms[1].case["time"]["step"].as_f64().unwrap() - 0.4 / settled[1] as f64).abs() < 1e-15);
+}
+
+#[test]
+fn wrong_designs_are_told() {
+    let first = |study: &str| wrong(study)[0].clone();
+    let found = first("design = \"matched\"\n[[arm]]\nname = \"a\"\n");
+    assert_eq!(found.help, "did you mean \"matched-step\"?");
+    assert!(first("steps = [1e-2]\n[[arm]]\nname = \"a\"\n").what.contains("without a design"));
+    assert!(
+        first("design = \"matched-step\"\nsteps = [0.005, 0.01]\n[[arm]]\nname = \"a\"\n").what.contains("falling")
+    );
+    assert!(first("design = \"matched-cost\"\ncost_of = \"b\"\n[[arm]]\nname = \"a\"\n").what.contains("no method"));
+    assert!(first("goal = \"forces\"\n[[arm]]\nname = \"a\"\n").help.contains("\"force\""));
+    assert!(first("[fine]\nrefine = 4\n[[arm]]\nname = \"a\"\n").what.contains("not used"));
 }

@@ -3,6 +3,7 @@
 mod balance;
 pub mod case;
 mod cells;
+pub mod frequencies;
 mod held;
 mod initial;
 mod kept;

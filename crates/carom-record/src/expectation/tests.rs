@@ -53,7 +53,7 @@ fn forms_and_arithmetic() {
         ("max a / 0", "inf"),
         ("last a of \"x\"", "no arm \"x\""),
         ("difference a of 'x' with 'y'", "COLUMN of"),
-        ("a:median", "min, max or roughness"),
+        ("a:median", "min, max, roughness"),
         ("rms [ a", "rms [ a"),
         ("min", "missing"),
     ] {

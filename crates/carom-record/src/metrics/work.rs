@@ -4,23 +4,11 @@
 //! Σ|xᵢ₊₁ − xᵢ|, range is max − min. One hump that ends where it began has 0, a monotone column −1/2, one that goes up and down k
 //! times through its whole range k − 1. It sees rows, not steps: a coarser `history_every` hides what lies between them.
 
-use super::{Metric, all, extreme, first_episode, total_variation};
+use super::{
+    COLUMNS, Definition, Metric, PRESSURE, Unit, WORK, all, default_bridge, energy_lost_at, episodes, extreme,
+    first_episode, total_variation,
+};
 use crate::{History, Run};
-
-/// Metrics of the work, with definitions.
-pub const WORK_DEFINITIONS: [(&str, &str); 4] = [
-    ("steps", "time steps of the grid done"),
-    ("newton_iterations", "Newton iterations of all steps"),
-    ("rejected_steps", "steps that were rejected and bisected"),
-    ("wall_time", "wall seconds of all processes that computed the run, output included"),
-];
-
-/// Metrics of a probe's column `C`, called `C:min` and so on.
-pub const COLUMN_DEFINITIONS: [(&str, &str); 3] = [
-    ("min", "smallest recorded value of the column"),
-    ("max", "largest recorded value of the column"),
-    ("roughness", "total variation over twice the range, minus 1, in the first contact episode: 0 for one hump"),
-];
 
 /// Roughness of a column in the first contact episode; none without one, or for a constant.
 pub fn column_roughness(history: &History, column: &str) -> Option<f64> {
@@ -39,30 +27,34 @@ pub fn probe_columns(run: &Run) -> Vec<&str> {
     columns.filter(|c| c.rsplit_once('.').is_some_and(|(probe, _)| names.contains(&probe))).collect()
 }
 
-/// Everything a study tabulates: [`all`], then the columns of the probes, then the work.
+/// Impacts whose energy a study tabulates one by one.
+const IMPACTS: usize = 9;
+
+/// Everything a study tabulates: [`all`], the energy lost at each of the first impacts where there are several, the pressure at the end of a static run,
+/// then the columns of the probes, then the work.
 pub fn of_run(run: &Run) -> Vec<Metric> {
     let history = &run.history;
     let mut metrics = all(history);
+    let impacts = episodes(history, default_bridge(history)).len().min(IMPACTS);
+    for n in 1..=if impacts > 1 { impacts } else { 0 } {
+        let definition = "energy lost over the N-th episode of contact / largest kinetic + strain energy";
+        let value = energy_lost_at(history, n);
+        metrics.push(Metric { name: format!("energy_lost:{n}").into(), value, unit: String::new(), definition });
+    }
+    for (definition, value) in PRESSURE.iter().filter_map(|(d, value)| Some((d, value(run)?))) {
+        let (name, unit) = (definition.name.into(), definition.unit.label(history));
+        metrics.push(Metric { name, value: Some(value), unit, definition: definition.meaning });
+    }
     for column in probe_columns(run) {
-        for (what, definition) in COLUMN_DEFINITIONS {
-            let values = history.column(column).unwrap_or_default();
-            let (value, unit) = match what {
-                "min" => (extreme(values, f64::lt).map(|x| x.1), history.unit(column)),
-                "max" => (extreme(values, f64::gt).map(|x| x.1), history.unit(column)),
-                _ => (column_roughness(history, column), ""),
-            };
-            metrics.push(Metric { name: format!("{column}:{what}").into(), value, unit: unit.into(), definition });
+        for (Definition { name, unit, meaning, .. }, value) in &COLUMNS {
+            let unit = if *unit == Unit::Column { history.unit(column).to_owned() } else { String::new() };
+            let name = format!("{column}:{name}").into();
+            metrics.push(Metric { name, value: value(history, column), unit, definition: meaning });
         }
     }
-    let count = |name: &str| run.manifest.counters.get(name).map(|&n| n as f64);
-    for (name, definition) in WORK_DEFINITIONS {
-        let (value, unit) = match name {
-            "steps" => (count("steps"), ""),
-            "newton_iterations" => (count("newton"), ""),
-            "rejected_steps" => (count("rejected"), ""),
-            _ => (run.manifest.timings.get("total").copied(), "s"),
-        };
-        metrics.push(Metric { name: name.into(), value, unit: unit.into(), definition });
+    for (definition, value) in &WORK {
+        let (unit, value) = (definition.unit.label(history), value(run));
+        metrics.push(Metric { name: definition.name.into(), value, unit, definition: definition.meaning });
     }
     metrics
 }

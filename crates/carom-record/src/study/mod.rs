@@ -11,7 +11,11 @@
 
 mod arms;
 mod claim;
+pub mod compared;
+pub mod design;
 mod orders;
+pub mod ranking;
+pub mod reference;
 mod tables;
 
 use std::collections::BTreeMap;
@@ -24,7 +28,11 @@ use crate::question::{Question, Series};
 use crate::{Expect, Expectation, Machine, Manifest, RecordError, Run, Source, Status, files, judge};
 pub use arms::ArmRecords;
 pub use claim::{Comparison, Verdict};
+use compared::{Compared, PhaseOrders};
+use design::{Design, Goal, Part};
 pub use orders::{Refinement, numeric_keys, refinements, step};
+use ranking::Ranking;
+use reference::{Kept, Reference};
 
 /// The files a study was made from.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -51,6 +59,9 @@ pub struct Arm {
     pub sets: Vec<String>,
     /// Time steps.
     pub steps: u64,
+    /// What it is to the study.
+    #[serde(default)]
+    pub part: Part,
     /// The case file it names instead of the study's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case_path: Option<String>,
@@ -91,6 +102,15 @@ pub struct StudyManifest {
     pub machine: Machine,
     /// Arm the others are held against, if one was named.
     pub reference: Option<String>,
+    /// How the arms were made comparable.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub design: Option<Design>,
+    /// What is ranked by.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub goal: Option<Goal>,
+    /// The error that is good enough, if it was said: see [`Self::accuracy`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<f64>,
     /// The simulations.
     pub arms: Vec<Arm>,
     /// Statements to decide.
@@ -130,6 +150,66 @@ impl StudyManifest {
         let mut text = serde_json::to_vec_pretty(self).map_err(|e| RecordError::io("write", &path)(e.into()))?;
         text.push(b'\n');
         files::write_atomically(&path, &[&text])
+    }
+
+    /// The methods of a design, in order.
+    pub fn methods(&self) -> Vec<&str> {
+        let mut methods: Vec<&str> = Vec::new();
+        for method in self.arms.iter().filter_map(|a| a.part.method.as_deref()) {
+            if !methods.contains(&method) {
+                methods.push(method);
+            }
+        }
+        methods
+    }
+
+    /// The error that is good enough: 0.05 if nothing was said.
+    pub fn accuracy(&self) -> f64 {
+        self.accuracy.unwrap_or(0.05)
+    }
+
+    /// Numbers of the arms the reference is made of, the finest last: the three of a computed one; else the arm of that name, behind arms that differ
+    /// from it in a longer step alone.
+    fn reference_arms(&self) -> Vec<usize> {
+        let Some(named) = self.arms.iter().position(|a| self.reference.as_ref() == Some(&a.name)) else {
+            return Vec::new();
+        };
+        let others = |a: &Arm| {
+            let sets = a.sets.iter().filter(|s| !s.trim_start().starts_with("time.step")).cloned().collect::<Vec<_>>();
+            (sets, a.case_path.clone(), a.part.fine)
+        };
+        let size = |i: &usize| step(&self.arms[*i], "time.step").unwrap_or_default();
+        let alike = |i: &usize| others(&self.arms[*i]) == others(&self.arms[named]) && size(i) >= size(&named);
+        let mut found: Vec<usize> = (0..self.arms.len()).filter(alike).collect();
+        found.sort_by(|a, b| size(b).total_cmp(&size(a)));
+        found.split_off(found.len().saturating_sub(3))
+    }
+
+    /// What arms are compared with.
+    ///
+    /// # Errors
+    /// What the machine refused, or where a record is damaged.
+    fn reference(&self, directory: &Path) -> Result<Option<Reference>, RecordError> {
+        if self.reference.as_deref() == Some("exact") {
+            let Some(case) = self.arms.first().map(|a| &a.case) else { return Ok(None) };
+            let formulas = case.get("exact").and_then(|e| serde_json::from_value(e.clone()).ok()).unwrap_or_default();
+            let end = case.pointer("/time/end").and_then(serde_json::Value::as_f64).unwrap_or_default();
+            return Ok(Reference::of_formulas(&formulas, end, 8000));
+        }
+        let mut runs = Vec::new();
+        let arms = self.reference_arms();
+        for i in &arms {
+            if self.state(directory, &self.arms[*i])?.0 == Some(Status::Finished) {
+                let run = Run::open(&directory.join(&self.arms[*i].directory))?;
+                runs.push(Kept::of(&run, &metrics::of_run(&run)));
+            }
+        }
+        let Some(last) = arms.last().filter(|_| runs.len() == arms.len()) else { return Ok(None) };
+        let count = match runs.len() {
+            1 => "one run: its error is not known".to_owned(),
+            n => format!("the finest of {n} runs whose steps double"),
+        };
+        Ok(Some(Reference::of_runs(format!("\"{}\", {count}", self.arms[*last].name), runs)))
     }
 
     /// The case file and the changes an arm is made of.
@@ -188,6 +268,14 @@ pub struct Study {
     pub verdicts: Vec<Verdict>,
     /// What was expected of the study as a whole; an order may have one per group of arms.
     pub expectations: Vec<Expectation>,
+    /// What arms were compared with, if it is finished.
+    pub reference: Option<Reference>,
+    /// Arms held against it.
+    pub compared: Vec<Option<Compared>>,
+    /// Orders of the methods of a design, in smooth phases and across the impact.
+    pub phase_orders: Vec<PhaseOrders>,
+    /// The ranking, where the study has a goal.
+    pub ranking: Option<Ranking>,
 }
 
 impl Study {
@@ -203,21 +291,29 @@ impl Study {
         let questions: Vec<&Question> = claimed.chain(asked.iter().flatten()).collect();
         let series: Vec<&Series> = series.iter().flatten().collect();
         let mut records = ArmRecords::default();
-        let mut rows = Vec::new();
+        let reference = manifest.reference(directory)?;
+        let contact = reference.as_ref().and_then(|r| {
+            let time = |name: &str| r.metric(name).established().map(|x| x.0);
+            time("contact_start").zip(time("contact_end"))
+        });
+        let (mut rows, mut compared) = (Vec::new(), Vec::new());
         for (i, arm) in manifest.arms.iter().enumerate() {
             let (status, reason) = manifest.state(directory, arm)?;
-            let (mut metrics, mut expectations, mut contact) = (Vec::new(), Vec::new(), false);
+            let (mut metrics, mut expectations, mut touched) = (Vec::new(), Vec::new(), false);
+            let mut held = None;
             if status.is_some() {
                 let run = Run::open(&directory.join(&arm.directory))?;
                 visit(i, &run);
                 if status == Some(Status::Finished) {
                     metrics = metrics::of_run(&run);
+                    held = reference.as_ref().map(|r| Compared::of(&Kept::of(&run, &[]), r, contact));
                 }
                 records.gather(&arm.name, &run, &metrics, &questions, &series);
                 expectations = judge(&run, &arm.expects());
-                contact = run.had_dynamic_contact();
+                touched = run.had_dynamic_contact();
             }
-            rows.push(Row { name: arm.name.clone(), status, reason, metrics, expectations, contact });
+            compared.push(held);
+            rows.push(Row { name: arm.name.clone(), status, reason, metrics, expectations, contact: touched });
         }
         let verdicts =
             manifest.claims.iter().zip(&comparisons).map(|(claim, c)| Verdict::of(claim, c.as_ref(), &records));
@@ -225,8 +321,11 @@ impl Study {
             Some(order) => orders::judge(expect, order, &manifest, &records),
             None => vec![expect.verdict(expect.got(&records))],
         });
-        let expectations = judged.collect();
-        Ok(Self { expectations, directory: directory.to_path_buf(), verdicts: verdicts.collect(), rows, manifest })
+        let (expectations, verdicts) = (judged.collect(), verdicts.collect());
+        let ranking = manifest.goal.map(|goal| Ranking::of(goal, &manifest, &rows, &compared, reference.as_ref()));
+        let phase_orders = reference.as_ref().map(|r| phase_orders(&manifest, &compared, r)).unwrap_or_default();
+        let directory = directory.to_path_buf();
+        Ok(Self { directory, manifest, rows, verdicts, expectations, reference, compared, phase_orders, ranking })
     }
 
     /// Every metric any arm has, in order: name, unit, definition.
@@ -239,4 +338,19 @@ impl Study {
         }
         found
     }
+}
+
+/// Orders of every method of a design in the columns that tell where things are.
+fn phase_orders(manifest: &StudyManifest, compared: &[Option<Compared>], reference: &Reference) -> Vec<PhaseOrders> {
+    let mut found = Vec::new();
+    for method in manifest.methods() {
+        let arms = manifest.arms.iter().zip(compared).filter(|(a, _)| a.part.method.as_deref() == Some(method));
+        let mut known: Vec<(f64, &Compared)> =
+            arms.filter_map(|(a, c)| Some((step(a, "time.step")?, c.as_ref()?))).collect();
+        known.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for column in reference.columns().into_iter().filter(|c| compared::is_trajectory(c)) {
+            found.extend(compared::phase_orders(method, column, &known, reference));
+        }
+    }
+    found
 }

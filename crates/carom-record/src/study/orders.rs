@@ -242,6 +242,7 @@ mod tests {
             directory: String::new(),
             sets: sets.iter().map(ToString::to_string).collect(),
             steps: 1,
+            part: super::super::design::Part::default(),
             case_path: None,
             case: serde_json::json!({ "time": { "step": 0.5 } }),
         }

@@ -1,6 +1,9 @@
 //! `study.csv`, `study_tidy.csv` and `claims.csv`. A value that is not there is an empty cell; numbers read back to the same bits.
 
+use super::ranking::standing;
+use super::reference::Standing;
 use super::{Study, Verdict};
+use crate::metrics::{Metric, WORK};
 use crate::{RecordError, Status, files};
 
 /// A status as tables name it.
@@ -38,6 +41,7 @@ impl Study {
         });
         self.write("study_tidy.csv", std::iter::once(header).chain(tidy))?;
 
+        self.write_ranking()?;
         if self.verdicts.is_empty() {
             return Ok(());
         }
@@ -46,6 +50,44 @@ impl Study {
             vec![v.claim.text.clone(), v.claim.compare.clone(), cell(v.left), cell(v.right), v.word().to_string()]
         };
         self.write("claims.csv", std::iter::once(header).chain(self.verdicts.iter().map(line)))
+    }
+
+    /// `reference.csv`: what every metric should be and how sure that is; `ranking.csv`: level, place and error of every arm.
+    fn write_ranking(&self) -> Result<(), RecordError> {
+        if let Some(reference) = &self.reference {
+            let header =
+                ["metric", "unit", "established", "value", "uncertainty", "why not"].map(String::from).to_vec();
+            let metrics = self.metrics().into_iter().filter(|m| !WORK.iter().any(|(d, _)| d.name == m.name));
+            let line = |m: &Metric| {
+                let end = match standing(Some(reference), &m.name) {
+                    Standing::Established { value, uncertainty } => {
+                        ["yes".to_owned(), cell(Some(value)), cell(Some(uncertainty)), String::new()]
+                    }
+                    Standing::Not(why) => ["no".to_owned(), String::new(), String::new(), why],
+                };
+                [m.name.to_string(), m.unit.clone()].into_iter().chain(end).collect()
+            };
+            self.write("reference.csv", std::iter::once(header).chain(metrics.map(line)))?;
+        }
+        let Some(ranking) = &self.ranking else { return Ok(()) };
+        let header = ["level", "place", "arm", "method", "step", "error", "cpu_time"].map(String::from).to_vec();
+        let lines = ranking.levels.iter().enumerate().flat_map(|(level, ranked)| {
+            ranked.iter().map(move |r| {
+                let arm = &self.manifest.arms[r.arm];
+                let (step, cpu) = (super::step(arm, "time.step"), self.rows[r.arm].value("cpu_time"));
+                let method = arm.part.method.clone().unwrap_or_default();
+                vec![
+                    level.to_string(),
+                    r.place.to_string(),
+                    arm.name.clone(),
+                    method,
+                    cell(step),
+                    cell(Some(r.error)),
+                    cell(cpu),
+                ]
+            })
+        });
+        self.write("ranking.csv", std::iter::once(header).chain(lines))
     }
 
     fn write(&self, name: &str, lines: impl Iterator<Item = Vec<String>>) -> Result<(), RecordError> {

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use carom_record::{ContactRow, Event, Manifest, RecordError, RunWriter, Source, Status};
+use cpu_time::ThreadTime;
 
 use super::columns::{center_weights, columns, row};
 use super::fields::{consistent_weights, field_set, gap_of, sides};
@@ -104,6 +105,8 @@ struct Session<'a, const D: usize> {
     first_step: u64,
     /// Wall seconds spent on writing.
     output: f64,
+    /// Processor seconds of this thread in steps.
+    cpu: f64,
     values: Vec<f64>,
 }
 
@@ -246,6 +249,7 @@ where
             began,
             first_step,
             output: 0.0,
+            cpu: 0.0,
             values: Vec::new(),
         }
     }
@@ -275,7 +279,9 @@ where
                 break;
             }
             let mut report = GridReport::default();
+            let busy = ThreadTime::now();
             let advanced = self.simulation.advance(&mut report);
+            self.cpu += busy.elapsed().as_secs_f64();
             let step = self.simulation.state.step + u64::from(advanced.is_err());
             for event in &report.events {
                 self.writer.log(&entry(&self.simulation.model, step, event))?;
@@ -410,9 +416,12 @@ where
         };
         let spent = self.simulation.timings();
         let phases = [("assembly", spent.assembly), ("contact", spent.contact), ("factor", spent.factor)];
-        for (phase, seconds) in
-            phases.into_iter().chain([("solve", spent.solve), ("output", self.output), ("total", wall)])
-        {
+        for (phase, seconds) in phases.into_iter().chain([
+            ("solve", spent.solve),
+            ("output", self.output),
+            ("cpu", self.cpu),
+            ("total", wall),
+        ]) {
             *manifest.timings.entry(phase.into()).or_default() += seconds;
         }
         manifest.counters.insert("steps".into(), state.step);

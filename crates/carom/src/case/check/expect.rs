@@ -1,6 +1,6 @@
 //! What expectations ask for must be in the record: columns, metrics, times of the run.
 
-use carom_record::question::{Form, Quantity, Question, Series, metric_names};
+use carom_record::question::{Form, Quantity, Question, Series, column_metric_names, metric_names};
 
 use super::super::document::joined;
 use super::super::suggest;
@@ -15,8 +15,14 @@ impl Check<'_> {
             && draft.bodies.iter().all(Option::is_some)
             && draft.contacts.iter().all(Option::is_some)
             && draft.supports.iter().all(Option::is_some);
-        let known =
-            columns::of(draft.dimension.unwrap_or(2), &draft.bodies, &draft.contacts, &draft.supports, &draft.probes);
+        let known = columns::of(
+            draft.dimension.unwrap_or(2),
+            &draft.bodies,
+            &draft.contacts,
+            &draft.supports,
+            &draft.probes,
+            self.document.root().get("manufactured").is_some(),
+        );
         let end = draft.time.as_ref().map_or(f64::INFINITY, |t| t.end);
         for column in draft.exact.keys().filter(|column| complete && !known.contains(column)) {
             self.no_column(joined("exact", column), column, &known);
@@ -48,7 +54,10 @@ impl Check<'_> {
                     Quantity::Metric(name, arm) => {
                         arms.extend(arm);
                         match name.rsplit_once(':') {
-                            Some((column, "min" | "max" | "roughness")) => wanted.push(column.to_owned()),
+                            Some(("energy_lost", _)) => {}
+                            Some((column, what)) if column_metric_names().contains(&what) => {
+                                wanted.push(column.to_owned())
+                            }
                             _ => self.metric(&name, &known, &path),
                         }
                     }

@@ -1,0 +1,87 @@
+//! A column held against a reference's. The reference is taken linear between its rows; only rows within its span count.
+//!
+//! ```text
+//! deviation          √( mean (c_i − r(t_i))² ) / range of r
+//! phase shift        the τ that minimises Σ (c_i − r(t_i − τ))², by Gauss and Newton; positive: late
+//! excess variation   TV(c) / TV(r) − 1
+//! ```
+
+use super::{at, extreme, total_variation};
+
+/// Root mean square deviation over the range of the reference.
+pub fn deviation(times: &[f64], values: &[f64], reference: (&[f64], &[f64])) -> Option<f64> {
+    let range = extreme(reference.1, f64::gt)?.1 - extreme(reference.1, f64::lt)?.1;
+    let squares =
+        times.iter().zip(values).filter_map(|(&t, c)| at(reference.0, reference.1, t).map(|r| (c - r).powi(2)));
+    let (sum, rows) = squares.fold((0.0, 0_u32), |(sum, n), x| (sum + x, n + 1));
+    let value = (sum / f64::from(rows)).sqrt() / range;
+    value.is_finite().then_some(value)
+}
+
+/// By how much a column is late; none where the iteration does not settle within a quarter of the span.
+pub fn phase_shift(times: &[f64], values: &[f64], reference: (&[f64], &[f64])) -> Option<f64> {
+    let span = times.last()? - times.first()?;
+    let width = 1e-3 * span;
+    let mut shift = 0.0;
+    for _ in 0..50 {
+        let (mut along, mut steep) = (0.0, 0.0);
+        for (t, c) in times.iter().zip(values) {
+            let r = |t: f64| at(reference.0, reference.1, t);
+            let Some(((before, here), after)) = r(t - shift - width).zip(r(t - shift)).zip(r(t - shift + width)) else {
+                continue;
+            };
+            let slope = (after - before) / (2.0 * width);
+            along += (c - here) * slope;
+            steep += slope * slope;
+        }
+        let change = -along / steep;
+        shift += change;
+        if !shift.is_finite() || shift.abs() > 0.25 * span {
+            return None;
+        }
+        if change.abs() <= 1e-9 * span {
+            return Some(shift);
+        }
+    }
+    None
+}
+
+/// Total variation beyond the reference's.
+pub fn excess_variation(values: &[f64], reference: &[f64]) -> Option<f64> {
+    let needed = total_variation(reference);
+    (needed > 0.0).then(|| total_variation(values) / needed - 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sampled(n: u32, f: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
+        let times: Vec<f64> = (0..=n).map(|i| 10.0 * f64::from(i) / f64::from(n)).collect();
+        let values = times.iter().map(|t| f(*t)).collect();
+        (times, values)
+    }
+
+    /// A sine that is late by 0.05, and one that is early, on other rows than the reference's.
+    #[test]
+    fn a_late_sine_is_late() {
+        let reference = sampled(4000, f64::sin);
+        for late in [0.05, -0.2, 0.0] {
+            let (t, c) = sampled(333, |t| (t - late).sin());
+            let found = phase_shift(&t, &c, (&reference.0, &reference.1)).unwrap();
+            assert!((found - late).abs() < 2e-6, "{found} for {late}");
+        }
+        assert_eq!(phase_shift(&[0.0, 1.0], &[1.0, 1.0], (&[0.0, 1.0], &[1.0, 1.0])), None);
+    }
+
+    /// r = t on [0, 10] and c = t + 2: deviation 2 of the range 10. Up and down by 3 twice, against once: twice the variation.
+    #[test]
+    fn deviation_and_excess_by_hand() {
+        let reference = sampled(10, |t| t);
+        let (t, c) = sampled(7, |t| t + 2.0);
+        assert!((deviation(&t, &c, (&reference.0, &reference.1)).unwrap() - 0.2).abs() < 1e-15);
+        assert_eq!(deviation(&t, &c, (&[0.0, 10.0], &[1.0, 1.0])), None);
+        assert_eq!(excess_variation(&[0.0, 3.0, 0.0, 3.0, 0.0], &[0.0, 1.0, 3.0, 0.0]), Some(1.0));
+        assert_eq!(excess_variation(&[0.0, 1.0], &[1.0, 1.0]), None);
+    }
+}

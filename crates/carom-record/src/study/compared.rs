@@ -1,0 +1,154 @@
+//! An arm held against the reference: columns by their deviation, as a whole and in the smooth phases before and after the first contact; how late it is.
+
+use super::reference::{FORCE, Kept, Reference, Standing};
+use crate::metrics::{self, phase_shift};
+use crate::order::from_errors;
+
+/// A column of an arm against the reference's, relative to the range of the reference.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Deviated {
+    /// The column.
+    pub column: String,
+    /// Root mean square over all rows.
+    pub whole: Option<f64>,
+    /// Over the rows before the first contact of the reference.
+    pub before: Option<f64>,
+    /// Over the rows after it.
+    pub after: Option<f64>,
+}
+
+/// An arm compared.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Compared {
+    /// Its columns.
+    pub columns: Vec<Deviated>,
+    /// The column whose phase was compared, and by how much it is late.
+    pub late: Option<(String, f64)>,
+}
+
+/// Whether a column tells where things are: displacements and centres.
+pub fn is_trajectory(column: &str) -> bool {
+    column.rsplit('.').next().is_some_and(|q| ["ux", "uy", "center_x", "center_y"].contains(&q))
+}
+
+/// Whether a column is a stress.
+pub fn is_stress(column: &str) -> bool {
+    column.rsplit('.').next().is_some_and(|q| q.starts_with("sigma_") || q == "von_mises")
+}
+
+impl Compared {
+    /// Holds an arm against a reference whose first contact lasts over `contact`.
+    pub fn of(arm: &Kept, reference: &Reference, contact: Option<(f64, f64)>) -> Self {
+        let deviated = |(column, values): (&String, &Vec<f64>)| {
+            let known = reference.column(column)?;
+            let within = |from: f64, to: f64| {
+                let rows = arm.times.partition_point(|t| *t < from)..arm.times.partition_point(|t| *t < to);
+                metrics::deviation(&arm.times[rows.clone()], &values[rows], known)
+            };
+            Some(Deviated {
+                column: column.clone(),
+                whole: within(f64::NEG_INFINITY, f64::INFINITY),
+                before: contact.and_then(|(start, _)| within(f64::NEG_INFINITY, start)),
+                after: contact.and_then(|(_, end)| within(end, f64::INFINITY)),
+            })
+        };
+        let columns: Vec<Deviated> = arm.columns.iter().filter_map(deviated).collect();
+        let main = columns.iter().filter(|c| is_trajectory(&c.column)).find_map(|c| {
+            let late = phase_shift(&arm.times, arm.columns.get(&c.column)?, reference.column(&c.column)?)?;
+            Some((c.column.clone(), late))
+        });
+        Self { columns, late: main }
+    }
+
+    /// Deviation of a column.
+    pub fn column(&self, name: &str) -> Option<&Deviated> {
+        self.columns.iter().find(|c| c.column == name)
+    }
+
+    /// Root mean square of the deviations of some columns.
+    pub fn mean(&self, columns: &[&str]) -> Option<f64> {
+        let squares: Option<Vec<f64>> = columns.iter().map(|c| Some(self.column(c)?.whole?.powi(2))).collect();
+        squares.filter(|s| !s.is_empty()).map(|s| (s.iter().sum::<f64>() / s.len() as f64).sqrt())
+    }
+}
+
+/// The orders a method shows in a column at its two finest levels: while motion is smooth before the first contact, and after it, across the impact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhaseOrders {
+    /// The method.
+    pub method: String,
+    /// The column.
+    pub column: String,
+    /// Before the contact.
+    pub smooth: Result<f64, String>,
+    /// After it.
+    pub across: Result<f64, String>,
+}
+
+/// Orders from errors against the reference; an error within three times its uncertainty gives none.
+pub fn phase_orders(
+    method: &str,
+    column: &str,
+    arms: &[(f64, &Compared)],
+    reference: &Reference,
+) -> Option<PhaseOrders> {
+    let [.., (h1, coarse), (h2, fine)] = arms else { return None };
+    let uncertainty = match reference.uncertainty(column) {
+        Standing::Established { uncertainty, .. } => Ok(uncertainty),
+        Standing::Not(why) => Err(why),
+    };
+    let order = |of: fn(&Deviated) -> Option<f64>| {
+        let errors = [coarse, fine].map(|c| c.column(column).and_then(of));
+        let [Some(before), Some(after)] = errors else { return Err("there are no such rows".to_owned()) };
+        let uncertainty = uncertainty.clone()?;
+        if after <= 1e-9 {
+            return Err("exact but for round-off".to_owned());
+        }
+        if after <= 3.0 * uncertainty {
+            return Err(format!("its error, {after:.1e}, is within three times the reference's, {uncertainty:.1e}"));
+        }
+        from_errors([*h1, *h2], [before, after])
+    };
+    Some(PhaseOrders {
+        method: method.to_owned(),
+        column: column.to_owned(),
+        smooth: order(|d| d.before),
+        across: order(|d| d.after),
+    })
+}
+
+/// The columns of a reference that tell where things are and are established.
+pub fn established<'a>(reference: &'a Reference, kind: fn(&str) -> bool) -> Vec<&'a str> {
+    let known =
+        |c: &&str| *c != FORCE && kind(c) && reference.uncertainty(c).established().is_some() && varies(reference, c);
+    reference.columns().into_iter().filter(known).collect()
+}
+
+fn varies(reference: &Reference, column: &str) -> bool {
+    reference.column(column).is_some_and(|(_, values)| values.iter().any(|v| *v != values[0]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kept(n: u32, f: impl Fn(f64) -> f64) -> Kept {
+        let times: Vec<f64> = (0..=n).map(|i| f64::from(i) / f64::from(n)).collect();
+        let values = times.iter().map(|t| f(*t)).collect();
+        Kept { times, columns: [("A.uy".to_owned(), values)].into(), metrics: Vec::new() }
+    }
+
+    /// Errors made by hand: h² before t = 1/2, h after it; against three identical runs.
+    #[test]
+    fn orders_of_the_phases() {
+        let exact = || kept(64, |t| t);
+        let reference = Reference::of_runs("r".into(), vec![exact(), exact(), exact()]);
+        let arm =
+            |h: f64| Compared::of(&kept(32, |t| t + if t < 0.5 { h * h } else { h }), &reference, Some((0.5, 0.5)));
+        let (coarse, fine) = (arm(0.1), arm(0.05));
+        let orders = phase_orders("m", "A.uy", &[(0.1, &coarse), (0.05, &fine)], &reference).unwrap();
+        assert!((orders.smooth.unwrap() - 2.0).abs() < 1e-9 && (orders.across.unwrap() - 1.0).abs() < 1e-9);
+        assert_eq!(established(&reference, is_trajectory), ["A.uy"]);
+        assert!(is_stress("B.sigma_yy") && is_stress("B.von_mises") && !is_stress("B.uy"));
+    }
+}

@@ -1,0 +1,371 @@
+//! Which arm serves the goal best, how sure that is, and what it costs and distorts.
+//!
+//! Every goal has measures, the first established of which ranks. The error of an arm is |m − r|/|r| (|m| where r = 0) of a metric, or the root mean
+//! square deviation of columns. Arms are ranked within a level only: the same step or the same cost. Methods are ordered by their mean rank over the
+//! levels; two arms of a level whose errors differ by no more than the uncertainty of the reference, or by 5 %, are not told apart.
+
+use super::compared::{Compared, established, is_stress, is_trajectory};
+use super::design::{Goal, Kind};
+use super::reference::{IDEAL, Reference, Standing};
+use super::{Row, StudyManifest};
+
+/// Errors closer than this are not told apart.
+const ALIKE: f64 = 0.05;
+
+/// What ranks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measure {
+    /// Name of the metric, or of what was made of columns.
+    pub name: String,
+    /// In words.
+    pub words: String,
+    /// How far the errors may be off.
+    pub uncertainty: f64,
+    /// Measures that stood before it, and why they do not rank.
+    pub passed_over: Vec<(String, String)>,
+}
+
+/// An arm in its level.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ranked {
+    /// Number of the arm.
+    pub arm: usize,
+    /// Its error.
+    pub error: f64,
+    /// Place, from 1; arms not told apart share one.
+    pub place: usize,
+}
+
+/// How much a verdict bears.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd)]
+pub enum Confidence {
+    /// The order may be chance.
+    Low,
+    /// It holds here.
+    Medium,
+    /// It holds at every level, by more than all uncertainties.
+    High,
+}
+
+impl Confidence {
+    /// In a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Low => "low",
+            Self::Medium => "medium",
+            Self::High => "high",
+        }
+    }
+}
+
+/// The recommendation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// The recommended arm.
+    pub arm: usize,
+    /// Methods, or arms where there are none, not told apart from it.
+    pub alike: Vec<String>,
+    /// Why.
+    pub reasons: Vec<String>,
+    /// How sure.
+    pub confidence: Confidence,
+    /// Why so.
+    pub confidence_reasons: Vec<String>,
+}
+
+/// A study ranked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ranking {
+    /// By what.
+    pub goal: Goal,
+    /// The measure; or why there is none.
+    pub measure: Result<Measure, String>,
+    /// Per level, the best first.
+    pub levels: Vec<Vec<Ranked>>,
+    /// None where nothing can be ranked.
+    pub verdict: Option<Verdict>,
+}
+
+/// What a goal may rank by, in order.
+enum Candidate {
+    Metric(&'static str),
+    Columns(&'static str, fn(&str) -> bool),
+    /// `:variation` of the columns.
+    Variations(fn(&str) -> bool),
+}
+
+fn candidates(goal: Goal) -> Vec<Candidate> {
+    match goal {
+        Goal::Energy => vec![Candidate::Metric("energy_drift")],
+        Goal::Force => ["force_variation", "force_high_frequency", "peak_mean_force", "impulse_y", "impulse_x"]
+            .map(Candidate::Metric)
+            .into(),
+        Goal::Stress => vec![Candidate::Variations(is_stress), Candidate::Columns("stresses", is_stress)],
+        Goal::Trajectory | Goal::Cost => vec![Candidate::Columns("displacements", is_trajectory)],
+    }
+}
+
+/// What a metric is compared with.
+pub fn standing(reference: Option<&Reference>, metric: &str) -> Standing {
+    if IDEAL.contains(&metric) {
+        return Standing::Established { value: 0.0, uncertainty: 0.0 };
+    }
+    reference.map_or_else(|| Standing::Not("the study has no reference".to_owned()), |r| r.metric(metric))
+}
+
+/// |m − r|, relative where r is not 0.
+pub fn error(value: f64, right: f64) -> f64 {
+    if right == 0.0 { value.abs() } else { ((value - right) / right).abs() }
+}
+
+struct Judge<'a> {
+    rows: &'a [Row],
+    compared: &'a [Option<Compared>],
+    reference: Option<&'a Reference>,
+}
+
+impl Judge<'_> {
+    /// The measure a candidate gives with the errors of all arms, or why not.
+    fn measured(&self, candidate: &Candidate) -> Result<(Measure, Vec<Option<f64>>), (String, String)> {
+        let measure = |name: &str, words: String, uncertainty: f64| Measure {
+            name: name.into(),
+            words,
+            uncertainty,
+            passed_over: Vec::new(),
+        };
+        match candidate {
+            Candidate::Metric(name) => match standing(self.reference, name) {
+                Standing::Not(why) => Err(((*name).to_owned(), why)),
+                Standing::Established { value, uncertainty } => {
+                    let errors = self.rows.iter().map(|row| row.value(name).map(|x| error(x, value))).collect();
+                    let words =
+                        if value == 0.0 { format!("{name}, which should be 0") } else { format!("error of {name}") };
+                    Ok((
+                        measure(name, words, if value == 0.0 { uncertainty } else { (uncertainty / value).abs() }),
+                        errors,
+                    ))
+                }
+            },
+            Candidate::Columns(name, kind) => {
+                let Some(reference) = self.reference else {
+                    return Err(((*name).to_owned(), "the study has no reference".to_owned()));
+                };
+                let columns = established(reference, *kind);
+                if columns.is_empty() {
+                    return Err(((*name).to_owned(), "the reference establishes no such column".to_owned()));
+                }
+                let squares = columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
+                let uncertainty = (squares.sum::<f64>() / columns.len() as f64).sqrt();
+                let errors = self.compared.iter().map(|c| c.as_ref().and_then(|c| c.mean(&columns))).collect();
+                let words = format!("deviation of {} from the reference, over their range", columns.join(", "));
+                Ok((measure(&format!("deviation of {name}"), words, uncertainty), errors))
+            }
+            Candidate::Variations(kind) => {
+                let none = |why: &str| Err(("variation of stresses".to_owned(), why.to_owned()));
+                let Some(reference) = self.reference else { return none("the study has no reference") };
+                let names = reference.columns().into_iter().filter(|c| kind(c)).map(|c| format!("{c}:variation"));
+                let known: Vec<(String, f64, f64)> = names
+                    .filter_map(|n| {
+                        let (value, off) = reference.metric(&n).established().filter(|(v, _)| *v > 0.0)?;
+                        Some((n, value, off / value))
+                    })
+                    .collect();
+                if known.is_empty() {
+                    return none("the refinement of the reference does not establish it for any stress");
+                }
+                let mean = |row: &Row| {
+                    let each: Option<Vec<f64>> =
+                        known.iter().map(|(n, right, _)| row.value(n).map(|x| error(x, *right))).collect();
+                    each.map(|e| e.iter().sum::<f64>() / e.len() as f64)
+                };
+                let uncertainty = known.iter().map(|k| k.2).fold(0.0, f64::max);
+                let words = format!("error of {}", known.iter().map(|k| k.0.as_str()).collect::<Vec<_>>().join(", "));
+                Ok((measure("variation of stresses", words, uncertainty), self.rows.iter().map(mean).collect()))
+            }
+        }
+    }
+}
+
+impl Ranking {
+    /// Ranks the arms of a study.
+    pub(super) fn of(
+        goal: Goal,
+        manifest: &StudyManifest,
+        rows: &[Row],
+        compared: &[Option<Compared>],
+        reference: Option<&Reference>,
+    ) -> Self {
+        let judge = Judge { rows, compared, reference };
+        let mut passed_over = Vec::new();
+        let mut found = None;
+        for candidate in candidates(goal) {
+            match judge.measured(&candidate) {
+                Ok(measured) => {
+                    found = Some(measured);
+                    break;
+                }
+                Err(why) => passed_over.push(why),
+            }
+        }
+        let Some((measure, mut errors)) = found else {
+            let why = passed_over.iter().map(|(name, why)| format!("{name}: {why}")).collect::<Vec<_>>().join("; ");
+            return Self { goal, measure: Err(why), levels: Vec::new(), verdict: None };
+        };
+        let mut measure = Measure { passed_over, ..measure };
+        if goal == Goal::Cost {
+            // What is accurate enough, by its work.
+            let works = rows.iter().map(|r| r.value("cpu_time"));
+            errors =
+                errors.iter().zip(works).map(|(e, work)| e.filter(|e| *e <= manifest.accuracy()).and(work)).collect();
+            measure.words =
+                format!("processor time of arms whose {} is at most {}", measure.words, manifest.accuracy());
+            measure.uncertainty = 0.0;
+        }
+        let count = manifest.arms.iter().map(|a| a.part.level + 1).max().unwrap_or(0);
+        let level = |level: usize| {
+            let arms = manifest.arms.iter().enumerate().filter(|(_, a)| a.part.level == level && !a.part.fine);
+            let not_reference = arms.filter(|(_, a)| manifest.reference.as_ref() != Some(&a.name));
+            let mut ranked: Vec<Ranked> =
+                not_reference.filter_map(|(i, _)| Some(Ranked { arm: i, error: errors[i]?, place: 0 })).collect();
+            ranked.sort_by(|a, b| a.error.total_cmp(&b.error));
+            places(&mut ranked, measure.uncertainty);
+            ranked
+        };
+        let levels: Vec<Vec<Ranked>> = (0..count).map(level).collect();
+        let verdict = verdict(goal, manifest, &measure, &levels);
+        Self { goal, measure: Ok(measure), levels, verdict }
+    }
+}
+
+fn alike(a: f64, b: f64, uncertainty: f64) -> bool {
+    (a - b).abs() <= f64::max(uncertainty, ALIKE * f64::min(a, b))
+}
+
+/// Places: an arm shares that of the first arm of its group while it is not told apart from it.
+fn places(ranked: &mut [Ranked], uncertainty: f64) {
+    let mut first = 0;
+    for i in 0..ranked.len() {
+        if !alike(ranked[first].error, ranked[i].error, uncertainty) {
+            first = i;
+        }
+        ranked[i].place = first + 1;
+    }
+}
+
+fn verdict(goal: Goal, manifest: &StudyManifest, measure: &Measure, levels: &[Vec<Ranked>]) -> Option<Verdict> {
+    let name = |arm: usize| manifest.arms[arm].part.method.as_ref().unwrap_or(&manifest.arms[arm].name);
+    let full: Vec<&Vec<Ranked>> = levels.iter().filter(|l| !l.is_empty()).collect();
+    let mut methods: Vec<&String> = Vec::new();
+    for ranked in full.iter().flat_map(|l| l.iter()) {
+        if !methods.contains(&name(ranked.arm)) {
+            methods.push(name(ranked.arm));
+        }
+    }
+    // An arm that is missing at a level comes behind all that are there.
+    let places = |method: &String| {
+        let place =
+            |l: &&Vec<Ranked>| l.iter().find(|r| name(r.arm) == method).map_or(manifest.arms.len() + 1, |r| r.place);
+        full.iter().map(place).sum::<usize>() as f64 / full.len() as f64
+    };
+    let finest = |method: &String| {
+        full.iter().rev().find_map(|l| l.iter().find(|r| name(r.arm) == method)).map_or(f64::INFINITY, |r| r.error)
+    };
+    methods.sort_by(|a, b| places(a).total_cmp(&places(b)).then(finest(a).total_cmp(&finest(b))));
+    let best = *methods.first()?;
+    let alike_ones: Vec<String> =
+        methods[1..].iter().filter(|m| places(m) <= places(best)).map(|m| (*m).clone()).collect();
+    let mine: Vec<&Ranked> = full.iter().filter_map(|l| l.iter().find(|r| name(r.arm) == best)).collect();
+    let accuracy = manifest.accuracy();
+    let chosen = match goal {
+        Goal::Cost => mine.iter().min_by(|a, b| a.error.total_cmp(&b.error)),
+        _ => mine.iter().find(|r| r.error <= accuracy).or(mine.last()),
+    }?;
+    let first_at = full.iter().filter(|l| l.iter().any(|r| r.place == 1 && name(r.arm) == best)).count();
+    let mut reasons = vec![format!("{}: {:.3e}", measure.words, chosen.error)];
+    let others = full
+        .iter()
+        .flat_map(|l| l.iter())
+        .filter(|r| manifest.arms[r.arm].part.level == manifest.arms[chosen.arm].part.level);
+    if let Some(next) = others.filter(|r| name(r.arm) != best).min_by(|a, b| a.error.total_cmp(&b.error)) {
+        reasons.push(format!("the best of the others at the same level, {}: {:.3e}", name(next.arm), next.error));
+    }
+    reasons.push(format!("first at {first_at} of {} levels", full.len()));
+    if goal != Goal::Cost {
+        reasons.push(if chosen.error <= accuracy {
+            format!("the coarsest of its levels with an error of at most {accuracy}")
+        } else {
+            format!("its finest level; none has an error of at most {accuracy}")
+        });
+    }
+    let (confidence, confidence_reasons) = confidence(manifest, measure, &full, first_at, alike_ones.is_empty());
+    Some(Verdict { arm: chosen.arm, alike: alike_ones, reasons, confidence, confidence_reasons })
+}
+
+fn confidence(
+    manifest: &StudyManifest,
+    measure: &Measure,
+    levels: &[&Vec<Ranked>],
+    first_at: usize,
+    alone: bool,
+) -> (Confidence, Vec<String>) {
+    let (mut confidence, mut reasons) = (Confidence::High, Vec::new());
+    let mut at_most = |most: Confidence, why: String| {
+        if most < confidence {
+            confidence = most;
+        }
+        reasons.push(why);
+    };
+    if !alone {
+        at_most(
+            Confidence::Low,
+            format!(
+                "others are not told apart from it: errors closer than {:.1e} or {} %",
+                measure.uncertainty,
+                100.0 * ALIKE
+            ),
+        );
+    }
+    if first_at < levels.len() {
+        at_most(Confidence::Low, format!("it is first at {first_at} of {} levels only", levels.len()));
+    }
+    if levels.len() < 2 {
+        at_most(Confidence::Medium, "there is one level only: another step may order them otherwise".to_owned());
+    }
+    if !measure.passed_over.is_empty() {
+        let names: Vec<&str> = measure.passed_over.iter().map(|(name, _)| name.as_str()).collect();
+        at_most(Confidence::Medium, format!("{} would say more, and no refinement establishes it", names.join(", ")));
+    }
+    match manifest.design.as_ref().map(|d| d.kind) {
+        None => {
+            at_most(Confidence::Low, "the arms were not made comparable: no `design` matches steps or cost".to_owned())
+        }
+        Some(Kind::MatchedStep) => {}
+        Some(Kind::MatchedCost) => {}
+    }
+    if reasons.is_empty() {
+        reasons.push("it is first at every level, by more than the uncertainty of the reference and 5 %".to_owned());
+    }
+    (confidence, reasons)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 1.00 and 1.04 share a place, 1.2 does not; with an uncertainty of 0.3 all do.
+    #[test]
+    fn places_are_shared() {
+        let of = |uncertainty: f64| {
+            let mut ranked: Vec<Ranked> =
+                [1.0, 1.04, 1.2].iter().enumerate().map(|(arm, e)| Ranked { arm, error: *e, place: 0 }).collect();
+            places(&mut ranked, uncertainty);
+            ranked.iter().map(|r| r.place).collect::<Vec<_>>()
+        };
+        assert_eq!((of(0.0), of(0.3)), (vec![1, 1, 3], vec![1, 1, 1]));
+    }
+
+    #[test]
+    fn errors_are_relative_but_for_zero() {
+        assert_eq!((error(-0.5, 0.0), error(3.0, -2.0), error(2.0, 2.0)), (0.5, 2.5, 0.0));
+    }
+}

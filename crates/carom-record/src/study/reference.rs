@@ -1,0 +1,258 @@
+//! What a study holds its arms against, and how far that can be trusted.
+//!
+//! ```text
+//! computed    three runs at h, 2h and 4h; value f(h), uncertainty |f(h) − f(2h)|
+//!             established where |f(h) − f(2h)| ≤ 0.7 |f(2h) − f(4h)|, or ≤ 1 % of |f(h)|
+//! an arm      the same with those arms that differ from it in the step alone; with one run there is no uncertainty, and nothing is established
+//! exact       the formulas of [exact]; of metrics, those that can be computed from columns it gives; uncertainty 0
+//! ideal       what elastic bodies do: energies changed or dissipated 0, penetration 0
+//! ```
+//!
+//! A column is established likewise, with the deviation of f(2h) from f(h) as its uncertainty. What is not established is never ranked on.
+
+use std::collections::BTreeMap;
+
+use carom_formula::Formula;
+
+use crate::metrics::{self, Metric};
+use crate::{Column, History, Run};
+
+/// The share by which the difference of runs must fall with the step.
+pub const FALL: f64 = 0.7;
+/// A difference that counts as none, relative to the value.
+pub const SMALL: f64 = 0.01;
+
+/// Metrics whose right value is zero, whatever the case.
+pub const IDEAL: [&str; 8] = [
+    "energy_lost",
+    "energy_created",
+    "energy_drift",
+    "energy_lost_impact",
+    "dissipated_integrator",
+    "dissipated_contact",
+    "penetration",
+    "penetration_mean",
+];
+
+/// A number to compare with, or why there is none.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Standing {
+    /// It can be ranked on.
+    Established {
+        /// The value.
+        value: f64,
+        /// How far it may be off.
+        uncertainty: f64,
+    },
+    /// It cannot.
+    Not(String),
+}
+
+impl Standing {
+    /// Value and uncertainty.
+    pub fn established(&self) -> Option<(f64, f64)> {
+        match self {
+            Self::Established { value, uncertainty } => Some((*value, *uncertainty)),
+            Self::Not(_) => None,
+        }
+    }
+
+    /// From values at falling steps, the finest last.
+    pub fn of(values: &[f64]) -> Self {
+        match *values {
+            [.., coarse, middle, fine] => {
+                let (before, last) = ((middle - coarse).abs(), (fine - middle).abs());
+                if last <= FALL * before || last <= SMALL * fine.abs() {
+                    Self::Established { value: fine, uncertainty: last }
+                } else {
+                    Self::Not(format!(
+                        "the last halving of the step changed it by {last:.2e}, the one before by {before:.2e}"
+                    ))
+                }
+            }
+            [middle, fine] if (fine - middle).abs() <= SMALL * fine.abs() => {
+                Self::Established { value: fine, uncertainty: (fine - middle).abs() }
+            }
+            [_, _] => Self::Not("two runs differ by more than 1 %, and there is no third".to_owned()),
+            _ => Self::Not("one run says nothing of its error".to_owned()),
+        }
+    }
+}
+
+/// What of a run is kept to compare with it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Kept {
+    /// Times of the rows.
+    pub times: Vec<f64>,
+    /// Columns of probes and of the striker's centre, and `force`, the size of the contact force.
+    pub columns: BTreeMap<String, Vec<f64>>,
+    /// The metrics.
+    pub metrics: Vec<Metric>,
+}
+
+/// The name under which the contact force's size is kept.
+pub const FORCE: &str = "contact force";
+
+impl Kept {
+    /// From a record.
+    pub fn of(run: &Run, metrics: &[Metric]) -> Self {
+        let history = &run.history;
+        let mut names: Vec<String> = metrics::probe_columns(run).into_iter().map(str::to_owned).collect();
+        if let Some(striker) = metrics::striker(history) {
+            names.extend(["x", "y"].map(|axis| format!("{striker}.center_{axis}")));
+        }
+        let columns = names.into_iter().filter_map(|name| {
+            let values = history.column(&name)?.to_vec();
+            Some((name, values))
+        });
+        let mut columns: BTreeMap<_, _> = columns.collect();
+        columns.insert(FORCE.to_owned(), metrics::contact_force(history));
+        Self { times: history.times().to_vec(), columns, metrics: metrics.to_vec() }
+    }
+
+    fn value(&self, metric: &str) -> Option<f64> {
+        self.metrics.iter().find(|m| m.name == metric)?.value
+    }
+}
+
+/// A reference.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reference {
+    /// In words, what it is.
+    pub what: String,
+    /// Its runs, the finest last; with exact formulas one made of them.
+    runs: Vec<Kept>,
+    exact: bool,
+}
+
+impl Reference {
+    /// Of runs at falling steps, the finest last.
+    pub fn of_runs(what: String, runs: Vec<Kept>) -> Self {
+        Self { what, runs, exact: false }
+    }
+
+    /// Of formulas in t by column, sampled at `rows` times from 0 to `end`.
+    pub fn of_formulas(formulas: &BTreeMap<String, String>, end: f64, rows: usize) -> Option<Self> {
+        let times: Vec<f64> = (0..=rows).map(|i| end * i as f64 / rows as f64).collect();
+        let mut columns = BTreeMap::new();
+        for (name, text) in formulas {
+            let formula = Formula::parse(text, &["t"]).ok()?;
+            columns.insert(name.clone(), times.iter().map(|t| formula.value(&[*t])).collect::<Vec<_>>());
+        }
+        let names = std::iter::once("time").chain(columns.keys().map(String::as_str));
+        let described = names.map(|name| Column {
+            name: name.into(),
+            unit: String::new(),
+            description: String::new(),
+            integer: false,
+        });
+        let values = std::iter::once(times.clone()).chain(columns.values().cloned());
+        let history = History::new(described.collect(), values.collect());
+        let mut known = metrics::all(&history);
+        for column in columns.keys() {
+            let of = metrics::COLUMNS.iter().map(|(d, value)| Metric {
+                name: format!("{column}:{}", d.name).into(),
+                value: value(&history, column),
+                unit: String::new(),
+                definition: d.meaning,
+            });
+            known.extend(of);
+        }
+        if history.column("contact_force_x").is_some() {
+            columns.insert(FORCE.to_owned(), metrics::contact_force(&history));
+        }
+        let kept = Kept { times, columns, metrics: known };
+        Some(Self { what: "the exact formulas of [exact]".to_owned(), runs: vec![kept], exact: true })
+    }
+
+    /// What a metric should be.
+    pub fn metric(&self, name: &str) -> Standing {
+        let values: Vec<Option<f64>> = self.runs.iter().map(|run| run.value(name)).collect();
+        if self.exact {
+            return match values.first() {
+                Some(Some(value)) => Standing::Established { value: *value, uncertainty: 0.0 },
+                _ => Standing::Not("[exact] has no columns to compute it from".to_owned()),
+            };
+        }
+        match values.into_iter().collect::<Option<Vec<f64>>>() {
+            Some(values) => Standing::of(&values),
+            None => Standing::Not("not every run of the reference has it".to_owned()),
+        }
+    }
+
+    /// Times and values of a column.
+    pub fn column(&self, name: &str) -> Option<(&[f64], &[f64])> {
+        let run = self.runs.last()?;
+        Some((&run.times, run.columns.get(name)?))
+    }
+
+    /// Names of its columns.
+    pub fn columns(&self) -> Vec<&str> {
+        self.runs.last().map_or_else(Vec::new, |run| run.columns.keys().map(String::as_str).collect())
+    }
+
+    /// Its deviation from itself at twice the step, if the runs establish the column.
+    pub fn uncertainty(&self, column: &str) -> Standing {
+        if self.exact {
+            return Standing::Established { value: 0.0, uncertainty: 0.0 };
+        }
+        let apart = |a: &Kept, b: &Kept| {
+            let (fine, coarse) = (b.columns.get(column)?, a.columns.get(column)?);
+            metrics::deviation(&a.times, coarse, (&b.times, fine))
+        };
+        let apart: Option<Vec<f64>> = self.runs.windows(2).map(|pair| apart(&pair[0], &pair[1])).collect();
+        match apart.as_deref() {
+            Some([.., before, last]) if *last <= FALL * before || *last <= SMALL => {
+                Standing::Established { value: 0.0, uncertainty: *last }
+            }
+            Some([.., before, last]) => Standing::Not(format!(
+                "the last halving of the step changed it by {last:.2e} of its range, the one before by {before:.2e}"
+            )),
+            Some([last]) if *last <= SMALL => Standing::Established { value: 0.0, uncertainty: *last },
+            Some([_]) => Standing::Not("two runs differ by more than 1 %, and there is no third".to_owned()),
+            _ => Standing::Not("one run says nothing of its error".to_owned()),
+        }
+    }
+
+    /// The band of a column at the times of the reference: its values and how far they may be off.
+    pub fn band(&self, column: &str) -> Vec<f64> {
+        let Some((times, values)) = self.column(column) else { return Vec::new() };
+        let before = self.runs.len().checked_sub(2).and_then(|i| self.runs.get(i));
+        let other = before.and_then(|run| Some((&run.times, run.columns.get(column)?)));
+        let off = |(t, v): (&f64, &f64)| {
+            other.and_then(|(times, values)| metrics::at(times, values, *t)).map_or(0.0, |x| (x - v).abs())
+        };
+        times.iter().zip(values).map(off).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: first order falls by half and counts; noise of the size of the difference does not; 1 % does.
+    #[test]
+    fn what_a_refinement_establishes() {
+        assert_eq!(Standing::of(&[1.4, 1.2, 1.1]), Standing::Established { value: 1.1, uncertainty: 1.2 - 1.1 });
+        assert!(matches!(Standing::of(&[1.4, 1.2, 1.4]), Standing::Not(_)));
+        assert_eq!(Standing::of(&[1.0, 1.0, 1.0 + 0.005]).established().map(|x| x.0), Some(1.005));
+        assert!(matches!(Standing::of(&[1.0]), Standing::Not(_)));
+        assert!(matches!(Standing::of(&[1.0, 1.1]), Standing::Not(_)));
+    }
+
+    /// The bar on a wall: force 300 from 0.5 to 7/6. Its variation is 600, its power all in low frequencies, its impulse a difference of the integral.
+    #[test]
+    fn metrics_of_exact_formulas() {
+        let formulas = [
+            ("active", "if(t >= 0.5, if(t < 7/6, 1, 0), 0)"),
+            ("contact_force_x", "if(t >= 0.5, if(t < 7/6, 300, 0), 0)"),
+            ("contact_impulse_x", "300*min(max(t-0.5,0),2/3)"),
+        ];
+        let formulas = formulas.map(|(name, text)| (name.to_owned(), text.to_owned())).into();
+        let reference = Reference::of_formulas(&formulas, 2.0, 2000).unwrap();
+        let value = |name: &str| reference.metric(name).established().unwrap();
+        assert_eq!(value("force_variation"), (600.0, 0.0));
+        assert!((value("impulse_x").0 - 200.0).abs() < 1e-9);
+        assert!(matches!(reference.metric("apex"), Standing::Not(_)));
+    }
+}

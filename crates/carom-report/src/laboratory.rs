@@ -1,0 +1,246 @@
+//! The figures of the integrator laboratory: what accuracy costs, what smoothness costs, each method's histories over the reference's band, and the theory
+//! of the schemes at the model's own frequencies.
+
+use carom_record::Status;
+use carom_record::study::compared::{established, is_trajectory};
+use carom_record::study::design::Goal;
+use carom_record::study::reference::{FORCE, Reference};
+use carom_record::study::{Study, step};
+
+use crate::labels::with_unit;
+use crate::plot::{Curve, Pane, Plot};
+use crate::study::{Column, named};
+
+/// Small multiples in one figure at most.
+const MULTIPLES: usize = 24;
+
+/// Every figure of a study that has a goal; none for one that has not.
+pub(crate) fn plots(study: &Study, columns: &[Column], time: &str) -> Vec<Plot> {
+    if study.manifest.goal.is_none() {
+        return Vec::new();
+    }
+    let mut plots: Vec<Plot> = [error_cost(study), roughness_dissipation(study)].into_iter().flatten().collect();
+    plots.extend(columns.iter().filter_map(|c| multiples(study, c, time)));
+    plots.extend(theory(study));
+    plots
+}
+
+/// What an arm is called where its level is not meant.
+fn method(study: &Study, arm: usize) -> &str {
+    let arm = &study.manifest.arms[arm];
+    arm.part.method.as_deref().unwrap_or(&arm.name)
+}
+
+/// Methods with their finished arms, the coarsest first; arms of the reference are none.
+pub(crate) fn methods(study: &Study) -> Vec<(&str, Vec<usize>)> {
+    let mut found: Vec<(&str, Vec<usize>)> = Vec::new();
+    for (i, row) in study.rows.iter().enumerate() {
+        let arm = &study.manifest.arms[i];
+        let reference = arm.part.fine || study.manifest.reference.as_ref() == Some(&arm.name);
+        if reference || row.status != Some(Status::Finished) {
+            continue;
+        }
+        let name = method(study, i);
+        match found.iter_mut().find(|(n, _)| *n == name) {
+            Some((_, arms)) => arms.push(i),
+            None => found.push((name, vec![i])),
+        }
+    }
+    found
+}
+
+/// One marked curve per method through the points of its arms.
+fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Vec<Curve> {
+    let curve = |(style, (name, arms)): (usize, (&str, Vec<usize>))| {
+        let points: Vec<(f64, f64)> = arms.into_iter().filter_map(&point).filter(|p| p.0 > 0.0 && p.1 > 0.0).collect();
+        let (x, y) = points.into_iter().unzip();
+        Curve { label: name.to_owned(), style, x, y, marked: true }
+    };
+    methods(study).into_iter().enumerate().map(curve).filter(|c| !c.x.is_empty()).collect()
+}
+
+/// Error of an arm in the ranking.
+fn ranked(study: &Study, arm: usize) -> Option<f64> {
+    let ranking = study.ranking.as_ref()?;
+    ranking.levels.iter().flatten().find(|r| r.arm == arm).map(|r| r.error)
+}
+
+fn error_cost(study: &Study) -> Option<Plot> {
+    let ranking = study.ranking.as_ref()?;
+    let cost = |arm: usize| study.rows[arm].value("cpu_time");
+    let mut panes = Vec::new();
+    if let Some(reference) = &study.reference {
+        let columns = established(reference, is_trajectory);
+        let error = |arm: usize| Some((cost(arm)?, study.compared.get(arm)?.as_ref()?.mean(&columns)?));
+        let curves = scatter(study, error);
+        panes.push(Pane {
+            title: "displacements".into(),
+            y_label: "deviation / range".into(),
+            curves,
+            ..Pane::default()
+        });
+    }
+    if let Ok(measure) = &ranking.measure
+        && !matches!(ranking.goal, Goal::Trajectory | Goal::Cost)
+    {
+        let curves = scatter(study, |arm| Some((cost(arm)?, ranked(study, arm)?)));
+        panes.push(Pane { title: measure.name.clone(), y_label: "error".into(), curves, ..Pane::default() });
+    }
+    panes.retain(|p| !p.curves.is_empty());
+    (!panes.is_empty()).then(|| Plot {
+        name: "error-cost".into(),
+        caption: "Error against cost, a point per arm and a curve per method: the lower left edge is what an effort can buy. Cost: processor time of the steps, output \
+                  excluded. Errors of zero have no place on these axes."
+            .into(),
+        x_label: "processor time (s)".into(),
+        log: [true, true],
+        across: panes.len(),
+        same: false,
+        panes,
+    })
+}
+
+fn roughness_dissipation(study: &Study) -> Option<Plot> {
+    let lost = |arm: usize| study.rows[arm].value("energy_drift");
+    let right = study
+        .reference
+        .as_ref()
+        .and_then(|r| r.metric("force_variation").established())
+        .map(|v| v.0)
+        .filter(|v| *v > 0.0);
+    let variation = |arm: usize| {
+        let value = study.rows[arm].value("force_variation")?;
+        // Without an established reference: over twice the peak mean force, what one rise and one fall of it need.
+        Some(value / right.or_else(|| Some(2.0 * study.rows[arm].value("peak_mean_force")?))?)
+    };
+    let high = |arm: usize| study.rows[arm].value("force_high_frequency");
+    let over = if right.is_some() { "TV / TV of the reference" } else { "TV / (2 × peak mean force)" };
+    let pane = |title: &str, y_label: &str, curves: Vec<Curve>| Pane {
+        title: title.into(),
+        y_label: y_label.into(),
+        curves,
+        ..Pane::default()
+    };
+    let mut panes = vec![
+        pane("variation of the contact force", over, scatter(study, |a| Some((lost(a)?, variation(a)?)))),
+        pane("power above 16 cycles per contact", "share of the power", scatter(study, |a| Some((lost(a)?, high(a)?)))),
+    ];
+    panes.retain(|p| !p.curves.is_empty());
+    (!panes.is_empty()).then(|| Plot {
+        name: "roughness-dissipation".into(),
+        caption: "Roughness of the contact force against the largest change of energy, a point per arm and a curve per method. Damping buys smoothness; a method at the \
+                  lower left needs none. TV: total variation in the first contact."
+            .into(),
+        x_label: "energy drift / largest energy".into(),
+        log: [true, true],
+        across: panes.len(),
+        same: false,
+        panes,
+    })
+}
+
+/// The reference's band of a column: its values, wide as its uncertainty.
+fn band(reference: &Reference, column: &str) -> Option<[Vec<f64>; 3]> {
+    let (x, y) = reference.column(column)?;
+    let off = reference.band(column);
+    let every = x.len().div_ceil(1200).max(1);
+    let rows = (0..x.len()).step_by(every);
+    let edge = |sign: f64| rows.clone().map(|i| y[i] + sign * off[i]).collect();
+    Some([rows.clone().map(|i| x[i]).collect(), edge(-1.0), edge(1.0)])
+}
+
+/// A column of every method at its finest level, or of every arm where there are no methods, each in its own pane.
+fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
+    let band = study.reference.as_ref().and_then(|r| band(r, &column.name));
+    let (label, what) = named(&column.name);
+    let mut panes = Vec::new();
+    for (style, (name, arms)) in methods(study).into_iter().enumerate().take(MULTIPLES) {
+        let Some(finest) = arms.last() else { continue };
+        let Some((_, x, y)) = column.curves.iter().find(|(arm, ..)| arm == finest) else { continue };
+        let curve = Curve { label: String::new(), style: style % 8, x: x.clone(), y: y.clone(), marked: false };
+        let y_label = if panes.len() % 3 == 0 { with_unit(&label, &column.unit) } else { String::new() };
+        panes.push(Pane {
+            title: name.to_owned(),
+            y_label,
+            curves: vec![Curve { style: 1, ..curve }],
+            band: band.clone(),
+            ..Pane::default()
+        });
+    }
+    // One pane is no comparison, and the columns of all methods stand in one figure below.
+    if panes.len() < 2 {
+        return None;
+    }
+    let grey = if band.is_some() { "Grey: the reference, wide as it is uncertain. " } else { "" };
+    let name = if column.name == FORCE { "contact-force".to_owned() } else { column.name.clone() };
+    let name: String = name.chars().map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' }).collect();
+    let first: String = what.chars().next().map_or(String::new(), |c| c.to_uppercase().collect());
+    Some(Plot {
+        name: format!("each-{name}"),
+        caption: format!(
+            "{first}{}, method by method at the finest level. {grey}All panes have the same axes.",
+            what.chars().skip(1).collect::<String>()
+        ),
+        x_label: with_unit("time t", time),
+        log: [false, false],
+        across: 3,
+        same: true,
+        panes,
+    })
+}
+
+/// Spectral radius, damping and period error of every scheme, from `theory.csv`; the model's frequencies from `frequencies.csv`.
+fn theory(study: &Study) -> Option<Plot> {
+    let rows = |name: &str| -> Option<Vec<csv::StringRecord>> {
+        csv::Reader::from_path(study.directory.join(name)).ok()?.records().collect::<Result<_, _>>().ok()
+    };
+    let table = rows("theory.csv")?;
+    let steps = study.manifest.arms.iter().filter(|a| !a.part.fine).filter_map(|a| step(a, "time.step"));
+    let (short, long) = steps.fold((f64::INFINITY, 0.0_f64), |(a, b), h| (a.min(h), b.max(h)));
+    let mut marks: Vec<(f64, String)> = Vec::new();
+    for row in rows("frequencies.csv").unwrap_or_default() {
+        let (word, Ok(omega)) = (&row[0], row[1].parse::<f64>()) else { continue };
+        let symbol = if word == "highest" { "ω_{max}".to_owned() } else { format!("ω_{{{word}}}") };
+        marks.push((omega * long, format!("{symbol}Δt")));
+        if short < 0.9 * long {
+            marks.push((omega * short, String::new()));
+        }
+    }
+    let mut names: Vec<&str> = Vec::new();
+    for row in &table {
+        if !names.contains(&&row[0]) {
+            names.push(&row[0]);
+        }
+    }
+    let curve = |column: usize| {
+        let (names, table) = (&names, &table);
+        names.iter().enumerate().map(move |(style, name)| {
+            let of = table.iter().filter(|r| &r[0] == *name);
+            let points = of.filter_map(|r| Some((r[1].parse::<f64>().ok()?, r[column].parse::<f64>().ok()?)));
+            let (x, y) = points.unzip();
+            Curve { label: (*name).to_owned(), style, x, y, marked: false }
+        })
+    };
+    let pane = |title: &str, y_label: &str, column: usize| Pane {
+        title: title.into(),
+        y_label: y_label.into(),
+        curves: curve(column).filter(|c| !c.x.is_empty()).collect(),
+        band: None,
+        marks: marks.clone(),
+    };
+    Some(Plot {
+        name: "theory".into(),
+        caption: "Theory of the schemes on an undamped oscillator of frequency ω. Vertical lines: the model's own frequencies at the longest step, with a word, and at the \
+                  shortest. A node held by a multiplier is at ωΔt = ∞, where only ρ_{∞} counts."
+            .into(),
+        x_label: "ωΔt".into(),
+        log: [true, false],
+        across: 1,
+        same: false,
+        panes: vec![
+            pane("spectral radius", "ρ", 2),
+            pane("numerical damping ratio", "ξ", 3),
+            pane("relative period error", "(T − T_{0})/T_{0}", 4),
+        ],
+    })
+}

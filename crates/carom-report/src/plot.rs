@@ -1,0 +1,456 @@
+//! Plots in panels, each figure also as a table and as a short script that draws it again.
+//!
+//! Axes are linear or logarithmic; on a logarithmic axis what is not positive is left out and counted. Curves of one label have one style in all panels and
+//! one entry in the legend below them.
+
+use std::fmt::Write as _;
+
+use crate::axis::{Axis, range};
+use crate::chart::{open, scaled, write_text};
+use crate::labels::with_unit;
+use crate::palette::LINES;
+use crate::text;
+
+const WIDTH: f64 = 720.0;
+const LEFT: f64 = 62.0;
+const RIGHT: f64 = 12.0;
+
+/// Points of one thing.
+#[derive(Clone, Debug)]
+pub(crate) struct Curve {
+    pub(crate) label: String,
+    /// Number of its style.
+    pub(crate) style: usize,
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    /// Whether its points are marked, and not only joined.
+    pub(crate) marked: bool,
+}
+
+/// Axes and what is drawn in them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pane {
+    pub(crate) title: String,
+    pub(crate) y_label: String,
+    pub(crate) curves: Vec<Curve>,
+    /// x, lower and upper edge of a grey band behind the curves.
+    pub(crate) band: Option<[Vec<f64>; 3]>,
+    /// Vertical lines with a word.
+    pub(crate) marks: Vec<(f64, String)>,
+}
+
+/// A figure.
+#[derive(Clone, Debug)]
+pub(crate) struct Plot {
+    pub(crate) name: String,
+    pub(crate) caption: String,
+    pub(crate) x_label: String,
+    pub(crate) log: [bool; 2],
+    /// Panes side by side.
+    pub(crate) across: usize,
+    /// Whether all panes have the same vertical axis.
+    pub(crate) same: bool,
+    pub(crate) panes: Vec<Pane>,
+}
+
+/// Colour, dashes and number of the marker of a style: seven colours of Okabe and Ito and grey; with five markers forty styles differ.
+pub(crate) fn style(i: usize) -> (&'static str, &'static str, usize) {
+    const DASHES: [&str; 8] = ["", "9 3", "3 2", "9 3 2 3", "14 4", "5 2 1.5 2 1.5 2", "1.5 2.5", "6 6"];
+    (LINES.get(i % 8).copied().unwrap_or("#777777"), DASHES[(i + i / 8) % 8], i % 5)
+}
+
+/// A scale of either kind.
+struct Scale {
+    axis: Axis,
+    log: bool,
+}
+
+impl Scale {
+    fn new(values: (f64, f64), count: f64, tight: bool, log: bool) -> Self {
+        if !log {
+            return Self { axis: Axis::new(values, count, tight), log };
+        }
+        let (low, high) = if values.0.is_finite() { (values.0.log10(), values.1.log10()) } else { (0.0, 1.0) };
+        let air = if tight { 0.0 } else { 0.06 * (high - low).max(0.3) };
+        let (low, high) = (low - air, high + air);
+        let (low, high) = if high - low < 0.2 { (low - 0.15, high + 0.15) } else { (low, high) };
+        let every = ((high - low) / count).ceil().max(1.0) as i64;
+        let factors: &[f64] = if high - low < 1.2 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        let decades = (low.floor() as i64..=high.ceil() as i64).filter(|d| d % every == 0);
+        let tick = |d: i64, f: &f64| {
+            let label = if *f == 1.0 {
+                format!("10^{{{}}}", d.to_string().replace('-', "−"))
+            } else {
+                format!("{f}·10^{{{}}}", d.to_string().replace('-', "−"))
+            };
+            (d as f64 + f.log10(), label)
+        };
+        let ticks =
+            decades.flat_map(|d| factors.iter().map(move |f| tick(d, f))).filter(|(x, _)| (low..=high).contains(x));
+        Self { axis: Axis { low, high, ticks: ticks.collect(), exponent: 0 }, log }
+    }
+
+    /// 0 at the low end, 1 at the high end; NaN where there is no such point.
+    fn position(&self, value: f64) -> f64 {
+        self.axis.position(if !self.log {
+            value
+        } else if value > 0.0 {
+            value.log10()
+        } else {
+            f64::NAN
+        })
+    }
+}
+
+impl Plot {
+    fn shown<'a>(&self, values: impl Iterator<Item = &'a f64>, axis: usize) -> (f64, f64) {
+        let log = self.log[axis];
+        range(values.filter(|x| !log || **x > 0.0))
+    }
+
+    fn x_range(&self) -> (f64, f64) {
+        self.shown(self.panes.iter().flat_map(|p| &p.curves).flat_map(|c| &c.x), 0)
+    }
+
+    fn y_range(&self, pane: &Pane) -> (f64, f64) {
+        let of = |pane: &Pane| {
+            let band = pane.band.iter().flat_map(|b| b[1].iter().chain(&b[2]));
+            self.shown(pane.curves.iter().flat_map(|c| &c.y).chain(band), 1)
+        };
+        if !self.same {
+            return of(pane);
+        }
+        self.panes.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (c, d)| (a.min(c), b.max(d)))
+    }
+
+    /// Labels with their styles, each once.
+    fn legend(&self) -> Vec<(&str, usize, bool)> {
+        let mut found: Vec<(&str, usize, bool)> = Vec::new();
+        for curve in self.panes.iter().flat_map(|p| &p.curves).filter(|c| !c.label.is_empty()) {
+            if !found.iter().any(|(label, ..)| *label == curve.label) {
+                found.push((&curve.label, curve.style, curve.marked));
+            }
+        }
+        found
+    }
+
+    /// The figure.
+    pub(crate) fn svg(&self) -> String {
+        const TOP: f64 = 30.0;
+        const BELOW: f64 = 34.0;
+        let across = self.across.max(1) as f64;
+        let cell = WIDTH / across;
+        let (wide, high) = (
+            cell - LEFT - RIGHT,
+            if across > 2.0 {
+                150.0
+            } else if across > 1.0 {
+                230.0
+            } else {
+                320.0
+            },
+        );
+        let rows = self.panes.len().div_ceil(self.across.max(1));
+        let legend = self.legend();
+        let lines = legend_lines(&legend);
+        let height = rows as f64 * (TOP + high + BELOW) + 22.0 + 18.0 * lines.len() as f64 + 6.0;
+        let mut out = open(&self.name, WIDTH, height);
+        let x_axis = Scale::new(self.x_range(), (wide / 58.0).max(2.0), !self.log[0], self.log[0]);
+        for (i, pane) in self.panes.iter().enumerate() {
+            let (x0, y0) = (
+                (i % self.across.max(1)) as f64 * cell + LEFT,
+                (i / self.across.max(1)) as f64 * (TOP + high + BELOW) + TOP,
+            );
+            let y_axis = Scale::new(self.y_range(pane), (high / 40.0).max(2.0), false, self.log[1]);
+            let to_x = |x: f64| x0 + wide * x_axis.position(x);
+            let to_y = |y: f64| y0 + high * (1.0 - y_axis.position(y));
+            let id = format!("{}-{i}", self.name.replace(|c: char| !c.is_alphanumeric(), "-"));
+            let _ = writeln!(
+                out,
+                "<clipPath id=\"{id}\"><rect x=\"{x0:.1}\" y=\"{y0:.1}\" width=\"{wide:.1}\" height=\"{high:.1}\"/></clipPath>"
+            );
+            if let Some([x, low, up]) = &pane.band {
+                let there = x.iter().zip(up).map(|(x, y)| (to_x(*x), to_y(*y)));
+                let back = x.iter().zip(low).rev().map(|(x, y)| (to_x(*x), to_y(*y)));
+                let points: Vec<String> = there
+                    .chain(back)
+                    .filter(|p| p.0.is_finite() && p.1.is_finite())
+                    .map(|p| format!("{:.1} {:.1}", p.0, p.1))
+                    .collect();
+                let _ = writeln!(
+                    out,
+                    "<path clip-path=\"url(#{id})\" d=\"M{}z\" fill=\"#cfcfcf\" stroke=\"#cfcfcf\" stroke-width=\"2.5\" stroke-linejoin=\"round\"/>",
+                    points.join("L")
+                );
+            }
+            for (value, label) in &y_axis.axis.ticks {
+                let y = y0 + high * (1.0 - y_axis.axis.position(*value));
+                let _ =
+                    writeln!(out, "<path d=\"M{x0:.1} {y:.1}h{wide:.1}\" stroke=\"#dddddd\" stroke-width=\"0.6\"/>");
+                write_text(&mut out, x0 - 6.0, y + 4.0, "text-anchor=\"end\" font-size=\"11\"", label);
+            }
+            let bottom = y0 + high;
+            for (value, label) in &x_axis.axis.ticks {
+                let x = x0 + wide * x_axis.axis.position(*value);
+                let _ = writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v4\" stroke=\"#222\" stroke-width=\"0.8\"/>");
+                write_text(&mut out, x, bottom + 16.0, "text-anchor=\"middle\" font-size=\"11\"", label);
+            }
+            marks(&mut out, pane, &to_x, (y0, bottom), (x0, x0 + wide));
+            let _ = writeln!(
+                out,
+                "<path d=\"M{x0:.1} {y0:.1}v{high:.1}h{wide:.1}\" fill=\"none\" stroke=\"#222\" stroke-width=\"0.9\"/>"
+            );
+            for curve in &pane.curves {
+                draw(&mut out, curve, &id, &to_x, &to_y);
+            }
+            write_text(
+                &mut out,
+                x0,
+                y0 - 9.0,
+                "font-size=\"12\" font-weight=\"600\"",
+                &fitted(&pane.title, wide, 12.0),
+            );
+            if !pane.y_label.is_empty() {
+                let label = if y_axis.axis.exponent == 0 {
+                    pane.y_label.clone()
+                } else {
+                    with_unit(&pane.y_label, &scaled("", y_axis.axis.exponent))
+                };
+                let place = format!(
+                    "text-anchor=\"middle\" font-size=\"12\" transform=\"translate({:.1} {:.1}) rotate(-90)\"",
+                    x0 - LEFT + 13.0,
+                    y0 + 0.5 * high
+                );
+                write_text(&mut out, 0.0, 0.0, &place, &label);
+            }
+        }
+        let end = rows as f64 * (TOP + high + BELOW);
+        let exponent = x_axis.axis.exponent;
+        let label = if exponent == 0 { self.x_label.clone() } else { format!("{} × 10^{{{exponent}}}", self.x_label) };
+        write_text(&mut out, 0.5 * WIDTH, end + 6.0, "text-anchor=\"middle\"", &label);
+        for (row, line) in lines.iter().enumerate() {
+            let (mut x, y) = (LEFT, end + 24.0 + 18.0 * row as f64);
+            for i in line {
+                let (label, number, marked) = legend[*i];
+                let (color, dashes, marker) = style(number);
+                let _ = writeln!(
+                    out,
+                    "<path d=\"M{x:.1} {y:.1}h26\" stroke=\"{color}\" stroke-width=\"1.8\" stroke-dasharray=\"{dashes}\"/>"
+                );
+                if marked {
+                    mark(&mut out, marker, color, x + 13.0, y);
+                }
+                write_text(&mut out, x + 32.0, y + 4.0, "font-size=\"12\"", label);
+                x += entry(label);
+            }
+        }
+        out.push_str("</svg>\n");
+        out
+    }
+
+    /// `pane,curve,x,y`, and the bands as curves `reference, low` and `reference, high`.
+    pub(crate) fn csv(&self) -> String {
+        let mut out = String::from("pane,curve,x,y\n");
+        let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+        for pane in &self.panes {
+            let mut rows = |label: &str, x: &[f64], y: &[f64]| {
+                for (x, y) in x.iter().zip(y) {
+                    let _ = writeln!(out, "{},{},{x:?},{y:?}", quoted(&pane.title), quoted(label));
+                }
+            };
+            if let Some([x, low, high]) = &pane.band {
+                rows("reference, low", x, low);
+                rows("reference, high", x, high);
+            }
+            pane.curves.iter().for_each(|c| rows(&c.label, &c.x, &c.y));
+        }
+        out
+    }
+
+    /// A script that draws the table with matplotlib.
+    pub(crate) fn script(&self) -> String {
+        let name = &self.name;
+        let labels: Vec<String> = self.panes.iter().map(|p| format!("{:?}", plain(&p.y_label))).collect();
+        let marks: Vec<String> = self
+            .panes
+            .iter()
+            .map(|p| format!("{:?}", p.marks.iter().map(|m| (m.0, plain(&m.1))).collect::<Vec<_>>()))
+            .collect();
+        let scales = self.log.map(|log| if log { "log" } else { "linear" });
+        format!(
+            "#!/usr/bin/env python3\n\"\"\"Draws {name}.csv again: python3 {name}.py  (needs matplotlib)\"\"\"\nimport csv, pathlib\nimport matplotlib.pyplot as plt\n\n\
+             here = pathlib.Path(__file__).resolve().parent\npanes = {{}}\nwith open(here / \"{name}.csv\", encoding=\"utf-8\", newline=\"\") as file:\n    \
+             for row in csv.DictReader(file):\n        x, y = panes.setdefault(row[\"pane\"], {{}}).setdefault(row[\"curve\"], ([], []))\n        \
+             x.append(float(row[\"x\"])); y.append(float(row[\"y\"]))\n\ncolors = {colors:?}\ny_labels, marks = [{labels}], [{marks}]\n\
+             across = {across}\nrows = -(-len(panes) // across)\nfigure, axes = plt.subplots(rows, across, figsize=(7.2, 2.6 * rows + 0.6), squeeze=False, sharex=True, sharey={same}, layout=\"constrained\")\n\
+             order = {{}}\nfor k, (title, curves) in enumerate(panes.items()):\n    ax = axes.flat[k]\n    low, high = curves.pop(\"reference, low\", None), curves.pop(\"reference, high\", None)\n    \
+             if low:\n        ax.fill_between(low[0], low[1], high[1], color=\"#cfcfcf\")\n    for label, (x, y) in curves.items():\n        i = order.setdefault(label, len(order))\n        \
+             ax.plot(x, y, color=colors[i % 8], marker=\"os^Dv\"[i % 5] if {marked} else None, ms=4, lw=1.2, label=label)\n    for x, word in marks[k]:\n        ax.axvline(x, color=\"#777777\", lw=0.7)\n    \
+             ax.set(title=title, ylabel=y_labels[k], xscale=\"{xs}\", yscale=\"{ys}\")\nfor ax in axes.flat[len(panes):]:\n    ax.set_visible(False)\n\
+             figure.supxlabel({x:?})\nhandles = {{l: h for ax in axes.flat for h, l in zip(*ax.get_legend_handles_labels())}}\nfigure.legend(handles.values(), handles.keys(), loc=\"outside lower center\", ncols=2, fontsize=8)\n\
+             figure.savefig(here / \"{name}-redrawn.pdf\")\n",
+            colors = (0..8).map(|i| style(i).0).collect::<Vec<_>>(),
+            labels = labels.join(", "),
+            marks = marks.join(", "),
+            across = self.across.max(1),
+            same = if self.same { "True" } else { "False" },
+            marked = if self.panes.iter().flat_map(|p| &p.curves).any(|c| c.marked) { "True" } else { "False" },
+            xs = scales[0],
+            ys = scales[1],
+            x = plain(&self.x_label),
+        )
+    }
+}
+
+/// A label for matplotlib: subscripts and superscripts as it writes them.
+fn plain(label: &str) -> String {
+    let mut out = String::new();
+    let mut rest = label;
+    while let Some(at) = rest.find(['_', '^']) {
+        let (before, after) = rest.split_at(at);
+        out.push_str(before);
+        match (after[1..].strip_prefix('{'), after.find('}')) {
+            (Some(_), Some(end)) => {
+                let _ = write!(out, "${}{{\\mathrm{{{}}}}}$", &after[..1], &after[2..end]);
+                rest = &after[end + 1..];
+            }
+            _ => {
+                out.push_str(&after[..1]);
+                rest = &after[1..];
+            }
+        }
+    }
+    out + rest
+}
+
+/// A title cut to a width.
+fn fitted(title: &str, width: f64, size: f64) -> String {
+    if text::width(title) * size <= width {
+        return title.to_owned();
+    }
+    let mut cut: String = title.to_owned();
+    while !cut.is_empty() && text::width(&cut) * size > width - size {
+        cut.pop();
+    }
+    cut.trim_end().to_owned() + "…"
+}
+
+fn entry(label: &str) -> f64 {
+    50.0 + text::width(label) * 12.0
+}
+
+fn legend_lines(legend: &[(&str, usize, bool)]) -> Vec<Vec<usize>> {
+    let mut lines: Vec<Vec<usize>> = Vec::new();
+    let mut used = f64::INFINITY;
+    for (i, (label, ..)) in legend.iter().enumerate() {
+        if used + entry(label) > WIDTH - LEFT {
+            lines.push(Vec::new());
+            used = 0.0;
+        }
+        used += entry(label);
+        if let Some(line) = lines.last_mut() {
+            line.push(i);
+        }
+    }
+    lines
+}
+
+fn marks(
+    out: &mut String,
+    pane: &Pane,
+    to_x: &dyn Fn(f64) -> f64,
+    (top, bottom): (f64, f64),
+    (left, right): (f64, f64),
+) {
+    for (x, word) in &pane.marks {
+        let x = to_x(*x);
+        if !(left..=right).contains(&x) {
+            continue;
+        }
+        let _ = writeln!(
+            out,
+            "<path d=\"M{x:.1} {top:.1}V{bottom:.1}\" stroke=\"#777\" stroke-width=\"0.8\" stroke-dasharray=\"2 2\"/>"
+        );
+        if !word.is_empty() {
+            let place = format!(
+                "font-size=\"10\" fill=\"#555\" text-anchor=\"end\" transform=\"translate({:.1} {:.1}) rotate(-90)\"",
+                x - 3.0,
+                top + 4.0
+            );
+            write_text(out, 0.0, 0.0, &place, word);
+        }
+    }
+}
+
+fn draw(out: &mut String, curve: &Curve, id: &str, to_x: &dyn Fn(f64) -> f64, to_y: &dyn Fn(f64) -> f64) {
+    let (color, dashes, marker) = style(curve.style);
+    let points: Vec<(f64, f64)> = curve.x.iter().zip(&curve.y).map(|(x, y)| (to_x(*x), to_y(*y))).collect();
+    let d = crate::chart::path(points.iter().copied());
+    let dashes = if curve.marked { "" } else { dashes };
+    let _ = writeln!(
+        out,
+        "<path clip-path=\"url(#{id})\" d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.4\" stroke-linejoin=\"round\" stroke-dasharray=\"{dashes}\"/>"
+    );
+    if curve.marked {
+        for (x, y) in points.into_iter().filter(|p| p.0.is_finite() && p.1.is_finite()) {
+            mark(out, marker, color, x, y);
+        }
+    }
+}
+
+/// Circle, square, triangle, diamond, triangle upside down.
+fn mark(out: &mut String, marker: usize, color: &str, x: f64, y: f64) {
+    let at = |dx: f64, dy: f64| format!("{:.1} {:.1}", x + dx, y + dy);
+    let d = match marker {
+        0 => {
+            let _ = writeln!(out, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.6\" fill=\"{color}\"/>");
+            return;
+        }
+        1 => [at(-3.3, -3.3), at(3.3, -3.3), at(3.3, 3.3), at(-3.3, 3.3)].join("L"),
+        2 => [at(0.0, -4.4), at(4.2, 3.2), at(-4.2, 3.2)].join("L"),
+        3 => [at(0.0, -4.8), at(4.8, 0.0), at(0.0, 4.8), at(-4.8, 0.0)].join("L"),
+        _ => [at(0.0, 4.4), at(4.2, -3.2), at(-4.2, -3.2)].join("L"),
+    };
+    let _ = writeln!(out, "<path d=\"M{d}z\" fill=\"{color}\"/>");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plot() -> Plot {
+        let curve =
+            Curve { label: "Hu, \"a\"".into(), style: 9, x: vec![1e-3, 1e-2], y: vec![0.0, 2e-4], marked: true };
+        Plot {
+            name: "error-cost".into(),
+            caption: String::new(),
+            x_label: "time t_{c} (s)".into(),
+            log: [true, true],
+            across: 2,
+            same: false,
+            panes: vec![Pane { title: "one".into(), y_label: "E".into(), curves: vec![curve], ..Pane::default() }],
+        }
+    }
+
+    #[test]
+    fn what_is_not_positive_has_no_point_on_a_logarithmic_axis() {
+        let svg = plot().svg();
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+        // One marker in the pane, one in the legend.
+        assert_eq!(svg.matches("z\" fill=").count(), 2);
+    }
+
+    #[test]
+    fn the_table_has_every_number() {
+        assert_eq!(
+            plot().csv(),
+            "pane,curve,x,y\n\"one\",\"Hu, \"\"a\"\"\",0.001,0.0\n\"one\",\"Hu, \"\"a\"\"\",0.01,0.0002\n"
+        );
+        assert!(plot().script().contains("time t$_{\\\\mathrm{c}}$ (s)"));
+    }
+
+    #[test]
+    fn forty_styles_differ() {
+        assert_eq!((0..40).map(style).collect::<std::collections::HashSet<_>>().len(), 40);
+    }
+}

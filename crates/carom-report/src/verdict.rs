@@ -1,0 +1,283 @@
+//! The verdict of a study and what stands behind it: ranking, what cannot be ranked on, orders by phase, integrity.
+
+use std::fmt::Write as _;
+
+use carom_record::Status;
+use carom_record::metrics::WORK;
+use carom_record::study::design::Kind;
+use carom_record::study::ranking::{Ranking, error, standing};
+use carom_record::study::reference::Standing;
+use carom_record::study::{Study, step};
+
+use crate::laboratory::methods;
+use crate::study::Origins;
+use crate::study_page::number;
+use crate::text::{escape, html};
+
+/// Metrics whose error against the reference a user should know before taking a recommendation.
+const SIDE: [(&str, &str); 8] = [
+    ("energy_lost", "energy lost"),
+    ("dissipated_integrator", "dissipated by the integrator"),
+    ("dissipated_contact", "taken by contact"),
+    ("force_variation", "error of the force's variation"),
+    ("impulse_x", "error of the impulse along x"),
+    ("impulse_y", "error of the impulse along y"),
+    ("contact_duration", "error of the contact's duration"),
+    ("restitution", "error of restitution"),
+];
+
+/// The box at the top; nothing for a study without a goal.
+pub(crate) fn show(out: &mut String, study: &Study) {
+    let Some(ranking) = &study.ranking else { return };
+    let goal = format!("goal: {} ({})", ranking.goal.word(), escape(ranking.goal.meaning()));
+    let Some(verdict) = &ranking.verdict else {
+        let why = match &ranking.measure {
+            Err(why) => why.clone(),
+            Ok(measure) => format!("no arm has a value of: {}", measure.words),
+        };
+        let _ = writeln!(
+            out,
+            "<section class=\"verdict none\"><h2>No recommendation</h2>\n<p>{goal}. Nothing can be ranked: {}.</p></section>",
+            html(&why)
+        );
+        return;
+    };
+    let arm = &study.manifest.arms[verdict.arm];
+    let name = arm.part.method.as_ref().unwrap_or(&arm.name);
+    let at = step(arm, "time.step").map_or_else(String::new, |h| format!(", Δt = {}", number(h)));
+    let _ =
+        writeln!(out, "<section class=\"verdict\"><h2>Recommended: {}{at}</h2>\n<p>{goal}.</p>\n<dl>", escape(name));
+    let mut entry = |head: &str, lines: &[String]| {
+        let _ = write!(out, "<dt>{head}</dt>");
+        for line in lines {
+            let _ = write!(out, "<dd>{}</dd>", html(line));
+        }
+        out.push('\n');
+    };
+    entry("Why", &verdict.reasons);
+    if !verdict.alike.is_empty() {
+        entry("Not told apart from it", &[verdict.alike.join(" · ")]);
+    }
+    entry("What it costs", &[costs(study, verdict.arm)]);
+    entry("What it distorts", &distorts(study, verdict.arm));
+    entry(&format!("Confidence: {}", verdict.confidence.word()), &verdict.confidence_reasons);
+    out.push_str("</dl></section>\n");
+}
+
+fn costs(study: &Study, arm: usize) -> String {
+    let cost = |i: usize| study.rows[i].value("cpu_time");
+    let level = study.manifest.arms[arm].part.level;
+    let same =
+        methods(study).into_iter().flat_map(|(_, arms)| arms).filter(|i| study.manifest.arms[*i].part.level == level);
+    let least = same.filter_map(cost).fold(f64::INFINITY, f64::min);
+    let of = |name: &str| study.rows[arm].value(name).map_or("–".into(), number);
+    let against = cost(arm)
+        .filter(|c| least > 0.0 && c.is_finite())
+        .map_or_else(String::new, |c| format!(", {} times the least of its level", number(c / least)));
+    format!(
+        "{} s of processor time{against}; {} steps, {} Newton iterations, {} factorisations, {} rejected steps",
+        of("cpu_time"),
+        of("steps"),
+        of("newton_iterations"),
+        of("factorisations"),
+        of("rejected_steps")
+    )
+}
+
+/// Side effects that can be told, each with the least of its level.
+fn distorts(study: &Study, arm: usize) -> Vec<String> {
+    let level = study.manifest.arms[arm].part.level;
+    let same: Vec<usize> = methods(study)
+        .into_iter()
+        .flat_map(|(_, arms)| arms)
+        .filter(|i| study.manifest.arms[*i].part.level == level)
+        .collect();
+    let mut lines = Vec::new();
+    for (metric, words) in SIDE {
+        let Standing::Established { value: right, .. } = standing(study.reference.as_ref(), metric) else { continue };
+        // An error that is relative to nothing says nothing.
+        if right == 0.0 && !metric.starts_with("energy") && !metric.starts_with("dissipated") {
+            continue;
+        }
+        let of = |i: usize| study.rows[i].value(metric).map(|v| error(v, right));
+        let Some(mine) = study.rows[arm].value(metric) else { continue };
+        let least = same.iter().filter_map(|i| of(*i)).fold(f64::INFINITY, f64::min);
+        let shown = if right == 0.0 { mine } else { error(mine, right) };
+        lines.push(format!("{words}: {} (least of its level {})", number(shown), number(least)));
+    }
+    if let Some((column, late)) = study.compared.get(arm).and_then(Option::as_ref).and_then(|c| c.late.clone()) {
+        lines.push(format!("{column} is {} by {}", if late < 0.0 { "early" } else { "late" }, number(late.abs())));
+    }
+    lines
+}
+
+/// Ranking and what cannot be ranked on.
+pub(crate) fn rankings(out: &mut String, study: &Study) {
+    let Some(ranking) = &study.ranking else { return };
+    out.push_str("<h2>Ranking</h2>\n");
+    design(out, study);
+    if let Ok(measure) = &ranking.measure {
+        let _ = writeln!(
+            out,
+            "<p>By {}; uncertainty of the errors {}.</p>",
+            html(&measure.words),
+            number(measure.uncertainty)
+        );
+        table(out, study, ranking);
+    }
+    let Some(reference) = &study.reference else {
+        out.push_str("<p>The study has no finished reference: only what has a right value by itself, such as energy, can be ranked.</p>\n");
+        return;
+    };
+    let mut not = Vec::new();
+    let mut yes = Vec::new();
+    for metric in study.metrics().into_iter().filter(|m| !WORK.iter().any(|(d, _)| d.name == m.name)) {
+        match standing(Some(reference), &metric.name) {
+            Standing::Not(why) => not.push((metric.name.to_string(), why)),
+            Standing::Established { value, uncertainty } => yes.push((metric, value, uncertainty)),
+        }
+    }
+    let _ = writeln!(
+        out,
+        "<p>Reference: {}.</p>\n<details><summary>What it establishes, with its uncertainty</summary>\n<table><thead><tr><th>Metric</th><th>Unit</th><th class=\"n\">Value</th><th class=\"n\">±</th></tr></thead>",
+        escape(&reference.what)
+    );
+    for (metric, value, uncertainty) in yes {
+        let _ = writeln!(
+            out,
+            "<tr><td><code>{}</code></td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>",
+            escape(&metric.name),
+            html(&metric.unit),
+            number(value),
+            number(uncertainty)
+        );
+    }
+    out.push_str("</table></details>\n<details open><summary>Not established by a refinement: never ranked on</summary>\n<table>\n");
+    let deviations = reference.columns().into_iter().filter_map(|c| match reference.uncertainty(c) {
+        Standing::Not(why) => Some((format!("deviation of {c}"), why)),
+        Standing::Established { .. } => None,
+    });
+    for (name, why) in not.into_iter().chain(deviations) {
+        let _ = writeln!(out, "<tr><td><code>{}</code></td><td>{}</td></tr>", escape(&name), escape(&why));
+    }
+    out.push_str("</table></details>\n");
+}
+
+fn design(out: &mut String, study: &Study) {
+    match study.manifest.design.as_ref().map(|d| (d.kind, &d.cost_of)) {
+        None => out.push_str("<p>The arms are as written: neither their steps nor their costs were made equal.</p>\n"),
+        Some((Kind::MatchedStep, _)) => {
+            out.push_str("<p>Matched step: at a level every method has the same step.</p>\n")
+        }
+        Some((Kind::MatchedCost, of)) => {
+            let _ = writeln!(
+                out,
+                "<p>Matched cost: at a level every method has the step at which it costs what <b>{}</b> does. Cost is counted (Newton iterations and factorisations, or \
+                 steps) and weighted by processor seconds that a pilot run measured (<code>pilots/</code>); the column of processor time is what the arms themselves took.</p>",
+                escape(of)
+            );
+        }
+    }
+}
+
+fn table(out: &mut String, study: &Study, ranking: &Ranking) {
+    let matched = study.manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedCost);
+    let head = if matched.is_some() { "<th class=\"n\">Cost / budget</th>" } else { "" };
+    let _ = writeln!(
+        out,
+        "<table class=\"metrics\"><thead><tr><th class=\"n\">Place</th><th>Method</th><th class=\"n\">Δt</th><th class=\"n\">Error</th><th class=\"n\">Energy drift</th>\
+         <th class=\"n\">by integrator</th><th class=\"n\">by contact</th><th class=\"n\">High freq.</th><th class=\"n\">Chatter</th><th class=\"n\">Late by</th>\
+         <th class=\"n\">Newton</th><th class=\"n\">Rejected</th><th class=\"n\">CPU (s)</th>{head}</tr></thead>"
+    );
+    let columns = 13 + usize::from(matched.is_some());
+    for (level, ranked) in ranking.levels.iter().enumerate() {
+        let anchor = matched.and_then(|d| {
+            let mut arms = study.manifest.arms.iter().enumerate();
+            let (i, _) = arms.find(|(_, a)| a.part.level == level && a.part.method.as_ref() == Some(&d.cost_of))?;
+            study.rows[i].value("cpu_time")
+        });
+        if ranking.levels.len() > 1 {
+            let _ = writeln!(out, "<tr><td colspan=\"{columns}\"><b>Level {}</b></td></tr>", level + 1);
+        }
+        for r in ranked {
+            let (arm, row) = (&study.manifest.arms[r.arm], &study.rows[r.arm]);
+            let of = |name: &str| row.value(name).map_or("–".into(), number);
+            let late = study
+                .compared
+                .get(r.arm)
+                .and_then(Option::as_ref)
+                .and_then(|c| c.late.as_ref())
+                .map_or("–".into(), |l| number(l.1));
+            let ratio = match (matched, anchor.zip(row.value("cpu_time"))) {
+                (None, _) => String::new(),
+                (Some(_), None) => "<td class=\"n\">–</td>".to_owned(),
+                (Some(_), Some((budget, cost))) => {
+                    let mark = if (cost / budget - 1.0).abs() <= 0.1 { "" } else { " !" };
+                    format!("<td class=\"n\">{}{mark}</td>", number(cost / budget))
+                }
+            };
+            let _ = writeln!(
+                out,
+                "<tr><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>{}<td class=\"n\">{late}</td>{}{ratio}</tr>",
+                r.place,
+                escape(arm.part.method.as_ref().unwrap_or(&arm.name)),
+                step(arm, "time.step").map_or("–".into(), number),
+                number(r.error),
+                ["energy_drift", "dissipated_integrator", "dissipated_contact", "force_high_frequency", "chatter"]
+                    .map(|m| format!("<td class=\"n\">{}</td>", of(m)))
+                    .concat(),
+                ["newton_iterations", "rejected_steps", "cpu_time"]
+                    .map(|m| format!("<td class=\"n\">{}</td>", of(m)))
+                    .concat(),
+            );
+        }
+    }
+    out.push_str("</table>\n<p class=\"small\">Arms that share a place are not told apart: their errors differ by no more than the uncertainty of the reference, or 5 %.");
+    if matched.is_some() {
+        out.push_str(" An exclamation mark: processor time off the budget by more than 10 %.");
+    }
+    out.push_str(
+        " Beside <a href=\"ranking.csv\">ranking.csv</a> and <a href=\"reference.csv\">reference.csv</a>.</p>\n",
+    );
+}
+
+/// Observed orders while motion is smooth and across the impact.
+pub(crate) fn phases(out: &mut String, study: &Study) {
+    if study.phase_orders.is_empty() {
+        return;
+    }
+    out.push_str("<h2>Order before and across the impact</h2>\n<table><thead><tr><th>Method</th><th>Column</th><th>Before the first contact</th><th>After it</th></tr></thead>\n");
+    let cell = |order: &Result<f64, String>| match order {
+        Ok(order) => format!("{order:.2}"),
+        Err(why) => format!("<span class=\"small\">no order ({})</span>", escape(why)),
+    };
+    for o in &study.phase_orders {
+        let _ = writeln!(
+            out,
+            "<tr><td>{}</td><td><code>{}</code></td><td>{}</td><td>{}</td></tr>",
+            escape(&o.method),
+            escape(&o.column),
+            cell(&o.smooth),
+            cell(&o.across)
+        );
+    }
+    out.push_str("</table>\n<p class=\"small\">From the errors against the reference at the two finest levels, root mean square over the rows of the phase.</p>\n");
+}
+
+/// What can be said for the numbers.
+pub(crate) fn integrity(out: &mut String, study: &Study, origins: &Origins) {
+    out.push_str("<h2>Integrity</h2>\n<table><thead><tr><th>Arm</th><th>Ended</th><th class=\"n\">Rejected steps</th><th class=\"n\">Cycles, fallbacks</th><th class=\"n\">Deepest penetration</th><th>Input hash</th></tr></thead>\n");
+    for (arm, hash, rejected, told) in &origins.arms {
+        let row = &study.rows[*arm];
+        let word = if row.status == Some(Status::Finished) { "finished" } else { "not finished" };
+        let _ = writeln!(
+            out,
+            "<tr><td>{}</td><td>{word}</td><td class=\"n\">{rejected}</td><td class=\"n\">{told}</td><td class=\"n\">{}</td><td><code>{}</code></td></tr>",
+            escape(&row.name),
+            row.value("penetration").map_or("–".into(), number),
+            hash.get(..16).unwrap_or(hash)
+        );
+    }
+    out.push_str("</table>\n<p class=\"small\">An arm's records are the same bits for any number of jobs and threads, after a stop and <code>carom resume</code>, and with any output; the suite \
+                  tests that. Events stand in each arm's <code>log.jsonl</code>.</p>\n");
+}

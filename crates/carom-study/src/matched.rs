@@ -1,0 +1,311 @@
+//! Steps at which methods cost the same. The cost of a run is counted, not timed: Newton iterations and factorisations (steps, where a scheme needs
+//! neither), each weighted by the processor seconds one of them took in the method's first pilot run.
+//!
+//! ```text
+//! cost = c_n · Newton iterations + c_f · factorisations        or  c_s · steps
+//! Δt = end/N,  N ← N · budget/cost                             until the cost is within 5 % of the budget: that of `cost_of` at the level
+//! ```
+//!
+//! Counts are the same bits everywhere; the weights are measured once and kept in `pilots/ARM/pilot.json` with every trial, so that a study that is
+//! resumed comes to the same steps. A pilot is a whole run, since contact costs more than flight; the one that is accepted becomes the arm. What the arms
+//! then really took is on the page.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Mutex, PoisonError};
+
+use carom::case::Case;
+use carom::recording::{self, Options, Progress};
+use carom_record::study::StudyManifest;
+use carom_record::study::design::Kind;
+use carom_record::{Manifest, RecordError, Status};
+use serde::{Deserialize, Serialize};
+
+use crate::run::{Ended, Event, StudyError, side_by_side};
+
+/// Share of the budget by which a cost may differ to be accepted; what is claimed is twice that.
+const CLOSE: f64 = 0.05;
+/// Pilot runs of an arm at most.
+const TRIALS: usize = 5;
+
+/// Processor seconds of one of each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Weights {
+    newton: f64,
+    factorisation: f64,
+    step: f64,
+}
+
+impl Weights {
+    /// From what a run took and did.
+    fn of(manifest: &Manifest) -> Self {
+        let time = |name: &str| manifest.timings.get(name).copied().unwrap_or(0.0);
+        let (newton, factorisations) = (count(manifest, "newton"), count(manifest, "factorisations"));
+        let phases: f64 = ["assembly", "contact", "factor", "solve"].map(time).iter().sum();
+        let share = if phases > 0.0 && factorisations > 0.0 { time("factor") / phases } else { 0.0 };
+        let cpu = time("cpu");
+        if newton == 0.0 {
+            return Self { step: cpu / count(manifest, "steps").max(1.0), ..Self::default() };
+        }
+        let factorisation = if factorisations > 0.0 { cpu * share / factorisations } else { 0.0 };
+        Self { newton: cpu * (1.0 - share) / newton, factorisation, step: 0.0 }
+    }
+
+    fn cost(self, manifest: &Manifest) -> f64 {
+        self.newton * count(manifest, "newton")
+            + self.factorisation * count(manifest, "factorisations")
+            + self.step * count(manifest, "steps")
+    }
+}
+
+fn count(manifest: &Manifest, name: &str) -> f64 {
+    manifest.counters.get(name).map_or(0.0, |n| *n as f64)
+}
+
+/// A pilot run that ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Trial {
+    /// Steps.
+    steps: u64,
+    /// Its cost in seconds; none where it could not run to its end.
+    cost: Option<f64>,
+}
+
+/// `pilots/ARM/pilot.json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Pilot {
+    weights: Option<Weights>,
+    budget: Option<f64>,
+    trials: Vec<Trial>,
+    /// The trial that was accepted.
+    settled: Option<usize>,
+}
+
+impl Pilot {
+    fn read(folder: &Path) -> Result<Self, RecordError> {
+        let path = folder.join("pilot.json");
+        match fs::read(&path) {
+            Ok(bytes) => {
+                serde_json::from_slice(&bytes).map_err(|e| RecordError::Io { action: "read", path, source: e.into() })
+            }
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(Self::default()),
+            Err(source) => Err(RecordError::Io { action: "read", path, source }),
+        }
+    }
+
+    fn write(&self, folder: &Path) -> Result<(), RecordError> {
+        let (path, new) = (folder.join("pilot.json"), folder.join("pilot.json.new"));
+        let io = |source| RecordError::Io { action: "write", path: path.clone(), source };
+        let text = serde_json::to_vec_pretty(self).map_err(|e| io(e.into()))?;
+        fs::write(&new, text).and_then(|()| fs::rename(&new, &path)).map_err(io)
+    }
+
+    /// Steps of the next trial; none where one is good enough, or there is nothing left to try.
+    fn next(&self, first: u64) -> Option<u64> {
+        let Some(last) = self.trials.last() else { return Some(first) };
+        let (budget, cost) = (self.budget?, last.cost?);
+        if (cost / budget - 1.0).abs() <= CLOSE || self.trials.len() >= TRIALS {
+            return None;
+        }
+        let next = (last.steps as f64 * budget / cost).round().max(1.0) as u64;
+        (!self.trials.iter().any(|t| t.steps == next)).then_some(next)
+    }
+
+    /// The trial whose cost is closest to the budget; the first if none could run.
+    fn closest(&self) -> usize {
+        let off =
+            |t: &Trial| t.cost.zip(self.budget).map_or(f64::INFINITY, |(cost, budget)| (cost / budget).ln().abs());
+        (0..self.trials.len()).min_by(|a, b| off(&self.trials[*a]).total_cmp(&off(&self.trials[*b]))).unwrap_or(0)
+    }
+}
+
+/// Settles the steps of every arm of a design with matched cost, and computes these arms. Whether it came to its end.
+///
+/// # Errors
+/// What the machine refused.
+pub(crate) fn settle(
+    manifest: &mut StudyManifest,
+    directory: &Path,
+    jobs: usize,
+    observe: &mut dyn FnMut(&Event),
+    stop: &AtomicBool,
+) -> Result<bool, StudyError> {
+    let Some(design) = manifest.design.clone().filter(|d| d.kind == Kind::MatchedCost) else { return Ok(true) };
+    let of = |own: bool| {
+        let mine = |i: &usize| {
+            let part = &manifest.arms[*i].part;
+            !part.fine && part.method.as_ref().is_some_and(|m| (*m == design.cost_of) == own)
+        };
+        (0..manifest.arms.len()).filter(mine).collect::<Vec<_>>()
+    };
+    let (anchors, others) = (of(true), of(false));
+    let not_ended = |i: &usize| {
+        let status = manifest.state(directory, &manifest.arms[*i]).map(|s| s.0);
+        !matches!(status, Ok(Some(Status::Finished | Status::Failed)))
+    };
+    let waiting = anchors.iter().copied().filter(not_ended).collect();
+    let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
+        let begun = directory.join(&manifest.arms[i].directory).join("manifest.json").is_file();
+        crate::run::compute(manifest, directory, i, begun, progress, stop)
+    };
+    side_by_side::<StudyError>(waiting, jobs, &one, observe, stop)?;
+    if anchors.iter().any(not_ended) {
+        return Ok(false);
+    }
+    let budget = |level: usize| -> Result<Option<f64>, RecordError> {
+        let Some(arm) = anchors.iter().map(|i| &manifest.arms[*i]).find(|a| a.part.level == level) else {
+            return Ok(None);
+        };
+        let run = Manifest::read(&directory.join(&arm.directory))?;
+        Ok((run.status == Status::Finished).then(|| Weights::of(&run).cost(&run)))
+    };
+    let levels = design.steps.len().max(1);
+    let budgets = (0..levels).map(budget).collect::<Result<Vec<_>, _>>()?;
+    let settled: Mutex<Vec<(usize, u64)>> = Mutex::default();
+    let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
+        let budget = budgets.get(manifest.arms[i].part.level).copied().flatten();
+        let (ended, steps) = pilot(manifest, directory, i, budget, progress, stop)?;
+        if ended.status != Status::Stopped {
+            settled.lock().unwrap_or_else(PoisonError::into_inner).push((i, steps));
+        }
+        Ok(ended)
+    };
+    side_by_side::<StudyError>(others.iter().copied().collect(), jobs, &one, observe, stop)?;
+    let settled = settled.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let whole = settled.len() == others.len();
+    for (i, steps) in settled {
+        place(manifest, i, steps)?;
+    }
+    manifest.write(directory)?;
+    Ok(whole)
+}
+
+/// Gives an arm a number of steps, in its case and among what it sets.
+fn place(manifest: &mut StudyManifest, i: usize, steps: u64) -> Result<(), StudyError> {
+    let case = case_with(manifest, i, steps)?;
+    let arm = &mut manifest.arms[i];
+    arm.sets.retain(|set| !set.trim_start().starts_with("time.step="));
+    arm.sets.push(format!("time.step={:?}", case.time.step));
+    arm.steps = steps;
+    arm.case = serde_json::to_value(&case).unwrap_or_default();
+    Ok(())
+}
+
+fn case_with(manifest: &StudyManifest, i: usize, steps: u64) -> Result<Case, StudyError> {
+    let arm = &manifest.arms[i];
+    let mut case: Case = serde_json::from_value(arm.case.clone())
+        .map_err(|e| StudyError::Incompatible { arm: arm.name.clone(), what: e.to_string() })?;
+    if steps != arm.steps {
+        case.time.step = case.time.end / steps as f64;
+    }
+    Ok(case)
+}
+
+/// Pilot runs of an arm until its cost is that of the budget; how the accepted one ended, and its steps.
+fn pilot(
+    manifest: &StudyManifest,
+    directory: &Path,
+    i: usize,
+    budget: Option<f64>,
+    progress: &mut dyn FnMut(&Progress),
+    stop: &AtomicBool,
+) -> Result<(Ended, u64), StudyError> {
+    let arm = &manifest.arms[i];
+    let name = arm.directory.rsplit('/').next().unwrap_or(&arm.directory);
+    let folder = directory.join("pilots").join(name);
+    let made = fs::create_dir_all(&folder);
+    made.map_err(|source| RecordError::Io { action: "create", path: folder.clone(), source })?;
+    let mut pilot = Pilot::read(&folder)?;
+    pilot.budget = pilot.budget.or(budget);
+    while pilot.settled.is_none() {
+        let Some(steps) = pilot.next(arm.steps) else {
+            pilot.settled = Some(pilot.closest());
+            pilot.write(&folder)?;
+            break;
+        };
+        let path = folder.join((pilot.trials.len() + 1).to_string());
+        let ended = trial(manifest, i, steps, &path, progress, stop)?;
+        let Some(ended) = ended else {
+            pilot.trials.push(Trial { steps, cost: None });
+            pilot.write(&folder)?;
+            continue;
+        };
+        if ended.status == Status::Stopped {
+            return Ok((ended, steps));
+        }
+        let run = Manifest::read(&path)?;
+        let weights = *pilot.weights.get_or_insert_with(|| Weights::of(&run));
+        let cost = (ended.status == Status::Finished).then(|| weights.cost(&run));
+        pilot.trials.push(Trial { steps, cost });
+        pilot.write(&folder)?;
+    }
+    let settled = pilot.settled.unwrap_or_default();
+    let (from, to) = (folder.join((settled + 1).to_string()), directory.join(&arm.directory));
+    if !to.exists() {
+        fs::rename(&from, &to).map_err(|source| RecordError::Io { action: "move", path: from, source })?;
+    }
+    let run = Manifest::read(&to)?;
+    let wall = run.timings.get("total").copied().unwrap_or(0.0);
+    Ok((Ended { status: run.status, reason: run.reason, wall }, pilot.trials[settled].steps))
+}
+
+/// One pilot run, begun or gone on with; none where the model refuses the step, which an explicit scheme does beyond its stable one.
+fn trial(
+    manifest: &StudyManifest,
+    i: usize,
+    steps: u64,
+    path: &PathBuf,
+    progress: &mut dyn FnMut(&Progress),
+    stop: &AtomicBool,
+) -> Result<Option<Ended>, StudyError> {
+    let options = Options { threads: 1 };
+    let done = if path.join("manifest.json").is_file() {
+        recording::resume(path, options, progress, stop)
+    } else {
+        let case = case_with(manifest, i, steps)?;
+        let mut source = manifest.source_of(&manifest.arms[i]);
+        source.sets.retain(|set| !set.trim_start().starts_with("time.step="));
+        source.sets.push(format!("time.step={:?}", case.time.step));
+        recording::run(&case, source, path, options, progress, stop)
+    };
+    match done {
+        Ok(outcome) => Ok(Some(Ended::of(outcome))),
+        Err(recording::RunError::Case(_)) => Ok(None),
+        Err(source) => Err(StudyError::Arm { arm: manifest.arms[i].name.clone(), source }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pilot(trials: &[(u64, Option<f64>)]) -> Pilot {
+        let trials = trials.iter().map(|(steps, cost)| Trial { steps: *steps, cost: *cost }).collect();
+        Pilot { budget: Some(10.0), trials, ..Pilot::default() }
+    }
+
+    /// Twice the budget: half the steps; within 5 %: done; a run that failed: done; the closest is the one accepted.
+    #[test]
+    fn steps_follow_the_budget() {
+        assert_eq!(pilot(&[]).next(400), Some(400));
+        assert_eq!(pilot(&[(400, Some(20.0))]).next(400), Some(200));
+        assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(10.4))]).next(400), None);
+        assert_eq!(pilot(&[(400, None)]).next(400), None);
+        assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(12.0)), (166, None)]).closest(), 1);
+    }
+
+    /// 8 iterations with 4 factorisations in 2 s, of which a quarter factored: 1.5/8 s and 0.5/4 s; without iterations, by the step.
+    #[test]
+    fn weights_by_hand() {
+        let source = carom_record::Source { text: String::new(), sets: Vec::new() };
+        let mut run = Manifest::new("0", serde_json::Value::Null, source, Vec::new(), 1);
+        run.counters = [("newton", 8), ("factorisations", 4), ("steps", 5)].map(|(n, c)| (n.to_owned(), c)).into();
+        run.timings = [("cpu", 2.0), ("factor", 1.0), ("assembly", 3.0)].map(|(n, c)| (n.to_owned(), c)).into();
+        let weights = Weights::of(&run);
+        assert_eq!(weights, Weights { newton: 1.5 / 8.0, factorisation: 0.125, step: 0.0 });
+        assert_eq!(weights.cost(&run), 2.0);
+        run.counters.insert("newton".to_owned(), 0);
+        assert_eq!(Weights::of(&run), Weights { step: 0.4, ..Weights::default() });
+    }
+}

@@ -1,0 +1,93 @@
+//! What theory says of a study's schemes, for its page: `theory.csv`, spectral radius, damping ratio and period error of every method on the test
+//! oscillator, and `frequencies.csv`, the model's own frequencies. Both are made when the study begins.
+
+use std::path::Path;
+
+use carom::Simulation;
+use carom::case::{Case, SchemeSpec};
+use carom::frequencies::{Frequencies, frequencies};
+use carom_record::RecordError;
+
+use crate::Plan;
+
+/// Points per decade of ωΔt, from 0.01 to 1000.
+const POINTS: i32 = 24;
+
+/// ρ, ξ and period error at Ω; none where the principal roots do not oscillate, or the scheme is not stable.
+fn at(scheme: &SchemeSpec, omega_dt: f64) -> [Option<f64>; 3] {
+    if let Some(scheme) = scheme.nonsmooth() {
+        return scheme.oscillation(omega_dt).map_or([None; 3], |(modulus, angle)| {
+            [Some(modulus), Some(-modulus.ln() / angle), Some(omega_dt / angle - 1.0)]
+        });
+    }
+    let Ok(integrator) = scheme.integrator() else { return [None; 3] };
+    let kernel = integrator.kernel();
+    let pair = carom_time::map::principal(kernel, omega_dt);
+    let radius = carom_time::map::spectral_radius(kernel, omega_dt);
+    [Some(radius), pair.map(|p| p.damping_ratio), pair.map(|p| p.period_error)]
+}
+
+/// Writes both files beside `study.json`.
+///
+/// # Errors
+/// What the machine refused.
+pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
+    let mut lines = vec!["method,omega_dt,spectral_radius,damping_ratio,period_error".to_owned()];
+    let mut seen: Vec<&SchemeSpec> = Vec::new();
+    let arms = plan.manifest.arms.iter().zip(&plan.arms).filter(|(arm, _)| !arm.part.fine);
+    for (arm, planned) in arms {
+        let scheme = &planned.case.time.scheme;
+        if seen.contains(&scheme) || scheme.is_static() {
+            continue;
+        }
+        seen.push(scheme);
+        let name = arm.part.method.as_ref().unwrap_or(&arm.name).replace('"', "\"\"");
+        for i in -2 * POINTS..=3 * POINTS {
+            let omega_dt = 10f64.powf(f64::from(i) / f64::from(POINTS));
+            let [radius, damping, period] = at(scheme, omega_dt);
+            // Beyond Ω ≈ 6 no period is resolved that could be in error.
+            let period = period.filter(|_| omega_dt <= std::f64::consts::TAU);
+            let cell = |x: Option<f64>| x.filter(|x| x.is_finite()).map_or_else(String::new, |x| format!("{x:?}"));
+            lines.push(format!("\"{name}\",{omega_dt:?},{},{},{}", cell(radius), cell(damping), cell(period)));
+        }
+    }
+    put(directory, "theory.csv", &lines)?;
+    let Some(found) = plan.arms.first().and_then(|arm| of_case(&arm.case)) else { return Ok(()) };
+    let lowest = found.lowest.iter().enumerate().map(|(k, omega)| format!("{},{omega:?}", k + 1));
+    let highest = found.highest.map(|omega| format!("highest,{omega:?}"));
+    let lines: Vec<String> = std::iter::once("mode,omega".to_owned()).chain(lowest).chain(highest).collect();
+    put(directory, "frequencies.csv", &lines)
+}
+
+fn of_case(case: &Case) -> Option<Frequencies> {
+    match case.dimension {
+        1 => frequencies(&Simulation::<1>::new(case, 1).ok()?.model),
+        _ => frequencies(&Simulation::<2>::new(case, 1).ok()?.model),
+    }
+}
+
+fn put(directory: &Path, name: &str, lines: &[String]) -> Result<(), RecordError> {
+    let path = directory.join(name);
+    let text = lines.join("\n") + "\n";
+    std::fs::write(&path, text).map_err(|source| RecordError::Io { action: "write", path, source })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At Ω = 2π/10, published: ξ 0.297 and PE 12 % of Hu's scheme, 0.036 of Chung and Hulbert's with ρ∞ = 0.1; the trapezoidal rule damps nothing.
+    #[test]
+    fn published_dampings() {
+        let damping = |kind: &str, parameters: &[(&str, f64)]| {
+            let parameters = parameters.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect();
+            let scheme = SchemeSpec { kind: kind.to_owned(), parameters, forces: carom_time::ForceRule::AverageForces };
+            at(&scheme, std::f64::consts::TAU / 10.0)
+        };
+        let [_, xi, period] = damping("hu", &[]);
+        assert!((xi.unwrap() - 0.297).abs() < 5e-4 && (period.unwrap() - 0.12).abs() < 5e-3);
+        assert!((damping("chung-hulbert", &[("rho_inf", 0.1)])[1].unwrap() - 0.036).abs() < 5e-4);
+        assert!(damping("newmark", &[("beta", 0.25), ("gamma", 0.5)])[1].unwrap().abs() < 1e-12);
+        assert!((damping("moreau-jean", &[("theta", 0.5)])[0].unwrap() - 1.0).abs() < 1e-12);
+    }
+}
