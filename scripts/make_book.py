@@ -10,7 +10,7 @@ first-run.*    what `carom run cases/impact/impact.toml` prints and draws
 columns.md     columns of its history.csv, from its manifest
 metrics.md     the table of metrics, from crates/carom-record/src/metrics/table.rs
 activation.md, peak.md          docs/book/studies/, run
-refine.md      what cases/impact/refine-*.toml found, with orders where there are any
+spins.md, refine.md            tables of cases/free/spins.toml and cases/impact/refine-*.toml
 FAMILY.md, FAMILY.svg           `carom verify --report --out DIR --markdown DIR`, and a figure of one of its runs; with --verify DIR, what it left there
 
 Every case of docs/book/examples/ is run too. What could not be made, links that lead nowhere, keys that no case uses: told at the end, exit code 1. Needs
@@ -344,7 +344,22 @@ def verified(carom, given, place):
             shutil.copy(found, GENERATED / f"{family}.svg")
         else:
             problems.append(f"figures/{figure}.svg of a run of the family {family}")
+    spins = [[r["arm"], *(number(r[c]) for c in ("steps", "energy", "moment"))] for r in ends(out / "free/spins")]
+    write("spins.md", table(["", "Steps done", "Energy at the end / at the start", "Moment of momentum, likewise"], spins))
     write("refine.md", "".join(refinement(out / f"impact/{name}/study.csv", title) for name, title in REFINEMENTS.items()))
+
+
+def ends(study):
+    """Of each arm of a study of free bodies: steps done, and what is left of energy and moment of momentum."""
+    if not (study / "study.csv").is_file():
+        problems.append(f"{study.name} of {study.parent.name}")
+        return
+    with open(study / "study.csv", encoding="utf-8", newline="") as file:
+        names = [row["arm"] for row in csv.DictReader(file)]
+    for name, history in zip(names, sorted(study.glob("arms/*/history.csv"))):
+        rows = list(csv.DictReader(history.open(encoding="utf-8")))
+        left = lambda column: float(rows[-1][column]) / float(rows[0][column])
+        yield {"arm": name, "steps": rows[-1]["step"], "energy": left("total"), "moment": left("angular_momentum")}
 
 
 def refinement(path, title):
