@@ -176,7 +176,16 @@ pub(crate) fn solve_stage<const D: usize>(
     let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
     let keep = settings.tangent == TangentRule::Kept && keeps(model, work);
     let mut keeper = Keeper::new(&state.kept, keep, mass, stiffness);
-    let mut measure = begin(model, state, trial, work, &mut keeper)?;
+    let mut measure = match begin(model, state, trial, work, &mut keeper) {
+        Err(Rejected::Inverted { .. }) => {
+            // Accelerations of stiff modes, taken to last for a step, may turn cells over that the solution does not: begin where the step began.
+            trial.increment.fill(0.0);
+            trial.y.clone_from(&state.y);
+            timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
+            begin(model, state, trial, work, &mut keeper)?
+        }
+        begun => begun?,
+    };
     if work.stage.is_static() && touch(model, trial, work) {
         measure = evaluate(model, state, trial, work, false)?;
     }
