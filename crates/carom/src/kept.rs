@@ -78,7 +78,16 @@ impl Keeper {
         kept.rest = kept.rest.saturating_sub(1);
         let fits = kept.point.as_ref().is_some_and(|p| p.mass == mass && p.stiffness == stiffness);
         let due = !fits || (kept.steps > 0 && kept.last > (RENEWAL + kept.spent) / f64::from(kept.steps));
-        Self { kept, full: !keep || resting, due, fresh: false, previous: None, contraction: 0.0, slow: 0, counted: 0.0 }
+        Self {
+            kept,
+            full: !keep || resting,
+            due,
+            fresh: false,
+            previous: None,
+            contraction: 0.0,
+            slow: 0,
+            counted: 0.0,
+        }
     }
 
     /// A new factor was made.

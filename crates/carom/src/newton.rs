@@ -176,16 +176,15 @@ pub(crate) fn solve_stage<const D: usize>(
     let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
     let keep = settings.tangent == TangentRule::Kept && keeps(model, work);
     let mut keeper = Keeper::new(&state.kept, keep, mass, stiffness);
-    let mut measure = match begin(model, state, trial, work, &mut keeper) {
-        Err(Rejected::Inverted { .. }) => {
-            // Accelerations of stiff modes, taken to last for a step, may turn cells over that the solution does not: begin where the step began.
-            trial.increment.fill(0.0);
-            trial.y.clone_from(&state.y);
-            timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
-            begin(model, state, trial, work, &mut keeper)?
-        }
-        begun => begun?,
-    };
+    let mut begun = begin(model, state, trial, work, &mut keeper);
+    if matches!(begun, Err(Rejected::Inverted { .. }))
+        && let Some((_, pairs)) = predicted.take()
+    {
+        rest(state, before, pairs, trial);
+        timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
+        begun = begin(model, state, trial, work, &mut keeper);
+    }
+    let mut measure = begun?;
     if work.stage.is_static() && touch(model, trial, work) {
         measure = evaluate(model, state, trial, work, false)?;
     }
@@ -258,11 +257,10 @@ pub(crate) fn solve_stage<const D: usize>(
     }
 }
 
-/// Puts the trial where the stage began. Where contact begins, velocities jump from node to node: on fine meshes that motion, gone on with for a step,
-/// tears cells that the balance holds together, and Newton begins better from where it is known that none is torn.
+/// Puts the trial where the stage began. Where contact begins, velocities and accelerations jump from node to node: that motion, gone on with for a
+/// step, tears cells that the balance holds together or turns them over, and Newton begins better from where none is.
 fn rest(state: &State, before: &[f64], pairs: Vec<Vec<Pair>>, trial: &mut Trial) {
-    for ((increment, y), (start, old)) in
-        trial.increment.iter_mut().zip(&mut trial.y).zip(before.iter().zip(&state.y))
+    for ((increment, y), (start, old)) in trial.increment.iter_mut().zip(&mut trial.y).zip(before.iter().zip(&state.y))
     {
         (*increment, *y) = (start - old, *start);
     }
