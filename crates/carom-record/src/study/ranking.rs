@@ -237,6 +237,18 @@ impl Ranking {
     }
 }
 
+/// A number in three digits.
+fn short(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e4).contains(&x.abs()) {
+        return format!("{x:.2e}");
+    }
+    let scale = 10f64.powi(2 - x.abs().log10().floor() as i32);
+    format!("{}", (x * scale).round() / scale)
+}
+
 fn alike(a: f64, b: f64, uncertainty: f64) -> bool {
     (a - b).abs() <= f64::max(uncertainty, ALIKE * f64::min(a, b))
 }
@@ -281,13 +293,13 @@ fn verdict(goal: Goal, manifest: &StudyManifest, measure: &Measure, levels: &[Ve
         _ => mine.iter().find(|r| r.error <= accuracy).or(mine.last()),
     }?;
     let first_at = full.iter().filter(|l| l.iter().any(|r| r.place == 1 && name(r.arm) == best)).count();
-    let mut reasons = vec![format!("{}: {:.3e}", measure.words, chosen.error)];
+    let mut reasons = vec![format!("{}: {}", measure.words, short(chosen.error))];
     let others = full
         .iter()
         .flat_map(|l| l.iter())
         .filter(|r| manifest.arms[r.arm].part.level == manifest.arms[chosen.arm].part.level);
     if let Some(next) = others.filter(|r| name(r.arm) != best).min_by(|a, b| a.error.total_cmp(&b.error)) {
-        reasons.push(format!("the best of the others at the same level, {}: {:.3e}", name(next.arm), next.error));
+        reasons.push(format!("the best of the others at the same level, {}: {}", name(next.arm), short(next.error)));
     }
     reasons.push(format!("first at {first_at} of {} levels", full.len()));
     if goal != Goal::Cost {
@@ -319,8 +331,8 @@ fn confidence(
         at_most(
             Confidence::Low,
             format!(
-                "others are not told apart from it: errors closer than {:.1e} or {} %",
-                measure.uncertainty,
+                "others are not told apart from it: errors closer than {} or {} %",
+                short(measure.uncertainty),
                 100.0 * ALIKE
             ),
         );
