@@ -125,6 +125,30 @@ impl Formula {
         let slope = |k| if k == variable { 1.0 } else { 0.0 };
         self.tree.evaluate(&|k| Jet([values[k], slope(k), 0.0])).0
     }
+
+    /// Value, gradient and second derivatives with respect to the first `N` variables, by derivatives along directions:
+    /// ∂²f/∂x∂y = ½ (f″ along (1, 1) − ∂²f/∂x² − ∂²f/∂y²).
+    ///
+    /// ```
+    /// let f = carom_formula::Formula::parse("X^2*Y + 3*X*t", &["X", "Y", "t"])?;
+    /// assert_eq!(f.with_gradient::<2>(&[2.0, 5.0, 1.0]), (26.0, [23.0, 4.0], [[10.0, 4.0], [4.0, 0.0]]));
+    /// # Ok::<(), carom_formula::FormulaError>(())
+    /// ```
+    ///
+    /// # Panics
+    /// With fewer values than variables.
+    pub fn with_gradient<const N: usize>(&self, values: &[f64]) -> (f64, [f64; N], [[f64; N]; N]) {
+        let along = |i: usize, j: usize| {
+            let slope = |k| if k == i || k == j { 1.0 } else { 0.0 };
+            self.tree.evaluate(&|k| Jet([values[k], slope(k), 0.0])).0
+        };
+        let own: [[f64; 3]; N] = std::array::from_fn(|i| along(i, i));
+        let mixed = |i: usize, j: usize| {
+            if i == j { own[i][2] } else { 0.5 * (along(i.min(j), i.max(j))[2] - own[i][2] - own[j][2]) }
+        };
+        let second = std::array::from_fn(|i| std::array::from_fn(|j| mixed(i, j)));
+        (own.first().map_or_else(|| self.value(values), |o| o[0]), own.map(|o| o[1]), second)
+    }
 }
 
 impl Tree {

@@ -15,7 +15,7 @@
 use std::borrow::Cow;
 
 use crate::expression::{self, Expression, Token, tokens};
-use crate::metrics::{self, COLUMNS, HISTORY, WORK};
+use crate::metrics::{self, COLUMNS, HISTORY, PRESSURE, WORK};
 use crate::{History, Run, Status};
 
 /// Two times are one if they differ by less than this fraction of the span of the first record.
@@ -363,7 +363,7 @@ pub fn column_metric_names() -> Vec<&'static str> {
 /// Names of metrics that need no column.
 pub fn metric_names() -> Vec<&'static str> {
     let history = HISTORY.iter().map(|(d, _)| d.name);
-    history.chain(WORK.iter().map(|(d, _)| d.name)).chain(["stopped"]).collect()
+    history.chain(PRESSURE.iter().chain(&WORK).map(|(d, _)| d.name)).chain(["stopped"]).collect()
 }
 
 fn no_arms(arm: Option<&str>) -> Result<(), String> {
@@ -418,9 +418,12 @@ impl Records for Run {
         if name == "stopped" {
             return Ok(f64::from(u8::from(self.manifest.status == Status::Failed)));
         }
-        if WORK.iter().any(|(work, _)| work.name == name) {
-            let found = metrics::of_run(self).into_iter().find(|m| m.name == name).and_then(|m| m.value);
-            return found.ok_or_else(|| format!("the manifest has no {name}"));
+        if let Some((_, value)) = WORK.iter().find(|(work, _)| work.name == name) {
+            return value(self).ok_or_else(|| format!("the manifest has no {name}"));
+        }
+        if let Some((_, value)) = PRESSURE.iter().find(|(pressure, _)| pressure.name == name) {
+            return value(self)
+                .ok_or_else(|| format!("there is no {name}: it is of the end of a static run in contact"));
         }
         metric(&self.history, name)
     }

@@ -71,6 +71,13 @@ pub struct Row {
     pub verdict: Expectation,
 }
 
+impl SetUp {
+    /// Whether an expectation was missed, or a simulation could not go on.
+    pub fn is_bad(&self) -> bool {
+        !self.stopped.is_empty() || self.rows.iter().any(|row| !row.verdict.pass)
+    }
+}
+
 impl Row {
     /// What is asked, and of which arm.
     pub fn quantity(&self) -> String {

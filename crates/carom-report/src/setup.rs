@@ -1,7 +1,8 @@
-//! The case drawn: bodies with their mesh, supports, gravity, initial velocities, contact sides, probes and what it is made of.
+//! The case drawn: bodies with their mesh, supports, loads, gravity, initial velocities, contact sides, probes and what it is made of.
 //!
 //! From the record alone: positions and cells from the first field file, the rest from `manifest.json` (`case`, `sides`).
 
+mod forces;
 mod key;
 
 use std::collections::HashMap;
@@ -94,6 +95,7 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     setup.supports(&mut out);
     setup.contacts(&mut out);
     setup.loads(&mut out);
+    setup.forces(&mut out);
     setup.probes(&mut out);
     out.push_str(&key);
     out.push_str("</svg>\n");
@@ -227,7 +229,7 @@ impl Setup<'_> {
 
     fn supports(&self, out: &mut String) {
         for support in list(self.case(), "supports") {
-            let fix = vector(support.get("fix"));
+            let fix = Self::directions(support);
             for side in list(support, "on").iter().filter_map(Value::as_str) {
                 for walk in self.walks(side) {
                     if self.flat || fix.len() > 1 {

@@ -36,7 +36,7 @@ pub(crate) fn arrow(out: &mut String, from: Point, to: Point, color: &str) {
 }
 
 /// Points at about equal distances along a polyline, with the outward direction there; ends included.
-fn along(line: &[(Point, Point)], spacing: f64) -> Vec<(Point, Point)> {
+pub(crate) fn along(line: &[(Point, Point)], spacing: f64) -> Vec<(Point, Point)> {
     let lengths: Vec<f64> = line.windows(2).map(|w| (w[1].0[0] - w[0].0[0]).hypot(w[1].0[1] - w[0].0[1])).collect();
     let total: f64 = lengths.iter().sum();
     let count = (total / spacing).round().max(1.0);

@@ -60,6 +60,18 @@ pub trait Body<const D: usize>: Send + Sync {
     /// Visits the quadrature points of a cell for volume integrals: shape functions (`N`), reference position, reference volume (× thickness).
     fn each_volume_point(&self, cell: usize, visit: &mut dyn FnMut(&[f64], &[f64; D], f64));
 
+    /// Visits the same points with the reference position, the position and H = ∂y/∂X − 1 there, and the reference volume (× thickness).
+    fn each_moved_point(
+        &self,
+        cell: usize,
+        y: &[[f64; D]],
+        visit: &mut dyn FnMut(&[f64; D], &[f64; D], &[[f64; D]; D], f64),
+    );
+
+    /// Divergence ∂Pᵢᴶ/∂Xᴶ of the first Piola–Kirchhoff stress of a motion with H = ∂y/∂X − 1 and second derivatives ∂²yₖ/∂Xᴶ∂Xᴸ = `second[k][J][L]`;
+    /// the determinant J as an error if it is not positive.
+    fn stress_divergence(&self, h: &[[f64; D]; D], second: &[[[f64; D]; D]; D]) -> Result<[f64; D], f64>;
+
     /// Smallest J over the quadrature points of a cell.
     fn cell_min_det_f(&self, cell: usize, y: &[[f64; D]]) -> f64;
 

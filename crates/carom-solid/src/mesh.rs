@@ -104,6 +104,29 @@ impl<const D: usize> Mesh<D> {
         Some(nodes)
     }
 
+    /// Whether each node lies on the boundary: on an end of one cell alone (dimension 1), or on an edge of one cell alone (dimension 2).
+    pub fn on_boundary(&self) -> Vec<bool> {
+        let inside = self.element.degree() - 1;
+        // Corners of a facet, in ascending order, with all its nodes.
+        let mut facets: BTreeMap<Vec<usize>, Option<Vec<usize>>> = BTreeMap::new();
+        for cell in (0..self.cell_count()).map(|c| self.cell(c)) {
+            let corners = self.element.dimension() + 1;
+            for k in 0..corners {
+                let (mut ends, mut nodes) = (vec![cell[k]], vec![cell[k]]);
+                if D == 2 {
+                    ends.push(cell[(k + 1) % corners]);
+                    nodes.push(ends[1]);
+                    nodes.extend(&cell[corners + k * inside..corners + (k + 1) * inside]);
+                }
+                ends.sort_unstable();
+                facets.entry(ends).and_modify(|shared| *shared = None).or_insert(Some(nodes));
+            }
+        }
+        let mut on = vec![false; self.nodes.len()];
+        facets.into_values().flatten().flatten().for_each(|node| on[node] = true);
+        on
+    }
+
     /// Diagonal of the box around the reference nodes.
     pub fn diameter(&self) -> f64 {
         diameter(&self.nodes)

@@ -296,6 +296,38 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
         });
     }
 
+    fn each_moved_point(
+        &self,
+        cell: usize,
+        y: &[[f64; D]],
+        visit: &mut dyn FnMut(&[f64; D], &[f64; D], &[[f64; D]; D], f64),
+    ) {
+        let (x, u) = (self.reference(cell), self.displacements(cell, y));
+        for (xi, weight) in self.mass_rules[usize::from(self.curved[cell])].iter() {
+            let (values, local) = (S::values(xi), S::gradients(xi));
+            let derivative = gradient(&x, &local);
+            let inverse_transposed = derivative.inverse().transposed();
+            let h = gradient(&u, &local.map(|g| inverse_transposed.apply(&g)));
+            let place = reference::interpolate(&values, &x);
+            let moved = place + reference::interpolate(&values, &u);
+            visit(&place.0, &moved.0, &h.0, weight * derivative.det() * self.thickness);
+        }
+    }
+
+    /// ∂Pᵢᴶ/∂Xᴶ = Σ ∂Pᵢᴶ/∂Fₖᴸ ∂²yₖ/∂Xᴶ∂Xᴸ.
+    fn stress_divergence(&self, h: &[[f64; D]; D], second: &[[[f64; D]; D]; D]) -> Result<[f64; D], f64> {
+        let point = self.law.at(&Mat(*h)).map_err(|NotPositive(det_f)| det_f)?;
+        let unit = Mat::<D>::identity().0.map(Vector);
+        let mut sum = Vector::<D>::ZERO;
+        for j in 0..D {
+            for l in 0..D {
+                let bent = Vector(std::array::from_fn(|k| second[k][j][l]));
+                sum += self.law.tangent(&point, &unit[j], &unit[l]).apply(&bent);
+            }
+        }
+        Ok(sum.0)
+    }
+
     fn cell_min_det_f(&self, cell: usize, y: &[[f64; D]]) -> f64 {
         let u = self.displacements(cell, y);
         let points = &self.gradients[self.start[cell]..self.start[cell + 1]];

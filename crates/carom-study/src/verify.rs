@@ -22,6 +22,8 @@ pub struct VerifyOptions {
     pub jobs: usize,
     /// Whether runs write field files and checkpoints as their cases say, so that pages can be made of them.
     pub whole: bool,
+    /// Whether to stop at the first set-up that misses an expectation or could not go on; the short set-ups are then run first.
+    pub fail_fast: bool,
 }
 
 /// One simulation of a suite.
@@ -43,7 +45,7 @@ pub struct Named {
 }
 
 impl Suite {
-    /// Runs everything into a directory, which is made; none if it was stopped before the end. `begin` is told the runs events speak of by number.
+    /// Runs everything into a directory, which is made; none if it was stopped before the end. With `fail_fast`, what was judged until the first miss. `begin` is told the runs events speak of by number.
     ///
     /// # Errors
     /// What the machine refused. A run that stops, and an expectation that is missed, are no errors.
@@ -64,26 +66,42 @@ impl Suite {
         let named: Vec<Named> =
             units.iter().map(|u| Named { name: u.name.clone(), steps: u.case.time.steps() as u64 }).collect();
         begin(&named);
-        let mut order: Vec<usize> = (0..units.len()).collect();
-        order.sort_by(|a, b| units[*b].case.work().total_cmp(&units[*a].case.work()));
+        let order = order(&units, self.items.len(), options.fail_fast);
+        // Raised by Ctrl-C, and by the first miss where that ends it.
+        let halt = AtomicBool::new(false);
         let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
             let Unit { name, directory, case, source, .. } = &units[i];
-            let done = recording::run(case, source.clone(), directory, Options { threads: 1 }, progress, stop);
+            let mut watched = |p: &Progress| {
+                halt.fetch_or(stop.load(Ordering::Relaxed), Ordering::Relaxed);
+                progress(p);
+            };
+            let done = recording::run(case, source.clone(), directory, Options { threads: 1 }, &mut watched, &halt);
             done.map(Ended::of).map_err(|source| StudyError::Arm { arm: name.clone(), source })
         };
+        let mut judged: Vec<Option<Result<SetUp, StudyError>>> = self.items.iter().map(|_| None).collect();
         let mut walls = vec![0.0; self.items.len()];
+        let mut left = vec![0; self.items.len()];
+        units.iter().for_each(|unit| left[unit.item] += 1);
         let mut watch = |event: &Event| {
-            if let Event::Ended(i, ended) = event {
-                walls[units[*i].item] += ended.wall;
+            if let Event::Ended(i, ended) = event
+                && ended.status != Status::Stopped
+            {
+                let k = units[*i].item;
+                walls[k] += ended.wall;
+                left[k] -= 1;
+                if left[k] == 0 {
+                    let set_up = self.items[k].judged(directory, &places[k], walls[k], self.fast);
+                    let bad = set_up.as_ref().map_or(true, SetUp::is_bad);
+                    halt.fetch_or(options.fail_fast && bad, Ordering::Relaxed);
+                    judged[k] = Some(set_up);
+                }
             }
             observe(event);
         };
-        side_by_side(VecDeque::from(order), options.jobs, &one, &mut watch, stop)?;
+        side_by_side(VecDeque::from(order), options.jobs, &one, &mut watch, &halt)?;
         if stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
-        let set_ups = self.items.iter().zip(&places).zip(walls);
-        let set_ups = set_ups.map(|((item, place), wall)| item.judged(directory, place, wall, self.fast));
         let verification = Verification {
             version: env!("CARGO_PKG_VERSION").into(),
             started,
@@ -91,7 +109,7 @@ impl Suite {
             jobs: options.jobs,
             wall: began.elapsed().as_secs_f64(),
             fast: self.fast,
-            set_ups: set_ups.collect::<Result<_, _>>()?,
+            set_ups: judged.into_iter().flatten().collect::<Result<_, _>>()?,
         };
         verification.write(directory)?;
         Ok(Some(verification))
@@ -113,6 +131,19 @@ impl Suite {
         }
         places
     }
+}
+
+/// The longest first, so that all jobs have work to the end; or set-up by set-up, the shortest first, so that a miss is found soon.
+fn order(units: &[Unit], items: usize, shortest_first: bool) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..units.len()).collect();
+    let mut works = vec![0.0; items];
+    units.iter().for_each(|unit| works[unit.item] += unit.case.work());
+    if shortest_first {
+        order.sort_by(|a, b| works[units[*a].item].total_cmp(&works[units[*b].item]));
+    } else {
+        order.sort_by(|a, b| units[*b].case.work().total_cmp(&units[*a].case.work()));
+    }
+    order
 }
 
 /// A case that writes its history alone: the numbers are the same bits.

@@ -1,4 +1,4 @@
-//! `[initial] from`: positions, velocities and contact at the end of another run of the same meshes.
+//! A start elsewhere than in the reference positions: of a motion that is given, or `[initial] from`, positions, velocities and contact at the end of another run of the same meshes.
 //!
 //! The meshes are made again from the case that run was resolved with, and compared node by node: names alone would let a changed mesh pass.
 
@@ -6,7 +6,7 @@ use carom_contact::Pair;
 use carom_record::{Manifest, Status, last_checkpoint};
 
 use crate::case::{Case, InitialSpec, Problem, Velocities};
-use crate::model::{Dimension, Model, Space};
+use crate::model::{Dimension, Manufactured, Model, Space};
 use crate::state::State;
 
 /// Where a run begins, if not in the reference positions.
@@ -17,6 +17,25 @@ pub(crate) struct Before {
     pub(crate) v: Vec<f64>,
     /// Pairs of each contact of the new case.
     pub(crate) pairs: Vec<Vec<Pair>>,
+}
+
+impl Before {
+    /// Where a motion that is given begins.
+    ///
+    /// # Errors
+    /// A formula without a value at t = 0.
+    pub(crate) fn of<const D: usize>(motion: &Manufactured<D>, model: &Model<D>) -> Result<Self, Vec<Problem>> {
+        let (mut y, mut v) = (Vec::new(), Vec::new());
+        for place in model.reference.as_chunks::<D>().0 {
+            let [position, velocity] = motion.motion(place, 0.0).map_err(|error| {
+                let help = "change the formula so that it has a value in the whole body";
+                vec![Problem::new("manufactured.y", "the motion has no value at t = 0", error.to_string(), help)]
+            })?;
+            y.extend(position);
+            v.extend(velocity);
+        }
+        Ok(Self { y, v, pairs: vec![Vec::new(); model.contacts.len()] })
+    }
 }
 
 /// Reads the end of the run a case starts from.

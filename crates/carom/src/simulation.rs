@@ -3,7 +3,7 @@
 use carom_contact::PairEvent;
 
 use crate::case::{Case, Problem};
-use crate::initial::before;
+use crate::initial::{Before, before};
 use crate::model::{Dimension, Model, Space, build, overlaps};
 use crate::newton::{Timings, Workspace};
 use crate::rejected::Rejected;
@@ -129,12 +129,17 @@ where
     pub fn new(case: &Case, threads: usize) -> Result<Self, Vec<Problem>> {
         let mut simulation = Self::resume(case, threads, State::default())?;
         let model = &simulation.model;
-        let overlaps = if case.initial.is_none() { overlaps(model) } else { Vec::new() };
+        let given = case.initial.is_some() || model.loads.manufactured.is_some();
+        let overlaps = if given { Vec::new() } else { overlaps(model) };
         let problems = [overlaps, stability::too_long(case, model)].concat();
         if !problems.is_empty() {
             return Err(problems);
         }
-        let before = case.initial.as_ref().map(|initial| before(initial, case, model)).transpose()?;
+        let before = match (&case.initial, &model.loads.manufactured) {
+            (Some(initial), _) => Some(before(initial, case, model)?),
+            (None, Some(motion)) => Some(Before::of(motion, model)?),
+            (None, None) => None,
+        };
         let inertia = !case.time.scheme.is_static();
         simulation.state = start(model, inertia, before, &mut simulation.work).map_err(|rejected| {
             let (path, what, help) = match rejected {

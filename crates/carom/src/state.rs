@@ -20,6 +20,8 @@ pub struct Ledger {
     pub total_at_start: f64,
     /// Work of loads that are not in the potential, of supports and of moving primaries.
     pub external_work: f64,
+    /// The same work by the trapezoidal rule, whatever the scheme averages: what `created` is measured against.
+    pub work: f64,
     /// Work of the contact forces on the bodies, and the jump of kinetic energy where contact begins.
     pub contact_work: f64,
     /// Largest kinetic + strain energy so far.
@@ -41,7 +43,7 @@ impl Ledger {
 
     /// Energy that came from nowhere: what the guard watches.
     pub fn created(&self) -> f64 {
-        self.total() - self.total_at_start - self.external_work
+        self.total() - self.total_at_start - self.work
     }
 }
 

@@ -36,6 +36,9 @@ pub(crate) struct Arguments {
     /// Leave out what is marked slow
     #[arg(long)]
     fast: bool,
+    /// Stop at the first set-up that misses an expectation, the shortest first
+    #[arg(long, conflicts_with = "report")]
+    fail_fast: bool,
     /// Runs at the same time; the results are the same bits for any number [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
@@ -74,7 +77,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return Err(Failure::Argument { what: "nothing here carries an expectation".to_owned(), help });
     }
     std::fs::create_dir_all(&directory)?;
-    let options = VerifyOptions { jobs: jobs(arguments.jobs), whole: arguments.report };
+    let options = VerifyOptions { jobs: jobs(arguments.jobs), whole: arguments.report, fail_fast: arguments.fail_fast };
     let stop = stop_on_signal()?;
     let seen = std::cell::RefCell::new(Seen::new(arguments.json, arguments.csv));
     let mut begin = |runs: &[Named]| seen.borrow_mut().begin(runs);
@@ -96,6 +99,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         carom_report::verify_markdown(&directory, folder).map_err(|e| unwritten(&e))?;
     }
     tell(&verification, arguments, &page)?;
+    let unjudged = suite.items.len() - verification.set_ups.len();
+    if unjudged > 0 && !arguments.json && !arguments.csv {
+        out::line(&format!("ended at the first miss: {unjudged} of {} set-ups were not judged", suite.items.len()))?;
+    }
     Ok(match (verification.stopped(), verification.missed()) {
         (0, 0) => Exit::Done,
         (0, _) => Exit::Missed,

@@ -2,8 +2,8 @@
 //! expectations know a metric by its entry here and by nothing else.
 
 use super::{
-    Episode, Facts, apex, column_roughness, extreme, force, ledger, peak_mean, restitution, roughness, turning_time,
-    vector,
+    Episode, Facts, apex, column_roughness, extreme, force, ledger, peak_mean, pressure, restitution, roughness,
+    turning_time, vector,
 };
 use crate::{History, Run};
 
@@ -32,6 +32,7 @@ pub enum Unit {
     Force,
     Impulse,
     Length,
+    Stress,
     Second,
     /// That of the column.
     Column,
@@ -49,6 +50,10 @@ impl Unit {
             Self::Force => history.unit("contact_force_x").to_owned(),
             Self::Impulse => history.unit("contact_impulse_x").to_owned(),
             Self::Length => history.unit("penetration").to_owned(),
+            Self::Stress => {
+                let stress = |name: &str| name.contains(".sigma_") || name.ends_with(".von_mises");
+                history.columns.iter().find(|c| stress(&c.name)).map_or_else(String::new, |c| c.unit.clone())
+            }
             Self::Second => "s".to_owned(),
         }
     }
@@ -62,6 +67,7 @@ impl Unit {
             Self::Force => "force",
             Self::Impulse => "impulse",
             Self::Length => "length",
+            Self::Stress => "stress",
             Self::Second => "s",
             Self::Column => "the column's",
         }
@@ -353,6 +359,44 @@ pub const COLUMNS: [(Definition, fn(&History, &str) -> Option<f64>); 5] = [
     ),
 ];
 
+/// Metrics of the pressure between bodies at the end of a static run; none of a motion.
+pub const PRESSURE: [(Definition, fn(&Run) -> Option<f64>); 4] = [
+    (
+        d(
+            "pressure_min",
+            Unit::Stress,
+            "min pᵢ",
+            OWN,
+            "smallest pressure of the nodes in contact at the end of a static run",
+        ),
+        pressure::smallest,
+    ),
+    (
+        d(
+            "pressure_max",
+            Unit::Stress,
+            "max pᵢ",
+            OWN,
+            "largest pressure of the nodes in contact at the end of a static run",
+        ),
+        pressure::largest,
+    ),
+    (
+        d(
+            "hertz_peak",
+            Unit::Stress,
+            "p₀ of the least Σ (pᵢ² − p₀² (1 − ((sᵢ − c)/a)²))²",
+            "Johnson 1985, § 4.2",
+            "peak of Hertz's ellipse through the pressures at the end of a static run",
+        ),
+        |r| pressure::ellipse(r).map(|fit| fit.0),
+    ),
+    (
+        d("hertz_half_width", Unit::Length, "a of that ellipse", "Johnson 1985, § 4.2", "half-width of that ellipse"),
+        |r| pressure::ellipse(r).map(|fit| fit.1),
+    ),
+];
+
 /// Metrics of the work.
 pub const WORK: [(Definition, fn(&Run) -> Option<f64>); 6] = [
     (d("steps", Unit::None, "counter steps", OWN, "time steps of the grid done"), |r| count(r, "steps")),
@@ -408,7 +452,7 @@ pub fn of_column(history: &History, column: &str, what: &str) -> Option<(&'stati
 pub fn book_table() -> String {
     let history = HISTORY.iter().map(|x| (String::new(), &x.0));
     let columns = COLUMNS.iter().map(|x| ("COLUMN:".to_owned(), &x.0));
-    let all = history.chain(columns).chain(WORK.iter().map(|x| (String::new(), &x.0)));
+    let all = history.chain(columns).chain(PRESSURE.iter().chain(&WORK).map(|x| (String::new(), &x.0)));
     let escape = |text: &str| text.replace('|', "\\|");
     let row = |(before, d): (String, &Definition)| {
         format!("| `{before}{}` | {} | {} | {} | {} |\n", d.name, d.meaning, escape(d.formula), d.unit.word(), d.source)

@@ -5,8 +5,8 @@
 //! times through its whole range k − 1. It sees rows, not steps: a coarser `history_every` hides what lies between them.
 
 use super::{
-    COLUMNS, Definition, Metric, Unit, WORK, all, default_bridge, energy_lost_at, episodes, extreme, first_episode,
-    total_variation,
+    COLUMNS, Definition, Metric, PRESSURE, Unit, WORK, all, default_bridge, energy_lost_at, episodes, extreme,
+    first_episode, total_variation,
 };
 use crate::{History, Run};
 
@@ -30,8 +30,8 @@ pub fn probe_columns(run: &Run) -> Vec<&str> {
 /// Impacts whose energy a study tabulates one by one.
 const IMPACTS: usize = 9;
 
-/// Everything a study tabulates: [`all`], the energy lost at each of the first impacts where there are several, then the columns of the probes, then
-/// the work.
+/// Everything a study tabulates: [`all`], the energy lost at each of the first impacts where there are several, the pressure at the end of a static run,
+/// then the columns of the probes, then the work.
 pub fn of_run(run: &Run) -> Vec<Metric> {
     let history = &run.history;
     let mut metrics = all(history);
@@ -40,6 +40,10 @@ pub fn of_run(run: &Run) -> Vec<Metric> {
         let definition = "energy lost over the N-th episode of contact / largest kinetic + strain energy";
         let value = energy_lost_at(history, n);
         metrics.push(Metric { name: format!("energy_lost:{n}").into(), value, unit: String::new(), definition });
+    }
+    for (definition, value) in PRESSURE.iter().filter_map(|(d, value)| Some((d, value(run)?))) {
+        let (name, unit) = (definition.name.into(), definition.unit.label(history));
+        metrics.push(Metric { name, value: Some(value), unit, definition: definition.meaning });
     }
     for column in probe_columns(run) {
         for (Definition { name, unit, meaning, .. }, value) in &COLUMNS {

@@ -40,7 +40,7 @@ impl ArmRecords {
             match quantity {
                 Quantity::Metric(name, of) if of.as_deref() == Some(arm) && name != "stopped" => {
                     let known = metrics.iter().find(|m| m.name == name.as_str()).and_then(|m| m.value);
-                    let value = known.map_or_else(|| question::metric(&run.history, name), Ok);
+                    let value = known.map_or_else(|| run.metric(name, None), Ok);
                     self.metrics.insert(key(name), value);
                 }
                 Quantity::Metric(..) => {}

@@ -59,8 +59,7 @@ impl Setup<'_> {
             if k == 0 {
                 line("", "Supports", true);
             }
-            let fixed: Vec<&str> =
-                vector(support.get("fix")).iter().map(|i| if *i == 0.0 { "x" } else { "y" }).collect();
+            let fixed = Self::directions(support);
             let on: Vec<&str> = list(support, "on").iter().filter_map(Value::as_str).collect();
             let mut swatch = String::new();
             let ends = [([0.0, -3.0], [0.0, 1.0]), ([20.0, -3.0], [0.0, 1.0])];
@@ -69,7 +68,13 @@ impl Setup<'_> {
             } else {
                 rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n)));
             }
-            line(&swatch, &format!("{} held: {}", fixed.join(", "), on.join(", ")), false);
+            line(&swatch, &format!("{}: {}", Self::support_in_words(support), on.join(", ")), false);
+        }
+        for (k, load) in self.forces_in_words().iter().enumerate() {
+            if k == 0 {
+                line("", "Loads", true);
+            }
+            line("", load, false);
         }
         for (k, contact) in list(self.case(), "contacts").iter().enumerate() {
             if k == 0 {

@@ -6,6 +6,8 @@ const SCALARS: [&str; 10] =
     ["step", "time", "dt", "kinetic", "strain", "potential", "total", "external_work", "contact_work", "dissipation"];
 const COUNTS: [&str; 7] = ["active", "activations", "releases", "newton", "rejected", "penetration", "min_det_f"];
 
+const ERRORS: [&str; 2] = ["error_l2", "error_h1"];
+
 /// Name of a quantity in columns.
 pub(super) fn quantity(quantity: Quantity) -> &'static str {
     match quantity {
@@ -31,6 +33,7 @@ pub fn history_columns(case: &Case) -> Vec<String> {
         &case.contacts.iter().cloned().map(Some).collect::<Vec<_>>(),
         &case.supports.iter().cloned().map(Some).collect::<Vec<_>>(),
         &case.probes.iter().cloned().map(Some).collect::<Vec<_>>(),
+        case.manufactured.is_some(),
     )
 }
 
@@ -41,6 +44,7 @@ pub(super) fn of(
     contacts: &[Option<ContactSpec>],
     supports: &[Option<SupportSpec>],
     probes: &[Option<ProbeSpec>],
+    manufactured: bool,
 ) -> Vec<String> {
     let axes = &["x", "y"][..dimension.clamp(1, 2)];
     let mut columns: Vec<String> = SCALARS.iter().map(ToString::to_string).collect();
@@ -66,5 +70,6 @@ pub(super) fn of(
     for probe in probes.iter().flatten() {
         columns.extend(probe.record.iter().map(|q| format!("{}.{}", probe.name, quantity(*q))));
     }
+    columns.extend(ERRORS.iter().filter(|_| manufactured).map(ToString::to_string));
     columns
 }

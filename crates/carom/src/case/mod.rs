@@ -64,6 +64,9 @@ pub struct Case {
     /// The run whose end is the start; none: the reference positions.
     #[serde(default)]
     pub initial: Option<InitialSpec>,
+    /// The motion that loads, boundary and start are derived from: positions, formulas in X, Y, t.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manufactured: Option<Vec<FormulaSpec>>,
     /// Contact pairs of sides.
     pub contacts: Vec<ContactSpec>,
     /// Time interval, step and scheme.

@@ -140,6 +140,7 @@ impl<'a> Reader<'a> {
             supports: all(draft.supports)?,
             loads: all(draft.loads)?,
             initial: self.root.has("initial").then(|| initial(self.one("initial")?, folder)).flatten(),
+            manufactured: self.root.has("manufactured").then(|| self.one("manufactured")?.formulas("y")).flatten(),
             contacts,
             time,
             newton: newton(self.one("newton")?)?,

@@ -1,11 +1,11 @@
 //! The loads of a case as nodal forces f_ext(y, t), gravity apart: dead tractions and body forces, known when the time is, and follower
-//! pressures, which turn with the side (`carom_solid::LoadedSide`).
+//! pressures, which turn with the side (`carom_solid::LoadedSide`). Where the motion is given, the load that makes it one is the only load.
 
 use carom_formula::Formula;
 use carom_solid::LoadedSide;
 
 use super::formulas::{NoValue, value};
-use super::{MAX_CELL_DOFS, Part};
+use super::{MAX_CELL_DOFS, Manufactured, Part};
 use crate::case::load::load_variables;
 use crate::case::{Case, FormulaSpec, LoadKind, Problem, TableSpec};
 
@@ -14,6 +14,8 @@ pub struct Loads<const D: usize> {
     tractions: Vec<SideLoad<D>>,
     pressures: Vec<SideLoad<D>>,
     body_forces: Vec<BodyForce>,
+    /// The motion that was given, if one was.
+    pub manufactured: Option<Manufactured<D>>,
 }
 
 /// A traction (`D` formulas) or a pressure (one) on a side.
@@ -43,7 +45,14 @@ pub struct LoadsAt {
 impl<const D: usize> Loads<D> {
     /// The loads of a case; names and formulas have been checked when it was read.
     pub(super) fn build(case: &Case, parts: &[Part<D>], problems: &mut Vec<Problem>) -> Self {
-        let mut loads = Self { tractions: Vec::new(), pressures: Vec::new(), body_forces: Vec::new() };
+        let mut loads =
+            Self { tractions: Vec::new(), pressures: Vec::new(), body_forces: Vec::new(), manufactured: None };
+        if let Some(y) = &case.manufactured {
+            match y.iter().map(|f| f.formula(&load_variables(D))).collect::<Result<Vec<_>, _>>() {
+                Ok(y) => loads.manufactured = y.try_into().ok().map(Manufactured::new),
+                Err(error) => problems.push(Problem::new("manufactured.y", error.to_string(), "", "")),
+            }
+        }
         for (k, spec) in case.loads.iter().enumerate() {
             let label = format!("the load \"{}\"", spec.label());
             let mut formulas = |specs: &[FormulaSpec]| -> Vec<Formula> {
@@ -82,7 +91,10 @@ impl<const D: usize> Loads<D> {
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.tractions.is_empty() && self.pressures.is_empty() && self.body_forces.is_empty()
+        self.tractions.is_empty()
+            && self.pressures.is_empty()
+            && self.body_forces.is_empty()
+            && self.manufactured.is_none()
     }
 
     /// Whether some depend on the positions.
@@ -114,6 +126,9 @@ impl<const D: usize> Loads<D> {
         }
         for load in &self.body_forces {
             add_body_force(load, &parts[load.part], time, factor(&load.table), &mut out.dead)?;
+        }
+        if let Some(motion) = &self.manufactured {
+            motion.add_load(parts, time, &mut out.dead)?;
         }
         out.pressures.resize_with(self.pressures.len(), Vec::new);
         for (load, pressures) in self.pressures.iter().zip(&mut out.pressures) {

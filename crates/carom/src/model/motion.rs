@@ -9,7 +9,7 @@ use super::Part;
 use super::build::side;
 use super::formulas::{NoValue, arguments, finite};
 use crate::case::load::load_variables;
-use crate::case::{Case, Problem};
+use crate::case::{Case, FormulaSpec, Problem};
 
 /// A dof that moves as a formula says.
 #[derive(Clone, Copy, Debug)]
@@ -78,9 +78,35 @@ impl<const D: usize> Motions<D> {
                 }
             }
         }
+        if let Some(y) = &case.manufactured {
+            motions.manufactured(y, parts, &mut by_dof, problems);
+        }
         motions.moved =
             by_dof.into_iter().map(|(dof, formula)| Moved { dof, formula, place: place_of(parts, dof / D) }).collect();
         motions
+    }
+
+    /// All nodes of the boundary, moved by y − X.
+    fn manufactured(
+        &mut self,
+        y: &[FormulaSpec],
+        parts: &[Part<D>],
+        by_dof: &mut BTreeMap<usize, usize>,
+        problems: &mut Vec<Problem>,
+    ) {
+        for (axis, formula) in y.iter().enumerate() {
+            let text = format!("({formula}) - {}", ["X", "Y"][axis]);
+            match Formula::parse(&text, &load_variables(D)) {
+                Ok(read) => self.formulas.push((format!("component {} of [manufactured]", axis + 1), read)),
+                Err(error) => return problems.push(Problem::new("manufactured.y", error.to_string(), "", "")),
+            }
+            let place = self.formulas.len() - 1;
+            for part in parts {
+                let on = part.body.mesh().on_boundary();
+                let nodes = part.nodes().zip(on).filter_map(|(node, on)| on.then_some(node));
+                by_dof.extend(nodes.map(|node| (node * D + axis, place)));
+            }
+        }
     }
 
     /// Whether nothing moves.

@@ -110,6 +110,10 @@ pub fn columns<const D: usize>(case: &Case, model: &Model<D>) -> Vec<Column> {
             add(format!("{}.{name}", probe.name), unit, what, false);
         }
     }
+    if model.loads.manufactured.is_some() {
+        add("error_l2".into(), "", "√∫|y_h − y|² dΩ₀ against the motion of [manufactured]", false);
+        add("error_h1".into(), "", "√∫|∂y_h/∂X − ∂y/∂X|² dΩ₀ against the motion of [manufactured]", false);
+    }
     columns
 }
 
@@ -187,6 +191,9 @@ pub(super) fn row<const D: usize>(
     }
     for probe in &model.probes {
         probe.values(model, state, row);
+    }
+    if let Some(motion) = &model.loads.manufactured {
+        row.extend(motion.errors(&model.parts, &state.y, state.time));
     }
 }
 

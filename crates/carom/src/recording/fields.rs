@@ -44,7 +44,7 @@ pub(super) fn field_set<const D: usize>(case: &Case, model: &Model<D>, state: &S
     }
 }
 
-/// Cauchy stress XX YY ZZ XY YZ XZ at the nodes, mean over the cells of a node.
+/// Cauchy stress XX YY ZZ XY YZ XZ at the nodes, mean over the cells of a node that have one there; NaN where none has (J ≤ 0).
 fn nodal_stress<const D: usize>(model: &Model<D>, state: &State) -> Vec<f64> {
     let nodes = model.mass.nodes();
     let (mut sum, mut count) = (vec![[0.0; 6]; nodes], vec![0.0_f64; nodes]);
@@ -65,7 +65,7 @@ fn nodal_stress<const D: usize>(model: &Model<D>, state: &State) -> Vec<f64> {
             }
         }
     }
-    sum.iter().zip(&count).flat_map(|(s, n)| s.map(|x| x / n.max(1.0))).collect()
+    sum.iter().zip(&count).flat_map(|(s, n)| s.map(|x| x / n)).collect()
 }
 
 fn pressures<const D: usize>(case: &Case, model: &Model<D>, state: &State) -> Vec<f64> {

@@ -15,8 +15,14 @@ impl Check<'_> {
             && draft.bodies.iter().all(Option::is_some)
             && draft.contacts.iter().all(Option::is_some)
             && draft.supports.iter().all(Option::is_some);
-        let known =
-            columns::of(draft.dimension.unwrap_or(2), &draft.bodies, &draft.contacts, &draft.supports, &draft.probes);
+        let known = columns::of(
+            draft.dimension.unwrap_or(2),
+            &draft.bodies,
+            &draft.contacts,
+            &draft.supports,
+            &draft.probes,
+            self.document.root().get("manufactured").is_some(),
+        );
         let end = draft.time.as_ref().map_or(f64::INFINITY, |t| t.end);
         for column in draft.exact.keys().filter(|column| complete && !known.contains(column)) {
             self.no_column(joined("exact", column), column, &known);

@@ -63,6 +63,37 @@ impl Check<'_> {
         }
     }
 
+    /// A motion that is given leaves no place for others' forces, supports and starts.
+    pub(super) fn manufactured(&mut self) {
+        let root = self.document.root();
+        if root.get("manufactured").is_none() {
+            return;
+        }
+        let why = "[manufactured] gives the motion; load, boundary and start follow from it";
+        for (key, path) in
+            [("support", "support[0]"), ("load", "load[0]"), ("contact", "contact[0]"), ("initial", "initial")]
+        {
+            if root.get(key).is_some() {
+                self.add(path, format!("a manufactured motion has no {key} of its own"), why, "leave it out");
+            }
+        }
+        for (i, body) in self.draft.bodies.iter().enumerate() {
+            let Some(body) = body else { continue };
+            if body.gravity.iter().any(|g| *g != 0.0) {
+                self.add(
+                    format!("body[{i}].gravity"),
+                    "a manufactured motion has no gravity of its own",
+                    why,
+                    "leave it out",
+                );
+            }
+            if !body.velocity.iter().all(super::super::FormulaSpec::is_zero) {
+                let what = "a manufactured motion has no initial velocity of its own";
+                self.add(format!("body[{i}].velocity"), what, why, "leave it out");
+            }
+        }
+    }
+
     /// Initial velocities where there is no inertia, or where another run has given them.
     pub(super) fn velocities(&mut self) {
         let draft = self.draft;

@@ -28,6 +28,7 @@ pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Pr
     check.motions();
     check.loads();
     check.velocities();
+    check.manufactured();
     check.contacts();
     check.probes();
     check.time();

@@ -1,7 +1,7 @@
 //! What messages say: some word by word, the others by their essence and their place.
 
 use super::{BARS, IMPACT, resolved};
-use crate::case::{CaseError, Document};
+use crate::case::{CaseError, Document, read};
 
 fn shown(text: &str, sets: &[&str]) -> String {
     let found = resolved(text, sets).expect_err("the case is wrong");
@@ -141,6 +141,17 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
         &["the scheme \"static\" has no velocities"],
     ),
     (&["time.scheme={ kind = \"static\", rho_inf = 1 }"], &["unknown key `rho_inf` in scheme \"static\""]),
+    // a motion that is given
+    (
+        &["manufactured.y=[\"X\", \"Y + sin(\"]"],
+        &[
+            "the formula of `y`",
+            "a manufactured motion has no support of its own",
+            "a manufactured motion has no contact",
+        ],
+    ),
+    (&["manufactured.y=[\"X\"]"], &["`y` must be a list of 2 numbers or formulas"]),
+    (&["expect=[{ what = \"last error_l2\", at_most = 0 }]"], &["no column `error_l2`"]),
     // contact without mass
     (&["material.rubber.density=0"], &["nothing that touches in `strike` has mass", "persistency = \"none\""]),
     // combinations without meaning
@@ -312,6 +323,30 @@ fn texts_that_are_no_case() {
     assert!(told(&format!("a = {}", "[".repeat(100_000))).contains("this is not TOML"));
     assert!(told("case = \"impact.toml\"\n[[arm]]\nname = \"a\"\n").contains("unknown key `arm`"));
     assert!(told("a = 1\n\u{0}").contains("this is not TOML"));
+}
+
+/// Tables of loads are told of where the case names them, with their own file and line.
+#[test]
+fn tables_of_loads() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("case.toml");
+    let load = "\n[[load]]\non = [\"prism.top\"]\npressure = 1\ntable = \"a.csv\"\n";
+    std::fs::write(&path, format!("{IMPACT}{load}")).unwrap();
+    let line = IMPACT.lines().count() + 5;
+    let told = |table: &str| {
+        std::fs::write(folder.path().join("a.csv"), table).unwrap();
+        let document = Document::open(&path, &[]).unwrap();
+        document.diagnose_all(&read(&document).unwrap_err()).to_string()
+    };
+    for (table, messages) in [
+        ("t,force\n0,1\n9,1\n", ["the table \"a.csv\" cannot be used", "a.csv:1: there is no column `value`"]),
+        ("t,value\n0,1\n0.5,1\n", ["the table \"a.csv\" does not cover the run", "its last t = 0.5"]),
+        ("t,value\n0.1,1\n9,1\n", ["the table \"a.csv\" does not cover the run", "its first line is t = 0.1"]),
+    ] {
+        let told = told(table);
+        assert!(told.contains(&format!("case.toml:{line}:9: ")), "{told}");
+        assert!(messages.iter().all(|m| told.contains(m)), "{told}");
+    }
 }
 
 #[test]

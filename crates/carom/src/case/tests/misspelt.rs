@@ -52,7 +52,7 @@ fn every_misspelt_key_is_recognised() {
             let doubled = format!("{key}{}", &key[key.len() - 1..]);
             // Keys of one letter, `x` and `y`, have nothing to swap.
             let swapped =
-                key.get(1..2).map_or(String::from("q"), |second| format!("{second}{}{}", &key[..1], &key[2..]));
+                key.get(1..2).map_or_else(|| doubled.clone(), |second| format!("{second}{}{}", &key[..1], &key[2..]));
             let capital = format!("{}{}", key[..1].to_uppercase(), &key[1..]);
             for wrong in [doubled, swapped, capital].into_iter().filter(|wrong| *wrong != key) {
                 let text = format!("{}{wrong}{}", &text[..span.start], &text[span.end..]);

@@ -1,0 +1,135 @@
+//! Metrics of the pressure between bodies at rest: of the last recorded step of a static run, from its rows of contact.csv.
+//!
+//! Hertz's pressure of a line contact is half an ellipse, so that its square is a parabola in the tangential place s:
+//!
+//! ```text
+//! p² = p₀² (1 − ((s − c)/a)²)        fitted to p² at the nodes by least squares: linear in p₀², p₀²c/a², p₀²/a²
+//! ```
+//!
+//! (H. Hertz 1882; K. L. Johnson, *Contact Mechanics*, 1985, § 4.2.) Where the largest pressure is that of an outermost node the model is the
+//! half right or left of an axis of symmetry, and c is that node's place. Multipliers come as λ/weight, the mean pressure near a node. Of several
+//! contacts the one that carries most is meant.
+
+use super::extreme;
+use crate::{ContactRow, Run};
+
+/// Peak and half-width of the ellipse closest to pressures at places.
+///
+/// Needs three different places (two in a half model); none where the best parabola has no peak.
+pub fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
+    let (first, last) = (places.iter().copied().reduce(f64::min)?, places.iter().copied().reduce(f64::max)?);
+    let top = extreme(pressures, f64::gt).map(|(i, _)| places[i])?;
+    let half = top == first || top == last;
+    // Places from −1 to 1 keep the normal equations well conditioned.
+    let (middle, scale) = if half { (top, last - first) } else { (0.5 * (first + last), 0.5 * (last - first)) };
+    let size = pressures.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+    let powers = |s: f64| {
+        let x = (s - middle) / scale;
+        if half { [1.0, 0.0, x * x] } else { [1.0, x, x * x] }
+    };
+    let (mut matrix, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
+    for (s, p) in places.iter().zip(pressures) {
+        let (row, square) = (powers(*s), (p / size).powi(2));
+        for i in 0..3 {
+            right[i] += row[i] * square;
+            for j in 0..3 {
+                matrix[i][j] += row[i] * row[j];
+            }
+        }
+    }
+    if half {
+        matrix[1][1] = 1.0;
+    }
+    let [a, b, c] = solved(matrix, right)?;
+    // a + bx + cx² = peak + c(x − x₀)²
+    let peak = a - b * b / (4.0 * c);
+    (c < 0.0 && peak > 0.0).then(|| (size * peak.sqrt(), scale * (-peak / c).sqrt()))
+}
+
+/// Solution of three equations by Cramer's rule; none if singular.
+fn solved(m: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
+    let det = |m: [[f64; 3]; 3]| {
+        (0..3)
+            .map(|i| m[0][i] * (m[1][(i + 1) % 3] * m[2][(i + 2) % 3] - m[1][(i + 2) % 3] * m[2][(i + 1) % 3]))
+            .sum::<f64>()
+    };
+    let whole = det(m);
+    let size = m.iter().flatten().fold(0.0_f64, |s, x| s.max(x.abs()));
+    (whole.abs() > 1e-12 * size.powi(3)).then(|| {
+        std::array::from_fn(|k| {
+            let mut replaced = m;
+            for i in 0..3 {
+                replaced[i][k] = right[i];
+            }
+            det(replaced) / whole
+        })
+    })
+}
+
+/// The rows of the last recorded step of the contact that carries most.
+fn last_rows(run: &Run) -> Vec<&ContactRow<'static>> {
+    let Some(last) = run.column("step").and_then(|s| s.last().copied()) else { return Vec::new() };
+    let rows: Vec<_> = run.contact.iter().filter(|r| r.step as f64 == last).collect();
+    let load = |name: &str| rows.iter().filter(|r| r.contact == name).map(|r| -r.multiplier).sum::<f64>();
+    let names = rows.iter().map(|r| r.contact.as_ref());
+    let Some(most) = names.reduce(|most, next| if load(next) > load(most) { next } else { most }) else {
+        return Vec::new();
+    };
+    let most = most.to_owned();
+    rows.into_iter().filter(|r| r.contact == most).collect()
+}
+
+/// Places along the contact and pressures there, at the end of a static run; nothing of a motion, or without contact.
+fn at_rest(run: &Run) -> Option<(Vec<f64>, Vec<f64>)> {
+    let kind = run.manifest.case.pointer("/time/scheme/kind").and_then(|k| k.as_str());
+    let rows = if kind == Some("static") { last_rows(run) } else { Vec::new() };
+    // The tangent to the mean normal.
+    let [x, y] = rows.iter().fold([0.0, 0.0], |n, r| std::array::from_fn(|i| n[i] + r.normal[i]));
+    let length = f64::hypot(x, y);
+    let places = rows.iter().map(|r| (y * r.point[0] - x * r.point[1]) / length).collect();
+    (!rows.is_empty()).then(|| (places, rows.iter().map(|r| r.pressure).collect()))
+}
+
+/// Smallest pressure of a node at the end of a static run.
+pub(crate) fn smallest(run: &Run) -> Option<f64> {
+    extreme(&at_rest(run)?.1, f64::lt).map(|x| x.1)
+}
+
+/// Largest pressure of a node at the end of a static run.
+pub(crate) fn largest(run: &Run) -> Option<f64> {
+    extreme(&at_rest(run)?.1, f64::gt).map(|x| x.1)
+}
+
+/// [`hertz`] of the pressures at the end of a static run.
+pub(crate) fn ellipse(run: &Run) -> Option<(f64, f64)> {
+    let (places, pressures) = at_rest(run)?;
+    hertz(&places, &pressures)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points of an ellipse give it back, wherever its middle is; so does its half.
+    #[test]
+    fn an_ellipse_is_found() {
+        let (p0, a, c) = (0.025, 0.05, 3.0);
+        let ellipse = |s: f64| p0 * (1.0 - ((s - c) / a).powi(2)).max(0.0).sqrt();
+        for range in [-7..=8, 0..=9, -9..=0] {
+            let places: Vec<f64> = range.map(|i| c + 0.1 * a * f64::from(i)).collect();
+            let pressures: Vec<f64> = places.iter().map(|s| ellipse(*s)).collect();
+            let (peak, half) = hertz(&places, &pressures).unwrap();
+            assert!((peak / p0 - 1.0).abs() < 1e-9 && (half / a - 1.0).abs() < 1e-9, "{peak} {half}");
+        }
+    }
+
+    /// By hand: p² = 4, 3, 0 at s = 0, 1, 2 is 4 − s², so p₀ = 2 and a = 2; one place, or a valley, is no ellipse.
+    #[test]
+    fn few_points() {
+        let (peak, half) = hertz(&[0.0, 1.0, 2.0], &[2.0, 3.0_f64.sqrt(), 0.0]).unwrap();
+        assert!((peak - 2.0).abs() < 1e-12 && (half - 2.0).abs() < 1e-12);
+        assert_eq!(hertz(&[0.0], &[1.0]), None);
+        assert_eq!(hertz(&[], &[]), None);
+        assert_eq!(hertz(&[0.0, 1.0], &[1.0, 1.0]), None);
+    }
+}

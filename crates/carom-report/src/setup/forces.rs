@@ -1,0 +1,131 @@
+//! Loads in the drawn case: arrows at sides and in bodies, with the directions their formulas have at the end of the run (or, where they are zero then, the
+//! last of a few times before).
+
+use carom_formula::Formula;
+use serde_json::Value;
+
+use super::{Setup, list, text, vector};
+use crate::bands::Point;
+use crate::labels::number;
+use crate::symbols::{along, arrow, direction, plus};
+
+const COLOR: &str = "#7a2f8f";
+/// Length of an arrow at a side, and the gap it leaves there.
+const LENGTH: f64 = 20.0;
+const GAP: f64 = 3.0;
+const SPACING: f64 = 26.0;
+
+/// A load as the manifest has it.
+struct Load<'a> {
+    kind: &'a str,
+    spec: &'a Value,
+    components: Vec<&'a Value>,
+}
+
+fn load(value: &Value) -> Option<Load<'_>> {
+    let (kind, spec) = value.get("kind")?.as_object()?.iter().next()?;
+    let given = spec.get("value")?;
+    let components = given.as_array().map_or_else(|| vec![given], |list| list.iter().collect());
+    Some(Load { kind, spec, components })
+}
+
+/// A number or a formula as written.
+pub(super) fn written(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.as_f64().map_or(String::new(), number), str::to_owned)
+}
+
+impl Setup<'_> {
+    /// A formula's value at a reference place and a time.
+    fn value(&self, given: &Value, [x, y]: Point, time: f64) -> f64 {
+        let (names, values) =
+            if self.flat { (vec!["X", "t"], vec![x, time]) } else { (vec!["X", "Y", "t"], vec![x, y, time]) };
+        let formula = |text: &str| Formula::parse(text, &names).map_or(0.0, |f| f.value(&values));
+        given.as_str().map_or_else(|| given.as_f64().unwrap_or(0.0), formula)
+    }
+
+    /// Values of a load's components in pixels' directions, the last that are not all zero.
+    fn values(&self, load: &Load, pixel: Point) -> Vec<f64> {
+        let place = [(pixel[0] - self.origin[0]) / self.scale, (self.origin[1] - pixel[1]) / self.scale];
+        let end = self.case().pointer("/time/end").and_then(Value::as_f64).unwrap_or(0.0);
+        let at =
+            |share: f64| -> Vec<f64> { load.components.iter().map(|c| self.value(c, place, share * end)).collect() };
+        let times = [1.0, 0.75, 0.5, 0.25, 0.125, 0.03, 0.0];
+        times.into_iter().map(at).find(|v| v.iter().any(|x| *x != 0.0 && x.is_finite())).unwrap_or_default()
+    }
+
+    /// Arrows of all loads.
+    pub(super) fn forces(&self, out: &mut String) {
+        for load in list(self.case(), "loads").iter().filter_map(load) {
+            if load.kind == "body-force" {
+                let Some(center) = self.center(text(load.spec, "body")) else { continue };
+                if let Some(d) = heading(&self.values(&load, center)) {
+                    arrow(out, plus(center, -2.0 * LENGTH, d), center, COLOR);
+                }
+                continue;
+            }
+            for walk in list(load.spec, "on").iter().filter_map(Value::as_str).flat_map(|side| self.walks(side)) {
+                let spots = if self.flat {
+                    vec![(plus(walk[0].0, 0.5, [0.0, walk[1].0[1] - walk[0].0[1]]), walk[0].1)]
+                } else {
+                    along(&walk, SPACING)
+                };
+                for (spot, n) in spots {
+                    let values = self.values(&load, spot);
+                    let towards = match (load.kind, values.first()) {
+                        ("pressure", Some(p)) if *p != 0.0 => n.map(|c| -c * p.signum()),
+                        ("pressure", _) => continue,
+                        _ => match heading(&values) {
+                            Some(d) => d,
+                            None => continue,
+                        },
+                    };
+                    // What presses ends at the side, what pulls begins there.
+                    let presses = towards[0] * n[0] + towards[1] * n[1] < 0.0;
+                    let [from, to] = if presses { [-GAP - LENGTH, -GAP] } else { [GAP, GAP + LENGTH] };
+                    arrow(out, plus(spot, from, towards), plus(spot, to, towards), COLOR);
+                }
+            }
+        }
+    }
+
+    /// Lines of the key: what acts where.
+    pub(super) fn forces_in_words(&self) -> Vec<String> {
+        let words = |value: &Value| {
+            let load = load(value)?;
+            let parts: Vec<String> = load.components.iter().map(|c| written(c)).collect();
+            let amount = if parts.len() == 1 { parts[0].clone() } else { format!("({})", parts.join(", ")) };
+            let sides: Vec<&str> = list(load.spec, "on").iter().filter_map(Value::as_str).collect();
+            let place = if sides.is_empty() { text(load.spec, "body").to_owned() } else { sides.join(", ") };
+            let table = value.pointer("/table/file").and_then(Value::as_str);
+            let table = table.map_or_else(String::new, |file| format!(" × {file}"));
+            Some(format!("{} {amount}{table}: {place}", load.kind.replace('-', " ")))
+        };
+        list(self.case(), "loads").iter().filter_map(words).collect()
+    }
+
+    /// What a support holds and how it moves, in words.
+    pub(super) fn support_in_words(support: &Value) -> String {
+        let axis = |i: f64| if i == 0.0 { "x" } else { "y" };
+        let held: Vec<&str> = vector(support.get("fix")).iter().map(|i| axis(*i)).collect();
+        let moved = list(support, "move").iter().filter_map(|m| {
+            let [axis_number, formula] = m.as_array()?.as_slice() else { return None };
+            Some(format!("{} = {}", axis(axis_number.as_f64()?), written(formula)))
+        });
+        let moved: Vec<String> = moved.collect();
+        let held = if held.is_empty() { String::new() } else { format!("{} held", held.join(", ")) };
+        let moved = if moved.is_empty() { String::new() } else { format!("moved by {}", moved.join(", ")) };
+        [held, moved].into_iter().filter(|s| !s.is_empty()).collect::<Vec<_>>().join("; ")
+    }
+
+    /// Directions a support holds or moves.
+    pub(super) fn directions(support: &Value) -> Vec<f64> {
+        let moved = list(support, "move").iter().filter_map(|m| m.get(0).and_then(Value::as_f64));
+        vector(support.get("fix")).into_iter().chain(moved).collect()
+    }
+}
+
+/// Direction of a vector on the page, where y points down.
+fn heading(vector: &[f64]) -> Option<Point> {
+    let d = direction([0.0; 2], [vector.first().copied()?, -vector.get(1).copied().unwrap_or(0.0)]);
+    (d != [0.0; 2]).then_some(d)
+}

@@ -1,0 +1,136 @@
+#!/usr/bin/env python3
+"""Plants faults into Carom one by one and asks `carom verify` to find each: a suite that cannot fail proves nothing.
+
+    scripts/plant_faults.py [WORD…] [--markdown FILE]    all faults, or those whose names contain a word; exit code 1 if one survives
+    scripts/plant_faults.py --check                      whether each fault still fits the source, without building anything
+
+A fault of scripts/faults.json is one string of one file replaced by another, and must stand there once. The tree is a copy of the last
+commit in target/faults, with a target directory of its own: each fault costs the crates above it and, found by a short case, seconds.
+`--fast --fail-fast` decides; a fault that survives that meets the whole suite.
+"""
+
+import argparse
+import io
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tarfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PLACE = ROOT / "target/faults"
+TREE = PLACE / "tree"
+FAULTS = json.loads((ROOT / "scripts/faults.json").read_text(encoding="utf-8"))
+
+# A fault may also keep a run from ending.
+PATIENCE = 1800
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("words", nargs="*", metavar="WORD", help="only faults whose names contain one of these")
+    options.add_argument("--check", action="store_true", help="only whether every fault fits the source")
+    options.add_argument("--markdown", type=pathlib.Path, metavar="FILE", help="write the table here too")
+    given = options.parse_args()
+    if unfit := [f"{fault['name']}: {why}" for fault in FAULTS if (why := misfit(ROOT, fault))]:
+        sys.exit("\n".join(unfit))
+    if given.check:
+        print(f"{len(FAULTS)} faults fit the source")
+        return
+    copy()
+    if error := build():
+        sys.exit(f"the tree does not build:\n{error}")
+    if missed := verified("--fast"):
+        sys.exit(f"without any fault the suite finds: {missed}")
+    print("no fault: the suite passes", flush=True)
+    rows, survived = [], []
+    for fault in FAULTS:
+        if given.words and not any(word in fault["name"] for word in given.words):
+            continue
+        begin, found = time.time(), planted(fault)
+        print(f"{'found   ' if found else 'SURVIVED'}  {fault['name']}  ({time.time() - begin:.0f} s)  {found or ''}", flush=True)
+        rows.append([fault["name"], f"`{pathlib.Path(fault['file']).relative_to('crates')}`", found or "**survived**"])
+        if not found:
+            survived.append(fault["name"])
+    if given.markdown:
+        lines = [["Fault", "In", "Seen first by"], ["---"] * 3, *rows]
+        lines = [" | ".join(cell.replace("|", "\\|") for cell in line) for line in lines]
+        given.markdown.write_text("".join(f"| {line} |\n" for line in lines), encoding="utf-8")
+    print(f"{len(rows)} faults, {len(survived)} survived{': ' + ', '.join(survived) if survived else ''}")
+    sys.exit(1 if survived else 0)
+
+
+def misfit(tree, fault):
+    """Why a fault cannot be planted; none if it can."""
+    path = tree / fault["file"]
+    if not path.is_file():
+        return f"there is no {fault['file']}"
+    count = path.read_text(encoding="utf-8").count(fault["old"])
+    return None if count == 1 else f"{fault['old']!r} stands {count} times in {fault['file']}, not once"
+
+
+def copy():
+    """The last commit in TREE. Files that are the same stay untouched, so that only what differs is built."""
+    archive = subprocess.run(["git", "archive", "HEAD"], cwd=ROOT, check=True, capture_output=True).stdout
+    with tarfile.open(fileobj=io.BytesIO(archive)) as files:
+        wanted = {TREE / member.name: files.extractfile(member).read() for member in files if member.isfile()}
+    for path in TREE.rglob("*"):
+        if path.is_file() and path not in wanted:
+            path.unlink()
+    for path, content in wanted.items():
+        if not path.is_file() or path.read_bytes() != content:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+
+
+def build():
+    """What the compiler says, if it fails."""
+    environment = {**os.environ, "CARGO_TARGET_DIR": str(PLACE / "target"), "CARGO_INCREMENTAL": "1"}
+    command = ["cargo", "build", "--quiet", "--package", "carom-cli"]
+    done = subprocess.run(command, cwd=TREE, env=environment, capture_output=True, text=True, check=False)
+    return done.stderr if done.returncode else None
+
+
+def verified(*which):
+    """What the suite finds: the first miss, how the program ended otherwise, none if all is met."""
+    out = PLACE / "verify"
+    shutil.rmtree(out, ignore_errors=True)
+    command = [PLACE / "target/debug/carom", "verify", "cases", *which, "--fail-fast", "--out", out]
+    try:
+        done = subprocess.run(command, cwd=TREE, capture_output=True, text=True, timeout=PATIENCE, check=False)
+    except subprocess.TimeoutExpired:
+        return f"no end within {PATIENCE} s"
+    if done.returncode == 0:
+        return None
+    if done.returncode in (1, 3):
+        for set_up in json.loads((out / "verify.json").read_text(encoding="utf-8"))["set_ups"]:
+            name = f"{set_up['family']}/{set_up['name']}"
+            if set_up["stopped"]:
+                return f"{name}: stopped, {set_up['stopped'][0]}"
+            for row in set_up["rows"]:
+                if not row["pass"]:
+                    got = row["why"] if row["got"] is None else f"{row['got']:.5g}"
+                    of = f" of \"{row['arm']}\"" if row["arm"] else ""
+                    return f"{name}: {row['what']}{of}, expected {row['expected']}, got {got}"
+    said = (done.stderr.strip().splitlines() or ["nothing said"])[0]
+    return f"exit code {done.returncode}: {said}"
+
+
+def planted(fault):
+    """What the suite finds with a fault in the tree, which is mended again."""
+    path = TREE / fault["file"]
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace(fault["old"], fault["new"]), encoding="utf-8")
+    try:
+        if error := build():
+            sys.exit(f"{fault['name']}: does not build:\n{error}")
+        return verified("--fast") or verified()
+    finally:
+        path.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
