@@ -125,6 +125,7 @@ pub(crate) fn rankings(out: &mut String, study: &Study) {
     let Some(ranking) = &study.ranking else { return };
     out.push_str("<h2>Ranking</h2>\n");
     design(out, study);
+    other_goals(out, study);
     if let Ok(measure) = &ranking.measure {
         let _ = writeln!(
             out,
@@ -170,6 +171,40 @@ pub(crate) fn rankings(out: &mut String, study: &Study) {
         let _ = writeln!(out, "<tr><td><code>{}</code></td><td>{}</td></tr>", escape(&name), escape(&why));
     }
     out.push_str("</table></details>\n");
+}
+
+/// What would be recommended by the other goals.
+fn other_goals(out: &mut String, study: &Study) {
+    out.push_str("<h3>By other goals</h3>\n<table><thead><tr><th>Goal</th><th>Recommended</th><th class=\"n\">Δt</th><th>Confidence</th><th>By</th></tr></thead>\n");
+    for ranking in &study.other_rankings {
+        let cells = match (&ranking.verdict, &ranking.measure) {
+            (Some(verdict), Ok(measure)) => {
+                let arm = &study.manifest.arms[verdict.arm];
+                let mut name = escape(arm.part.method.as_ref().unwrap_or(&arm.name)).clone();
+                if !verdict.alike.is_empty() {
+                    name += &format!(
+                        "<br><span class=\"small\">not told apart: {}</span>",
+                        escape(&verdict.alike.join(" · "))
+                    );
+                }
+                let at = step(arm, "time.step").map_or("–".into(), number);
+                format!(
+                    "<td>{name}</td><td class=\"n\">{at}</td><td>{}</td><td>{}</td>",
+                    verdict.confidence.word(),
+                    html(&measure.words)
+                )
+            }
+            (_, Err(why)) => {
+                format!("<td colspan=\"4\">nothing can be ranked: <span class=\"small\">{}</span></td>", escape(why))
+            }
+            (None, Ok(measure)) => format!(
+                "<td colspan=\"4\">no arm has a value of: <span class=\"small\">{}</span></td>",
+                html(&measure.words)
+            ),
+        };
+        let _ = writeln!(out, "<tr><td>{}</td>{cells}</tr>", ranking.goal.word());
+    }
+    out.push_str("</table>\n");
 }
 
 fn design(out: &mut String, study: &Study) {

@@ -90,8 +90,8 @@ pub struct Ranking {
 enum Candidate {
     Metric(&'static str),
     Columns(&'static str, fn(&str) -> bool),
-    /// `:variation` of the columns.
-    Variations(fn(&str) -> bool),
+    /// A metric of columns.
+    OfColumns(&'static str, fn(&str) -> bool),
 }
 
 fn candidates(goal: Goal) -> Vec<Candidate> {
@@ -100,7 +100,11 @@ fn candidates(goal: Goal) -> Vec<Candidate> {
         Goal::Force => ["force_variation", "force_high_frequency", "peak_mean_force", "impulse_y", "impulse_x"]
             .map(Candidate::Metric)
             .into(),
-        Goal::Stress => vec![Candidate::Variations(is_stress), Candidate::Columns("stresses", is_stress)],
+        Goal::Stress => vec![
+            Candidate::OfColumns("variation", is_stress),
+            Candidate::OfColumns("peak_mean", is_stress),
+            Candidate::Columns("stresses", is_stress),
+        ],
         Goal::Trajectory | Goal::Cost => vec![Candidate::Columns("displacements", is_trajectory)],
     }
 }
@@ -160,10 +164,10 @@ impl Judge<'_> {
                 let words = format!("deviation of {} from the reference, over their range", columns.join(", "));
                 Ok((measure(&format!("deviation of {name}"), words, uncertainty), errors))
             }
-            Candidate::Variations(kind) => {
-                let none = |why: &str| Err(("variation of stresses".to_owned(), why.to_owned()));
+            Candidate::OfColumns(what, kind) => {
+                let none = |why: &str| Err((format!("{what} of stresses"), why.to_owned()));
                 let Some(reference) = self.reference else { return none("the study has no reference") };
-                let names = reference.columns().into_iter().filter(|c| kind(c)).map(|c| format!("{c}:variation"));
+                let names = reference.columns().into_iter().filter(|c| kind(c)).map(|c| format!("{c}:{what}"));
                 let known: Vec<(String, f64, f64)> = names
                     .filter_map(|n| {
                         let (value, off) = reference.metric(&n).established().filter(|(v, _)| *v > 0.0)?;
@@ -180,7 +184,7 @@ impl Judge<'_> {
                 };
                 let uncertainty = known.iter().map(|k| k.2).fold(0.0, f64::max);
                 let words = format!("error of {}", known.iter().map(|k| k.0.as_str()).collect::<Vec<_>>().join(", "));
-                Ok((measure("variation of stresses", words, uncertainty), self.rows.iter().map(mean).collect()))
+                Ok((measure(&format!("{what} of stresses"), words, uncertainty), self.rows.iter().map(mean).collect()))
             }
         }
     }
