@@ -180,12 +180,10 @@ fn other_goals(out: &mut String, study: &Study) {
         let cells = match (&ranking.verdict, &ranking.measure) {
             (Some(verdict), Ok(measure)) => {
                 let arm = &study.manifest.arms[verdict.arm];
-                let mut name = escape(arm.part.method.as_ref().unwrap_or(&arm.name)).clone();
+                let mut name = escape(arm.part.method.as_ref().unwrap_or(&arm.name));
                 if !verdict.alike.is_empty() {
-                    name += &format!(
-                        "<br><span class=\"small\">not told apart: {}</span>",
-                        escape(&verdict.alike.join(" · "))
-                    );
+                    let alike = escape(&verdict.alike.join(" · "));
+                    let _ = write!(name, "<br><span class=\"small\">not told apart: {alike}</span>");
                 }
                 let at = step(arm, "time.step").map_or("–".into(), number);
                 format!(
@@ -209,9 +207,11 @@ fn other_goals(out: &mut String, study: &Study) {
 
 fn design(out: &mut String, study: &Study) {
     match study.manifest.design.as_ref().map(|d| (d.kind, &d.cost_of)) {
-        None => out.push_str("<p>The arms are as written: neither their steps nor their costs were made equal.</p>\n"),
+        None => {
+            out.push_str("<p>The arms are as written: neither their steps nor their costs were made equal.</p>\n");
+        }
         Some((Kind::MatchedStep, _)) => {
-            out.push_str("<p>Matched step: at a level every method has the same step.</p>\n")
+            out.push_str("<p>Matched step: at a level every method has the same step.</p>\n");
         }
         Some((Kind::MatchedCost, of)) => {
             let _ = writeln!(
