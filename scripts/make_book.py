@@ -10,6 +10,7 @@ first-run.*    what `carom run cases/impact/impact.toml` prints and draws
 columns.md     columns of its history.csv, from its manifest
 metrics.md     the table of metrics, from crates/carom-record/src/metrics/table.rs
 activation.md, peak.md          docs/book/studies/, run
+spins.md, refine.md            tables of cases/free/spins.toml and cases/impact/refine-*.toml
 FAMILY.md, FAMILY.svg           `carom verify --report --out DIR --markdown DIR`, and a figure of one of its runs; with --verify DIR, what it left there
 
 Every case of docs/book/examples/ is run too. What could not be made, links that lead nowhere, keys that no case uses: told at the end, exit code 1. Needs
@@ -21,6 +22,7 @@ import csv
 import html
 import html.parser
 import json
+import math
 import pathlib
 import re
 import shutil
@@ -52,6 +54,10 @@ STUDIES = {
     "activation": ["peak_force", "force_roughness", "restitution", "energy_lost", "energy_created", "rejected_steps"],
     "peak": ["peak_force", "peak_mean_force", "impulse_x", "restitution", "energy_lost"],
 }
+
+# Studies of refinement, and the metrics of their tables.
+REFINEMENTS = {"refine-step": "The step halved", "refine-mesh": "The meshes halved"}
+REFINED = ["cylinder.center_y", "cylinder.velocity_y", "A.uy:min", "B.uy:min", "contact_end", "impulse_y", "restitution", "energy_lost", "peak_force", "peak_mean_force"]
 
 problems = []
 
@@ -338,6 +344,50 @@ def verified(carom, given, place):
             shutil.copy(found, GENERATED / f"{family}.svg")
         else:
             problems.append(f"figures/{figure}.svg of a run of the family {family}")
+    spins = [[r["arm"], *(number(r[c]) for c in ("steps", "energy", "moment"))] for r in ends(out / "free/spins")]
+    write("spins.md", table(["", "Steps done", "Energy at the end / at the start", "Moment of momentum, likewise"], spins))
+    write("refine.md", "".join(refinement(out / f"impact/{name}/study.csv", title) for name, title in REFINEMENTS.items()))
+
+
+def ends(study):
+    """Of each arm of a study of free bodies: steps done, and what is left of energy and moment of momentum."""
+    if not (study / "study.csv").is_file():
+        problems.append(f"{study.name} of {study.parent.name}")
+        return
+    with open(study / "study.csv", encoding="utf-8", newline="") as file:
+        names = [row["arm"] for row in csv.DictReader(file)]
+    for name, history in zip(names, sorted(study.glob("arms/*/history.csv"))):
+        rows = list(csv.DictReader(history.open(encoding="utf-8")))
+        left = lambda column: float(rows[-1][column]) / float(rows[0][column])
+        yield {"arm": name, "steps": rows[-1]["step"], "energy": left("total"), "moment": left("angular_momentum")}
+
+
+def refinement(path, title):
+    """A table of a study that halves a step three times."""
+    if not path.is_file():
+        problems.append(f"{path.name} of {path.parent.name}")
+        return f"{title}: not run.\n\n"
+    with open(path, encoding="utf-8", newline="") as file:
+        arms = list(csv.DictReader(file))
+    ends = [list(csv.DictReader(place.open(encoding="utf-8")))[-1] for place in sorted(path.parent.glob("arms/*/history.csv"))]
+    rows = []
+    for column in REFINED:
+        name, sources = (f"`{column}`", arms) if column in arms[0] else (f"`{column}`, at the end", ends)
+        values = [float(source[column]) for source in sources]
+        rows.append([name, *map(number, values), *verdict(values)])
+    return f"{title}:\n\n" + table(["", *(arm["arm"] for arm in arms), "Order", "Limit"], rows)
+
+
+def verdict(values):
+    """Order and limit of values at halved steps, as carom_record::order tells them."""
+    orders = []
+    for a, b, c in zip(values, values[1:], values[2:]):
+        quotient = (a - b) / (b - c) if b != c else 0.0
+        orders.append(math.log2(quotient) if quotient > 0.0 else None)
+    if None in orders or abs(orders[-1] - orders[-2]) > 0.3 or orders[-1] <= 0.0:
+        return ["no order", "–"]
+    distance = (values[-1] - values[-2]) / (2.0 ** orders[-1] - 1.0)
+    return [f"{orders[-1]:.2f}", f"{number(values[-1] + distance)} ± {number(1.25 * abs(distance))}"]
 
 
 def figure_of(out, family, case, figure):
