@@ -205,7 +205,9 @@ fn theory(study: &Study) -> Option<Plot> {
     for row in rows("frequencies.csv").unwrap_or_default() {
         let (word, Ok(omega)) = (&row[0], row[1].parse::<f64>()) else { continue };
         let symbol = if word == "highest" { "ω_{max}".to_owned() } else { format!("ω_{{{word}}}") };
-        marks.push((omega * long, format!("{symbol}Δt")));
+        // The lowest stand too close for a word each.
+        marks
+            .push((omega * long, if ["1", "highest"].contains(&word) { format!("{symbol}Δt") } else { String::new() }));
         if short < 0.9 * long {
             marks.push((omega * short, String::new()));
         }

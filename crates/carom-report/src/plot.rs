@@ -333,15 +333,12 @@ fn plain(label: &str) -> String {
     while let Some(at) = rest.find(['_', '^']) {
         let (before, after) = rest.split_at(at);
         out.push_str(before);
-        match (after[1..].strip_prefix('{'), after.find('}')) {
-            (Some(_), Some(end)) => {
-                let _ = write!(out, "${}{{\\mathrm{{{}}}}}$", &after[..1], &after[2..end]);
-                rest = &after[end + 1..];
-            }
-            _ => {
-                out.push_str(&after[..1]);
-                rest = &after[1..];
-            }
+        if let (true, Some(end)) = (after[1..].starts_with('{'), after.find('}')) {
+            let _ = write!(out, "${}{{\\mathrm{{{}}}}}$", &after[..1], &after[2..end]);
+            rest = &after[end + 1..];
+        } else {
+            out.push_str(&after[..1]);
+            rest = &after[1..];
         }
     }
     out + rest

@@ -176,7 +176,9 @@ fn side_by_side(out: &mut String, study: &Study) -> bool {
     if arms.len() < 3 || questions.is_empty() || questions.len() > COLUMNS {
         return false;
     }
-    let heads: String = questions.iter().map(|q| format!("<th class=\"n\"><code>{}</code></th>", escape(q))).collect();
+    let heads: Vec<String> =
+        questions.iter().map(|q| format!("<th class=\"n\"><code>{}</code></th>", escape(q))).collect();
+    let heads = heads.concat();
     let _ = writeln!(out, "<table class=\"metrics\"><thead><tr><th>Arm</th>{heads}</tr></thead>");
     for row in arms {
         let cell = |question: &&str| {

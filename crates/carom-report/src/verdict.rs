@@ -53,7 +53,7 @@ pub(crate) fn show(out: &mut String, study: &Study) {
     };
     let arm = &study.manifest.arms[verdict.arm];
     let name = arm.part.method.as_ref().unwrap_or(&arm.name);
-    let at = step(arm, "time.step").map_or_else(String::new, |h| format!(", Δt = {}", number(h)));
+    let at = step(arm, "time.step").map_or_else(String::new, |h| format!(", Δt = {}", long(h)));
     let _ =
         writeln!(out, "<section class=\"verdict\"><h2>Recommended: {}{at}</h2>\n<p>{goal}.</p>\n<dl>", escape(name));
     let mut entry = |head: &str, lines: &[String]| {
@@ -125,7 +125,6 @@ pub(crate) fn rankings(out: &mut String, study: &Study) {
     let Some(ranking) = &study.ranking else { return };
     out.push_str("<h2>Ranking</h2>\n");
     design(out, study);
-    other_goals(out, study);
     if let Ok(measure) = &ranking.measure {
         let _ = writeln!(
             out,
@@ -135,6 +134,7 @@ pub(crate) fn rankings(out: &mut String, study: &Study) {
         );
         table(out, study, ranking);
     }
+    other_goals(out, study);
     let Some(reference) = &study.reference else {
         out.push_str("<p>The study has no finished reference: only what has a right value by itself, such as energy, can be ranked.</p>\n");
         return;
@@ -180,14 +180,12 @@ fn other_goals(out: &mut String, study: &Study) {
         let cells = match (&ranking.verdict, &ranking.measure) {
             (Some(verdict), Ok(measure)) => {
                 let arm = &study.manifest.arms[verdict.arm];
-                let mut name = escape(arm.part.method.as_ref().unwrap_or(&arm.name)).clone();
+                let mut name = escape(arm.part.method.as_ref().unwrap_or(&arm.name));
                 if !verdict.alike.is_empty() {
-                    name += &format!(
-                        "<br><span class=\"small\">not told apart: {}</span>",
-                        escape(&verdict.alike.join(" · "))
-                    );
+                    let alike = escape(&verdict.alike.join(" · "));
+                    let _ = write!(name, "<br><span class=\"small\">not told apart: {alike}</span>");
                 }
-                let at = step(arm, "time.step").map_or("–".into(), number);
+                let at = step(arm, "time.step").map_or("–".into(), long);
                 format!(
                     "<td>{name}</td><td class=\"n\">{at}</td><td>{}</td><td>{}</td>",
                     verdict.confidence.word(),
@@ -209,9 +207,11 @@ fn other_goals(out: &mut String, study: &Study) {
 
 fn design(out: &mut String, study: &Study) {
     match study.manifest.design.as_ref().map(|d| (d.kind, &d.cost_of)) {
-        None => out.push_str("<p>The arms are as written: neither their steps nor their costs were made equal.</p>\n"),
+        None => {
+            out.push_str("<p>The arms are as written: neither their steps nor their costs were made equal.</p>\n");
+        }
         Some((Kind::MatchedStep, _)) => {
-            out.push_str("<p>Matched step: at a level every method has the same step.</p>\n")
+            out.push_str("<p>Matched step: at a level every method has the same step.</p>\n");
         }
         Some((Kind::MatchedCost, of)) => {
             let _ = writeln!(
@@ -265,7 +265,7 @@ fn table(out: &mut String, study: &Study, ranking: &Ranking) {
                 "<tr><td class=\"n\">{}</td><td class=\"method\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>{}<td class=\"n\">{late}</td>{}{ratio}</tr>",
                 r.place,
                 escape(arm.part.method.as_ref().unwrap_or(&arm.name)),
-                step(arm, "time.step").map_or("–".into(), number),
+                step(arm, "time.step").map_or("–".into(), long),
                 number(r.error),
                 ["energy_drift", "dissipated_integrator", "dissipated_contact", "force_high_frequency", "chatter"]
                     .map(|m| format!("<td class=\"n\">{}</td>", of(m)))

@@ -11,7 +11,7 @@
 //! then really took is on the page.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
@@ -255,7 +255,7 @@ fn trial(
     manifest: &StudyManifest,
     i: usize,
     steps: u64,
-    path: &PathBuf,
+    path: &Path,
     progress: &mut dyn FnMut(&Progress),
     stop: &AtomicBool,
 ) -> Result<Option<Ended>, StudyError> {

@@ -118,7 +118,7 @@ pub fn phase_orders(
 }
 
 /// The columns of a reference that tell where things are and are established.
-pub fn established<'a>(reference: &'a Reference, kind: fn(&str) -> bool) -> Vec<&'a str> {
+pub fn established(reference: &Reference, kind: fn(&str) -> bool) -> Vec<&str> {
     let known =
         |c: &&str| *c != FORCE && kind(c) && reference.uncertainty(c).established().is_some() && varies(reference, c);
     reference.columns().into_iter().filter(known).collect()

@@ -5,7 +5,7 @@
 //! levels; two arms of a level whose errors differ by no more than the uncertainty of the reference, or by 5 %, are not told apart.
 
 use super::compared::{Compared, established, is_stress, is_trajectory};
-use super::design::{Goal, Kind};
+use super::design::Goal;
 use super::reference::{IDEAL, Reference, Standing};
 use super::{Row, StudyManifest};
 
@@ -351,12 +351,8 @@ fn confidence(
         let names: Vec<&str> = measure.passed_over.iter().map(|(name, _)| name.as_str()).collect();
         at_most(Confidence::Medium, format!("{} would say more, and no refinement establishes it", names.join(", ")));
     }
-    match manifest.design.as_ref().map(|d| d.kind) {
-        None => {
-            at_most(Confidence::Low, "the arms were not made comparable: no `design` matches steps or cost".to_owned())
-        }
-        Some(Kind::MatchedStep) => {}
-        Some(Kind::MatchedCost) => {}
+    if manifest.design.is_none() {
+        at_most(Confidence::Low, "the arms were not made comparable: no `design` matches steps or cost".to_owned());
     }
     if reasons.is_empty() {
         reasons.push("it is first at every level, by more than the uncertainty of the reference and 5 %".to_owned());

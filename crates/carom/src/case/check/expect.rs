@@ -56,7 +56,7 @@ impl Check<'_> {
                         match name.rsplit_once(':') {
                             Some(("energy_lost", _)) => {}
                             Some((column, what)) if column_metric_names().contains(&what) => {
-                                wanted.push(column.to_owned())
+                                wanted.push(column.to_owned());
                             }
                             _ => self.metric(&name, &known, &path),
                         }
