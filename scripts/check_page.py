@@ -19,7 +19,7 @@ import tempfile
 import time
 from pathlib import Path
 
-OUTSIDE = re.compile(r"""(?:src|href)\s*=\s*["']?(?:https?:)?//|url\(|@import|\bfetch\(|XMLHttpRequest""")
+OUTSIDE = re.compile(r"""(?:src|href)\s*=\s*["']?(?:https?:)?//|url\((?!#)|@import|\bfetch\(|XMLHttpRequest""")
 
 
 class Browser:

@@ -73,7 +73,11 @@ fn error_cost(study: &Study) -> Option<Plot> {
         let columns = established(reference, is_trajectory);
         let error = |arm: usize| Some((cost(arm)?, study.compared.get(arm)?.as_ref()?.mean(&columns)?));
         let curves = scatter(study, error);
+        let squares = columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
+        let uncertainty = (squares.sum::<f64>() / columns.len().max(1) as f64).sqrt();
+        let floor = (uncertainty > 0.0).then(|| (uncertainty, "uncertainty of the reference".to_owned()));
         panes.push(Pane {
+            floor,
             title: "displacements".into(),
             y_label: "deviation / range".into(),
             curves,
@@ -221,12 +225,14 @@ fn theory(study: &Study) -> Option<Plot> {
             Curve { label: (*name).to_owned(), style, x, y, marked: false }
         })
     };
-    let pane = |title: &str, y_label: &str, column: usize| Pane {
+    let pane = |title: &str, y_label: &str, column: usize, limits: (f64, f64)| Pane {
         title: title.into(),
         y_label: y_label.into(),
         curves: curve(column).filter(|c| !c.x.is_empty()).collect(),
         band: None,
         marks: marks.clone(),
+        floor: None,
+        limits: Some(limits),
     };
     Some(Plot {
         name: "theory".into(),
@@ -238,9 +244,9 @@ fn theory(study: &Study) -> Option<Plot> {
         across: 1,
         same: false,
         panes: vec![
-            pane("spectral radius", "ρ", 2),
-            pane("numerical damping ratio", "ξ", 3),
-            pane("relative period error", "(T − T_{0})/T_{0}", 4),
+            pane("spectral radius", "ρ", 2, (0.0, 1.1)),
+            pane("numerical damping ratio", "ξ", 3, (0.0, 1.0)),
+            pane("relative period error", "(T − T_{0})/T_{0}", 4, (-0.1, 1.0)),
         ],
     })
 }

@@ -37,6 +37,10 @@ pub(crate) struct Pane {
     pub(crate) band: Option<[Vec<f64>; 3]>,
     /// Vertical lines with a word.
     pub(crate) marks: Vec<(f64, String)>,
+    /// A horizontal line with a word.
+    pub(crate) floor: Option<(f64, String)>,
+    /// What the vertical axis shows, where it does not show everything.
+    pub(crate) limits: Option<(f64, f64)>,
 }
 
 /// A figure.
@@ -75,13 +79,18 @@ impl Scale {
         let (low, high) = (low - air, high + air);
         let (low, high) = if high - low < 0.2 { (low - 0.15, high + 0.15) } else { (low, high) };
         let every = ((high - low) / count).ceil().max(1.0) as i64;
-        let factors: &[f64] = if high - low < 1.2 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        let factors: &[f64] = match high - low {
+            span if span < 0.6 => &[1.0, 1.5, 2.0, 3.0, 5.0, 7.0],
+            span if span < 1.7 => &[1.0, 2.0, 5.0],
+            _ => &[1.0],
+        };
         let decades = (low.floor() as i64..=high.ceil() as i64).filter(|d| d % every == 0);
         let tick = |d: i64, f: &f64| {
-            let label = if *f == 1.0 {
-                format!("10^{{{}}}", d.to_string().replace('-', "−"))
-            } else {
-                format!("{f}·10^{{{}}}", d.to_string().replace('-', "−"))
+            let power = d.to_string().replace('-', "−");
+            let label = match d {
+                -2..=2 if factors.len() > 1 => format!("{}", (f * 10f64.powi(d as i32) * 1e4).round() / 1e4),
+                _ if *f == 1.0 => format!("10^{{{power}}}"),
+                _ => format!("{f}·10^{{{power}}}"),
             };
             (d as f64 + f.log10(), label)
         };
@@ -114,8 +123,12 @@ impl Plot {
 
     fn y_range(&self, pane: &Pane) -> (f64, f64) {
         let of = |pane: &Pane| {
-            let band = pane.band.iter().flat_map(|b| b[1].iter().chain(&b[2]));
-            self.shown(pane.curves.iter().flat_map(|c| &c.y).chain(band), 1)
+            // Of the band its middle: where the reference is most uncertain its edges would hide the rest.
+            let band = pane.band.iter().flat_map(|b| b[1].iter().zip(&b[2]).map(|(low, high)| 0.5 * (low + high)));
+            let middle: Vec<f64> = band.collect();
+            let floor = pane.floor.as_ref().map(|f| f.0);
+            pane.limits
+                .unwrap_or_else(|| self.shown(pane.curves.iter().flat_map(|c| &c.y).chain(&middle).chain(&floor), 1))
         };
         if !self.same {
             return of(pane);
@@ -146,6 +159,8 @@ impl Plot {
                 150.0
             } else if across > 1.0 {
                 230.0
+            } else if self.panes.len() > 1 {
+                190.0
             } else {
                 320.0
             },
@@ -194,6 +209,15 @@ impl Plot {
                 let x = x0 + wide * x_axis.axis.position(*value);
                 let _ = writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v4\" stroke=\"#222\" stroke-width=\"0.8\"/>");
                 write_text(&mut out, x, bottom + 16.0, "text-anchor=\"middle\" font-size=\"11\"", label);
+            }
+            if let Some((value, word)) = &pane.floor {
+                let y = to_y(*value);
+                let _ = writeln!(
+                    out,
+                    "<path d=\"M{x0:.1} {y:.1}h{wide:.1}\" stroke=\"#777\" stroke-width=\"0.8\" stroke-dasharray=\"2 2\"/>"
+                );
+                let place = "text-anchor=\"end\" font-size=\"10\" fill=\"#555\"";
+                write_text(&mut out, x0 + wide - 4.0, y - 4.0, place, word);
             }
             marks(&mut out, pane, &to_x, (y0, bottom), (x0, x0 + wide));
             let _ = writeln!(
@@ -386,7 +410,8 @@ fn draw(out: &mut String, curve: &Curve, id: &str, to_x: &dyn Fn(f64) -> f64, to
     let (color, dashes, marker) = style(curve.style);
     let points: Vec<(f64, f64)> = curve.x.iter().zip(&curve.y).map(|(x, y)| (to_x(*x), to_y(*y))).collect();
     let d = crate::chart::path(points.iter().copied());
-    let dashes = if curve.marked { "" } else { dashes };
+    // Alone in its pane it needs no dashes to be known by.
+    let dashes = if curve.marked || curve.label.is_empty() { "" } else { dashes };
     let _ = writeln!(
         out,
         "<path clip-path=\"url(#{id})\" d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.4\" stroke-linejoin=\"round\" stroke-dasharray=\"{dashes}\"/>"

@@ -15,8 +15,8 @@ use crate::verdict;
 const ACROSS: usize = 8;
 
 /// What the page of a run does not need.
-const CSS: &str = ".verdict { border: 2px solid #0072b2; border-radius: 6px; padding: .2rem 1.1rem .6rem; margin: 1rem 0; background: #f4f9fd; } \
-.verdict.none { border-color: #8a5a00; background: #fdf8ee; } .verdict dt { font-weight: 600; margin-top: .5rem; } .verdict dd { margin-left: 1.2rem; } td.undecided { color: #8a5a00; font-weight: 600; } th.n { text-align: right; } \
+const CSS: &str = "td.method { min-width: 10rem; } .verdict { border: 2px solid #0072b2; border-radius: 6px; padding: .2rem 1.1rem .6rem; margin: 1rem 0; background: #f4f9fd; } \
+.verdict.none { border-color: #8a5a00; background: #fdf8ee; } .verdict dt { font-weight: 600; margin-top: .5rem; } .verdict dd { margin-left: 1.2rem; } span.miss { color: #a32b00; font-weight: 600; } td.undecided { color: #8a5a00; font-weight: 600; } th.n { text-align: right; } \
 table.metrics td, table.metrics th { padding-right: .7rem; } svg.line { vertical-align: middle; } \
 @media print { body { -webkit-print-color-adjust: exact; print-color-adjust: exact; } .metrics { font-size: 8.5pt; } }\n";
 
@@ -134,7 +134,16 @@ fn expectations(out: &mut String, study: &Study) {
     if all.is_empty() {
         return;
     }
-    out.push_str("<h2>Expectations</h2>\n<table>\n<thead><tr><th>What</th><th>Arm</th><th>Expected</th><th class=\"n\">Got</th><th></th><th>Source</th></tr></thead>\n");
+    out.push_str("<h2>Expectations</h2>\n");
+    let met = all.iter().filter(|(_, e)| e.pass).count();
+    let _ = writeln!(out, "<p>{met} of {} met.</p>", all.len());
+    let across = side_by_side(out, study);
+    let _ = writeln!(
+        out,
+        "<details{}><summary>One by one, with their sources</summary>",
+        if across { "" } else { " open" }
+    );
+    out.push_str("<table>\n<thead><tr><th>What</th><th>Arm</th><th>Expected</th><th class=\"n\">Got</th><th></th><th>Source</th></tr></thead>\n");
     for (arm, e) in all {
         let (class, word) = if e.pass { ("pass", "met") } else { ("miss", "missed") };
         let why =
@@ -149,7 +158,42 @@ fn expectations(out: &mut String, study: &Study) {
             escape(e.source.as_deref().unwrap_or_default())
         );
     }
+    out.push_str("</table></details>\n");
+}
+
+/// Most columns that stand side by side.
+const COLUMNS: usize = 8;
+
+/// What is expected of several arms, a row per arm and a column per question: what it got over what was expected. Whether there is such a table.
+fn side_by_side(out: &mut String, study: &Study) -> bool {
+    let mut questions: Vec<&str> = Vec::new();
+    for e in study.rows.iter().flat_map(|row| &row.expectations) {
+        if !questions.contains(&e.what.as_str()) {
+            questions.push(&e.what);
+        }
+    }
+    let arms: Vec<_> = study.rows.iter().filter(|row| !row.expectations.is_empty()).collect();
+    if arms.len() < 3 || questions.is_empty() || questions.len() > COLUMNS {
+        return false;
+    }
+    let heads: String = questions.iter().map(|q| format!("<th class=\"n\"><code>{}</code></th>", escape(q))).collect();
+    let _ = writeln!(out, "<table class=\"metrics\"><thead><tr><th>Arm</th>{heads}</tr></thead>");
+    for row in arms {
+        let cell = |question: &&str| {
+            let mine: Vec<_> = row.expectations.iter().filter(|e| e.what == **question).collect();
+            let Some(first) = mine.first() else { return "<td></td>".to_owned() };
+            let class = if mine.iter().all(|e| e.pass) { "pass" } else { "miss" };
+            let expected = mine.iter().map(|e| escape(&e.expected)).collect::<Vec<_>>().join(", ");
+            let got = first.got.map_or("–".into(), number);
+            format!(
+                "<td class=\"n\"><span class=\"{class}\">{got}</span><br><span class=\"small\">{expected}</span></td>"
+            )
+        };
+        let cells: String = questions.iter().map(cell).collect();
+        let _ = writeln!(out, "<tr><td>{}</td>{cells}</tr>", escape(&row.name));
+    }
     out.push_str("</table>\n");
+    true
 }
 
 fn metrics(out: &mut String, study: &Study) {

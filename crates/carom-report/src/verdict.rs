@@ -11,7 +11,7 @@ use carom_record::study::{Study, step};
 
 use crate::laboratory::methods;
 use crate::study::Origins;
-use crate::study_page::number;
+use crate::study_page::number as long;
 use crate::text::{escape, html};
 
 /// Metrics whose error against the reference a user should know before taking a recommendation.
@@ -25,6 +25,15 @@ const SIDE: [(&str, &str); 8] = [
     ("contact_duration", "error of the contact's duration"),
     ("restitution", "error of restitution"),
 ];
+
+/// A number in three digits: the tables have them all.
+fn number(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return long(x);
+    }
+    let scale = 10f64.powi(2 - x.abs().log10().floor() as i32);
+    long((x * scale).round() / scale)
+}
 
 /// The box at the top; nothing for a study without a goal.
 pub(crate) fn show(out: &mut String, study: &Study) {
@@ -116,6 +125,7 @@ pub(crate) fn rankings(out: &mut String, study: &Study) {
     let Some(ranking) = &study.ranking else { return };
     out.push_str("<h2>Ranking</h2>\n");
     design(out, study);
+    other_goals(out, study);
     if let Ok(measure) = &ranking.measure {
         let _ = writeln!(
             out,
@@ -163,6 +173,40 @@ pub(crate) fn rankings(out: &mut String, study: &Study) {
     out.push_str("</table></details>\n");
 }
 
+/// What would be recommended by the other goals.
+fn other_goals(out: &mut String, study: &Study) {
+    out.push_str("<h3>By other goals</h3>\n<table><thead><tr><th>Goal</th><th>Recommended</th><th class=\"n\">Δt</th><th>Confidence</th><th>By</th></tr></thead>\n");
+    for ranking in &study.other_rankings {
+        let cells = match (&ranking.verdict, &ranking.measure) {
+            (Some(verdict), Ok(measure)) => {
+                let arm = &study.manifest.arms[verdict.arm];
+                let mut name = escape(arm.part.method.as_ref().unwrap_or(&arm.name)).clone();
+                if !verdict.alike.is_empty() {
+                    name += &format!(
+                        "<br><span class=\"small\">not told apart: {}</span>",
+                        escape(&verdict.alike.join(" · "))
+                    );
+                }
+                let at = step(arm, "time.step").map_or("–".into(), number);
+                format!(
+                    "<td>{name}</td><td class=\"n\">{at}</td><td>{}</td><td>{}</td>",
+                    verdict.confidence.word(),
+                    html(&measure.words)
+                )
+            }
+            (_, Err(why)) => {
+                format!("<td colspan=\"4\">nothing can be ranked: <span class=\"small\">{}</span></td>", escape(why))
+            }
+            (None, Ok(measure)) => format!(
+                "<td colspan=\"4\">no arm has a value of: <span class=\"small\">{}</span></td>",
+                html(&measure.words)
+            ),
+        };
+        let _ = writeln!(out, "<tr><td>{}</td>{cells}</tr>", ranking.goal.word());
+    }
+    out.push_str("</table>\n");
+}
+
 fn design(out: &mut String, study: &Study) {
     match study.manifest.design.as_ref().map(|d| (d.kind, &d.cost_of)) {
         None => out.push_str("<p>The arms are as written: neither their steps nor their costs were made equal.</p>\n"),
@@ -187,9 +231,9 @@ fn table(out: &mut String, study: &Study, ranking: &Ranking) {
         out,
         "<table class=\"metrics\"><thead><tr><th class=\"n\">Place</th><th>Method</th><th class=\"n\">Δt</th><th class=\"n\">Error</th><th class=\"n\">Energy drift</th>\
          <th class=\"n\">by integrator</th><th class=\"n\">by contact</th><th class=\"n\">High freq.</th><th class=\"n\">Chatter</th><th class=\"n\">Late by</th>\
-         <th class=\"n\">Newton</th><th class=\"n\">Rejected</th><th class=\"n\">CPU (s)</th>{head}</tr></thead>"
+         <th class=\"n\">Newton</th><th class=\"n\">CPU (s)</th>{head}</tr></thead>"
     );
-    let columns = 13 + usize::from(matched.is_some());
+    let columns = 12 + usize::from(matched.is_some());
     for (level, ranked) in ranking.levels.iter().enumerate() {
         let anchor = matched.and_then(|d| {
             let mut arms = study.manifest.arms.iter().enumerate();
@@ -218,7 +262,7 @@ fn table(out: &mut String, study: &Study, ranking: &Ranking) {
             };
             let _ = writeln!(
                 out,
-                "<tr><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>{}<td class=\"n\">{late}</td>{}{ratio}</tr>",
+                "<tr><td class=\"n\">{}</td><td class=\"method\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>{}<td class=\"n\">{late}</td>{}{ratio}</tr>",
                 r.place,
                 escape(arm.part.method.as_ref().unwrap_or(&arm.name)),
                 step(arm, "time.step").map_or("–".into(), number),
@@ -226,9 +270,7 @@ fn table(out: &mut String, study: &Study, ranking: &Ranking) {
                 ["energy_drift", "dissipated_integrator", "dissipated_contact", "force_high_frequency", "chatter"]
                     .map(|m| format!("<td class=\"n\">{}</td>", of(m)))
                     .concat(),
-                ["newton_iterations", "rejected_steps", "cpu_time"]
-                    .map(|m| format!("<td class=\"n\">{}</td>", of(m)))
-                    .concat(),
+                ["newton_iterations", "cpu_time"].map(|m| format!("<td class=\"n\">{}</td>", of(m))).concat(),
             );
         }
     }

@@ -75,10 +75,17 @@ fn levels(methods: &[Draft], steps: &[f64]) -> Vec<Draft> {
         // A step of the method's own gives way.
         sets.retain(|(set, _)| !set.starts_with("time.step="));
         sets.push((format!("time.step={step:?}"), format!("steps[{level}]")));
-        Draft { name: format!("{}, Δt {step:?}", method.name), sets, part, ..method.clone() }
+        Draft { name: format!("{}, Δt {}", method.name, short(*step)), sets, part, ..method.clone() }
     };
     let count = steps.len().max(1);
     methods.iter().flat_map(|m| (0..count).map(move |level| (m, level))).map(at).collect()
+}
+
+/// A step in a name: at most four digits, `1.875e-3`.
+fn short(step: f64) -> String {
+    let text = format!("{step:.3e}");
+    let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    format!("{}e{exponent}", digits.trim_end_matches('0').trim_end_matches('.'))
 }
 
 /// The three runs of the computed reference, the coarsest first: at most `step` over `refine`, twice and four times that, whole steps up to `end`.
@@ -173,6 +180,7 @@ mod tests {
         assert_eq!(names[3], "time.scheme=chung-hulbert 0.6, time.step=0.0005");
         assert_eq!(arms[2].sets[0].0, "time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.6 }");
         assert_eq!(arms[2].sets[1].1, "grid.\"time.step\"[0]");
+        assert_eq!([short(1.875e-3), short(2.0 / 300.0), short(0.01)], ["1.875e-3", "6.667e-3", "1e-2"]);
         assert_eq!(slug("Hu, Δt 1.875e-4"), "hu-dt-1.875e-4");
     }
 }

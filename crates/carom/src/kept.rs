@@ -15,6 +15,8 @@ use serde::{Deserialize, Serialize};
 const RENEWAL: f64 = 6.0;
 /// Contraction that is taken for convergence with a kept tangent; slower is not.
 const SLOW: f64 = 0.5;
+/// Slow contractions of one solve after which new factors are no help: what is left out of them, contact that bends, is what is needed.
+const PATIENCE: u32 = 2;
 /// Most steps that take the full tangent after refusals in a row: none after the first, then 1, 3, 7, 15.
 const LONGEST_REST: u32 = 15;
 /// ln of what the first correction of a step is to shrink by.
@@ -63,6 +65,8 @@ pub(crate) struct Keeper {
     previous: Option<f64>,
     /// Slowest contraction of this step.
     contraction: f64,
+    /// How often it was slow.
+    slow: u32,
     counted: f64,
 }
 
@@ -74,7 +78,16 @@ impl Keeper {
         kept.rest = kept.rest.saturating_sub(1);
         let fits = kept.point.as_ref().is_some_and(|p| p.mass == mass && p.stiffness == stiffness);
         let due = !fits || (kept.steps > 0 && kept.last > (RENEWAL + kept.spent) / f64::from(kept.steps));
-        Self { kept, full: !keep || resting, due, fresh: false, previous: None, contraction: 0.0, counted: 0.0 }
+        Self {
+            kept,
+            full: !keep || resting,
+            due,
+            fresh: false,
+            previous: None,
+            contraction: 0.0,
+            slow: 0,
+            counted: 0.0,
+        }
     }
 
     /// A new factor was made.
@@ -101,8 +114,14 @@ impl Keeper {
             self.contraction = self.contraction.max(contraction);
             let left = (step / goal).ln() / -contraction.min(SLOW).ln();
             self.due = contraction > SLOW || left > RENEWAL;
+            self.slow += u32::from(contraction > SLOW);
         }
         self.previous = Some(step);
+    }
+
+    /// Whether a full tangent is what is left to try.
+    pub(crate) fn helpless(&self) -> bool {
+        self.slow > PATIENCE
     }
 
     /// Whether all allowed iterations are spent.

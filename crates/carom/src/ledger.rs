@@ -188,7 +188,9 @@ pub(crate) fn account<const D: usize>(
     if !work.motions.is_empty() {
         next.ledger.external_work += work_of_motions(model, state, next, increment, dt, work);
     }
-    next.ledger.work = state.ledger.work + work_of_ends(model, state, next, increment, dt, work);
+    let [done, change] = work_of_ends(model, state, next, increment, dt, work);
+    next.ledger.work += done;
+    next.ledger.open += change;
     book_contact_forces(model, next);
     (0..2).for_each(|i| next.ledger.impulse[i] += means.impulse[i]);
     next.ledger.strain = strain + work.springs;
@@ -229,8 +231,8 @@ fn secondary_force<const D: usize>(pairs: &[Pair], gaps: &[Linearised<D>]) -> [f
     force
 }
 
-/// ∫F·dy of loads and moved supports over the step by the trapezoidal rule: what the guard holds energies against. The averaged forces of eq. (15) miss it
-/// by (½ − α_f) Δy·ΔF, to first order in Δt, where forces change and α_f ≠ ½, though nothing is created.
+/// ∫F·dy of loads and moved supports over the step by the trapezoidal rule, what the guard holds energies against, and Δy·ΔF, what the force's change
+/// leaves open of it. The averaged forces of eq. (15) miss the trapezoidal work by (½ − α_f) Δy·ΔF in every step, though nothing is created.
 fn work_of_ends<const D: usize>(
     model: &Model<D>,
     state: &State,
@@ -238,27 +240,37 @@ fn work_of_ends<const D: usize>(
     increment: &[f64],
     dt: f64,
     work: &Workspace<D>,
-) -> f64 {
-    let mean = |i: usize| 0.5 * (next.f_external[i] + state.f_external[i]);
-    let loads = if model.loads.is_empty() { 0.0 } else { (0..increment.len()).map(|i| increment[i] * mean(i)).sum() };
+) -> [f64; 2] {
+    let mut sum = [0.0; 2];
+    let mut add = |way: f64, before: f64, now: f64| {
+        sum[0] += 0.5 * way * (now + before);
+        sum[1] += way * (now - before);
+    };
+    if !model.loads.is_empty() {
+        (0..increment.len()).for_each(|i| add(increment[i], state.f_external[i], next.f_external[i]));
+    }
     if work.motions.is_empty() {
-        return loads;
+        return sum;
     }
     // The force of a contact that acts at the end of the step is not known at its start.
     if work.stage.is_static() || model.contacts.iter().any(|c| c.force == ForceTime::End) {
-        return loads + work_of_motions(model, state, next, increment, dt, work);
+        sum[0] += work_of_motions(model, state, next, increment, dt, work);
+        return sum;
     }
-    let (mut inertia, mut impulse) = (vec![0.0; increment.len()], vec![0.0; increment.len()]);
-    let accelerations: Vec<f64> = next.a.iter().zip(&state.a).map(|(now, before)| now + before).collect();
-    model.mass.multiply_into(&accelerations, &mut inertia);
-    let (mut jump, mut sum) = (vec![0.0; increment.len()], loads);
+    let inertia = [&state.a, &next.a].map(|a| {
+        let mut force = vec![0.0; a.len()];
+        model.mass.multiply_into(a, &mut force);
+        force
+    });
+    let (mut jump, mut impulse) = (vec![0.0; increment.len()], vec![0.0; increment.len()]);
     for i in model.motions.dofs() {
         let left = |s: &State| s.f_internal[i] + s.f_contact[i] - model.gravity[i] - s.f_external[i];
-        sum += 0.5 * increment[i] * (inertia[i] + left(next) + left(state));
-        jump[i] = next.v[i] - state.v[i] - 0.5 * dt * accelerations[i];
+        add(increment[i], inertia[0][i] + left(state), inertia[1][i] + left(next));
+        jump[i] = next.v[i] - state.v[i] - 0.5 * dt * (state.a[i] + next.a[i]);
     }
     model.mass.multiply_into(&jump, &mut impulse);
-    sum + dot(increment, &impulse) / dt
+    sum[0] += dot(increment, &impulse) / dt;
+    sum
 }
 
 /// Kinetic energy of the velocities, and the largest energy so far.

@@ -32,6 +32,8 @@ const CLOSE: f64 = 1e-5;
 const KEPT_DIGITS: f64 = 1e-3;
 /// Halvings of a Newton step that inverts a cell or makes the residual much worse.
 const HALVINGS: usize = 8;
+/// Share of the predicted motion that its first correction may have: a prediction that needs more is none.
+const TRUST: f64 = 0.5;
 
 /// The unknowns of a stage while they are being found.
 #[derive(Clone, Debug, Default)]
@@ -169,20 +171,20 @@ pub(crate) fn solve_stage<const D: usize>(
     let mut effort = Effort::default();
     let mut sets: Vec<ActiveSet> =
         model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect();
+    let mut predicted = Some((max_abs(&trial.increment), trial.pairs.clone())).filter(|_| !work.stage.is_static());
     timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
     let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
     let keep = settings.tangent == TangentRule::Kept && keeps(model, work);
     let mut keeper = Keeper::new(&state.kept, keep, mass, stiffness);
-    let mut measure = match begin(model, state, trial, work, &mut keeper) {
-        Err(Rejected::Inverted { .. }) => {
-            // Accelerations of stiff modes, taken to last for a step, may turn cells over that the solution does not: begin where the step began.
-            trial.increment.fill(0.0);
-            trial.y.clone_from(&state.y);
-            timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
-            begin(model, state, trial, work, &mut keeper)?
-        }
-        begun => begun?,
-    };
+    let mut begun = begin(model, state, trial, work, &mut keeper);
+    if matches!(begun, Err(Rejected::Inverted { .. }))
+        && let Some((_, pairs)) = predicted.take()
+    {
+        rest(state, before, pairs, trial);
+        timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
+        begun = begin(model, state, trial, work, &mut keeper);
+    }
+    let mut measure = begun?;
     if work.stage.is_static() && touch(model, trial, work) {
         measure = evaluate(model, state, trial, work, false)?;
     }
@@ -235,6 +237,17 @@ pub(crate) fn solve_stage<const D: usize>(
         }
         step = max_abs(&work.correction);
         effort.iterations += 1;
+        if let Some((size, pairs)) = predicted.take()
+            && step > TRUST * size
+            && size > 0.0
+        {
+            rest(state, before, pairs, trial);
+            sets.iter_mut().for_each(ActiveSet::restart);
+            timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
+            measure = evaluate(model, state, trial, work, keeper.full)?;
+            (step, has_tangent) = (f64::INFINITY, keeper.full);
+            continue;
+        }
         keeper.observe(step, settings.tolerance * model.scale, changed);
         let residual = measure.residual;
         let tangent = keeper.full && step > NEARLY_THERE * model.scale;
@@ -242,6 +255,16 @@ pub(crate) fn solve_stage<const D: usize>(
         shrinking = measure.residual / residual.max(f64::MIN_POSITIVE);
         has_tangent = tangent;
     }
+}
+
+/// Puts the trial where the stage began. Where contact begins, velocities and accelerations jump from node to node: that motion, gone on with for a
+/// step, tears cells that the balance holds together or turns them over, and Newton begins better from where none is.
+fn rest(state: &State, before: &[f64], pairs: Vec<Vec<Pair>>, trial: &mut Trial) {
+    for ((increment, y), (start, old)) in trial.increment.iter_mut().zip(&mut trial.y).zip(before.iter().zip(&state.y))
+    {
+        (*increment, *y) = (start - old, *start);
+    }
+    trial.pairs = pairs;
 }
 
 /// Whether a tangent of another time serves: not where the iteration itself moves supports, loads turn with the body, nothing but the tangent holds a
@@ -303,6 +326,10 @@ fn renew<const D: usize>(
     // An iterate far from the solution may have no positive definite tangent; the state the step began with nearly always has.
     for at in [work.at.clone(), state.y.clone()] {
         let point = Arc::new(Point { at, mass, stiffness, boundary: boundary.clone() });
+        if work.system.holds(&point) {
+            // The same factor again is of no help.
+            return Ok(false);
+        }
         if hold(model, work, &point)? {
             keeper.renewed(point);
             return Ok(true);
@@ -320,7 +347,7 @@ fn kept_step<const D: usize>(
     keeper: &mut Keeper,
 ) -> Result<bool, Rejected> {
     let mut fresh = false;
-    loop {
+    while !keeper.helpless() {
         if !fresh && (keeper.due || !work.system.covers(&linearised(model, work, rows))) {
             if !renew(model, state, work, rows, keeper)? {
                 break;

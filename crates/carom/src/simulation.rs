@@ -257,7 +257,7 @@ impl<const D: usize> Simulation<D> {
         // Round-off of the energies themselves is not creation.
         let noise =
             1e-12 * (ledger.kinetic + ledger.strain.abs() + ledger.potential.abs() + ledger.total_at_start.abs());
-        if created > share * ledger.largest + noise {
+        if created > share * ledger.largest + ledger.open.abs() + noise {
             return Err(Stopped::EnergyGuard { time: state.time, created, share, largest: ledger.largest });
         }
         Ok(())

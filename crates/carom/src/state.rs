@@ -22,6 +22,9 @@ pub struct Ledger {
     pub external_work: f64,
     /// The same work by the trapezoidal rule, whatever the scheme averages: what `created` is measured against.
     pub work: f64,
+    /// Σ Δy·ΔF: the work of these forces as they are at the ends of steps, less that of their starts. Where a load has only begun it is as large as the
+    /// work itself, and a scheme's own error may be too.
+    pub open: f64,
     /// Work of the contact forces on the bodies, and the jump of kinetic energy where contact begins.
     pub contact_work: f64,
     /// Largest kinetic + strain energy so far.

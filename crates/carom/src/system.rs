@@ -218,13 +218,18 @@ impl<const D: usize> System<D> {
     /// # Errors
     /// A cell is inverted there, or the matrix is not positive definite.
     pub(crate) fn hold(&mut self, model: &Model<D>, point: &Arc<Point>, force: &mut [f64]) -> Result<(), HoldError> {
-        if self.held.point.as_ref() == Some(point) {
+        if self.holds(point) {
             return Ok(());
         }
         self.internal_tangent(model, None, &point.at, force, None).map_err(HoldError::Inverted)?;
         self.factorisations += 1;
         let parts = (self.mass.as_slice(), self.stiffness.as_slice());
         self.held.factor(model, &self.base, point, parts).map_err(|_| HoldError::Indefinite)
+    }
+
+    /// Whether the kept factor is that of a point.
+    pub(crate) fn holds(&self, point: &Arc<Point>) -> bool {
+        self.held.point.as_ref() == Some(point)
     }
 
     /// Forgets the kept factor.

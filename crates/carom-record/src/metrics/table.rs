@@ -312,6 +312,21 @@ fn rise(facts: &Facts) -> Option<(f64, f64)> {
     apex(facts.history, facts.first()?)
 }
 
+/// Largest size of a column averaged over 1/16 of the first episode, by the trapezoidal rule between rows.
+fn peak_of_means(history: &History, column: &str) -> Option<f64> {
+    let (times, values) = (history.times(), history.column(column)?);
+    let mut integral = Vec::with_capacity(values.len());
+    let mut sum = 0.0;
+    for (i, value) in values.iter().enumerate() {
+        if let Some(before) = i.checked_sub(1) {
+            sum += 0.5 * (values[before] + value) * (times[i] - times[before]);
+        }
+        integral.push(sum);
+    }
+    let Episode { start, end } = super::first_episode(history)?;
+    peak_mean(times, &[&integral], (times[end?] - times[start]) / 16.0)
+}
+
 /// Rows with contact of the first episode.
 fn in_contact<'a>(history: &'a History, column: &str) -> Option<&'a [f64]> {
     let Episode { start, end } = super::first_episode(history)?;
@@ -320,7 +335,7 @@ fn in_contact<'a>(history: &'a History, column: &str) -> Option<&'a [f64]> {
 }
 
 /// Metrics of a probe's column `C`, called `C:min` and so on.
-pub const COLUMNS: [(Definition, fn(&History, &str) -> Option<f64>); 5] = [
+pub const COLUMNS: [(Definition, fn(&History, &str) -> Option<f64>); 6] = [
     (d("min", Unit::Column, "min c", OWN, "smallest recorded value of the column"), |h, c| {
         extreme(h.column(c)?, f64::lt).map(|x| x.1)
     }),
@@ -346,6 +361,16 @@ pub const COLUMNS: [(Definition, fn(&History, &str) -> Option<f64>); 5] = [
             "total variation of the column in the first contact episode",
         ),
         |h, c| Some(super::total_variation(h.column(c)?.get(super::first_episode(h)?.span(h))?)),
+    ),
+    (
+        d(
+            "peak_mean",
+            Unit::Column,
+            "max_t |∫ c dt|/w from t to t + w, w = (t_b − t_a)/16",
+            OWN,
+            "largest size of the column averaged over 1/16 of the first contact episode",
+        ),
+        |h, c| peak_of_means(h, c),
     ),
     (
         d(

@@ -73,6 +73,17 @@ mod tests {
         History::new(names, vec![(0..rows).map(|i| i as f64).collect(), active, probe])
     }
 
+    /// Stress −32 in every row of contact, rows 1 to 32 of 34, but 32 in the middle one: windows of two rows. The mean over rows without it is −32; across it
+    /// the trapezoids are 0.
+    #[test]
+    fn mean_peaks_by_hand() {
+        let mut values = vec![-32.0; 34];
+        values[17] = 32.0;
+        let history = history(values);
+        let (_, value) = crate::metrics::of_column(&history, "B.s", "peak_mean").unwrap();
+        assert_eq!(value, Some(32.0));
+    }
+
     /// By hand: one hump, a ramp, and three humps through the whole range.
     #[test]
     fn roughness_counts_humps() {

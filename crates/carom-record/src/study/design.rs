@@ -48,10 +48,19 @@ impl Goal {
             Goal::Force,
             "total variation of the contact force; power above 16 cycles per contact, mean peak and impulse stand in for it",
         ),
-        ("stress", Goal::Stress, "total variation of the probes' stresses; their deviation stands in for it"),
+        (
+            "stress",
+            Goal::Stress,
+            "total variation of the probes' stresses; their mean peaks and deviations stand in for it",
+        ),
         ("trajectory", Goal::Trajectory, "deviation of displacements and centres"),
         ("cost", Goal::Cost, "processor time of what keeps displacements within `accuracy`"),
     ];
+
+    /// All goals.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::NAMES.iter().map(|(_, goal, _)| *goal)
+    }
 
     /// As a study file writes it.
     pub fn word(self) -> &'static str {

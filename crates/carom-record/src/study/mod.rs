@@ -276,6 +276,8 @@ pub struct Study {
     pub phase_orders: Vec<PhaseOrders>,
     /// The ranking, where the study has a goal.
     pub ranking: Option<Ranking>,
+    /// What it would be by the other goals.
+    pub other_rankings: Vec<Ranking>,
 }
 
 impl Study {
@@ -323,9 +325,23 @@ impl Study {
         });
         let (expectations, verdicts) = (judged.collect(), verdicts.collect());
         let ranking = manifest.goal.map(|goal| Ranking::of(goal, &manifest, &rows, &compared, reference.as_ref()));
+        let others = Goal::all().filter(|goal| manifest.goal.is_some_and(|own| own != *goal));
+        let other_rankings: Vec<Ranking> =
+            others.map(|goal| Ranking::of(goal, &manifest, &rows, &compared, reference.as_ref())).collect();
         let phase_orders = reference.as_ref().map(|r| phase_orders(&manifest, &compared, r)).unwrap_or_default();
         let directory = directory.to_path_buf();
-        Ok(Self { directory, manifest, rows, verdicts, expectations, reference, compared, phase_orders, ranking })
+        Ok(Self {
+            directory,
+            manifest,
+            rows,
+            verdicts,
+            expectations,
+            reference,
+            compared,
+            phase_orders,
+            ranking,
+            other_rankings,
+        })
     }
 
     /// Every metric any arm has, in order: name, unit, definition.

@@ -90,8 +90,8 @@ pub struct Ranking {
 enum Candidate {
     Metric(&'static str),
     Columns(&'static str, fn(&str) -> bool),
-    /// `:variation` of the columns.
-    Variations(fn(&str) -> bool),
+    /// A metric of columns.
+    OfColumns(&'static str, fn(&str) -> bool),
 }
 
 fn candidates(goal: Goal) -> Vec<Candidate> {
@@ -100,7 +100,11 @@ fn candidates(goal: Goal) -> Vec<Candidate> {
         Goal::Force => ["force_variation", "force_high_frequency", "peak_mean_force", "impulse_y", "impulse_x"]
             .map(Candidate::Metric)
             .into(),
-        Goal::Stress => vec![Candidate::Variations(is_stress), Candidate::Columns("stresses", is_stress)],
+        Goal::Stress => vec![
+            Candidate::OfColumns("variation", is_stress),
+            Candidate::OfColumns("peak_mean", is_stress),
+            Candidate::Columns("stresses", is_stress),
+        ],
         Goal::Trajectory | Goal::Cost => vec![Candidate::Columns("displacements", is_trajectory)],
     }
 }
@@ -160,10 +164,10 @@ impl Judge<'_> {
                 let words = format!("deviation of {} from the reference, over their range", columns.join(", "));
                 Ok((measure(&format!("deviation of {name}"), words, uncertainty), errors))
             }
-            Candidate::Variations(kind) => {
-                let none = |why: &str| Err(("variation of stresses".to_owned(), why.to_owned()));
+            Candidate::OfColumns(what, kind) => {
+                let none = |why: &str| Err((format!("{what} of stresses"), why.to_owned()));
                 let Some(reference) = self.reference else { return none("the study has no reference") };
-                let names = reference.columns().into_iter().filter(|c| kind(c)).map(|c| format!("{c}:variation"));
+                let names = reference.columns().into_iter().filter(|c| kind(c)).map(|c| format!("{c}:{what}"));
                 let known: Vec<(String, f64, f64)> = names
                     .filter_map(|n| {
                         let (value, off) = reference.metric(&n).established().filter(|(v, _)| *v > 0.0)?;
@@ -180,7 +184,7 @@ impl Judge<'_> {
                 };
                 let uncertainty = known.iter().map(|k| k.2).fold(0.0, f64::max);
                 let words = format!("error of {}", known.iter().map(|k| k.0.as_str()).collect::<Vec<_>>().join(", "));
-                Ok((measure("variation of stresses", words, uncertainty), self.rows.iter().map(mean).collect()))
+                Ok((measure(&format!("{what} of stresses"), words, uncertainty), self.rows.iter().map(mean).collect()))
             }
         }
     }
@@ -237,6 +241,18 @@ impl Ranking {
     }
 }
 
+/// A number in three digits.
+fn short(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e4).contains(&x.abs()) {
+        return format!("{x:.2e}");
+    }
+    let scale = 10f64.powi(2 - x.abs().log10().floor() as i32);
+    format!("{}", (x * scale).round() / scale)
+}
+
 fn alike(a: f64, b: f64, uncertainty: f64) -> bool {
     (a - b).abs() <= f64::max(uncertainty, ALIKE * f64::min(a, b))
 }
@@ -281,13 +297,13 @@ fn verdict(goal: Goal, manifest: &StudyManifest, measure: &Measure, levels: &[Ve
         _ => mine.iter().find(|r| r.error <= accuracy).or(mine.last()),
     }?;
     let first_at = full.iter().filter(|l| l.iter().any(|r| r.place == 1 && name(r.arm) == best)).count();
-    let mut reasons = vec![format!("{}: {:.3e}", measure.words, chosen.error)];
+    let mut reasons = vec![format!("{}: {}", measure.words, short(chosen.error))];
     let others = full
         .iter()
         .flat_map(|l| l.iter())
         .filter(|r| manifest.arms[r.arm].part.level == manifest.arms[chosen.arm].part.level);
     if let Some(next) = others.filter(|r| name(r.arm) != best).min_by(|a, b| a.error.total_cmp(&b.error)) {
-        reasons.push(format!("the best of the others at the same level, {}: {:.3e}", name(next.arm), next.error));
+        reasons.push(format!("the best of the others at the same level, {}: {}", name(next.arm), short(next.error)));
     }
     reasons.push(format!("first at {first_at} of {} levels", full.len()));
     if goal != Goal::Cost {
@@ -319,8 +335,8 @@ fn confidence(
         at_most(
             Confidence::Low,
             format!(
-                "others are not told apart from it: errors closer than {:.1e} or {} %",
-                measure.uncertainty,
+                "others are not told apart from it: errors closer than {} or {} %",
+                short(measure.uncertainty),
                 100.0 * ALIKE
             ),
         );
