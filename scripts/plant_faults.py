@@ -112,7 +112,8 @@ def verified(*which):
                 return f"{name}: stopped, {set_up['stopped'][0]}"
             for row in set_up["rows"]:
                 if not row["pass"]:
-                    got = row["why"] if row["got"] is None else f"{row['got']:.5g}"
+                    digits = 15 if (row["tolerance"] or 1.0) < 1e-6 else 5
+                    got = row["why"] if row["got"] is None else f"{row['got']:.{digits}g}"
                     of = f" of \"{row['arm']}\"" if row["arm"] else ""
                     return f"{name}: {row['what']}{of}, expected {row['expected']}, got {got}"
     said = (done.stderr.strip().splitlines() or ["nothing said"])[0]
