@@ -220,6 +220,8 @@ def values(key):
     if "enum" in key:
         return " ".join(f"`{json.dumps(word, ensure_ascii=False)}`" for word in key["enum"])
     kind = key.get("type")
+    if isinstance(kind, list):
+        return " or ".join(values({**key, "type": one}) for one in kind)
     if kind == "array":
         items = key.get("items", {})
         if items.get("properties"):

@@ -109,14 +109,19 @@ def verified(*which):
         for set_up in json.loads((out / "verify.json").read_text(encoding="utf-8"))["set_ups"]:
             name = f"{set_up['family']}/{set_up['name']}"
             if set_up["stopped"]:
-                return f"{name}: stopped, {set_up['stopped'][0]}"
+                return f"{name}: stopped, {shortened(set_up['stopped'][0])}"
             for row in set_up["rows"]:
                 if not row["pass"]:
-                    got = row["why"] if row["got"] is None else f"{row['got']:.5g}"
+                    digits = 15 if (row["tolerance"] or 1.0) < 1e-6 else 5
+                    got = row["why"] if row["got"] is None else f"{row['got']:.{digits}g}"
                     of = f" of \"{row['arm']}\"" if row["arm"] else ""
                     return f"{name}: {row['what']}{of}, expected {row['expected']}, got {got}"
     said = (done.stderr.strip().splitlines() or ["nothing said"])[0]
-    return f"exit code {done.returncode}: {said}"
+    return f"exit code {done.returncode}: {shortened(said)}"
+
+
+def shortened(text):
+    return text if len(text) < 140 else f"{text[:140].rsplit(' ', 1)[0]} …"
 
 
 def planted(fault):

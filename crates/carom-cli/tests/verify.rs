@@ -99,6 +99,16 @@ fn a_missed_expectation_is_one() {
 }
 
 #[test]
+fn the_first_miss_can_end_it() {
+    let place = place("verify-fail-fast");
+    let done = place.carom(&["verify", "--fail-fast", "--jobs", "1", "--out", "there"]);
+    let told = text(&done.stdout);
+    assert_eq!(done.status.code(), Some(1), "{told}");
+    assert!(told.contains("ended at the first miss: 1 of 2 set-ups were not judged"), "{told}");
+    assert!(place.0.join("there/flight/free").is_dir() && !place.0.join("there/wall/study/study.csv").exists());
+}
+
+#[test]
 fn an_unexpected_stop_is_three_and_an_expected_one_is_none() {
     let place = place("verify-stopped");
     let stops = FALL.replace("[[probe]]", "[newton]\nmax_iterations = 1\ntolerance = 1e-300\n[[probe]]");

@@ -106,10 +106,10 @@ impl Bound {
     /// What is asked for, in words.
     pub fn words(self) -> String {
         match self {
-            Self::Near { value, tolerance } => format!("{value} ± {tolerance}"),
-            Self::Relative { value, relative } => format!("{value} ± {} %", relative * 100.0),
-            Self::AtMost(most) => format!("≤ {most}"),
-            Self::AtLeast(least) => format!("≥ {least}"),
+            Self::Near { value, tolerance } => format!("{} ± {}", plain(value), plain(tolerance)),
+            Self::Relative { value, relative } => format!("{} ± {} %", plain(value), plain(relative * 100.0)),
+            Self::AtMost(most) => format!("≤ {}", plain(most)),
+            Self::AtLeast(least) => format!("≥ {}", plain(least)),
         }
     }
 
@@ -140,6 +140,11 @@ impl Bound {
             Self::AtMost(_) | Self::AtLeast(_) => None,
         }
     }
+}
+
+/// A number as one writes it: small ones with an exponent.
+fn plain(x: f64) -> String {
+    if x != 0.0 && x.abs() < 1e-4 { format!("{x:e}") } else { x.to_string() }
 }
 
 impl Norm {
