@@ -97,7 +97,7 @@ fn arguments_are_checked() {
         (&["rnu", "case.toml"], "unrecognized subcommand"),
         (&["resume", "old"], "old is no run directory"),
         (&["report", "nowhere"], "nowhere is no run directory"),
-        (&["explain", "bathe"], "does not have `kind = \"bathe\"` yet"),
+        (&["explain", "bathe"], "scheme \"bathe\" has no `rho_inf`"),
         (&["explain", "hht", "alpha=-0.1"], "did you mean `alpha = 0.1`?"),
         (&["explain", "wbz", "rho=0.5"], "unknown key `rho`"),
     ];
