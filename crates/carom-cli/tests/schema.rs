@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use carom::case::{Document, read};
@@ -42,7 +43,7 @@ fn validator(option: &[&str]) -> Validator {
     jsonschema::draft202012::new(&schema).unwrap()
 }
 
-/// Every variant of a document with one key misspelt, and that key.
+/// Every variant of a document with one key misspelt, and where; of a list's tables that have a key in common, the first has it misspelt.
 fn misspelt(document: &Value) -> Vec<(String, Value)> {
     let mut found = Vec::new();
     match document {
@@ -62,13 +63,14 @@ fn misspelt(document: &Value) -> Vec<(String, Value)> {
                 for (wrong, inner) in inner {
                     let mut map = map.clone();
                     map[key] = inner;
-                    found.push((wrong, Value::Object(map)));
+                    found.push((format!("{key}.{wrong}"), Value::Object(map)));
                 }
             }
         }
         Value::Array(list) => {
+            let mut seen = BTreeSet::new();
             for (i, value) in list.iter().enumerate() {
-                for (wrong, inner) in misspelt(value) {
+                for (wrong, inner) in misspelt(value).into_iter().filter(|(wrong, _)| seen.insert(wrong.clone())) {
                     let mut list = list.clone();
                     list[i] = inner;
                     found.push((wrong, Value::Array(list)));
