@@ -88,6 +88,9 @@ pub trait Body<const D: usize>: Send + Sync {
     /// empty outside the body.
     fn locate(&self, point: &[f64; D]) -> Vec<(usize, Vec<f64>)>;
 
+    /// Whether a point lies in the body, its boundary included, whose nodes are at `y`.
+    fn covers(&self, y: &[[f64; D]], point: &[f64; D]) -> bool;
+
     /// Density ρ₀.
     fn density(&self) -> f64;
 }

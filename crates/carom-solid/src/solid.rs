@@ -369,6 +369,13 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
         .collect()
     }
 
+    fn covers(&self, y: &[[f64; D]], point: &[f64; D]) -> bool {
+        (0..self.mesh.cell_count()).any(|cell| {
+            let nodes = self.nodes(cell).map(|node| Vector(y[node]));
+            Bounds::around(&nodes).contains(point) && reference::invert::<D, N, S>(&nodes, &Vector(*point)).is_some()
+        })
+    }
+
     fn density(&self) -> f64 {
         self.density
     }

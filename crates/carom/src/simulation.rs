@@ -142,12 +142,17 @@ where
         };
         let inertia = !case.time.scheme.is_static();
         simulation.state = start(model, inertia, before, &mut simulation.work).map_err(|rejected| {
-            let (path, what, help) = match rejected {
-                Rejected::NoValue(_) => ("load", "a formula has no value at t = 0", "change it so that it has one"),
+            let (path, what, help) = match &rejected {
+                Rejected::NoValue(_) => ("load".into(), "a formula has no value at t = 0", "change it so that it has one"),
                 Rejected::Jump { .. } => {
-                    ("support", "a support would jump at the start", "let its `move` begin where the body is")
+                    ("support".into(), "a support would jump at the start", "let its `move` begin where the body is")
                 }
-                _ => ("body", "the start has no acceleration", "check masses and supports"),
+                Rejected::Inverted { body, .. } if !given => {
+                    let k = case.bodies.iter().position(|b| b.name == *body).unwrap_or_default();
+                    let help = "let neighbouring places stay neighbours, the determinant of the formulas' derivatives positive";
+                    (format!("body[{k}].position"), "the initial position turns a cell inside out", help)
+                }
+                _ => ("body".into(), "the start has no acceleration", "check masses and supports"),
             };
             vec![Problem::new(path, what, rejected.to_string(), help)]
         })?;

@@ -37,7 +37,7 @@ pub(crate) fn start<const D: usize>(
     let dofs = model.dofs();
     let contacts = model.contacts.len();
     let Before { y, v, pairs } = before.unwrap_or_else(|| Before {
-        y: model.reference.clone(),
+        y: model.initial_position.clone(),
         v: model.initial_velocity.clone(),
         pairs: vec![Vec::new(); contacts],
     });

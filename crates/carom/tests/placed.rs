@@ -1,4 +1,5 @@
-//! A case that is turned and moved as a whole gives the turned and moved motion: shapes, contact, gravity and all.
+//! A case that is turned and moved as a whole gives the turned and moved motion: shapes, contact, gravity and all. So does a body whose
+//! initial positions are a rigid motion of its mesh.
 
 #![allow(clippy::unwrap_used)]
 
@@ -67,4 +68,41 @@ fn a_turned_and_moved_case_moves_alike() {
         }
         assert!(worst < 1e-12, "{degrees}°: {worst:e}");
     }
+}
+
+#[test]
+fn positions_that_only_turn_a_body_leave_it_unstrained() {
+    let (y, _) = run(&["body.tube.place={ rotate = 90.0, about = [0.05, 0.52], shift = [0.0, 0.01] }".into()]);
+    let (other, active) = run(&["body.tube.position=[\"0.05 - (Y - 0.52)\", \"0.53 + (X - 0.05)\"]".into()]);
+    assert!(active > 0);
+    let apart = |(a, b): (&[f64; 2], &[f64; 2])| (a[0] - b[0]).hypot(a[1] - b[1]);
+    let worst = y.iter().zip(&other).map(apart).fold(0.0, f64::max);
+    assert!(worst < 1e-10, "{worst:e}");
+}
+
+#[test]
+fn bodies_must_not_overlap_where_they_start() {
+    const LOWER: &str = "body.tube.position=[\"X\", \"Y - 0.05\"]";
+    let problems = |sets: &[&str]| {
+        let case = read(
+            &Document::parse("drop.toml", DROP, &sets.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>()).unwrap(),
+        )
+        .unwrap();
+        Simulation::<2>::new(&case, 1)
+            .err()
+            .unwrap_or_default()
+            .iter()
+            .map(|p| format!("{}: {}", p.path, p.what))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        problems(&[LOWER]),
+        ["contact[0]: the bodies of contact \"strike\" overlap at the start by 3.000000e-2"]
+    );
+    assert_eq!(
+        problems(&["body.tube.position=[\"X\", \"1.04 - Y\"]"]),
+        ["body[0].position: the initial position turns a cell inside out"]
+    );
+    // Nor do they where the primary has room.
+    assert!(problems(&[LOWER, "body.anvil.position=[\"X\", \"1.1*(Y + 0.5) - 0.6\"]"]).is_empty());
 }

@@ -164,6 +164,9 @@ pub struct BodySpec {
     /// Where the mesh is put; as it is made, if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place: Option<PlaceSpec>,
+    /// Positions at t = 0, formulas in X, Y; the reference positions, if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position: Option<Vec<FormulaSpec>>,
     /// Acceleration by gravity, one component per dimension.
     pub gravity: Vec<f64>,
     /// Initial velocity, formulas in X, Y.

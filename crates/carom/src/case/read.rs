@@ -213,6 +213,7 @@ fn body(v: View, dimension: usize, folder: &Path, path: &str, problems: &mut Vec
             }
             None => None,
         },
+        position: if v.has("position") { Some(v.formulas("position")?) } else { None },
         gravity: if v.has("gravity") { v.numbers("gravity")? } else { Vec::new() },
         velocity: load::velocity(&v, dimension, path, problems)?,
         mass: v.choice("mass")?,

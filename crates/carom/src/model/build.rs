@@ -8,7 +8,8 @@ use super::formulas::value;
 use super::held::unheld;
 use super::{Contact, Loads, Mass, Model, Motions, Part, Probe, Support, exists_in, redistribution};
 use crate::case::{
-    self, ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, MassKind, Persistency, PrimarySpec, Problem,
+    self, ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, FormulaSpec, MassKind, Persistency, PrimarySpec,
+    Problem,
 };
 
 /// A side in global node numbers.
@@ -31,10 +32,15 @@ where
     let mut problems = Vec::new();
     let dofs = parts.last().map_or(0, |p| p.nodes().end) * D;
     let mut reference = Vec::with_capacity(dofs);
-    let mut initial_velocity = Vec::with_capacity(dofs);
+    let (mut initial_position, mut initial_velocity) = (Vec::with_capacity(dofs), Vec::with_capacity(dofs));
     for (k, (part, spec)) in parts.iter().zip(&case.bodies).enumerate() {
-        reference.extend(part.body.mesh().nodes.as_flattened());
-        velocity_into(part, spec, &format!("body[{k}].velocity"), &mut initial_velocity, &mut problems);
+        let places = part.body.mesh().nodes.as_flattened();
+        reference.extend(places);
+        match &spec.position {
+            Some(formulas) => nodal(part, k, "position", formulas, &mut initial_position, &mut problems),
+            None => initial_position.extend(places),
+        }
+        nodal(part, k, "velocity", &spec.velocity, &mut initial_velocity, &mut problems);
     }
 
     let mut fixed = vec![false; dofs];
@@ -88,6 +94,7 @@ where
         Ok(Model {
             parts,
             reference,
+            initial_position,
             initial_velocity,
             fixed,
             free,
@@ -108,17 +115,19 @@ where
     }
 }
 
-/// Initial velocities at the nodes of a body.
-fn velocity_into<const D: usize>(
+/// What the formulas of a body's `key`, in X and Y, give at its nodes.
+fn nodal<const D: usize>(
     part: &Part<D>,
-    spec: &case::BodySpec,
-    path: &str,
-    velocity: &mut Vec<f64>,
+    body: usize,
+    key: &str,
+    formulas: &[FormulaSpec],
+    values: &mut Vec<f64>,
     problems: &mut Vec<Problem>,
 ) {
-    let what = format!("the velocity of body \"{}\"", part.name);
+    let path = format!("body[{body}].{key}");
+    let what = format!("the {key} of body \"{}\"", part.name);
     let variables = case::keys::variables(case::keys::IN_SPACE, D);
-    let formulas: Vec<_> = match spec.velocity.iter().map(|f| f.formula(&variables)).collect() {
+    let formulas: Vec<_> = match formulas.iter().map(|f| f.formula(&variables)).collect() {
         Ok(formulas) => formulas,
         Err(error) => {
             let error: carom_formula::FormulaError = error;
@@ -128,15 +137,11 @@ fn velocity_into<const D: usize>(
     for place in &part.body.mesh().nodes {
         for formula in &formulas {
             match value(formula, &what, place, 0.0) {
-                Ok(value) => velocity.push(value),
+                Ok(value) => values.push(value),
                 Err(error) => {
                     let help = "change the formula so that it has a value in the whole body";
-                    return problems.push(Problem::new(
-                        path,
-                        "the initial velocity has no value",
-                        error.to_string(),
-                        help,
-                    ));
+                    let what = format!("the initial {key} has no value");
+                    return problems.push(Problem::new(path, what, error.to_string(), help));
                 }
             }
         }
@@ -433,15 +438,15 @@ fn probes<const D: usize>(case: &Case, parts: &[Part<D>], problems: &mut Vec<Pro
 ///
 /// Closing an overlap in one step throws the bodies apart, so it is refused.
 pub fn overlaps<const D: usize>(model: &Model<D>) -> Vec<Problem> {
-    let x = model.reference.as_chunks::<D>().0;
+    let x = model.initial_position.as_chunks::<D>().0;
     let mut problems = Vec::new();
     for (k, contact) in model.contacts.iter().enumerate() {
         let mut deepest: Option<(f64, usize)> = None;
         for (place, &node) in contact.method.secondary().iter().enumerate() {
             let Some(gap) = contact.method.signed_distance(place, x) else { continue };
             // Behind a side is not yet inside its body: a plate has a lower side too.
-            let inside =
-                D == 1 || contact.primary_part.is_none_or(|p| !model.parts[p].body.locate(&x[node]).is_empty());
+            let covered = |p: usize| model.parts[p].body.covers(&x[model.parts[p].nodes()], &x[node]);
+            let inside = D == 1 || contact.primary_part.is_none_or(covered);
             if gap < -1e-9 * model.scale && inside && deepest.is_none_or(|(g, _)| gap < g) {
                 deepest = Some((gap, node));
             }

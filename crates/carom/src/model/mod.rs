@@ -87,6 +87,8 @@ pub struct Model<const D: usize> {
     pub parts: Vec<Part<D>>,
     /// Reference positions X, flat.
     pub reference: Vec<f64>,
+    /// Positions at t = 0, flat.
+    pub initial_position: Vec<f64>,
     /// Initial velocities, flat; zero where fixed.
     pub initial_velocity: Vec<f64>,
     /// Whether a dof is held, fixed or moved.

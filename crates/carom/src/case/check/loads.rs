@@ -91,11 +91,15 @@ impl Check<'_> {
                 let what = "a manufactured motion has no initial velocity of its own";
                 self.add(format!("body[{i}].velocity"), what, why, "leave it out");
             }
+            if body.position.is_some() {
+                let what = "a manufactured motion has no initial position of its own";
+                self.add(format!("body[{i}].position"), what, why, "leave it out");
+            }
         }
     }
 
-    /// Initial velocities where there is no inertia, or where another run has given them.
-    pub(super) fn velocities(&mut self) {
+    /// Initial velocities where there is no inertia, or where another run has given them, and positions where it has.
+    pub(super) fn starts(&mut self) {
         let draft = self.draft;
         let is_static = draft.time.as_ref().is_some_and(|t| t.scheme.is_static());
         let initial = self.document.root().get("initial").is_some();
@@ -107,6 +111,10 @@ impl Check<'_> {
         for (i, body) in draft.bodies.iter().enumerate() {
             if body.as_ref().is_some_and(|b| !b.velocity.iter().all(super::super::FormulaSpec::is_zero)) {
                 self.add(format!("body[{i}].velocity"), "the body has an initial velocity", why, "leave it out");
+            }
+            if initial && body.as_ref().is_some_and(|b| b.position.is_some()) {
+                let why = "[initial] says where the bodies are";
+                self.add(format!("body[{i}].position"), "the body has an initial position", why, "leave it out");
             }
         }
     }

@@ -27,7 +27,7 @@ pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Pr
     check.supports();
     check.motions();
     check.loads();
-    check.velocities();
+    check.starts();
     check.manufactured();
     check.contacts();
     check.probes();

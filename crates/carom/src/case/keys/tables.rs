@@ -123,6 +123,10 @@ const BODY: Table = Table {
         key("place", Kind::Table(&PLACE), "Turns and moves the mesh before anything else sees it.")
             .optional()
             .example("{ rotate = 30.0, about = [0.0, 0.0], shift = [0.0, 1.0] }"),
+        key("position", Formulas(IN_SPACE), "Positions at t = 0 of the places X, Y: the body starts strained; X, Y if left out.")
+            .unit("length")
+            .optional()
+            .example("[\"X + 0.1*X*Y\", \"Y\"]"),
         key("gravity", Vector, "Acceleration by gravity; zero if left out.")
             .unit("length/time²")
             .optional()
