@@ -3,7 +3,7 @@
 
     scripts/make_book.py [--carom target/release/carom] [--fast] [--verify DIR]
 
-keys.md        every key of the case file, from `carom schema`; for each a shipped case that uses it
+keys/          a page for each table of the case file, from `carom schema`; for each key lines of a shipped case that uses it
 commands.md    `carom COMMAND --help`
 explain/       `carom explain`, of each scheme the pages show
 first-run.*    what `carom run cases/impact/impact.toml` prints and draws
@@ -31,6 +31,8 @@ import sys
 import tempfile
 import tomllib
 import urllib.parse
+
+import book_keys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BOOK = ROOT / "docs/book"
@@ -143,143 +145,14 @@ def explanations(carom):
             write(f"explain/{name}.txt", said.split("\nelsewhere\n")[0].strip() + "\n")
 
 
-# Keys of the case file
-
-
 def keys(carom):
     schema = json.loads(run(carom, "schema") or "{}")
-    uses = used_keys()
-    parts, unused = [], []
-    tables = []
-    collect("", schema, tables)
-    for path, spec, title in tables:
-        kind = next((f"[{key['const']}]" for key in spec["properties"].values() if "const" in key), "")
-        rows = []
-        for name, key in spec["properties"].items():
-            full = f"{path}{kind}.{name}".strip(".")
-            meaning, unit, paper = described(key)
-            default = toml(key["default"]) if "default" in key else "**required**" if name in spec["required"] else "–"
-            if paper:
-                default += f"; paper preset `{paper}`"
-            example = toml(key["examples"][0]) if key.get("examples") else toml(key["default"]) if "default" in key else ""
-            if "const" in key:
-                default, example = "–", toml(key["const"])
-            case = uses.get(full)
-            if case is None:
-                unused.append(full)
-            example = f"{name} = {example[1:-1]}" if example else ""
-            shown = "<br>".join(filter(None, [f"`{example}`" if example else "", f"`{case}`" if case else ""]))
-            rows.append([f"`{name}`", values(key), default, unit or "–", meaning, shown])
-        parts.append(f"## {title}\n\n{spec.get('description', '')}\n\n")
-        parts.append(f'<div class="keys">\n\n{table(["Key", "Values", "Default", "Unit", "Meaning", "Example"], rows)}</div>\n\n')
-    write("keys.md", "".join(parts))
-    if unused:
+    if unused := book_keys.pages(schema, ROOT, GENERATED / "keys"):
         problems.append(f"a case that uses {', '.join(unused)}: add one to docs/book/examples/")
-
-
-def collect(path, spec, tables):
-    """Every table of the schema, in the order of the file: (path of keys, schema, heading)."""
-    last = path.rsplit(".", 1)[-1]
-    kinds = [key for key in spec.get("properties", {}).items() if "const" in key[1]]
-    if not path:
-        title = "The top level"
-    elif kinds:
-        title = f"`{last} = {{ {kinds[0][0]} = \"{kinds[0][1]['const']}\" }}`"
-    elif "." in path:
-        title = f"`{last} = {{ … }}` of `{path.split('.')[0]}`"
-    else:
-        title = f"`[[{path}]]`" if spec.get("list") else f"`[{path}]`"
-    tables.append((path, spec, title))
-    for name, key in spec.get("properties", {}).items():
-        inner = f"{path}.{name}".strip(".")
-        for one in [key, *key.get("oneOf", []), *key.get("anyOf", [])]:
-            if one.get("type") == "array" and one.get("items", {}).get("properties"):
-                collect(inner, {**one["items"], "list": True}, tables)
-            elif one.get("properties"):
-                collect(inner, one, tables)
-
-
-def described(key):
-    """Meaning, unit, and the default of the paper's preset, from one description."""
-    text = key.get("description", "")
-    paper = re.search(r" With preset = \"paper\": (.*)\.$", text)
-    text = text[: paper.start()] if paper else text
-    unit = re.search(r" Unit: ([^:]*)\.$", text)
-    text = text[: unit.start()] if unit else text
-    return text, unit and unit.group(1), paper and paper.group(1)
-
-
-def values(key):
-    """The values a key takes, in words."""
-    if "const" in key:
-        return "this one"
-    for several in ("oneOf", "anyOf"):
-        if several in key:
-            words = [f"`{'true' if one['const'] else 'false'}`" if isinstance(one.get("const"), bool) else values(one) for one in key[several]]
-            return " or ".join(dict.fromkeys(words))
-    if "enum" in key:
-        return " ".join(f"`{json.dumps(word, ensure_ascii=False)}`" for word in key["enum"])
-    kind = key.get("type")
-    if isinstance(kind, list):
-        return " or ".join(values({**key, "type": one}) for one in kind)
-    if kind == "array":
-        items = key.get("items", {})
-        if items.get("properties"):
-            return "tables"
-        least, most = key.get("minItems"), key.get("maxItems")
-        count = "" if least is None else f"{least} " if least == most else f"{least} to {most} " if most else f"at least {least} "
-        return f"list: {count}of {values(items)}"
-    if kind in ("number", "integer"):
-        bounds = [("minimum", "≥"), ("exclusiveMinimum", ">"), ("maximum", "≤"), ("exclusiveMaximum", "<")]
-        told = [f"{sign} {key[name]:g}" for name, sign in bounds if name in key]
-        return " ".join(filter(None, [kind, ", ".join(told)]))
-    return {"object": "table", "string": "text", "boolean": "`true` `false`"}.get(kind, "–")
-
-
-def toml(value):
-    """A value as TOML, in code marks."""
-
-    def plain(value):
-        if isinstance(value, bool):
-            return "true" if value else "false"
-        if isinstance(value, dict):
-            return "{ " + ", ".join(f"{k} = {plain(v)}" for k, v in value.items()) + " }"
-        if isinstance(value, list):
-            return "[" + ", ".join(map(plain, value)) + "]"
-        return json.dumps(value, ensure_ascii=False)
-
-    return f"`{plain(value)}`"
-
-
-def used_keys():
-    """Path of a key, with [KIND] behind tables that have kinds or shapes: a shipped case, or an example of the book, that uses it."""
-    found = {}
-
-    def walk(path, value, case):
-        if isinstance(value, list):
-            for inner in value:
-                walk(path, inner, case)
-        elif isinstance(value, dict):
-            kind = value.get("kind", value.get("shape"))
-            for name, inner in value.items():
-                for full in [f"{path}.{name}", f"{path}[{kind}].{name}"]:
-                    found.setdefault(full.strip("."), case)
-                walk(f"{path}.{name}".strip("."), inner, case)
-
-    for case in [*sorted(ROOT.glob("cases/*/*.toml")), *sorted(BOOK.glob("examples/*.toml"))]:
-        content = tomllib.loads(case.read_text(encoding="utf-8"))
-        place = case.relative_to(ROOT)
-        if "case" not in content:
-            walk("", content, place)
-            continue
-        walk("", {"expect": content.get("expect", [])}, place)
-        for change in [*(arm.get("set", {}) for arm in content.get("arm", [])), content.get("grid", {})]:
-            for key, value in change.items():
-                # body.NAME.key is body.key.
-                path = re.sub(r"^(material|body|support|contact|probe)\.[^.]*\.", r"\1.", key)
-                found.setdefault(path, place)
-                walk(path, value, place)
-    return found
+    listed = set(re.findall(r"generated/keys/(\w+)\.md", (BOOK / "src/SUMMARY.md").read_text(encoding="utf-8")))
+    made = {page.stem for page in (GENERATED / "keys").glob("*.md")} - {"index"}
+    if listed != made:
+        problems.append(f"in SUMMARY.md the pages on keys {', '.join(sorted(listed ^ made))}: list what the schema has")
 
 
 # Runs of the book's own
