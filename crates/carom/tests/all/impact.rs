@@ -1,23 +1,13 @@
 //! The impact of cases/impact, step by step: what must hold to round-off in every one of them.
 
-#![allow(clippy::unwrap_used)]
-
-use carom::case::{Case, Document, read};
+use carom::case::Case;
 use carom::{GridReport, Simulation, State};
 use carom_contact::Linearised;
 
-fn case(sets: &[&str]) -> Case {
-    let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
-    let text = include_str!("../../../cases/impact/impact.toml");
-    let document = Document::parse("impact.toml", text, &sets).unwrap();
-    read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)))
-}
+use super::common::{DISCS, case, dot, momenta, simulation};
 
+const IMPACT: &str = include_str!("../../../../cases/impact/impact.toml");
 const COARSE: [&str; 2] = ["body.cylinder.mesh.size=0.25", "body.prism.mesh.cells=[4,2]"];
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
 
 /// Krenk's identity for the α family (design.md §5): what the dissipation of a step must be, from its two states.
 fn predicted_dissipation(sim: &Simulation<2>, before: &State, scheme: &carom_time::Scheme) -> f64 {
@@ -43,7 +33,7 @@ fn predicted_dissipation(sim: &Simulation<2>, before: &State, scheme: &carom_tim
 
 #[test]
 fn ledger_balance_and_gaps_hold_in_every_step_of_the_impact() {
-    ledger_balance_and_gaps_hold(&case(&[]), 500);
+    ledger_balance_and_gaps_hold(&case(IMPACT, &[""; 0]), 500);
 }
 
 /// The same with loads of every kind that change with time and follow the sides.
@@ -55,7 +45,7 @@ fn ledger_balance_and_gaps_hold_under_loads() {
         { body = "cylinder", body_force = ["0.1*Y*t", "-X"] },
     ]"#;
     let scheme = r#"time.scheme={ kind = "chung-hulbert", rho_inf = 0.5 }"#;
-    ledger_balance_and_gaps_hold(&case(&[COARSE[0], COARSE[1], &loads.replace('\n', " "), scheme]), 30);
+    ledger_balance_and_gaps_hold(&case(IMPACT, &[COARSE[0], COARSE[1], &loads.replace('\n', " "), scheme]), 30);
 }
 
 fn ledger_balance_and_gaps_hold(case: &Case, least: usize) {
@@ -115,8 +105,7 @@ fn free_fall_is_exact_for_every_scheme_of_order_two() {
         for mass in ["consistent", "lumped"] {
             let scheme = format!("time.scheme={scheme}");
             let mass = format!("body.cylinder.mass={mass}");
-            let mut sim =
-                Simulation::<2>::new(&case(&[COARSE[0], COARSE[1], &scheme, &mass, "time.end=0.3"]), 1).unwrap();
+            let mut sim = simulation::<2>(IMPACT, &[COARSE[0], COARSE[1], &scheme, &mass, "time.end=0.3"]);
             while !sim.finished() {
                 sim.advance(&mut GridReport::default()).unwrap();
             }
@@ -134,47 +123,19 @@ fn free_fall_is_exact_for_every_scheme_of_order_two() {
 /// No force of a rigid plane, no dissipation, no gravity: momentum about any point and energy of a free disc are kept by what keeps them.
 #[test]
 fn total_momentum_of_two_free_bodies_is_kept_through_contact() {
-    let text = r#"
-title = "two discs" 
-dimension = 2
-[[material]]
-name = "rubber"
-law = "neo-hookean"
-density = 0.25
-lambda = 20.0
-mu = 15.0
-[[body]]
-name = "left"
-material = "rubber"
-element = "T6"
-mesh = { shape = "disc", radius = 0.5, center = [-0.55, 0.1], size = 0.25 }
-velocity = [1.5, 0.0]
-[[body]]
-name = "right"
-material = "rubber"
-element = "T6"
-mesh = { shape = "disc", radius = 0.5, center = [0.55, -0.1], size = 0.25 }
-velocity = [-1.5, 0.0]
-[[contact]]
-name = "strike"
-secondary = "left.arc"
-primary = "right.arc"
-force = "end"
-[time]
-end = 0.4
-step = 2e-3
-scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
-"#;
-    let document = Document::parse("discs.toml", text, &[]).unwrap();
-    let case = read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)));
-    let mut sim = Simulation::<2>::new(&case, 1).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)));
+    let sets = [
+        "body.left.mass=consistent",
+        "body.right.mass=consistent",
+        "contact.strike.force=end",
+        "time.step=2e-3",
+        "time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.5 }",
+    ];
+    let mut sim = simulation::<2>(DISCS, &sets);
     let mut active = 0;
     while !sim.finished() {
         sim.advance(&mut GridReport::default()).unwrap();
         active = active.max(sim.state.pairs[0].iter().filter(|p| p.active).count());
-        let mut p = vec![0.0; sim.state.v.len()];
-        sim.model.mass.multiply_into(&sim.state.v, &mut p);
-        let total = p.as_chunks::<2>().0.iter().fold([0.0, 0.0], |s, p| [s[0] + p[0], s[1] + p[1]]);
+        let total = momenta(&sim, &sim.state.v);
         assert!(total[0].abs() + total[1].abs() < 1e-11, "step {}: {total:?}", sim.state.step);
     }
     assert!(active >= 3);

@@ -1,12 +1,11 @@
 //! Explicit and impulse steppers in the plane: what must hold to round-off, their order, and the impact of cases/impact.
 
-#![allow(clippy::unwrap_used)]
-
-use carom::case::{Case, Document, read};
 use carom::stability::{SAFETY, stable_step};
 use carom::{GridReport, Simulation, State};
 
-const IMPACT: &str = include_str!("../../../cases/impact/impact.toml");
+use super::common::{DISCS, case, dot, finish, momenta, on_threads, simulation};
+
+const IMPACT: &str = include_str!("../../../../cases/impact/impact.toml");
 const COARSE: [&str; 4] = [
     "body.cylinder.mesh.size=0.25",
     "body.prism.mesh.cells=[4,2]",
@@ -21,28 +20,12 @@ const SCHEMES: [&str; 5] = [
     "{ kind = \"nonsmooth-generalized-alpha\", rho_inf = 0.5 }",
 ];
 
-fn case(text: &str, sets: &[&str]) -> Case {
-    let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
-    let document = Document::parse("case.toml", text, &sets).unwrap();
-    read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)))
-}
-
-fn simulation(text: &str, sets: &[&str], threads: usize) -> Simulation<2> {
-    Simulation::new(&case(text, sets), threads).unwrap_or_else(|p| panic!("{p:?}"))
-}
-
-fn run(sim: &mut Simulation<2>) {
-    while !sim.finished() {
-        sim.advance(&mut GridReport::default()).unwrap();
-    }
-}
-
 #[test]
 fn free_fall_is_exact() {
     for scheme in SCHEMES {
         let scheme = format!("time.scheme={scheme}");
-        let mut sim = simulation(IMPACT, &[&COARSE[..], &[&scheme, "time.end=0.3", "time.step=3e-4"]].concat(), 1);
-        run(&mut sim);
+        let sim =
+            finish(simulation::<2>(IMPACT, &[&COARSE[..], &[&scheme, "time.end=0.3", "time.step=3e-4"]].concat()));
         let theta_one = scheme.contains("1.0");
         // Backward Euler falls by g Δt t/2 too far: n(n + 1)/2 steps of g Δt².
         let late = if theta_one { 0.5 * 9.81 * sim.dt * sim.state.time } else { 0.0 };
@@ -86,12 +69,12 @@ energy_guard = false
 fn orders_on_smooth_nonlinear_motion_are_those_claimed() {
     let end = |scheme: &str, step: f64| {
         let (scheme, step) = (format!("time.scheme={scheme}"), format!("time.step={step:e}"));
-        let mut sim = simulation(BLOCK, &[&scheme, &step], 1);
-        run(&mut sim);
+        let sim = finish(simulation::<2>(BLOCK, &[&scheme, &step]));
         (sim.state.y, sim.state.v)
     };
     let exact = end("{ kind = \"chung-hulbert\", rho_inf = 1.0 }", 1e-3 / 128.0);
-    let moved = exact.0.iter().zip(&simulation(BLOCK, &[], 1).state.y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let moved =
+        exact.0.iter().zip(&simulation::<2>(BLOCK, &[""; 0]).state.y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(moved > 0.15, "{moved}");
     for (scheme, order) in SCHEMES.into_iter().zip([2.0, 2.0, 2.0, 1.0, 2.0]) {
         let error = |step: f64| {
@@ -107,57 +90,12 @@ fn orders_on_smooth_nonlinear_motion_are_those_claimed() {
     }
 }
 
-const DISCS: &str = r#"
-title = "Two discs, off centre"
-dimension = 2
-[[material]]
-name = "rubber"
-law = "neo-hookean"
-density = 0.25
-lambda = 20.0
-mu = 15.0
-[[body]]
-name = "left"
-material = "rubber"
-element = "T6"
-mass = "lumped"
-mesh = { shape = "disc", radius = 0.5, center = [-0.55, 0.1], size = 0.25 }
-velocity = [1.5, 0.0]
-[[body]]
-name = "right"
-material = "rubber"
-element = "T6"
-mass = "lumped"
-mesh = { shape = "disc", radius = 0.5, center = [0.55, -0.1], size = 0.25 }
-velocity = [-1.5, 0.0]
-[[contact]]
-name = "strike"
-secondary = "left.arc"
-primary = "right.arc"
-[time]
-end = 0.4
-step = 1e-3
-scheme = { kind = "hu" }
-"#;
-
-fn momentum(sim: &Simulation<2>, v: &[f64]) -> [f64; 3] {
-    let mut p = vec![0.0; v.len()];
-    sim.model.mass.multiply_into(v, &mut p);
-    let y = sim.state.y.as_chunks::<2>().0;
-    p.as_chunks::<2>()
-        .0
-        .iter()
-        .zip(y)
-        .fold([0.0; 3], |s, (p, y)| [s[0] + p[0], s[1] + p[1], s[2] + y[0] * p[1] - y[1] * p[0]])
-}
-
 /// Momentum is kept through contact by every scheme. Explicit: the moment of v_{n+½} too, since every force at t_n balances at y_n; and the ledger's
 /// dissipation is what its doc says.
 #[test]
 fn two_discs_keep_their_momentum() {
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     for scheme in SCHEMES {
-        let mut sim = simulation(DISCS, &[&format!("time.scheme={scheme}")], 1);
+        let mut sim = simulation::<2>(DISCS, &[&format!("time.scheme={scheme}")]);
         let explicit = scheme.contains("central") || scheme.contains("paoli");
         let size = 1.5 * sim.model.parts.iter().map(|p| p.total_mass).sum::<f64>();
         let (mut active, mut spin) = (0, None);
@@ -166,10 +104,10 @@ fn two_discs_keep_their_momentum() {
             sim.advance(&mut GridReport::default()).unwrap();
             let state = &sim.state;
             active = active.max(state.pairs[0].iter().filter(|p| p.active).count());
-            let total = momentum(&sim, &state.v);
+            let total = momenta(&sim, &state.v);
             assert!(total[0].abs() + total[1].abs() < 1e-12 * size, "{scheme} step {}: {total:?}", state.step);
             if explicit && before.step > 0 {
-                let now = momentum(&sim, &state.ahead.velocity)[2];
+                let now = momenta(&sim, &state.ahead.velocity)[2];
                 assert!((now - *spin.get_or_insert(now)).abs() < 1e-12 * size, "{scheme} step {}: {now}", state.step);
                 let squares = |s: &State| {
                     let mut force = vec![0.0; s.a.len()];
@@ -210,7 +148,7 @@ fn resuming_in_contact_and_threads_change_no_bit() {
             "time.energy_guard=false",
         ];
         let sets: Vec<&str> = sets.iter().map(|s| &**s).collect();
-        let mut whole = simulation(DISCS, &sets, 1);
+        let mut whole = simulation::<2>(DISCS, &sets);
         let mut bytes = Vec::new();
         while !whole.finished() {
             whole.advance(&mut GridReport::default()).unwrap();
@@ -220,8 +158,7 @@ fn resuming_in_contact_and_threads_change_no_bit() {
         }
         let state: State = postcard::from_bytes(&bytes).unwrap();
         assert!(state.step < whole.state.step);
-        let mut resumed = simulation(DISCS, &sets, 2).resumed(state);
-        run(&mut resumed);
+        let resumed = finish(on_threads::<2>(DISCS, &sets, 2).resumed(state));
         assert!(resumed.state == whole.state, "{scheme}");
     }
 }
@@ -231,8 +168,7 @@ fn resuming_in_contact_and_threads_change_no_bit() {
 fn restitution_one_keeps_the_energy_of_moreau_and_jean() {
     let left = |e: &str| {
         let sets = ["time.scheme={ kind = \"moreau-jean\", theta = 0.5 }", &format!("contact.strike.restitution={e}")];
-        let mut sim = simulation(DISCS, &sets, 1);
-        run(&mut sim);
+        let sim = finish(simulation::<2>(DISCS, &sets));
         let ledger = &sim.state.ledger;
         (ledger.total() / ledger.total_at_start, ledger.contact_work / ledger.total_at_start)
     };
@@ -262,7 +198,7 @@ fn the_stable_step_is_where_central_differences_blow_up() {
 fn the_impact_by_central_differences() {
     let lumped =
         ["body.cylinder.mass=lumped", "body.prism.mass=lumped", "time.scheme={ kind = \"central-difference\" }"];
-    let mut sim = simulation(IMPACT, &[&lumped[..], &["time.step=4e-4"]].concat(), 1);
+    let mut sim = simulation::<2>(IMPACT, &[&lumped[..], &["time.step=4e-4"]].concat());
     let top = (0..sim.model.dofs() / 2)
         .find(|&n| sim.model.reference[2 * n] == 0.0 && (sim.model.reference[2 * n + 1] - 1.5).abs() < 1e-12)
         .unwrap();

@@ -1,21 +1,15 @@
 //! A bar on a rigid wall: the published side-by-side table of schemes (Doyen, Ern, Piperno 2011; recomputed from the formulas alone), to its digits.
 //! (a) one impact at v₀ = −10; (b) bouncing under gravity for three periods.
 
-#![allow(clippy::unwrap_used)]
+use carom::GridReport;
 
-use carom::case::{Document, read};
-use carom::{GridReport, Simulation};
+use super::common::simulation;
 
-fn simulation(sets: &[String]) -> Simulation<1> {
-    let text = include_str!("../../../cases/bar/single.toml");
-    let document = Document::parse("single.toml", text, sets).unwrap_or_else(|e| panic!("{e}"));
-    let case = read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)));
-    Simulation::<1>::new(&case, 1).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)))
-}
+const BAR: &str = include_str!("../../../../cases/bar/single.toml");
 
 /// Peak p/300, rms of p/300 − 1 over 0.52 < t < 1.147, E/E₀ and v_cm/10 at the end, and the deepest penetration.
 fn figures(sets: &[String]) -> [f64; 5] {
-    let mut sim = simulation(sets);
+    let mut sim = simulation::<1>(BAR, sets);
     let start = sim.state.ledger.total();
     let (mut peak, mut squares, mut samples, mut depth) = (0.0_f64, 0.0, 0, 0.0_f64);
     while !sim.finished() {
@@ -37,7 +31,7 @@ fn figures(sets: &[String]) -> [f64; 5] {
 /// The bouncing bar: error of the end's position in the third period over the drop height, and the energy left at the end, as a share of 500.
 fn bounce(sets: &[String]) -> [f64; 2] {
     let sets = [&["body.bar.gravity=[-10.0]".into(), "body.bar.velocity=[0.0]".into()], sets].concat();
-    let mut sim = simulation(&sets);
+    let mut sim = simulation::<1>(BAR, &sets);
     let period = 16.0 / 3.0;
     let (mut squares, mut samples) = (0.0, 0);
     while !sim.finished() {

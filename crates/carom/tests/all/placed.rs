@@ -1,10 +1,9 @@
 //! A case that is turned and moved as a whole gives the turned and moved motion: shapes, contact, gravity and all. So does a body whose
 //! initial positions are a rigid motion of its mesh.
 
-#![allow(clippy::unwrap_used)]
+use carom::Simulation;
 
-use carom::case::{Document, read};
-use carom::{GridReport, Simulation};
+use super::common::{case, finish, simulation};
 
 const DROP: &str = r#"
 dimension = 2
@@ -36,12 +35,7 @@ primary = "anvil.side3"
 "#;
 
 fn run(sets: &[String]) -> (Vec<[f64; 2]>, usize) {
-    let document = Document::parse("drop.toml", DROP, sets).unwrap();
-    let case = read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)));
-    let mut sim = Simulation::<2>::new(&case, 1).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)));
-    while !sim.finished() {
-        sim.advance(&mut GridReport::default()).unwrap();
-    }
+    let sim = finish(simulation::<2>(DROP, sets));
     let active = sim.state.pairs.iter().flatten().filter(|p| p.active).count();
     (sim.state.y.as_chunks::<2>().0.to_vec(), active)
 }
@@ -84,11 +78,7 @@ fn positions_that_only_turn_a_body_leave_it_unstrained() {
 fn bodies_must_not_overlap_where_they_start() {
     const LOWER: &str = "body.tube.position=[\"X\", \"Y - 0.05\"]";
     let problems = |sets: &[&str]| {
-        let case = read(
-            &Document::parse("drop.toml", DROP, &sets.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>()).unwrap(),
-        )
-        .unwrap();
-        Simulation::<2>::new(&case, 1)
+        Simulation::<2>::new(&case(DROP, sets), 1)
             .err()
             .unwrap_or_default()
             .iter()

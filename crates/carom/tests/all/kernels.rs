@@ -1,10 +1,9 @@
 //! Kernels through the real stepper: their maps, their orders, their booked impulse, their memory.
 
-#![allow(clippy::unwrap_used)]
-
-use carom::case::{Document, read};
-use carom::{GridReport, Means, Previous, Simulation, State};
+use carom::{GridReport, Means, Previous, State};
 use carom_time::map;
+
+use super::common::{case, finish, simulation};
 
 /// A spring of one cell, its left end held.
 const SPRING: &str = r#"
@@ -31,20 +30,6 @@ scheme = { kind = "hu" }
 energy_guard = false
 "#;
 
-fn simulation(text: &str, sets: &[&str]) -> Simulation<1> {
-    let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
-    let document = Document::parse("case.toml", text, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let case = read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)));
-    Simulation::<1>::new(&case, 1).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)))
-}
-
-fn run(mut sim: Simulation<1>) -> State {
-    while !sim.finished() {
-        sim.advance(&mut GridReport::default()).unwrap();
-    }
-    sim.state
-}
-
 /// One dof through the solver is the amplification matrix the analysis is made of: every entry, so every invariant.
 #[test]
 fn one_dof_is_amplified_as_the_analysis_says() {
@@ -59,11 +44,10 @@ fn one_dof_is_amplified_as_the_analysis_says() {
         r#"{ kind = "energy-momentum" }"#,
     ] {
         let scheme = format!("time.scheme={scheme}");
-        let document = Document::parse("case.toml", SPRING, std::slice::from_ref(&scheme)).unwrap();
-        let kernel = read(&document).unwrap().time.scheme.kernel().unwrap();
+        let kernel = case(SPRING, &[&scheme]).time.scheme.kernel().unwrap();
         let want = map::amplification(&*kernel, omega_dt);
         for column in 0..want.len() {
-            let mut sim = simulation(SPRING, &[&scheme]);
+            let mut sim = simulation::<1>(SPRING, &[&scheme]);
             let mut unit = [0.0; 5];
             unit[column] = 1e-3;
             let [u, v, a, d, w] = unit;
@@ -99,11 +83,11 @@ fn the_observed_order_on_a_nonlinear_oscillation_is_the_claimed_one() {
                 "body.bar.mesh.cells=3".into(),
                 "newton.tolerance=1e-12".into(),
             ];
-            let mut sim = simulation(SPRING, &sets.each_ref().map(String::as_str));
+            let mut sim = simulation::<1>(SPRING, &sets.each_ref().map(String::as_str));
             for node in 0..4 {
                 sim.state.v[node] = 1.5 * node as f64 / 3.0;
             }
-            run(sim)
+            finish(sim).state
         };
         // Backward Euler reaches its asymptote late.
         let step = if order == 1.0 { 1.25e-4 } else { 2e-3 };
@@ -116,7 +100,7 @@ fn the_observed_order_on_a_nonlinear_oscillation_is_the_claimed_one() {
     }
 }
 
-const BAR: &str = include_str!("../../../cases/bar/single.toml");
+const BAR: &str = include_str!("../../../../cases/bar/single.toml");
 
 /// The impulse booked is the momentum the wall gave: the quadrature is the velocity update's own, stage by stage.
 #[test]
@@ -130,14 +114,14 @@ fn the_booked_impulse_is_the_change_of_momentum() {
         [r#"time.scheme={ kind = "energy-momentum" }"#, "contact.wall.law=\"predictor\""],
         [r#"time.scheme={ kind = "energy-momentum" }"#, "contact.wall.enforcement=\"penalty\""],
     ] {
-        let sim = simulation(BAR, &sets);
+        let sim = simulation::<1>(BAR, &sets);
         let momentum = |state: &State| {
             let mut p = vec![0.0; state.v.len()];
             sim.model.mass.multiply_into(&state.v, &mut p);
             p.iter().sum::<f64>()
         };
         let start = momentum(&sim.state);
-        let end = run(simulation(BAR, &sets));
+        let end = finish(simulation::<1>(BAR, &sets)).state;
         let error = momentum(&end) - start - end.ledger.impulse[0];
         assert!(
             end.ledger.impulse[0] > 150.0 && error.abs() < 1e-7,
@@ -151,9 +135,9 @@ fn the_booked_impulse_is_the_change_of_momentum() {
 #[test]
 fn what_contact_laws_cost_is_booked_as_contact_work() {
     const CONSERVING: &str = r#"time.scheme={ kind = "energy-momentum" }"#;
-    let penalty = run(simulation(BAR, &[CONSERVING, "contact.wall.enforcement=\"penalty\""])).ledger;
+    let penalty = finish(simulation::<1>(BAR, &[CONSERVING, "contact.wall.enforcement=\"penalty\""])).state.ledger;
     assert!(penalty.contact_work.abs() < 1e-7 && penalty.dissipation().abs() < 1e-7, "{penalty:?}");
-    let predictor = run(simulation(BAR, &[CONSERVING, "contact.wall.law=\"predictor\""])).ledger;
+    let predictor = finish(simulation::<1>(BAR, &[CONSERVING, "contact.wall.law=\"predictor\""])).state.ledger;
     assert!(predictor.contact_work < -1.0 && predictor.dissipation().abs() < 1e-7, "{predictor:?}");
 }
 
@@ -165,14 +149,14 @@ fn a_checkpoint_holds_the_memory_of_schemes_and_springs() {
         [r#"time.scheme={ kind = "bathe", rho_inf = 0.4 }"#, "time.end=0.8"],
         [r#"time.scheme={ kind = "energy-momentum" }"#, "contact.wall.enforcement=\"penalty\""],
     ] {
-        let mut sim = simulation(BAR, &sets);
+        let mut sim = simulation::<1>(BAR, &sets);
         for _ in 0..190 {
             sim.advance(&mut GridReport::default()).unwrap();
         }
         assert!(sim.state.pairs[0].iter().any(|p| p.active));
         let bytes = postcard::to_stdvec(&sim.state).unwrap();
-        let straight = run(sim);
-        let resumed = run(simulation(BAR, &sets).resumed(postcard::from_bytes(&bytes).unwrap()));
+        let straight = finish(sim).state;
+        let resumed = finish(simulation::<1>(BAR, &sets).resumed(postcard::from_bytes(&bytes).unwrap())).state;
         assert_eq!(straight, resumed, "{sets:?}");
     }
 }

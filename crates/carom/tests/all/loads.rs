@@ -1,10 +1,9 @@
 //! Loads and moving supports against exact solutions: waves, oscillators, equilibria.
 
-#![allow(clippy::unwrap_used)]
-
-use carom::case::{Document, read};
 use carom::model::{Dimension, Space};
 use carom::{GridReport, Simulation};
+
+use super::common::{self, case as case_of, finish};
 
 /// A bar of length 1, E = ρ = A = 1, held at the left; the rest is given.
 fn bar(rest: &str) -> Simulation<1> {
@@ -25,16 +24,7 @@ fn simulation<const D: usize>(text: &str) -> Simulation<D>
 where
     Space: Dimension<D>,
 {
-    let document = Document::parse("case.toml", text, &[]).unwrap();
-    let case = read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)));
-    Simulation::new(&case, 1).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)))
-}
-
-fn finish<const D: usize>(mut sim: Simulation<D>) -> Simulation<D> {
-    while !sim.finished() {
-        sim.advance(&mut GridReport::default()).unwrap_or_else(|stopped| panic!("{stopped}"));
-    }
-    sim
+    common::simulation(text, &[""; 0])
 }
 
 fn body(cells: usize, mass: &str) -> String {
@@ -346,8 +336,7 @@ step = 0.01
 scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
 energy_guard = false
 "#;
-    let document = Document::parse("case.toml", text, &[]).unwrap();
-    let case = read(&document).unwrap();
+    let case = case_of(text, &[""; 0]);
     for scheme in ["", "state"] {
         let mut case = case.clone();
         if !scheme.is_empty() {
@@ -399,8 +388,7 @@ scheme = {{ kind = "static" }}
         )
     };
     let axis = "[[support]]\non = [\"disc.axis\"]\nfix = [\"x\"]\n";
-    let document = Document::parse("a.toml", &text("", 0.5), &[]).unwrap();
-    let case = read(&document).unwrap();
+    let case = case_of(&text("", 0.5), &[""; 0]);
     // Without its contact nothing could ever hold it: the case is wrong.
     let mut alone = case.clone();
     alone.contacts.clear();
@@ -453,8 +441,7 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
         )
     };
     let statics = text(&time(1.0, 0.25, r#"{ kind = "static" }"#), "", "-0.1*t");
-    let document = Document::parse("a.toml", &statics, &[]).unwrap();
-    let case = read(&document).unwrap();
+    let case = case_of(&statics, &[""; 0]);
     let source = carom_record::Source { text: statics.clone(), sets: Vec::new() };
     let options = carom::recording::Options { threads: 1 };
     let stop = std::sync::atomic::AtomicBool::new(false);
@@ -480,8 +467,7 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
         (again("-0.1").replace("cells = [3, 3]", "cells = [3, 4]"), "body \"block\" has another mesh in"),
         (again("-0.1").replace("/preload", "/nowhere"), "cannot be started from"),
     ] {
-        let document = Document::parse("b.toml", &text, &[]).unwrap();
-        let problems = Simulation::<2>::new(&read(&document).unwrap(), 1).err().unwrap();
+        let problems = Simulation::<2>::new(&case_of(&text, &[""; 0]), 1).err().unwrap();
         assert!(problems[0].what.contains(told), "{problems:?}");
     }
 }

@@ -1,17 +1,14 @@
 //! The kept and the full tangent lead to the same history.
 
-#![allow(clippy::unwrap_used)]
+use carom::{GridReport, State};
 
-use carom::case::{Document, read};
-use carom::{GridReport, Simulation, State};
+use super::common::simulation;
 
 /// The last state of a coarse impact, and the contact force of every step.
 fn history(tangent: &str) -> (State, Vec<[f64; 2]>) {
-    let text = include_str!("../../../cases/impact/impact.toml");
+    let text = include_str!("../../../../cases/impact/impact.toml");
     let coarse = ["body.cylinder.mesh.size=0.2", "body.prism.mesh.cells=[4,2]"];
-    let sets = [&coarse[..], &[tangent]].concat().into_iter().map(String::from).collect::<Vec<_>>();
-    let case = read(&Document::parse("impact.toml", text, &sets).unwrap()).unwrap();
-    let mut sim = Simulation::<2>::new(&case, 1).unwrap();
+    let mut sim = simulation::<2>(text, &[&coarse[..], &[tangent]].concat());
     let mut forces = Vec::new();
     while !sim.finished() {
         sim.advance(&mut GridReport::default()).unwrap();

@@ -1,9 +1,8 @@
 //! The trapezoidal rule is symmetric in time: from a later state with the velocities turned round it runs back to where it came from.
 
-#![allow(clippy::unwrap_used)]
+use carom::GridReport;
 
-use carom::case::{Document, read};
-use carom::{GridReport, Simulation};
+use super::common::simulation;
 
 const BLOCK: &str = r#"
 title = "A block in free flight"
@@ -32,9 +31,7 @@ energy_guard = false                # velocities are set by hand
 
 #[test]
 fn the_trapezoidal_rule_runs_back() {
-    let document = Document::parse("block.toml", BLOCK, &[]).unwrap();
-    let case = read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)));
-    let mut there = Simulation::<2>::new(&case, 1).unwrap();
+    let mut there = simulation::<2>(BLOCK, &[""; 0]);
     // A stretch and a bend of size one: strains of tens of per cent.
     let mut begin = there.state.clone();
     for (x, v) in begin.y.as_chunks::<2>().0.iter().zip(begin.v.as_chunks_mut::<2>().0) {
@@ -51,7 +48,7 @@ fn the_trapezoidal_rule_runs_back() {
     assert!(displaced > 0.3 && strain > 0.2, "the motion is not small: {displaced}, {strain}");
     turned.step = 0;
     turned.v.iter_mut().for_each(|v| *v = -*v);
-    let mut back = Simulation::<2>::new(&case, 1).unwrap().resumed(turned);
+    let mut back = simulation::<2>(BLOCK, &[""; 0]).resumed(turned);
     while !back.finished() {
         back.advance(&mut GridReport::default()).unwrap();
     }

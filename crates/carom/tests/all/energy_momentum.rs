@@ -1,9 +1,8 @@
 //! Free flight of a soft body that spins, strains and rings: what the discrete gradient keeps to round-off, and what other schemes do not.
 
-#![allow(clippy::unwrap_used)]
-
-use carom::case::{Document, read};
 use carom::{GridReport, Simulation};
+
+use super::common::{momenta, simulation};
 
 const FLIGHT: &str = r#"
 title = "flight"
@@ -27,10 +26,7 @@ energy_guard = false
 "#;
 
 fn flight(sets: &[&str]) -> Simulation<2> {
-    let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
-    let document = Document::parse("flight.toml", FLIGHT, &sets).unwrap();
-    let case = read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)));
-    let mut sim = Simulation::<2>::new(&case, 1).unwrap();
+    let mut sim = simulation::<2>(FLIGHT, sets);
     // Spin about the centre, and a pull along x that stretches by tens of per cent.
     for node in sim.model.parts[0].nodes() {
         let [x, y] = [sim.model.reference[2 * node] - 1.0, sim.model.reference[2 * node + 1] - 0.25];
@@ -41,18 +37,10 @@ fn flight(sets: &[&str]) -> Simulation<2> {
     sim
 }
 
-/// Momentum and moment of momentum.
-fn momenta(sim: &Simulation<2>) -> [f64; 3] {
-    let mut p = vec![0.0; sim.state.v.len()];
-    sim.model.mass.multiply_into(&sim.state.v, &mut p);
-    let pairs = p.as_chunks::<2>().0.iter().zip(sim.state.y.as_chunks::<2>().0);
-    pairs.fold([0.0; 3], |s, (p, y)| [s[0] + p[0], s[1] + p[1], s[2] + y[0] * p[1] - y[1] * p[0]])
-}
-
 /// Largest relative change of the energy and of each momentum, least J, mean Newton iterations.
 fn drift(sets: &[&str]) -> (f64, [f64; 3], f64, f64) {
     let mut sim = flight(sets);
-    let (start, energy) = (momenta(&sim), sim.state.ledger.total());
+    let (start, energy) = (momenta(&sim, &sim.state.v), sim.state.ledger.total());
     let (mut worst, mut lost, mut least, mut newton) = (0.0_f64, [0.0_f64; 3], 1.0_f64, 0);
     while !sim.finished() {
         let mut report = GridReport::default();
@@ -60,7 +48,7 @@ fn drift(sets: &[&str]) -> (f64, [f64; 3], f64, f64) {
         assert_eq!(report.rejected, 0);
         newton += report.newton;
         worst = worst.max((sim.state.ledger.total() / energy - 1.0).abs());
-        for (lost, (now, start)) in lost.iter_mut().zip(momenta(&sim).into_iter().zip(start)) {
+        for (lost, (now, start)) in lost.iter_mut().zip(momenta(&sim, &sim.state.v).into_iter().zip(start)) {
             *lost = lost.max((now / start - 1.0).abs());
         }
         least = least.min(sim.model.min_det_f(&sim.state.y));

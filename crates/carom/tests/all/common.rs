@@ -1,0 +1,81 @@
+//! What the tests share: cases from text and settings, runs to the end, sums over bodies.
+
+use carom::case::{Case, Document, read};
+use carom::model::{Dimension, Space};
+use carom::{GridReport, Simulation};
+
+/// Two discs that meet off centre, in contact within the run.
+pub(crate) const DISCS: &str = r#"
+title = "Two discs, off centre"
+dimension = 2
+[[material]]
+name = "rubber"
+law = "neo-hookean"
+density = 0.25
+lambda = 20.0
+mu = 15.0
+[[body]]
+name = "left"
+material = "rubber"
+element = "T6"
+mass = "lumped"
+mesh = { shape = "disc", radius = 0.5, center = [-0.55, 0.1], size = 0.25 }
+velocity = [1.5, 0.0]
+[[body]]
+name = "right"
+material = "rubber"
+element = "T6"
+mass = "lumped"
+mesh = { shape = "disc", radius = 0.5, center = [0.55, -0.1], size = 0.25 }
+velocity = [-1.5, 0.0]
+[[contact]]
+name = "strike"
+secondary = "left.arc"
+primary = "right.arc"
+[time]
+end = 0.4
+step = 1e-3
+scheme = { kind = "hu" }
+"#;
+
+/// A case from its text, some of its keys set to other values.
+pub(crate) fn case<S: AsRef<str>>(text: &str, sets: &[S]) -> Case {
+    let sets: Vec<String> = sets.iter().map(|set| set.as_ref().to_owned()).collect();
+    let document = Document::parse("case.toml", text, &sets).unwrap_or_else(|e| panic!("{e}"));
+    read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)))
+}
+
+/// A simulation of a case, on one thread.
+pub(crate) fn simulation<const D: usize>(text: &str, sets: &[impl AsRef<str>]) -> Simulation<D>
+where
+    Space: Dimension<D>,
+{
+    on_threads(text, sets, 1)
+}
+
+pub(crate) fn on_threads<const D: usize>(text: &str, sets: &[impl AsRef<str>], threads: usize) -> Simulation<D>
+where
+    Space: Dimension<D>,
+{
+    Simulation::new(&case(text, sets), threads).unwrap_or_else(|p| panic!("{p:?}"))
+}
+
+/// Runs to the end.
+pub(crate) fn finish<const D: usize>(mut sim: Simulation<D>) -> Simulation<D> {
+    while !sim.finished() {
+        sim.advance(&mut GridReport::default()).unwrap();
+    }
+    sim
+}
+
+/// Momentum and moment of momentum of the velocities `v` where the nodes are.
+pub(crate) fn momenta(sim: &Simulation<2>, v: &[f64]) -> [f64; 3] {
+    let mut p = vec![0.0; v.len()];
+    sim.model.mass.multiply_into(v, &mut p);
+    let pairs = p.as_chunks::<2>().0.iter().zip(sim.state.y.as_chunks::<2>().0);
+    pairs.fold([0.0; 3], |s, (p, y)| [s[0] + p[0], s[1] + p[1], s[2] + y[0] * p[1] - y[1] * p[0]])
+}
+
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}

@@ -1,0 +1,14 @@
+//! The stepper through whole runs: one program, so that what the tests share is written, and linked, once.
+
+#![allow(clippy::unwrap_used)]
+
+mod bar;
+mod common;
+mod energy_momentum;
+mod impact;
+mod kernels;
+mod loads;
+mod nonsmooth;
+mod placed;
+mod reversal;
+mod tangent;
