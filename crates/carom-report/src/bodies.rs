@@ -27,27 +27,32 @@ impl Instant {
     /// Triangles of a field set at reference position + displacement, coloured by one component of an array.
     pub(crate) fn new(fields: &FieldSet, array: &str, component: usize, time: String) -> Option<Self> {
         let quantity = fields.array(array).filter(|a| component < a.components)?;
-        let u = fields.array("displacement").filter(|a| a.components == 3);
-        let moved = |(i, x): (usize, &[f64; 3])| [0, 1].map(|d| x[d] + u.map_or(0.0, |u| u.values[3 * i + d]));
         let triangles = fields.blocks.iter().filter(|b| b.cell == Cell::Triangle);
         Some(Self {
             time,
-            points: fields.points.iter().enumerate().map(moved).collect(),
+            points: places(fields),
             values: quantity.values.iter().skip(component).step_by(quantity.components).copied().collect(),
             cells: triangles.flat_map(|b| b.cells().map(|c| (b.degree, c.to_vec()))).collect(),
         })
         .filter(|instant| !instant.cells.is_empty())
     }
 
-    /// The cells of one block at their reference positions, without a quantity.
+    /// The cells of one block, without a quantity.
     pub(crate) fn of_block(fields: &FieldSet, block: &Block) -> Self {
         Self {
             time: String::new(),
-            points: fields.points.iter().map(|p| [p[0], p[1]]).collect(),
+            points: places(fields),
             values: Vec::new(),
             cells: block.cells().map(|c| (block.degree, c.to_vec())).collect(),
         }
     }
+}
+
+/// Where the points of a field set are: reference position + displacement.
+pub(crate) fn places(fields: &FieldSet) -> Vec<Point> {
+    let u = fields.array("displacement").filter(|a| a.components == 3);
+    let moved = |(i, x): (usize, &[f64; 3])| [0, 1].map(|d| x[d] + u.map_or(0.0, |u| u.values[3 * i + d]));
+    fields.points.iter().enumerate().map(moved).collect()
 }
 
 /// Filled bands of all cells: one path per colour.

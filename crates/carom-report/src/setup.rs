@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use crate::axis::Axis;
 use crate::bands::Point;
-use crate::bodies::{Instant, bezier, edges};
+use crate::bodies::{Instant, bezier, edges, places};
 use crate::chart::{open, write_text};
 use crate::labels::{number, with_unit};
 use crate::palette::LINES;
@@ -35,6 +35,8 @@ type Walk = Vec<(Point, Point)>;
 struct Setup<'a> {
     run: &'a Run,
     fields: &'a FieldSet,
+    /// Where the points of `fields` are.
+    points: Vec<Point>,
     flat: bool,
     scale: f64,
     origin: Point,
@@ -63,8 +65,9 @@ fn tuple(v: &[f64]) -> String {
 /// The figure, from the initial fields; nothing where there are no cells.
 pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     let flat = fields.blocks.iter().all(|b| b.cell == Cell::Curve);
+    let points = places(fields);
     let mut frame = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
-    for p in fields.blocks.iter().flat_map(|b| &b.connectivity).map(|&k| fields.points[k]) {
+    for p in fields.blocks.iter().flat_map(|b| &b.connectivity).map(|&k| points[k]) {
         frame = [frame[0].min(p[0]), frame[1].max(p[0]), frame[2].min(p[1]), frame[3].max(p[1])];
     }
     // A wall in dimension 1 belongs into the picture.
@@ -84,7 +87,7 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     let right = left + (x1 - x0) * scale;
     let top = if flat { 84.0 } else { 14.0 + margin };
     let origin = [left - x0 * scale, if flat { top + 0.5 * BAR } else { top + y1 * scale }];
-    let mut setup = Setup { run, fields, flat, scale, origin, inside: HashMap::new() };
+    let mut setup = Setup { run, fields, points, flat, scale, origin, inside: HashMap::new() };
     let mut key = String::new();
     let lines = setup.key(&mut key, right + margin + 36.0);
     let bottom = (top + picture + margin).max(if flat { 0.0 } else { lines - 60.0 });
@@ -112,7 +115,7 @@ impl Setup<'_> {
     }
 
     fn node(&self, k: usize) -> Point {
-        self.fields.points.get(k).map_or([f64::NAN; 2], |p| self.to([p[0], p[1]]))
+        self.points.get(k).map_or([f64::NAN; 2], |p| self.to(*p))
     }
 
     /// Coordinates at the edges of the picture.
@@ -326,10 +329,17 @@ impl Setup<'_> {
         }
     }
 
+    /// Where a reference place is, as far as the nearest node tells.
+    fn moved(&self, [x, y]: Point) -> Point {
+        let distance = |p: &[f64; 3]| (p[0] - x).hypot(p[1] - y);
+        let near = self.fields.points.iter().zip(&self.points).min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
+        near.map_or([x, y], |(from, to)| [x + to[0] - from[0], y + to[1] - from[1]])
+    }
+
     fn probes(&self, out: &mut String) {
         for probe in list(self.case(), "probes") {
             let at = vector(probe.get("at"));
-            let p = self.to([at.first().copied().unwrap_or(0.0), at.get(1).copied().unwrap_or(0.0)]);
+            let p = self.to(self.moved([at.first().copied().unwrap_or(0.0), at.get(1).copied().unwrap_or(0.0)]));
             let _ = writeln!(
                 out,
                 "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.8\"/>",
