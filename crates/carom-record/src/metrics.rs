@@ -9,6 +9,7 @@
 mod compare;
 mod force;
 mod ledger;
+mod oscillation;
 mod pressure;
 mod table;
 mod work;
@@ -21,7 +22,7 @@ pub use compare::{deviation, excess_variation, phase_shift};
 pub use force::high_frequency;
 pub use ledger::energy_lost_at;
 pub use pressure::hertz;
-pub use table::{COLUMNS, Definition, HISTORY, PRESSURE, Unit, WORK, book_table, of_column};
+pub use table::{COLUMNS, Definition, FREE, HISTORY, PRESSURE, Unit, WORK, book_table, of_column};
 pub use work::{column_roughness, of_run, probe_columns};
 
 /// A metric of a run.

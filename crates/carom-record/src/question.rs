@@ -15,7 +15,7 @@
 use std::borrow::Cow;
 
 use crate::expression::{self, Expression, Token, tokens};
-use crate::metrics::{self, COLUMNS, HISTORY, PRESSURE, WORK};
+use crate::metrics::{self, COLUMNS, FREE, HISTORY, PRESSURE, WORK};
 use crate::{History, Run, Status};
 
 /// Two times are one if they differ by less than this fraction of the span of the first record.
@@ -357,7 +357,7 @@ fn unknown(what: &str) -> String {
 
 /// Names of the metrics of a column.
 pub fn column_metric_names() -> Vec<&'static str> {
-    COLUMNS.iter().map(|(d, _)| d.name).collect()
+    COLUMNS.iter().chain(&FREE).map(|(d, _)| d.name).collect()
 }
 
 /// Names of metrics that need no column.

@@ -16,6 +16,7 @@ mod page;
 mod palette;
 mod pen;
 mod plot;
+mod redraw;
 mod setup;
 mod study;
 mod study_page;

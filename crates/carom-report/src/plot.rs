@@ -1,4 +1,4 @@
-//! Plots in panels, each figure also as a table and as a short script that draws it again.
+//! Plots in panels. [`crate::redraw`] gives each its table and a script that draws it again.
 //!
 //! Axes are linear or logarithmic; on a logarithmic axis what is not positive is left out and counted. Curves of one label have one style in all panels and
 //! one entry in the legend below them.
@@ -137,7 +137,7 @@ impl Plot {
     }
 
     /// Labels with their styles, each once.
-    fn legend(&self) -> Vec<(&str, usize, bool)> {
+    pub(crate) fn legend(&self) -> Vec<(&str, usize, bool)> {
         let mut found: Vec<(&str, usize, bool)> = Vec::new();
         for curve in self.panes.iter().flat_map(|p| &p.curves).filter(|c| !c.label.is_empty()) {
             if !found.iter().any(|(label, ..)| *label == curve.label) {
@@ -271,77 +271,6 @@ impl Plot {
         out.push_str("</svg>\n");
         out
     }
-
-    /// `pane,curve,x,y`, and the bands as curves `reference, low` and `reference, high`.
-    pub(crate) fn csv(&self) -> String {
-        let mut out = String::from("pane,curve,x,y\n");
-        let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
-        for pane in &self.panes {
-            let mut rows = |label: &str, x: &[f64], y: &[f64]| {
-                for (x, y) in x.iter().zip(y) {
-                    let _ = writeln!(out, "{},{},{x:?},{y:?}", quoted(&pane.title), quoted(label));
-                }
-            };
-            if let Some([x, low, high]) = &pane.band {
-                rows("reference, low", x, low);
-                rows("reference, high", x, high);
-            }
-            pane.curves.iter().for_each(|c| rows(&c.label, &c.x, &c.y));
-        }
-        out
-    }
-
-    /// A script that draws the table with matplotlib.
-    pub(crate) fn script(&self) -> String {
-        let name = &self.name;
-        let labels: Vec<String> = self.panes.iter().map(|p| format!("{:?}", plain(&p.y_label))).collect();
-        let marks: Vec<String> = self
-            .panes
-            .iter()
-            .map(|p| format!("{:?}", p.marks.iter().map(|m| (m.0, plain(&m.1))).collect::<Vec<_>>()))
-            .collect();
-        let scales = self.log.map(|log| if log { "log" } else { "linear" });
-        format!(
-            "#!/usr/bin/env python3\n\"\"\"Draws {name}.csv again: python3 {name}.py  (needs matplotlib)\"\"\"\nimport csv, pathlib\nimport matplotlib.pyplot as plt\n\n\
-             here = pathlib.Path(__file__).resolve().parent\npanes = {{}}\nwith open(here / \"{name}.csv\", encoding=\"utf-8\", newline=\"\") as file:\n    \
-             for row in csv.DictReader(file):\n        x, y = panes.setdefault(row[\"pane\"], {{}}).setdefault(row[\"curve\"], ([], []))\n        \
-             x.append(float(row[\"x\"])); y.append(float(row[\"y\"]))\n\ncolors = {colors:?}\ny_labels, marks = [{labels}], [{marks}]\n\
-             across = {across}\nrows = -(-len(panes) // across)\nfigure, axes = plt.subplots(rows, across, figsize=(7.2, 2.6 * rows + 0.6), squeeze=False, sharex=True, sharey={same}, layout=\"constrained\")\n\
-             order = {{}}\nfor k, (title, curves) in enumerate(panes.items()):\n    ax = axes.flat[k]\n    low, high = curves.pop(\"reference, low\", None), curves.pop(\"reference, high\", None)\n    \
-             if low:\n        ax.fill_between(low[0], low[1], high[1], color=\"#cfcfcf\")\n    for label, (x, y) in curves.items():\n        i = order.setdefault(label, len(order))\n        \
-             ax.plot(x, y, color=colors[i % 8], marker=\"os^Dv\"[i % 5] if {marked} else None, ms=4, lw=1.2, label=label)\n    for x, word in marks[k]:\n        ax.axvline(x, color=\"#777777\", lw=0.7)\n    \
-             ax.set(title=title, ylabel=y_labels[k], xscale=\"{xs}\", yscale=\"{ys}\")\nfor ax in axes.flat[len(panes):]:\n    ax.set_visible(False)\n\
-             figure.supxlabel({x:?})\nhandles = {{l: h for ax in axes.flat for h, l in zip(*ax.get_legend_handles_labels())}}\nfigure.legend(handles.values(), handles.keys(), loc=\"outside lower center\", ncols=2, fontsize=8)\n\
-             figure.savefig(here / \"{name}-redrawn.pdf\")\n",
-            colors = (0..8).map(|i| style(i).0).collect::<Vec<_>>(),
-            labels = labels.join(", "),
-            marks = marks.join(", "),
-            across = self.across.max(1),
-            same = if self.same { "True" } else { "False" },
-            marked = if self.panes.iter().flat_map(|p| &p.curves).any(|c| c.marked) { "True" } else { "False" },
-            xs = scales[0],
-            ys = scales[1],
-            x = plain(&self.x_label),
-        )
-    }
-}
-
-/// A label for matplotlib: subscripts and superscripts as it writes them.
-fn plain(label: &str) -> String {
-    let mut out = String::new();
-    let mut rest = label;
-    while let Some(at) = rest.find(['_', '^']) {
-        let (before, after) = rest.split_at(at);
-        out.push_str(before);
-        if let (true, Some(end)) = (after[1..].starts_with('{'), after.find('}')) {
-            let _ = write!(out, "${}{{\\mathrm{{{}}}}}$", &after[..1], &after[2..end]);
-            rest = &after[end + 1..];
-        } else {
-            out.push_str(&after[..1]);
-            rest = &after[1..];
-        }
-    }
-    out + rest
 }
 
 /// A title cut to a width.
@@ -437,10 +366,10 @@ fn mark(out: &mut String, marker: usize, color: &str, x: f64, y: f64) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    fn plot() -> Plot {
+    pub(crate) fn plot() -> Plot {
         let curve =
             Curve { label: "Hu, \"a\"".into(), style: 9, x: vec![1e-3, 1e-2], y: vec![0.0, 2e-4], marked: true };
         Plot {
@@ -460,15 +389,6 @@ mod tests {
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
         // One marker in the pane, one in the legend.
         assert_eq!(svg.matches("z\" fill=").count(), 2);
-    }
-
-    #[test]
-    fn the_table_has_every_number() {
-        assert_eq!(
-            plot().csv(),
-            "pane,curve,x,y\n\"one\",\"Hu, \"\"a\"\"\",0.001,0.0\n\"one\",\"Hu, \"\"a\"\"\",0.01,0.0002\n"
-        );
-        assert!(plot().script().contains("time t$_{\\\\mathrm{c}}$ (s)"));
     }
 
     #[test]

@@ -1,6 +1,5 @@
 //! The page of a study: its tables and, for every probe's column, one figure with the curves of all arms.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use carom_record::Run;
@@ -8,14 +7,12 @@ use carom_record::metrics::{contact_force, probe_columns};
 use carom_record::study::Study;
 use carom_record::study::reference::FORCE;
 
-use crate::chart::{Chart, Panel, Series};
 use crate::labels::{symbol, with_unit, words};
-use crate::palette::LINES;
-use crate::plot::Plot;
-use crate::{ReportError, ReportSummary, laboratory, publish, study_page};
+use crate::plot::{Curve, Pane, Plot};
+use crate::{ReportError, ReportSummary, laboratory, publish, setup, study_page};
 
 /// Curves of one figure; more arms make more figures.
-pub(crate) const MOST: usize = 8;
+const MOST: usize = 8;
 
 /// Columns shown besides those of the probes: name, label, caption.
 const OTHERS: [(&str, &str, &str); 4] = [
@@ -24,13 +21,6 @@ const OTHERS: [(&str, &str, &str); 4] = [
     ("contact_impulse_y", "P_{y}", "contact impulse along y"),
     ("dissipation", "dissipation", "energy dissipated so far; negative: created"),
 ];
-
-/// A figure of a study.
-pub(crate) struct Figure {
-    pub(crate) name: String,
-    pub(crate) caption: String,
-    pub(crate) svg: String,
-}
 
 /// A column of all arms, thinned.
 pub(crate) struct Column {
@@ -54,19 +44,21 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     let mut columns: Vec<Column> = Vec::new();
     let mut time = String::new();
     let mut origins = Origins::default();
+    let mut picture = None;
     let study = Study::open(directory, &mut |arm, run| {
         run.history.unit("time").clone_into(&mut time);
+        picture = picture.take().or_else(|| setup::figure(run, &run.field(run.fields.first()?).ok()?));
         collect(&mut columns, arm, run);
         let told = run.log.iter().filter(|e| ["fallback", "cycle", "no-stress"].contains(&e.kind.as_str())).count();
         let rejected = run.manifest.counters.get("rejected").copied().unwrap_or_default();
         origins.arms.push((arm, run.manifest.input_hash.clone(), rejected, told));
     })?;
     study.write_tables()?;
-    let plots = laboratory::plots(&study, &columns, &time);
-    let figures: Vec<Figure> = columns.iter().flat_map(|column| overlays(column, &study, &time)).collect();
-    let page = study_page::page(&study, &plots, &figures, &origins);
+    let mut plots = laboratory::plots(&study, &columns, &time);
+    plots.extend(columns.iter().flat_map(|column| overlays(column, &study, &time)));
+    let page = study_page::page(&study, picture.as_deref(), &plots, &origins);
     let drawn = plots.iter().map(|p| (p.name.clone(), p.svg()));
-    let all: Vec<(String, String)> = drawn.chain(figures.iter().map(|f| (f.name.clone(), f.svg.clone()))).collect();
+    let all: Vec<(String, String)> = picture.into_iter().map(|svg| ("setup".to_owned(), svg)).chain(drawn).collect();
     let summary =
         publish(directory, "study.html", &page, all.iter().map(|(n, s)| (n.as_str(), s.as_str())), Vec::new())?;
     for plot in &plots {
@@ -126,13 +118,6 @@ fn thinned(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
     (keep.iter().map(|&i| times[i]).collect(), keep.iter().map(|&i| values[i]).collect())
 }
 
-/// Colour and dashes of an arm: the colours of Okabe and Ito and grey, each with dashes of its own for a grey printer.
-pub(crate) fn style(arm: usize) -> (&'static str, &'static str) {
-    const DASHES: [&str; MOST] = ["", "9 3", "3 2", "9 3 2 3", "14 4", "5 2 1.5 2 1.5 2", "1.5 2.5", "6 6"];
-    let i = arm % MOST;
-    (LINES.get(i).copied().unwrap_or("#777777"), DASHES[i])
-}
-
 /// Symbol and words of a column.
 pub(crate) fn named(column: &str) -> (String, String) {
     match (OTHERS.iter().find(|o| o.0 == column), column.rsplit_once('.')) {
@@ -144,24 +129,23 @@ pub(crate) fn named(column: &str) -> (String, String) {
     }
 }
 
-fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Figure> {
+/// A column of all arms, eight curves to a figure.
+fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
     let (label, what) = named(&column.name);
     let groups = study.rows.len().div_ceil(MOST);
     let figure = |group: usize| {
-        let mine: Vec<_> = column.curves.iter().filter(|(arm, ..)| arm / MOST == group).collect();
-        let series = mine.iter().map(|(arm, x, y)| Series {
+        let mine = column.curves.iter().filter(|(arm, ..)| arm / MOST == group);
+        let curves = mine.map(|(arm, x, y)| Curve {
             label: study.rows[*arm].name.clone(),
-            color: style(*arm).0,
-            x,
+            style: *arm,
+            x: x.clone(),
             y: y.clone(),
+            marked: false,
         });
-        let series: Vec<Series> = series.collect();
-        if series.is_empty() {
+        let curves: Vec<Curve> = curves.collect();
+        if curves.is_empty() {
             return None;
         }
-        let panels = vec![Panel { label: label.clone(), unit: column.unit.clone(), height: 320.0, series }];
-        let x_label = with_unit("time t", time);
-        let svg = dashed(&Chart { title: &column.name, x_label, shades: Vec::new(), panels }.svg());
         let file: String =
             column.name.chars().map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' }).collect();
         let (name, part) = match groups {
@@ -172,19 +156,17 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Figure> {
             ),
         };
         let first = what.chars().next().map_or(String::new(), |c| c.to_uppercase().collect());
-        let caption = format!("{first}{}{part}.", what.chars().skip(1).collect::<String>());
-        Some(Figure { name, caption, svg })
+        Some(Plot {
+            name,
+            caption: format!("{first}{}{part}.", what.chars().skip(1).collect::<String>()),
+            x_label: with_unit("time t", time),
+            log: [false, false],
+            across: 1,
+            same: false,
+            panes: vec![Pane { y_label: with_unit(&label, &column.unit), curves, ..Pane::default() }],
+        })
     };
     (0..groups).filter_map(figure).collect()
-}
-
-/// The same figure with every curve, and its sample in the legend, dashed after its colour.
-fn dashed(svg: &str) -> String {
-    let styles: BTreeMap<&str, &str> = (1..MOST).map(style).collect();
-    styles.into_iter().fold(svg.to_owned(), |svg, (color, dashes)| {
-        let stroke = format!("stroke=\"{color}\"");
-        svg.replace(&stroke, &format!("{stroke} stroke-dasharray=\"{dashes}\""))
-    })
 }
 
 #[cfg(test)]
@@ -199,12 +181,5 @@ mod tests {
         let (x, y) = thinned(&times, &values);
         assert!(x.len() <= 6400 && x.is_sorted() && x[0] == 0.0 && x.last() == Some(&99_999.0));
         assert!(y.contains(&9.0) && y.contains(&-5.0));
-    }
-
-    #[test]
-    fn styles_differ() {
-        let styles: std::collections::HashSet<_> = (0..MOST).map(style).collect();
-        assert_eq!(styles.len(), MOST);
-        assert_eq!((0..MOST).map(|i| style(i).0).collect::<std::collections::HashSet<_>>().len(), MOST);
     }
 }

@@ -6,8 +6,8 @@ use carom_record::Status;
 use carom_record::study::{Study, Verdict};
 
 use crate::convergence;
-use crate::plot::Plot;
-use crate::study::{Figure, Origins, style};
+use crate::plot::{Plot, style};
+use crate::study::Origins;
 use crate::text::{escape, html};
 use crate::verdict;
 
@@ -21,7 +21,7 @@ table.metrics td, table.metrics th { padding-right: .7rem; } svg.line { vertical
 @media print { body { -webkit-print-color-adjust: exact; print-color-adjust: exact; } .metrics { font-size: 8.5pt; } }\n";
 
 /// The page.
-pub(crate) fn page(study: &Study, plots: &[Plot], figures: &[Figure], origins: &Origins) -> String {
+pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins: &Origins) -> String {
     let m = &study.manifest;
     let mut out = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
@@ -36,22 +36,21 @@ pub(crate) fn page(study: &Study, plots: &[Plot], figures: &[Figure], origins: &
     };
     let _ = writeln!(out, "<p><span class=\"status {class}\">{word}</span></p>");
     verdict::show(&mut out, study);
+    setup(&mut out, study, picture);
     arms(&mut out, study);
     verdict::rankings(&mut out, study);
     claims(&mut out, &study.verdicts);
     expectations(&mut out, study);
     out.push_str("<h2>Figures</h2>\n");
-    let drawn = plots.iter().map(|p| (&p.caption, &p.name, p.svg(), true));
-    let all = drawn.chain(figures.iter().map(|f| (&f.caption, &f.name, f.svg.clone(), false)));
-    for (i, (caption, name, svg, table)) in all.enumerate() {
-        let (caption, name) = (html(caption), escape(name));
-        let ending = |e: &str| format!("<a href=\"figures/{name}.{e}\">figures/{name}.{e}</a>");
-        let link = if table { ["svg", "csv", "py"].map(ending).join(", ") } else { ending("svg") };
+    for (i, plot) in plots.iter().enumerate() {
+        let (caption, name) = (html(&plot.caption), escape(&plot.name));
+        let link = ["svg", "csv", "py"].map(|e| format!("<a href=\"figures/{name}.{e}\">figures/{name}.{e}</a>"));
         let _ = writeln!(
             out,
-            "<figure>\n{}<figcaption><b>Figure {}.</b> {caption} <span class=\"small\">({link})</span></figcaption>\n</figure>",
-            svg,
-            i + 1
+            "<figure>\n{}<figcaption><b>Figure {}.</b> {caption} <span class=\"small\">({})</span></figcaption>\n</figure>",
+            plot.svg(),
+            i + 1,
+            link.join(", ")
         );
     }
     metrics(&mut out, study);
@@ -76,10 +75,36 @@ pub(crate) fn number(x: f64) -> String {
     text.replace('-', "−")
 }
 
+/// The case drawn, what is made of what, and what the arms vary.
+fn setup(out: &mut String, study: &Study, picture: Option<&str>) {
+    out.push_str("<h2>Setup</h2>\n");
+    if let Some(svg) = picture {
+        let _ = writeln!(
+            out,
+            "<figure>\n{svg}<figcaption>The case <code>{}</code> as its first arm has it <span class=\"small\">(<a \
+             href=\"figures/setup.svg\">figures/setup.svg</a>)</span></figcaption>\n</figure>",
+            escape(&study.manifest.source.case_path)
+        );
+    }
+    let mut varied: Vec<&str> = Vec::new();
+    for arm in study.manifest.arms.iter().filter(|a| !a.part.fine) {
+        for key in arm.sets.iter().filter_map(|set| Some(set.split_once('=')?.0.trim())) {
+            if !varied.contains(&key) {
+                varied.push(key);
+            }
+        }
+    }
+    if !varied.is_empty() {
+        let keys: Vec<String> = varied.iter().map(|key| format!("<code>{}</code>", escape(key))).collect();
+        let _ = writeln!(out, "<p>Varied: {}.</p>", keys.join(", "));
+    }
+    verdict::design(out, study);
+}
+
 fn arms(out: &mut String, study: &Study) {
     out.push_str("<h2>Arms</h2>\n<table>\n<thead><tr><th></th><th></th><th>Arm</th><th>Sets</th><th class=\"n\">Steps</th><th></th></tr></thead>\n");
     for (i, (row, arm)) in study.rows.iter().zip(&study.manifest.arms).enumerate() {
-        let (color, dashes) = style(i);
+        let (color, dashes, _) = style(i);
         let (class, word) = match row.status {
             Some(Status::Finished) => ("pass", "finished"),
             Some(Status::Failed) => ("miss", "failed"),

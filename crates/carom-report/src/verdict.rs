@@ -7,7 +7,7 @@ use carom_record::metrics::WORK;
 use carom_record::study::design::Kind;
 use carom_record::study::ranking::{Ranking, error, standing};
 use carom_record::study::reference::Standing;
-use carom_record::study::{Study, step};
+use carom_record::study::{Arm, Study, step};
 
 use crate::laboratory::methods;
 use crate::study::Origins;
@@ -25,6 +25,9 @@ const SIDE: [(&str, &str); 8] = [
     ("contact_duration", "error of the contact's duration"),
     ("restitution", "error of restitution"),
 ];
+
+/// Costs are matched within this share of the budget.
+const OFF_BUDGET: f64 = 0.1;
 
 /// A number in three digits: the tables have them all.
 fn number(x: f64) -> String {
@@ -124,7 +127,6 @@ fn distorts(study: &Study, arm: usize) -> Vec<String> {
 pub(crate) fn rankings(out: &mut String, study: &Study) {
     let Some(ranking) = &study.ranking else { return };
     out.push_str("<h2>Ranking</h2>\n");
-    design(out, study);
     if let Ok(measure) = &ranking.measure {
         let _ = writeln!(
             out,
@@ -205,7 +207,11 @@ fn other_goals(out: &mut String, study: &Study) {
     out.push_str("</table>\n");
 }
 
-fn design(out: &mut String, study: &Study) {
+/// What made the arms comparable; nothing for a study that ranks nothing.
+pub(crate) fn design(out: &mut String, study: &Study) {
+    if study.ranking.is_none() && study.manifest.design.is_none() {
+        return;
+    }
     match study.manifest.design.as_ref().map(|d| (d.kind, &d.cost_of)) {
         None => {
             out.push_str("<p>The arms are as written: neither their steps nor their costs were made equal.</p>\n");
@@ -220,20 +226,49 @@ fn design(out: &mut String, study: &Study) {
                  steps) and weighted by processor seconds that a pilot run measured (<code>pilots/</code>); the column of processor time is what the arms themselves took.</p>",
                 escape(of)
             );
+            out.push_str(&unmatched(study));
         }
     }
 }
 
+/// Whether costs were matched within the tenth that is claimed, and of which arms not.
+fn unmatched(study: &Study) -> String {
+    let off = |arm: &&Arm| arm.part.cost.is_none_or(|share| (share - 1.0).abs() > OFF_BUDGET);
+    let matched: Vec<&Arm> = study.manifest.arms.iter().filter(|a| costed(study, a)).collect();
+    let missed: Vec<&Arm> = matched.iter().copied().filter(off).collect();
+    if missed.is_empty() {
+        return "<p>The counted cost of every arm is within 10 % of its budget.</p>\n".to_owned();
+    }
+    let told = |arm: &&Arm| {
+        let share = arm.part.cost.map_or("none".to_owned(), number);
+        format!("{} ({share} of the budget)", escape(&arm.name))
+    };
+    format!(
+        "<p><span class=\"miss\">{} of {} arms are not within 10 % of their budget</span>, because no number of steps was found at which they cost it, or they \
+         did not run to their end: {}. Errors of these arms are not at equal cost.</p>\n",
+        missed.len(),
+        matched.len(),
+        missed.iter().map(told).collect::<Vec<_>>().join("; ")
+    )
+}
+
+/// Whether the arm was given a cost to match.
+fn costed(study: &Study, arm: &Arm) -> bool {
+    let design = study.manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedCost);
+    design.is_some_and(|d| !arm.part.fine && arm.part.method.as_ref().is_some_and(|m| *m != d.cost_of))
+}
+
 fn table(out: &mut String, study: &Study, ranking: &Ranking) {
     let matched = study.manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedCost);
-    let head = if matched.is_some() { "<th class=\"n\">Cost / budget</th>" } else { "" };
+    let head =
+        if matched.is_some() { "<th class=\"n\">Counted / budget</th><th class=\"n\">CPU / budget</th>" } else { "" };
     let _ = writeln!(
         out,
         "<table class=\"metrics\"><thead><tr><th class=\"n\">Place</th><th>Method</th><th class=\"n\">Δt</th><th class=\"n\">Error</th><th class=\"n\">Energy drift</th>\
          <th class=\"n\">by integrator</th><th class=\"n\">by contact</th><th class=\"n\">High freq.</th><th class=\"n\">Chatter</th><th class=\"n\">Late by</th>\
          <th class=\"n\">Newton</th><th class=\"n\">CPU (s)</th>{head}</tr></thead>"
     );
-    let columns = 12 + usize::from(matched.is_some());
+    let columns = 12 + 2 * usize::from(matched.is_some());
     for (level, ranked) in ranking.levels.iter().enumerate() {
         let anchor = matched.and_then(|d| {
             let mut arms = study.manifest.arms.iter().enumerate();
@@ -252,14 +287,13 @@ fn table(out: &mut String, study: &Study, ranking: &Ranking) {
                 .and_then(Option::as_ref)
                 .and_then(|c| c.late.as_ref())
                 .map_or("–".into(), |l| number(l.1));
-            let ratio = match (matched, anchor.zip(row.value("cpu_time"))) {
-                (None, _) => String::new(),
-                (Some(_), None) => "<td class=\"n\">–</td>".to_owned(),
-                (Some(_), Some((budget, cost))) => {
-                    let mark = if (cost / budget - 1.0).abs() <= 0.1 { "" } else { " !" };
-                    format!("<td class=\"n\">{}{mark}</td>", number(cost / budget))
-                }
+            let share = |share: Option<f64>| {
+                let Some(share) = share else { return "<td class=\"n\">–</td>".to_owned() };
+                let mark = if (share - 1.0).abs() <= OFF_BUDGET { "" } else { " !" };
+                format!("<td class=\"n\">{}{mark}</td>", number(share))
             };
+            let measured = anchor.zip(row.value("cpu_time")).map(|(budget, cost)| cost / budget);
+            let ratio = if matched.is_some() { share(arm.part.cost) + &share(measured) } else { String::new() };
             let _ = writeln!(
                 out,
                 "<tr><td class=\"n\">{}</td><td class=\"method\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>{}<td class=\"n\">{late}</td>{}{ratio}</tr>",
@@ -276,7 +310,7 @@ fn table(out: &mut String, study: &Study, ranking: &Ranking) {
     }
     out.push_str("</table>\n<p class=\"small\">Arms that share a place are not told apart: their errors differ by no more than the uncertainty of the reference, or 5 %.");
     if matched.is_some() {
-        out.push_str(" An exclamation mark: processor time off the budget by more than 10 %.");
+        out.push_str(" An exclamation mark: off the budget by more than 10 %.");
     }
     out.push_str(
         " Beside <a href=\"ranking.csv\">ranking.csv</a> and <a href=\"reference.csv\">reference.csv</a>.</p>\n",
@@ -320,6 +354,10 @@ pub(crate) fn integrity(out: &mut String, study: &Study, origins: &Origins) {
             hash.get(..16).unwrap_or(hash)
         );
     }
-    out.push_str("</table>\n<p class=\"small\">An arm's records are the same bits for any number of jobs and threads, after a stop and <code>carom resume</code>, and with any output; the suite \
+    out.push_str("</table>\n");
+    if study.manifest.arms.iter().any(|arm| costed(study, arm)) {
+        out.push_str(&unmatched(study));
+    }
+    out.push_str("<p class=\"small\">An arm's records are the same bits for any number of jobs and threads, after a stop and <code>carom resume</code>, and with any output; the suite \
                   tests that. Events stand in each arm's <code>log.jsonl</code>.</p>\n");
 }

@@ -69,7 +69,7 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
 /// Every method of a design at each of its levels; at its own step where no steps are given.
 fn levels(methods: &[Draft], steps: &[f64]) -> Vec<Draft> {
     let at = |(method, level): (&Draft, usize)| {
-        let part = Part { method: Some(method.name.clone()), level, fine: false };
+        let part = Part { method: Some(method.name.clone()), level, ..Part::default() };
         let Some(step) = steps.get(level) else { return Draft { part, ..method.clone() } };
         let mut sets = method.sets.clone();
         // A step of the method's own gives way.
@@ -100,7 +100,7 @@ pub(crate) fn fine(file: &StudyFile, step: f64, end: f64) -> Vec<Draft> {
         }
         sets.push((format!("time.step={:?}", end * times / steps), "fine".to_owned()));
         let name = if times == 1.0 { FINE_NAME.to_owned() } else { format!("{FINE_NAME}, {times} Δt") };
-        let part = Part { method: None, level: 0, fine: true };
+        let part = Part { fine: true, ..Part::default() };
         let expect = ("expect=[]".to_owned(), "fine".to_owned());
         Draft { name, path: "reference".into(), sets, case: None, expect, part }
     };

@@ -3,8 +3,12 @@
 //!
 //! ```text
 //! cost = c_n · Newton iterations + c_f · factorisations        or  c_s · steps
-//! Δt = end/N,  N ← N · budget/cost                             until the cost is within 5 % of the budget: that of `cost_of` at the level
+//! Δt = end/N,  N ← N · (budget/cost)^{1/p},  cost ∝ Nᵖ          until the cost is within 5 % of the budget: that of `cost_of` at the level
 //! ```
+//!
+//! p is 1 at first, then what two trials say: those that have the budget between them, or the last two. Fewer steps need more iterations each, so that a
+//! composite scheme's cost may grow as the cube root of N alone, and what is not asked for p never comes near. A budget that falls between the costs of two
+//! successive numbers of steps cannot be met; what was reached stands in `study.json` and on the page.
 //!
 //! Counts are the same bits everywhere; the weights are measured once and kept in `pilots/ARM/pilot.json` with every trial, so that a study that is
 //! resumed comes to the same steps. A pilot is a whole run, since contact costs more than flight; the one that is accepted becomes the arm. What the arms
@@ -27,7 +31,9 @@ use crate::run::{Ended, Event, StudyError, side_by_side};
 /// Share of the budget by which a cost may differ to be accepted; what is claimed is twice that.
 const CLOSE: f64 = 0.05;
 /// Pilot runs of an arm at most.
-const TRIALS: usize = 5;
+const TRIALS: usize = 9;
+/// Powers of the number of steps a cost is taken to grow with.
+const POWERS: (f64, f64) = (0.25, 2.0);
 
 /// Processor seconds of one of each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -104,12 +110,30 @@ impl Pilot {
     /// Steps of the next trial; none where one is good enough, or there is nothing left to try.
     fn next(&self, first: u64) -> Option<u64> {
         let Some(last) = self.trials.last() else { return Some(first) };
-        let (budget, cost) = (self.budget?, last.cost?);
-        if (cost / budget - 1.0).abs() <= CLOSE || self.trials.len() >= TRIALS {
+        let budget = self.budget?;
+        last.cost?;
+        // Steps with what their cost is off the budget, as logarithms.
+        let off: Vec<(u64, f64)> =
+            self.trials.iter().filter_map(|t| Some((t.steps, (t.cost? / budget).ln()))).collect();
+        let nearest = |side: f64| {
+            let there = off.iter().filter(|t| t.1 * side > 0.0);
+            there.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).copied()
+        };
+        let (below, above) = (nearest(-1.0), nearest(1.0));
+        let (steps, away) = *off.iter().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+        if away.exp_m1().abs() <= CLOSE || self.trials.len() >= TRIALS {
             return None;
         }
-        let next = (last.steps as f64 * budget / cost).round().max(1.0) as u64;
-        (!self.trials.iter().any(|t| t.steps == next)).then_some(next)
+        let pair = below.zip(above).or_else(|| match off[..] {
+            [.., a, b] => Some((a, b)),
+            _ => None,
+        });
+        let power = pair.map_or(1.0, |(a, b)| (b.1 - a.1) / (b.0 as f64 / a.0 as f64).ln());
+        let power = if power.is_nan() { 1.0 } else { power.clamp(POWERS.0, POWERS.1) };
+        let next = (steps as f64 * (-away / power).exp()).round().max(1.0) as u64;
+        let tried = |next: u64| self.trials.iter().any(|t| t.steps == next);
+        let middle = below.zip(above).map(|(a, b)| (a.0 + b.0) / 2);
+        [Some(next), middle].into_iter().flatten().find(|next| !tried(*next))
     }
 
     /// The trial whose cost is closest to the budget; the first if none could run.
@@ -162,20 +186,21 @@ pub(crate) fn settle(
     };
     let levels = design.steps.len().max(1);
     let budgets = (0..levels).map(budget).collect::<Result<Vec<_>, _>>()?;
-    let settled: Mutex<Vec<(usize, u64)>> = Mutex::default();
+    let settled: Mutex<Vec<(usize, u64, Option<f64>)>> = Mutex::default();
     let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
         let budget = budgets.get(manifest.arms[i].part.level).copied().flatten();
-        let (ended, steps) = pilot(manifest, directory, i, budget, progress, stop)?;
+        let (ended, steps, share) = pilot(manifest, directory, i, budget, progress, stop)?;
         if ended.status != Status::Stopped {
-            settled.lock().unwrap_or_else(PoisonError::into_inner).push((i, steps));
+            settled.lock().unwrap_or_else(PoisonError::into_inner).push((i, steps, share));
         }
         Ok(ended)
     };
     side_by_side::<StudyError>(others.iter().copied().collect(), jobs, &one, observe, stop)?;
     let settled = settled.into_inner().unwrap_or_else(PoisonError::into_inner);
     let whole = settled.len() == others.len();
-    for (i, steps) in settled {
+    for (i, steps, share) in settled {
         place(manifest, i, steps)?;
+        manifest.arms[i].part.cost = share;
     }
     manifest.write(directory)?;
     Ok(whole)
@@ -202,7 +227,7 @@ fn case_with(manifest: &StudyManifest, i: usize, steps: u64) -> Result<Case, Stu
     Ok(case)
 }
 
-/// Pilot runs of an arm until its cost is that of the budget; how the accepted one ended, and its steps.
+/// Pilot runs of an arm until its cost is that of the budget; how the accepted one ended, its steps, and its cost over the budget.
 fn pilot(
     manifest: &StudyManifest,
     directory: &Path,
@@ -210,7 +235,7 @@ fn pilot(
     budget: Option<f64>,
     progress: &mut dyn FnMut(&Progress),
     stop: &AtomicBool,
-) -> Result<(Ended, u64), StudyError> {
+) -> Result<(Ended, u64, Option<f64>), StudyError> {
     let arm = &manifest.arms[i];
     let name = arm.directory.rsplit('/').next().unwrap_or(&arm.directory);
     let folder = directory.join("pilots").join(name);
@@ -232,7 +257,7 @@ fn pilot(
             continue;
         };
         if ended.status == Status::Stopped {
-            return Ok((ended, steps));
+            return Ok((ended, steps, None));
         }
         let run = Manifest::read(&path)?;
         let weights = *pilot.weights.get_or_insert_with(|| Weights::of(&run));
@@ -247,7 +272,9 @@ fn pilot(
     }
     let run = Manifest::read(&to)?;
     let wall = run.timings.get("total").copied().unwrap_or(0.0);
-    Ok((Ended { status: run.status, reason: run.reason, wall }, pilot.trials[settled].steps))
+    let accepted = &pilot.trials[settled];
+    let share = accepted.cost.zip(pilot.budget).map(|(cost, budget)| cost / budget);
+    Ok((Ended { status: run.status, reason: run.reason, wall }, accepted.steps, share))
 }
 
 /// One pilot run, begun or gone on with; none where the model refuses the step, which an explicit scheme does beyond its stable one.
@@ -285,12 +312,16 @@ mod tests {
         Pilot { budget: Some(10.0), trials, ..Pilot::default() }
     }
 
-    /// Twice the budget: half the steps; within 5 %: done; a run that failed: done; the closest is the one accepted.
+    /// Twice the budget: half the steps; within 5 %: done; a run that failed: done; the closest is the one accepted. 20 and 14.14 are as √N, so that 10 needs a
+    /// quarter of 400; between 7 and 20 the power is ln(20/7)/ln 4 = 0.757; between successive numbers there is nothing.
     #[test]
     fn steps_follow_the_budget() {
         assert_eq!(pilot(&[]).next(400), Some(400));
         assert_eq!(pilot(&[(400, Some(20.0))]).next(400), Some(200));
         assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(10.4))]).next(400), None);
+        assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(14.142))]).next(400), Some(100));
+        assert_eq!(pilot(&[(400, Some(20.0)), (100, Some(7.0))]).next(400), Some(160));
+        assert_eq!(pilot(&[(41, Some(12.0)), (40, Some(8.0))]).next(41), None);
         assert_eq!(pilot(&[(400, None)]).next(400), None);
         assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(12.0)), (166, None)]).closest(), 1);
     }

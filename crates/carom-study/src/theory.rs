@@ -13,12 +13,13 @@ use crate::Plan;
 /// Points per decade of ωΔt, from 0.01 to 1000.
 const POINTS: i32 = 24;
 
-/// ρ, ξ and period error at Ω; none where the principal roots do not oscillate, or the scheme is not stable.
+/// ρ of the whole amplification matrix, ξ and period error of its principal pair at Ω; none where that pair does not oscillate.
 fn at(scheme: &SchemeSpec, omega_dt: f64) -> [Option<f64>; 3] {
     if let Some(scheme) = scheme.nonsmooth() {
-        return scheme.oscillation(omega_dt).map_or([None; 3], |(modulus, angle)| {
-            [Some(modulus), Some(-modulus.ln() / angle), Some(omega_dt / angle - 1.0)]
-        });
+        let pair = scheme.oscillation(omega_dt);
+        let [damping, period] =
+            [pair.map(|(modulus, angle)| -modulus.ln() / angle), pair.map(|(_, angle)| omega_dt / angle - 1.0)];
+        return [Some(scheme.spectral_radius(omega_dt)), damping, period];
     }
     let Ok(integrator) = scheme.integrator() else { return [None; 3] };
     let kernel = integrator.kernel();

@@ -66,7 +66,7 @@ fn accuracy(scheme: &Nonsmooth, steps_per_period: u32) -> Option<Accuracy> {
     let damping = 0.0 - modulus.ln() / angle;
     Some(Accuracy {
         steps_per_period,
-        spectral_radius: modulus,
+        spectral_radius: scheme.spectral_radius(omega_dt),
         damping_ratio: Some(damping),
         period_error: Some(omega_dt / angle - 1.0),
     })

@@ -2,8 +2,8 @@
 //! expectations know a metric by its entry here and by nothing else.
 
 use super::{
-    Episode, Facts, apex, column_roughness, extreme, force, ledger, peak_mean, pressure, restitution, roughness,
-    turning_time, vector,
+    Episode, Facts, apex, column_roughness, extreme, force, ledger, oscillation, peak_mean, pressure, restitution,
+    roughness, turning_time, vector,
 };
 use crate::{History, Run};
 
@@ -384,6 +384,24 @@ pub const COLUMNS: [(Definition, fn(&History, &str) -> Option<f64>); 6] = [
     ),
 ];
 
+/// Metrics of a column that oscillates freely, called like those of [`COLUMNS`]; none of any other column.
+pub const FREE: [(Definition, fn(&History, &str) -> Option<f64>); 2] = [
+    (
+        d(
+            "damping_ratio",
+            Unit::None,
+            "−ln|z|/arg z, z of c_{n+1} = 2 Re z c_n − |z|² c_{n−1} by least squares over the second half",
+            "Prony 1795",
+            "damping ratio of a column that oscillates freely about zero",
+        ),
+        oscillation::damping_ratio,
+    ),
+    (
+        d("period", Unit::Time, "2π Δt/arg z, z likewise", "Prony 1795", "period of that oscillation"),
+        oscillation::period,
+    ),
+];
+
 /// Metrics of the pressure between bodies at the end of a static run; none of a motion.
 pub const PRESSURE: [(Definition, fn(&Run) -> Option<f64>); 4] = [
     (
@@ -469,14 +487,14 @@ fn count(run: &Run, name: &str) -> Option<f64> {
 
 /// Definition and value of a metric of a column; none where there is no such metric.
 pub fn of_column(history: &History, column: &str, what: &str) -> Option<(&'static Definition, Option<f64>)> {
-    let (definition, value) = COLUMNS.iter().find(|(d, _)| d.name == what)?;
+    let (definition, value) = COLUMNS.iter().chain(&FREE).find(|(d, _)| d.name == what)?;
     Some((definition, value(history, column)))
 }
 
 /// All definitions as a table of the book, in Markdown.
 pub fn book_table() -> String {
     let history = HISTORY.iter().map(|x| (String::new(), &x.0));
-    let columns = COLUMNS.iter().map(|x| ("COLUMN:".to_owned(), &x.0));
+    let columns = COLUMNS.iter().chain(&FREE).map(|x| ("COLUMN:".to_owned(), &x.0));
     let all = history.chain(columns).chain(PRESSURE.iter().chain(&WORK).map(|x| (String::new(), &x.0)));
     let escape = |text: &str| text.replace('|', "\\|");
     let row = |(before, d): (String, &Definition)| {

@@ -5,7 +5,7 @@
 //! times through its whole range k − 1. It sees rows, not steps: a coarser `history_every` hides what lies between them.
 
 use super::{
-    COLUMNS, Definition, Metric, PRESSURE, Unit, WORK, all, default_bridge, energy_lost_at, episodes, extreme,
+    COLUMNS, Definition, FREE, Metric, PRESSURE, Unit, WORK, all, default_bridge, energy_lost_at, episodes, extreme,
     first_episode, total_variation,
 };
 use crate::{History, Run};
@@ -50,6 +50,10 @@ pub fn of_run(run: &Run) -> Vec<Metric> {
             let unit = if *unit == Unit::Column { history.unit(column).to_owned() } else { String::new() };
             let name = format!("{column}:{name}").into();
             metrics.push(Metric { name, value: value(history, column), unit, definition: meaning });
+        }
+        for (definition, value) in FREE.iter().filter_map(|(d, value)| Some((d, value(history, column)?))) {
+            let (name, unit) = (format!("{column}:{}", definition.name).into(), definition.unit.label(history));
+            metrics.push(Metric { name, value: Some(value), unit, definition: definition.meaning });
         }
     }
     for (definition, value) in &WORK {

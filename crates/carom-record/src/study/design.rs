@@ -82,6 +82,9 @@ pub struct Part {
     /// Number of its level.
     #[serde(default)]
     pub level: usize,
+    /// Its counted cost over the budget of its level, with matched cost; none for the method whose cost is matched.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cost: Option<f64>,
     /// Whether it is one of the three runs of the computed reference.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub fine: bool,

@@ -2,7 +2,8 @@
 //!
 //! Every goal has measures, the first established of which ranks. The error of an arm is |m − r|/|r| (|m| where r = 0) of a metric, or the root mean
 //! square deviation of columns. Arms are ranked within a level only: the same step or the same cost. Methods are ordered by their mean rank over the
-//! levels; two arms of a level whose errors differ by no more than the uncertainty of the reference, or by 5 %, are not told apart.
+//! levels; two arms of a level whose errors differ by no more than the uncertainty of the reference, or by 5 %, are not told apart. Of the methods that are not
+//! told apart from the best the cheapest is recommended; processor times within a tenth of the least are equal, and the smaller error decides between them.
 
 use super::compared::{Compared, established, is_stress, is_trajectory};
 use super::design::Goal;
@@ -11,6 +12,8 @@ use super::{Row, StudyManifest};
 
 /// Errors closer than this are not told apart.
 const ALIKE: f64 = 0.05;
+/// Processor times closer than this are equal: a measurement is not repeated to less.
+const EQUAL_COST: f64 = 0.1;
 
 /// What ranks.
 #[derive(Clone, Debug, PartialEq)]
@@ -236,7 +239,7 @@ impl Ranking {
             ranked
         };
         let levels: Vec<Vec<Ranked>> = (0..count).map(level).collect();
-        let verdict = verdict(goal, manifest, &measure, &levels);
+        let verdict = verdict(goal, manifest, &measure, &levels, rows);
         Self { goal, measure: Ok(measure), levels, verdict }
     }
 }
@@ -268,7 +271,13 @@ fn places(ranked: &mut [Ranked], uncertainty: f64) {
     }
 }
 
-fn verdict(goal: Goal, manifest: &StudyManifest, measure: &Measure, levels: &[Vec<Ranked>]) -> Option<Verdict> {
+fn verdict(
+    goal: Goal,
+    manifest: &StudyManifest,
+    measure: &Measure,
+    levels: &[Vec<Ranked>],
+    rows: &[Row],
+) -> Option<Verdict> {
     let name = |arm: usize| manifest.arms[arm].part.method.as_ref().unwrap_or(&manifest.arms[arm].name);
     let full: Vec<&Vec<Ranked>> = levels.iter().filter(|l| !l.is_empty()).collect();
     let mut methods: Vec<&String> = Vec::new();
@@ -287,15 +296,24 @@ fn verdict(goal: Goal, manifest: &StudyManifest, measure: &Measure, levels: &[Ve
         full.iter().rev().find_map(|l| l.iter().find(|r| name(r.arm) == method)).map_or(f64::INFINITY, |r| r.error)
     };
     methods.sort_by(|a, b| places(a).total_cmp(&places(b)).then(finest(a).total_cmp(&finest(b))));
-    let best = *methods.first()?;
-    let alike_ones: Vec<String> =
-        methods[1..].iter().filter(|m| places(m) <= places(best)).map(|m| (*m).clone()).collect();
-    let mine: Vec<&Ranked> = full.iter().filter_map(|l| l.iter().find(|r| name(r.arm) == best)).collect();
+    let least = places(methods.first()?);
+    let tied: Vec<&String> = methods.into_iter().filter(|m| places(m) <= least).collect();
     let accuracy = manifest.accuracy();
-    let chosen = match goal {
-        Goal::Cost => mine.iter().min_by(|a, b| a.error.total_cmp(&b.error)),
-        _ => mine.iter().find(|r| r.error <= accuracy).or(mine.last()),
-    }?;
+    // The arm of a method that would be recommended.
+    let arm_of = |method: &String| {
+        let mine: Vec<&Ranked> = full.iter().filter_map(|l| l.iter().find(|r| name(r.arm) == method)).collect();
+        match goal {
+            Goal::Cost => mine.iter().min_by(|a, b| a.error.total_cmp(&b.error)).copied(),
+            _ => mine.iter().find(|r| r.error <= accuracy).or(mine.last()).copied(),
+        }
+    };
+    let costs: Vec<Option<f64>> =
+        tied.iter().map(|m| rows.get(arm_of(m)?.arm)?.value("cpu_time").filter(|c| *c > 0.0)).collect();
+    let picked = cheapest(&costs);
+    let best = tied[picked];
+    let alike_ones: Vec<String> =
+        tied.iter().enumerate().filter(|(i, _)| *i != picked).map(|(_, m)| (*m).clone()).collect();
+    let chosen = arm_of(best)?;
     let first_at = full.iter().filter(|l| l.iter().any(|r| r.place == 1 && name(r.arm) == best)).count();
     let mut reasons = vec![format!("{}: {}", measure.words, short(chosen.error))];
     let others = full
@@ -306,6 +324,18 @@ fn verdict(goal: Goal, manifest: &StudyManifest, measure: &Measure, levels: &[Ve
         reasons.push(format!("the best of the others at the same level, {}: {}", name(next.arm), short(next.error)));
     }
     reasons.push(format!("first at {first_at} of {} levels", full.len()));
+    let next = costs.iter().enumerate().filter(|(i, _)| *i != picked).filter_map(|(i, c)| Some((i, (*c)?)));
+    let next = next.min_by(|a, b| a.1.total_cmp(&b.1));
+    // How many times as much the cheapest of the others costs.
+    let times = next.zip(costs[picked]).map(|((_, other), mine)| other / mine);
+    if let Some(((i, other), mine)) = next.zip(costs[picked]).filter(|_| goal != Goal::Cost) {
+        let words = if other > (1.0 + EQUAL_COST) * mine {
+            "the cheapest of those that are not told apart"
+        } else {
+            "of those that are not told apart none is cheaper by more than a tenth"
+        };
+        reasons.push(format!("{words}: {} s of processor time; {}: {} s", short(mine), tied[i], short(other)));
+    }
     if goal != Goal::Cost {
         reasons.push(if chosen.error <= accuracy {
             format!("the coarsest of its levels with an error of at most {accuracy}")
@@ -313,8 +343,24 @@ fn verdict(goal: Goal, manifest: &StudyManifest, measure: &Measure, levels: &[Ve
             format!("its finest level; none has an error of at most {accuracy}")
         });
     }
-    let (confidence, confidence_reasons) = confidence(manifest, measure, &full, first_at, alike_ones.is_empty());
+    let dearer = times.is_some_and(|times| times > 1.0 + EQUAL_COST) && goal != Goal::Cost;
+    let alone = Alone { method: alike_ones.is_empty(), by_cost: dearer };
+    let (confidence, confidence_reasons) = confidence(manifest, measure, &full, first_at, &alone);
     Some(Verdict { arm: chosen.arm, alike: alike_ones, reasons, confidence, confidence_reasons })
+}
+
+/// Number of the first whose cost is within a tenth of the least; the first of all where no cost is known.
+fn cheapest(costs: &[Option<f64>]) -> usize {
+    let least = costs.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+    costs.iter().position(|c| c.is_some_and(|c| c <= (1.0 + EQUAL_COST) * least)).unwrap_or(0)
+}
+
+/// What tells the recommended method from all others.
+struct Alone {
+    /// Its errors.
+    method: bool,
+    /// Its cost, where its errors do not.
+    by_cost: bool,
 }
 
 fn confidence(
@@ -322,7 +368,7 @@ fn confidence(
     measure: &Measure,
     levels: &[&Vec<Ranked>],
     first_at: usize,
-    alone: bool,
+    alone: &Alone,
 ) -> (Confidence, Vec<String>) {
     let (mut confidence, mut reasons) = (Confidence::High, Vec::new());
     let mut at_most = |most: Confidence, why: String| {
@@ -331,15 +377,14 @@ fn confidence(
         }
         reasons.push(why);
     };
-    if !alone {
-        at_most(
-            Confidence::Low,
-            format!(
-                "others are not told apart from it: errors closer than {} or {} %",
-                short(measure.uncertainty),
-                100.0 * ALIKE
-            ),
-        );
+    if !alone.method {
+        let close = format!("errors closer than {} or {} %", short(measure.uncertainty), 100.0 * ALIKE);
+        if alone.by_cost {
+            let why = format!("the errors of others are not told apart from its own ({close}): its cost decides");
+            at_most(Confidence::Medium, why);
+        } else {
+            at_most(Confidence::Low, format!("others are told apart from it neither by {close} nor by their cost"));
+        }
     }
     if first_at < levels.len() {
         at_most(Confidence::Low, format!("it is first at {first_at} of {} levels only", levels.len()));
@@ -350,6 +395,11 @@ fn confidence(
     if !measure.passed_over.is_empty() {
         let names: Vec<&str> = measure.passed_over.iter().map(|(name, _)| name.as_str()).collect();
         at_most(Confidence::Medium, format!("{} would say more, and no refinement establishes it", names.join(", ")));
+    }
+    let off =
+        manifest.arms.iter().filter(|a| a.part.cost.is_some_and(|share| (share - 1.0).abs() > EQUAL_COST)).count();
+    if off > 0 {
+        at_most(Confidence::Medium, format!("the cost of {off} arms is off the budget by more than 10 %"));
     }
     if manifest.design.is_none() {
         at_most(Confidence::Low, "the arms were not made comparable: no `design` matches steps or cost".to_owned());
@@ -374,6 +424,14 @@ mod tests {
             ranked.iter().map(|r| r.place).collect::<Vec<_>>()
         };
         assert_eq!((of(0.0), of(0.3)), (vec![1, 1, 3], vec![1, 1, 1]));
+    }
+
+    /// 1.05 is equal to 1, 1.2 is not; a cost that is not known is none.
+    #[test]
+    fn the_cheapest_within_a_tenth_is_taken_in_order() {
+        assert_eq!(cheapest(&[Some(9.9), Some(1.05), Some(1.0)]), 1);
+        assert_eq!(cheapest(&[Some(1.2), None, Some(1.0)]), 2);
+        assert_eq!((cheapest(&[None, None]), cheapest(&[Some(3.0)])), (0, 0));
     }
 
     #[test]

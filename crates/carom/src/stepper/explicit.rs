@@ -77,7 +77,11 @@ impl<const D: usize> Stepper<D> for Explicit {
         next.time = to;
         self.look_ahead(model, &mut next, &start.ahead.velocity, dt, work, &mut report)?;
 
+        // v_n is a mean of half steps: of M v·v/2 a load has made Δt²/8 f·M⁻¹f before its work is booked.
+        let mut ahead = 0.0;
         for i in 0..next.y.len() {
+            let (before, now) = (start.f_external[i], next.f_external[i]);
+            ahead += 0.125 * dt * dt * self.inverse_mass[i] * (now * now - before * before);
             let force = 0.5 * (start.f_contact[i] + next.f_contact[i]);
             next.ledger.contact_work -= dt * start.ahead.velocity[i] * force;
             let load = 0.5 * (start.f_external[i] + next.f_external[i]);
@@ -88,6 +92,7 @@ impl<const D: usize> Stepper<D> for Explicit {
                 next.ledger.impulse[i] += 0.5 * dt * (before[i] + now[i]);
             }
         }
+        next.ledger.open += ahead;
         next.ledger.potential = model.potential(&next.y);
         book_kinetic(model, &mut next);
 

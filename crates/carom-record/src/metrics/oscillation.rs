@@ -1,0 +1,80 @@
+//! Damping and period of a column that oscillates freely about zero, from the linear recurrence its rows follow (Prony 1795).
+//!
+//! ```text
+//! c_{n+1} = 2 Re z c_n − |z|² c_{n−1}         z: the principal eigenvalue of a step; both coefficients by least squares
+//! ξ = −ln|z|/arg z,   T = 2π Δt/arg z
+//! ```
+//!
+//! Only the second half of the record counts, where what the start excited besides is gone. It must hold a period, and the recurrence must explain all of its
+//! second differences but a hundredth: any other column is no free oscillation of one frequency.
+
+use std::f64::consts::TAU;
+
+use crate::History;
+
+/// Rows of the second half that are needed.
+const LEAST: usize = 8;
+/// What the recurrence may leave unexplained, root mean square over that of the second differences.
+const REST: f64 = 1e-2;
+
+/// ln|z|, arg z and the step between rows.
+fn principal(history: &History, column: &str) -> Option<(f64, f64, f64)> {
+    let (times, values) = (history.times(), history.column(column)?);
+    let half = values.len() / 2;
+    let (times, values) = (times.get(half..)?, values.get(half..)?);
+    if values.len() < LEAST {
+        return None;
+    }
+    let step = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
+    if times.windows(2).any(|t| (t[1] - t[0] - step).abs() > 1e-6 * step) {
+        return None;
+    }
+    let of = |f: fn(&[f64]) -> f64| values.windows(3).map(f).sum::<f64>();
+    let (aa, bb, ab) = (of(|w| w[0] * w[0]), of(|w| w[1] * w[1]), of(|w| w[0] * w[1]));
+    let (ac, bc) = (of(|w| w[0] * w[2]), of(|w| w[1] * w[2]));
+    let determinant = aa * bb - ab * ab;
+    let (trace, square) = ((aa * bc - ab * ac) / determinant, (ab * bc - bb * ac) / determinant);
+    let rest = values.windows(3).map(|w| (w[2] - trace * w[1] + square * w[0]).powi(2)).sum::<f64>();
+    let curved = of(|w| (w[2] - 2.0 * w[1] + w[0]).powi(2));
+    if !(square > 0.0 && trace * trace < 4.0 * square && rest <= REST * REST * curved) {
+        return None;
+    }
+    let angle = (0.5 * trace / square.sqrt()).acos();
+    (angle * (values.len() - 1) as f64 >= TAU).then(|| (0.5 * square.ln(), angle, step))
+}
+
+/// ξ.
+pub(super) fn damping_ratio(history: &History, column: &str) -> Option<f64> {
+    principal(history, column).map(|(log, angle, _)| -log / angle)
+}
+
+/// T.
+pub(super) fn period(history: &History, column: &str) -> Option<f64> {
+    principal(history, column).map(|(_, angle, step)| TAU * step / angle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Column;
+
+    fn history(of: fn(f64) -> f64) -> History {
+        let times: Vec<f64> = (0..=90).map(|n| 0.1 * f64::from(n)).collect();
+        let name =
+            |name: &str| Column { name: name.into(), unit: String::new(), description: String::new(), integer: false };
+        History::new(["time", "c"].map(name).to_vec(), vec![times.clone(), times.into_iter().map(of).collect()])
+    }
+
+    /// e^{−0.6t} cos 2t: ξ = 0.3 and T = π, whatever decays within the first half; a parabola or a second frequency oscillates not by this rule.
+    #[test]
+    fn a_decaying_cosine_has_the_damping_it_was_made_with() {
+        let made = history(|t| (-0.6 * t).exp() * (2.0 * t).cos() + 5.0 * (-15.0 * t).exp());
+        assert!((damping_ratio(&made, "c").unwrap() - 0.3).abs() < 1e-9);
+        assert!((period(&made, "c").unwrap() - std::f64::consts::PI).abs() < 1e-9);
+        let steady = history(|t| (2.0 * t).cos());
+        assert!(damping_ratio(&steady, "c").unwrap().abs() < 1e-12);
+        for other in [history(|t| 1.0 + t * t), history(|t| t.sin() + 0.1 * (7.0 * t).sin()), history(|_| 0.0)] {
+            assert_eq!((damping_ratio(&other, "c"), period(&other, "c")), (None, None));
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! What lies beside a figure: its numbers as a table, and a short script that draws them again with matplotlib, panes, axes, marks and styles alike.
+
+use std::fmt::Write as _;
+
+use crate::plot::{Pane, Plot, style};
+
+/// The script; `@WORD@` stands for what differs.
+const SCRIPT: &str = r##"#!/usr/bin/env python3
+"""Draws @NAME@.csv again, as @NAME@-redrawn.pdf: python3 @NAME@.py  (needs matplotlib)"""
+import csv, pathlib
+import matplotlib.pyplot as plt
+
+here = pathlib.Path(__file__).resolve().parent
+panes = {}
+with open(here / "@NAME@.csv", encoding="utf-8", newline="") as file:
+    for row in csv.DictReader(file):
+        x, y = panes.setdefault(row["pane"], {}).setdefault(row["curve"], ([], []))
+        x.append(float(row["x"])); y.append(float(row["y"]))
+
+colors = @COLORS@
+dashes = @DASHES@
+styles = @STYLES@
+y_labels = @Y_LABELS@
+limits, floors = @LIMITS@, @FLOORS@
+marks = @MARKS@
+marked, across = @MARKED@, @ACROSS@
+
+def style(label):
+    i = styles[label]
+    if marked:
+        return {"color": colors[i % 8], "marker": "os^Dv"[i % 5], "ms": 4}
+    return {"color": colors[i % 8], "ls": dashes[(i + i // 8) % 8] if label else "-"}
+
+rows = -(-len(panes) // across)
+figure, axes = plt.subplots(rows, across, figsize=(7.2, @HIGH@ * rows + 0.6), squeeze=False, sharex=True, sharey=@SAME@, layout="constrained")
+for k, (title, curves) in enumerate(panes.items()):
+    ax = axes.flat[k]
+    low, high = curves.pop("reference, low", None), curves.pop("reference, high", None)
+    if low:
+        ax.fill_between(low[0], low[1], high[1], color="#cfcfcf")
+    for label, (x, y) in curves.items():
+        ax.plot(x, y, lw=1.2, label=label, **style(label))
+    for x, word in marks[k]:
+        ax.axvline(x, color="#777777", lw=0.7, ls=":")
+        ax.annotate(word, (x, 0.97), xycoords=("data", "axes fraction"), rotation=90, ha="right", va="top", fontsize=7)
+    if floors[k]:
+        ax.axhline(floors[k][0], color="#777777", lw=0.7, ls=":")
+        ax.annotate(floors[k][1], (0.98, floors[k][0]), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=7)
+    ax.set_title(title, fontsize=9)
+    ax.set(ylabel=y_labels[k], xscale="@X_SCALE@", yscale="@Y_SCALE@", ylim=limits[k])
+for ax in axes.flat[len(panes):]:
+    ax.set_visible(False)
+figure.supxlabel(@X_LABEL@)
+handles = {l: h for ax in axes.flat for h, l in zip(*ax.get_legend_handles_labels())}
+if handles:
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=2, fontsize=8)
+figure.savefig(here / "@NAME@-redrawn.pdf")
+"##;
+
+impl Plot {
+    /// `pane,curve,x,y`, and the bands as curves `reference, low` and `reference, high`.
+    pub(crate) fn csv(&self) -> String {
+        let mut out = String::from("pane,curve,x,y\n");
+        let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+        for pane in &self.panes {
+            let mut rows = |label: &str, x: &[f64], y: &[f64]| {
+                for (x, y) in x.iter().zip(y) {
+                    let _ = writeln!(out, "{},{},{x:?},{y:?}", quoted(&pane.title), quoted(label));
+                }
+            };
+            if let Some([x, low, high]) = &pane.band {
+                rows("reference, low", x, low);
+                rows("reference, high", x, high);
+            }
+            pane.curves.iter().for_each(|c| rows(&c.label, &c.x, &c.y));
+        }
+        out
+    }
+
+    /// A script that draws the table with matplotlib.
+    pub(crate) fn script(&self) -> String {
+        let list = |of: &dyn Fn(&Pane) -> String| {
+            let each: Vec<String> = self.panes.iter().map(of).collect();
+            format!("[{}]", each.join(", "))
+        };
+        let mark = |m: &(f64, String)| format!("({:?}, {:?})", m.0, plain(&m.1));
+        let curves = || self.panes.iter().flat_map(|p| &p.curves);
+        let mut styles: Vec<String> = curves().map(|c| format!("{:?}: {}", c.label, c.style)).collect();
+        styles.sort_unstable();
+        styles.dedup();
+        let truth = |yes: bool| if yes { "True" } else { "False" }.to_owned();
+        let scale = |axis: usize| if self.log[axis] { "log" } else { "linear" }.to_owned();
+        let dashes: Vec<String> = (0..8).map(|i| dashes(style(i).1)).collect();
+        [
+            ("NAME", self.name.clone()),
+            ("COLORS", format!("{:?}", [0, 1, 2, 3, 4, 5, 6, 7].map(|i| style(i).0))),
+            ("DASHES", format!("[{}]", dashes.join(", "))),
+            ("STYLES", format!("{{{}}}", styles.join(", "))),
+            ("Y_LABELS", list(&|p| format!("{:?}", plain(&p.y_label)))),
+            ("LIMITS", list(&|p| p.limits.map_or("None".into(), |l| format!("{l:?}")))),
+            ("FLOORS", list(&|p| p.floor.as_ref().map_or("None".into(), mark))),
+            ("MARKS", list(&|p| format!("[{}]", p.marks.iter().map(mark).collect::<Vec<_>>().join(", ")))),
+            ("MARKED", truth(curves().any(|c| c.marked))),
+            ("ACROSS", self.across.max(1).to_string()),
+            ("HIGH", if self.panes.len() == 1 { "4.0" } else { "2.3" }.to_owned()),
+            ("SAME", truth(self.same)),
+            ("X_SCALE", scale(0)),
+            ("Y_SCALE", scale(1)),
+            ("X_LABEL", format!("{:?}", plain(&self.x_label))),
+        ]
+        .iter()
+        .fold(SCRIPT.to_owned(), |script, (word, value)| script.replace(&format!("@{word}@"), value))
+    }
+}
+
+/// Dashes as matplotlib has them; `"-"` for none.
+fn dashes(svg: &str) -> String {
+    if svg.is_empty() { "\"-\"".to_owned() } else { format!("(0, ({}))", svg.replace(' ', ", ")) }
+}
+
+/// A label for matplotlib: subscripts and superscripts as it writes them.
+fn plain(label: &str) -> String {
+    let mut out = String::new();
+    let mut rest = label;
+    while let Some(at) = rest.find(['_', '^']) {
+        let (before, after) = rest.split_at(at);
+        out.push_str(before);
+        if let (true, Some(end)) = (after[1..].starts_with('{'), after.find('}')) {
+            let _ = write!(out, "${}{{\\mathrm{{{}}}}}$", &after[..1], &after[2..end]);
+            rest = &after[end + 1..];
+        } else {
+            out.push_str(&after[..1]);
+            rest = &after[1..];
+        }
+    }
+    out + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::plot::tests::plot;
+
+    #[test]
+    fn the_table_has_every_number() {
+        assert_eq!(
+            plot().csv(),
+            "pane,curve,x,y\n\"one\",\"Hu, \"\"a\"\"\",0.001,0.0\n\"one\",\"Hu, \"\"a\"\"\",0.01,0.0002\n"
+        );
+    }
+
+    #[test]
+    fn nothing_of_the_script_is_left_open() {
+        let script = plot().script();
+        assert!(
+            script.contains("time t$_{\\\\mathrm{c}}$ (s)") && script.contains(r#"styles = {"Hu, \"a\"": 9}"#),
+            "{script}"
+        );
+        assert!(!script.contains('@'), "{script}");
+    }
+}
