@@ -227,18 +227,15 @@ impl Plot {
             for curve in &pane.curves {
                 draw(&mut out, curve, &id, &to_x, &to_y);
             }
-            write_text(
-                &mut out,
-                x0,
-                y0 - 9.0,
-                "font-size=\"12\" font-weight=\"600\"",
-                &fitted(&pane.title, wide, 12.0),
-            );
+            let size = if across > 2.0 { 10.5 } else { 12.0 };
+            let place = format!("font-size=\"{size}\" font-weight=\"600\"");
+            write_text(&mut out, x0, y0 - 9.0, &place, &fitted(&pane.title, wide + RIGHT, size));
             if !pane.y_label.is_empty() {
                 let label = if y_axis.axis.exponent == 0 {
                     pane.y_label.clone()
                 } else {
-                    with_unit(&pane.y_label, &scaled("", y_axis.axis.exponent))
+                    let (words, unit) = unit_of(&pane.y_label);
+                    with_unit(words, &scaled(unit, y_axis.axis.exponent))
                 };
                 let place = format!(
                     "text-anchor=\"middle\" font-size=\"12\" transform=\"translate({:.1} {:.1}) rotate(-90)\"",
@@ -257,6 +254,7 @@ impl Plot {
             for i in line {
                 let (label, number, marked) = legend[*i];
                 let (color, dashes, marker) = style(number);
+                let dashes = if marked { "" } else { dashes };
                 let _ = writeln!(
                     out,
                     "<path d=\"M{x:.1} {y:.1}h26\" stroke=\"{color}\" stroke-width=\"1.8\" stroke-dasharray=\"{dashes}\"/>"
@@ -271,6 +269,11 @@ impl Plot {
         out.push_str("</svg>\n");
         out
     }
+}
+
+/// A label and the unit in brackets at its end.
+fn unit_of(label: &str) -> (&str, &str) {
+    label.strip_suffix(')').and_then(|l| l.rsplit_once(" (")).unwrap_or((label, ""))
 }
 
 /// A title cut to a width.

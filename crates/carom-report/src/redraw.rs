@@ -32,7 +32,8 @@ def style(label):
     return {"color": colors[i % 8], "ls": dashes[(i + i // 8) % 8] if label else "-"}
 
 rows = -(-len(panes) // across)
-figure, axes = plt.subplots(rows, across, figsize=(7.2, @HIGH@ * rows + 0.6), squeeze=False, sharex=True, sharey=@SAME@, layout="constrained")
+size = (7.2, @HIGH@ * rows + 0.5 + 0.1 * len(styles))
+figure, axes = plt.subplots(rows, across, figsize=size, squeeze=False, sharex=True, sharey=@SAME@, layout="constrained")
 for k, (title, curves) in enumerate(panes.items()):
     ax = axes.flat[k]
     low, high = curves.pop("reference, low", None), curves.pop("reference, high", None)
@@ -46,11 +47,14 @@ for k, (title, curves) in enumerate(panes.items()):
     if floors[k]:
         ax.axhline(floors[k][0], color="#777777", lw=0.7, ls=":")
         ax.annotate(floors[k][1], (0.98, floors[k][0]), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=7)
-    ax.set_title(title, fontsize=9)
+    ax.set_title(title, fontsize=9 if across < 3 else 7.5)
     ax.set(ylabel=y_labels[k], xscale="@X_SCALE@", yscale="@Y_SCALE@", ylim=limits[k])
 for ax in axes.flat[len(panes):]:
     ax.set_visible(False)
-figure.supxlabel(@X_LABEL@)
+for column in range(across):
+    last = [ax for ax in axes[:, column] if ax.get_visible()][-1]
+    last.set_xlabel(@X_LABEL@)
+    last.tick_params(labelbottom=True)
 handles = {l: h for ax in axes.flat for h, l in zip(*ax.get_legend_handles_labels())}
 if handles:
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=2, fontsize=8)
@@ -102,7 +106,11 @@ impl Plot {
             ("MARKS", list(&|p| format!("[{}]", p.marks.iter().map(mark).collect::<Vec<_>>().join(", ")))),
             ("MARKED", truth(curves().any(|c| c.marked))),
             ("ACROSS", self.across.max(1).to_string()),
-            ("HIGH", if self.panes.len() == 1 { "4.0" } else { "2.3" }.to_owned()),
+            (
+                "HIGH",
+                if self.panes.len() == 1 { "4.0" } else { ["2.2", "3.0", "1.9"][self.across.clamp(1, 3) - 1] }
+                    .to_owned(),
+            ),
             ("SAME", truth(self.same)),
             ("X_SCALE", scale(0)),
             ("Y_SCALE", scale(1)),

@@ -132,9 +132,18 @@ pub(crate) fn named(column: &str) -> (String, String) {
 /// A column of all arms, eight curves to a figure.
 fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
     let (label, what) = named(&column.name);
-    let groups = study.rows.len().div_ceil(MOST);
+    let arms = &study.manifest.arms;
+    // Arms of one case stand together.
+    let groups: Vec<Vec<usize>> = arms
+        .iter()
+        .enumerate()
+        .collect::<Vec<_>>()
+        .chunk_by(|a, b| a.1.case_path == b.1.case_path)
+        .flat_map(|same| same.chunks(MOST).map(|few| few.iter().map(|(i, _)| *i).collect()))
+        .collect();
     let figure = |group: usize| {
-        let mine = column.curves.iter().filter(|(arm, ..)| arm / MOST == group);
+        let members = &groups[group];
+        let mine = column.curves.iter().filter(|(arm, ..)| members.contains(arm));
         let curves = mine.map(|(arm, x, y)| Curve {
             label: study.rows[*arm].name.clone(),
             style: *arm,
@@ -148,12 +157,12 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
         }
         let file: String =
             column.name.chars().map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' }).collect();
-        let (name, part) = match groups {
-            1 => (file, String::new()),
-            _ => (
-                format!("{file}-{}", group + 1),
-                format!(", arms {} to {}", group * MOST + 1, ((group + 1) * MOST).min(study.rows.len())),
-            ),
+        let (name, part) = match (groups.len(), &members[..]) {
+            (2.., [first, .., last]) => {
+                (format!("{file}-{}", group + 1), format!(", arms {} to {}", first + 1, last + 1))
+            }
+            (2.., [only]) => (format!("{file}-{}", group + 1), format!(", arm {}", only + 1)),
+            _ => (file, String::new()),
         };
         let first = what.chars().next().map_or(String::new(), |c| c.to_uppercase().collect());
         Some(Plot {
@@ -166,7 +175,7 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
             panes: vec![Pane { y_label: with_unit(&label, &column.unit), curves, ..Pane::default() }],
         })
     };
-    (0..groups).filter_map(figure).collect()
+    (0..groups.len()).filter_map(figure).collect()
 }
 
 #[cfg(test)]

@@ -14,10 +14,13 @@ use crate::verdict;
 /// Arms in one table of metrics; more make more tables.
 const ACROSS: usize = 8;
 
+/// More arms than these are folded away.
+const MANY: usize = 12;
+
 /// What the page of a run does not need.
 const CSS: &str = "td.method { min-width: 10rem; } .verdict { border: 2px solid #0072b2; border-radius: 6px; padding: .2rem 1.1rem .6rem; margin: 1rem 0; background: #f4f9fd; } \
 .verdict.none { border-color: #8a5a00; background: #fdf8ee; } .verdict dt { font-weight: 600; margin-top: .5rem; } .verdict dd { margin-left: 1.2rem; } span.miss { color: #a32b00; font-weight: 600; } td.undecided { color: #8a5a00; font-weight: 600; } th.n { text-align: right; } \
-table.metrics td, table.metrics th { padding-right: .7rem; } svg.line { vertical-align: middle; } \
+table.metrics td, table.metrics th { padding-right: .7rem; } table.ranking { font-size: .78rem; } table.ranking td, table.ranking th { padding-right: .45rem; } .ranking td.method { min-width: 7rem; } svg.line { vertical-align: middle; } \
 @media print { body { -webkit-print-color-adjust: exact; print-color-adjust: exact; } .metrics { font-size: 8.5pt; } }\n";
 
 /// The page.
@@ -102,7 +105,11 @@ fn setup(out: &mut String, study: &Study, picture: Option<&str>) {
 }
 
 fn arms(out: &mut String, study: &Study) {
-    out.push_str("<h2>Arms</h2>\n<table>\n<thead><tr><th></th><th></th><th>Arm</th><th>Sets</th><th class=\"n\">Steps</th><th></th></tr></thead>\n");
+    // A long list stands in the way of what was found.
+    let open = if study.rows.len() > MANY { "" } else { " open" };
+    let _ =
+        writeln!(out, "<h2>Arms</h2>\n<details{open}><summary>{} arms, and what each sets</summary>", study.rows.len());
+    out.push_str("<table>\n<thead><tr><th></th><th></th><th>Arm</th><th>Sets</th><th class=\"n\">Steps</th><th></th></tr></thead>\n");
     for (i, (row, arm)) in study.rows.iter().zip(&study.manifest.arms).enumerate() {
         let (color, dashes, _) = style(i);
         let (class, word) = match row.status {
@@ -121,12 +128,17 @@ fn arms(out: &mut String, study: &Study) {
             i + 1,
             escape(&arm.directory),
             escape(&row.name),
-            arm.sets.iter().map(|s| format!("<code>{}</code>", escape(s))).collect::<Vec<_>>().join("<br>"),
+            arm.case_path
+                .iter()
+                .map(|path| format!("case <code>{}</code>", escape(path)))
+                .chain(arm.sets.iter().map(|s| format!("<code>{}</code>", escape(s))))
+                .collect::<Vec<_>>()
+                .join("<br>"),
             arm.steps,
             reason.unwrap_or_default()
         );
     }
-    out.push_str("</table>\n");
+    out.push_str("</table></details>\n");
 }
 
 fn claims(out: &mut String, verdicts: &[Verdict]) {

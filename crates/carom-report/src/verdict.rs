@@ -34,6 +34,9 @@ fn number(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return long(x);
     }
+    if !(1e-4..1e6).contains(&x.abs()) {
+        return format!("{x:.2e}").replace('-', "−");
+    }
     let scale = 10f64.powi(2 - x.abs().log10().floor() as i32);
     long((x * scale).round() / scale)
 }
@@ -59,6 +62,11 @@ pub(crate) fn show(out: &mut String, study: &Study) {
     let at = step(arm, "time.step").map_or_else(String::new, |h| format!(", Δt = {}", long(h)));
     let _ =
         writeln!(out, "<section class=\"verdict\"><h2>Recommended: {}{at}</h2>\n<p>{goal}.</p>\n<dl>", escape(name));
+    let sets = arm.sets.iter().filter(|set| !set.trim_start().starts_with("time.step"));
+    let sets: Vec<String> = sets.map(|set| format!("<code>{}</code>", escape(set))).collect();
+    if !sets.is_empty() {
+        let _ = writeln!(out, "<dt>In the case</dt><dd>{}</dd>", sets.join("<br>"));
+    }
     let mut entry = |head: &str, lines: &[String]| {
         let _ = write!(out, "<dt>{head}</dt>");
         for line in lines {
@@ -264,7 +272,7 @@ fn table(out: &mut String, study: &Study, ranking: &Ranking) {
         if matched.is_some() { "<th class=\"n\">Counted / budget</th><th class=\"n\">CPU / budget</th>" } else { "" };
     let _ = writeln!(
         out,
-        "<table class=\"metrics\"><thead><tr><th class=\"n\">Place</th><th>Method</th><th class=\"n\">Δt</th><th class=\"n\">Error</th><th class=\"n\">Energy drift</th>\
+        "<table class=\"metrics ranking\"><thead><tr><th class=\"n\">Place</th><th>Method</th><th class=\"n\">Δt</th><th class=\"n\">Error</th><th class=\"n\">Energy drift</th>\
          <th class=\"n\">by integrator</th><th class=\"n\">by contact</th><th class=\"n\">High freq.</th><th class=\"n\">Chatter</th><th class=\"n\">Late by</th>\
          <th class=\"n\">Newton</th><th class=\"n\">CPU (s)</th>{head}</tr></thead>"
     );

@@ -1,7 +1,7 @@
 //! Arms of a study: those written down, then the product of the grid; and an arm's problems, shown where the arm was written.
 
 use carom::case::{Diagnostic, Document, Problem};
-use carom_record::study::design::Part;
+use carom_record::study::design::{Kind, Part};
 use toml_edit::Value;
 
 use crate::file::{FINE_NAME, StudyFile};
@@ -63,19 +63,26 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
             part: Part::default(),
         });
     }
-    if file.design.is_some() { levels(&drafts, &file.steps) } else { drafts }
+    if file.design.is_some() { levels(&drafts, file) } else { drafts }
 }
 
-/// Every method of a design at each of its levels; at its own step where no steps are given.
-fn levels(methods: &[Draft], steps: &[f64]) -> Vec<Draft> {
+/// Every method of a design at each of its levels; at its own step where no steps are given. Where it is to get the step at which it costs what another method
+/// does, a step of its own is where its pilots begin, at the first level and likewise at the others.
+fn levels(methods: &[Draft], file: &StudyFile) -> Vec<Draft> {
+    let steps = &file.steps;
+    let cost_of = file.cost_of.as_ref().or(methods.first().map(|m| &m.name));
     let at = |(method, level): (&Draft, usize)| {
         let part = Part { method: Some(method.name.clone()), level, ..Part::default() };
         let Some(step) = steps.get(level) else { return Draft { part, ..method.clone() } };
         let mut sets = method.sets.clone();
+        let costed = file.design == Some(Kind::MatchedCost) && cost_of != Some(&method.name);
+        let own = sets.iter().find_map(|(set, _)| set.strip_prefix("time.step=")?.trim().parse::<f64>().ok());
         // A step of the method's own gives way.
         sets.retain(|(set, _)| !set.starts_with("time.step="));
-        sets.push((format!("time.step={step:?}"), format!("steps[{level}]")));
-        Draft { name: format!("{}, Δt {}", method.name, short(*step)), sets, part, ..method.clone() }
+        let begin = own.filter(|_| costed).map_or(*step, |own| own * step / steps[0]);
+        sets.push((format!("time.step={begin:?}"), format!("steps[{level}]")));
+        let of = if costed { "cost of " } else { "" };
+        Draft { name: format!("{}, {of}Δt {}", method.name, short(*step)), sets, part, ..method.clone() }
     };
     let count = steps.len().max(1);
     methods.iter().flat_map(|m| (0..count).map(move |level| (m, level))).map(at).collect()
@@ -182,5 +189,29 @@ mod tests {
         assert_eq!(arms[2].sets[1].1, "grid.\"time.step\"[0]");
         assert_eq!([short(1.875e-3), short(2.0 / 300.0), short(0.01)], ["1.875e-3", "6.667e-3", "1e-2"]);
         assert_eq!(slug("Hu, Δt 1.875e-4"), "hu-dt-1.875e-4");
+    }
+
+    /// At matched cost the others are named after the step whose cost they have, and begin where they say.
+    #[test]
+    fn matched_cost_names_what_is_matched() {
+        let arm = |name: &str, step: Option<&str>| crate::file::ArmEntry {
+            name: name.into(),
+            set: step.map(|s| ("time.step".to_owned(), s.parse().unwrap())).into_iter().collect(),
+            case: None,
+            expect: None,
+        };
+        let file = StudyFile {
+            design: Some(Kind::MatchedCost),
+            steps: vec![0.01, 0.005],
+            arms: vec![arm("Hu", Some("1.0")), arm("explicit", Some("0.002"))],
+            ..StudyFile::default()
+        };
+        let arms = all(&file);
+        assert_eq!(arms[1].name, "Hu, Δt 5e-3");
+        assert_eq!(
+            (arms[3].name.as_str(), arms[3].sets[0].0.as_str()),
+            ("explicit, cost of Δt 5e-3", "time.step=0.001")
+        );
+        assert_eq!(arms[0].sets[0].0, "time.step=0.01");
     }
 }

@@ -111,7 +111,13 @@ impl Pilot {
     fn next(&self, first: u64) -> Option<u64> {
         let Some(last) = self.trials.last() else { return Some(first) };
         let budget = self.budget?;
-        last.cost?;
+        let tried = |next: u64| self.trials.iter().any(|t| t.steps == next);
+        if last.cost.is_none() {
+            // Refused, as an explicit scheme does beyond its stable step: half way back to what ran.
+            let ran = self.trials.iter().filter(|t| t.cost.is_some()).map(|t| t.steps);
+            let next = (ran.min_by_key(|s| s.abs_diff(last.steps))? + last.steps).div_ceil(2);
+            return (self.trials.len() < TRIALS && !tried(next)).then_some(next);
+        }
         // Steps with what their cost is off the budget, as logarithms.
         let off: Vec<(u64, f64)> =
             self.trials.iter().filter_map(|t| Some((t.steps, (t.cost? / budget).ln()))).collect();
@@ -124,14 +130,14 @@ impl Pilot {
         if away.exp_m1().abs() <= CLOSE || self.trials.len() >= TRIALS {
             return None;
         }
-        let pair = below.zip(above).or_else(|| match off[..] {
-            [.., a, b] => Some((a, b)),
-            _ => None,
-        });
-        let power = pair.map_or(1.0, |(a, b)| (b.1 - a.1) / (b.0 as f64 / a.0 as f64).ln());
-        let power = if power.is_nan() { 1.0 } else { power.clamp(POWERS.0, POWERS.1) };
+        let power = |(a, b): ((u64, f64), (u64, f64))| (b.1 - a.1) / (b.0 as f64 / a.0 as f64).ln();
+        // Between two trials interpolated; beyond them no wilder than a cost can grow.
+        let power = match (below.zip(above), &off[..]) {
+            (Some(pair), _) => power(pair),
+            (None, [.., a, b]) if a.0 != b.0 => power((*a, *b)).clamp(POWERS.0, POWERS.1),
+            _ => 1.0,
+        };
         let next = (steps as f64 * (-away / power).exp()).round().max(1.0) as u64;
-        let tried = |next: u64| self.trials.iter().any(|t| t.steps == next);
         let middle = below.zip(above).map(|(a, b)| (a.0 + b.0) / 2);
         [Some(next), middle].into_iter().flatten().find(|next| !tried(*next))
     }
@@ -322,6 +328,7 @@ mod tests {
         assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(14.142))]).next(400), Some(100));
         assert_eq!(pilot(&[(400, Some(20.0)), (100, Some(7.0))]).next(400), Some(160));
         assert_eq!(pilot(&[(41, Some(12.0)), (40, Some(8.0))]).next(41), None);
+        assert_eq!(pilot(&[(400, Some(20.0)), (200, None)]).next(400), Some(300));
         assert_eq!(pilot(&[(400, None)]).next(400), None);
         assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(12.0)), (166, None)]).closest(), 1);
     }

@@ -245,7 +245,7 @@ impl Ranking {
 }
 
 /// A number in three digits.
-fn short(x: f64) -> String {
+pub(super) fn short(x: f64) -> String {
     if x == 0.0 {
         return "0".to_owned();
     }

@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 
 use carom_formula::Formula;
 
+use super::ranking::short;
 use crate::metrics::{self, Metric};
 use crate::{Column, History, Run};
 
@@ -66,7 +67,9 @@ impl Standing {
                     Self::Established { value: fine, uncertainty: last }
                 } else {
                     Self::Not(format!(
-                        "the last halving of the step changed it by {last:.2e}, the one before by {before:.2e}"
+                        "the last halving of the step changed it by {}, the one before by {}",
+                        short(last),
+                        short(before)
                     ))
                 }
             }
@@ -206,7 +209,9 @@ impl Reference {
                 Standing::Established { value: 0.0, uncertainty: *last }
             }
             Some([.., before, last]) => Standing::Not(format!(
-                "the last halving of the step changed it by {last:.2e} of its range, the one before by {before:.2e}"
+                "the last halving of the step changed it by {} of its range, the one before by {}",
+                short(*last),
+                short(*before)
             )),
             Some([last]) if *last <= SMALL => Standing::Established { value: 0.0, uncertainty: *last },
             Some([_]) => Standing::Not("two runs differ by more than 1 %, and there is no third".to_owned()),
