@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use carom_record::Status;
 use carom_record::metrics::WORK;
-use carom_record::study::design::Kind;
+use carom_record::study::design::{Goal, Kind};
 use carom_record::study::ranking::{Ranking, error, standing};
 use carom_record::study::reference::Standing;
 use carom_record::study::{Arm, Study, step};
@@ -316,7 +316,15 @@ fn table(out: &mut String, study: &Study, ranking: &Ranking) {
             );
         }
     }
-    out.push_str("</table>\n<p class=\"small\">Arms that share a place are not told apart: their errors differ by no more than the uncertainty of the reference, or 5 %.");
+    out.push_str("</table>\n");
+    let placed = |arm: &usize| ranking.levels.iter().flatten().any(|r| r.arm == *arm);
+    let without = methods(study).into_iter().flat_map(|(_, arms)| arms).filter(|arm| !placed(arm));
+    let without: Vec<String> = without.map(|arm| escape(&study.rows[arm].name)).collect();
+    if !without.is_empty() {
+        let why = if ranking.goal == Goal::Cost { "not accurate enough" } else { "without a value of the measure" };
+        let _ = writeln!(out, "<p class=\"small\">In no place, because {why}: {}.</p>", without.join("; "));
+    }
+    out.push_str("<p class=\"small\">Arms that share a place are not told apart: their errors differ by no more than the uncertainty of the reference, or 5 %.");
     if matched.is_some() {
         out.push_str(" An exclamation mark: off the budget by more than 10 %.");
     }

@@ -32,6 +32,8 @@ use crate::run::{Ended, Event, StudyError, side_by_side};
 const CLOSE: f64 = 0.05;
 /// Pilot runs of an arm at most.
 const TRIALS: usize = 9;
+/// By how many times a step may be longer than the one pilots begin with: beyond, most steps are rejected and bisected, and a run has no step to speak of.
+const LONGEST: u64 = 16;
 /// Powers of the number of steps a cost is taken to grow with.
 const POWERS: (f64, f64) = (0.25, 2.0);
 
@@ -137,7 +139,7 @@ impl Pilot {
             (None, [.., a, b]) if a.0 != b.0 => power((*a, *b)).clamp(POWERS.0, POWERS.1),
             _ => 1.0,
         };
-        let next = (steps as f64 * (-away / power).exp()).round().max(1.0) as u64;
+        let next = ((steps as f64 * (-away / power).exp()).round() as u64).max(first.div_ceil(LONGEST));
         let middle = below.zip(above).map(|(a, b)| (a.0 + b.0) / 2);
         [Some(next), middle].into_iter().flatten().find(|next| !tried(*next))
     }
@@ -327,6 +329,9 @@ mod tests {
         assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(10.4))]).next(400), None);
         assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(14.142))]).next(400), Some(100));
         assert_eq!(pilot(&[(400, Some(20.0)), (100, Some(7.0))]).next(400), Some(160));
+        // Never beyond sixteen times the step.
+        assert_eq!(pilot(&[(400, Some(200.0)), (40, Some(30.0))]).next(400), Some(25));
+        assert_eq!(pilot(&[(400, Some(200.0)), (25, Some(30.0))]).next(400), None);
         assert_eq!(pilot(&[(41, Some(12.0)), (40, Some(8.0))]).next(41), None);
         assert_eq!(pilot(&[(400, Some(20.0)), (200, None)]).next(400), Some(300));
         assert_eq!(pilot(&[(400, None)]).next(400), None);

@@ -217,6 +217,10 @@ pub(crate) fn solve_stage<const D: usize>(
             changed = true;
         }
         if keeper.exhausted(settings.max_iterations) {
+            if changed {
+                // The gaps at hand belong to the pairs before.
+                evaluate(model, state, trial, work, false)?;
+            }
             stuck(model, trial, work)?;
             return Err(Rejected::NoConvergence {
                 iterations: effort.iterations,

@@ -49,11 +49,14 @@ fn has_words(name: &str, text: &str) -> bool {
 }
 
 /// Groups of at least two arms that differ in `key` alone, in the order of their first arms. With `name`: one group of all arms whose names
-/// contain it, whatever else they set.
+/// contain it, whatever else they set. The reference is no member, but the three runs of a computed one are a group of their own.
 pub fn refinements(manifest: &StudyManifest, key: &str, name: Option<&str>) -> Vec<Refinement> {
     let mut groups: Vec<Refinement> = Vec::new();
     for (i, arm) in manifest.arms.iter().enumerate() {
-        let reference = manifest.reference.as_ref() == Some(&arm.name);
+        let reference = match arm.part.fine {
+            true => name.is_some(),
+            false => manifest.reference.as_ref() == Some(&arm.name),
+        };
         let Some(step) = step(arm, key).filter(|_| !reference && name.is_none_or(|n| has_words(&arm.name, n))) else {
             continue;
         };
@@ -121,7 +124,8 @@ pub(super) fn judge(
         let place = if group.is_empty() { String::new() } else { format!(", {group}") };
         format!("order of {} in {}{place}", order.of, order.against)
     };
-    let enough: Vec<&Refinement> = groups.iter().filter(|g| g.arms.len() >= least).collect();
+    let fine = |g: &Refinement| g.arms.iter().any(|i| manifest.arms[*i].part.fine);
+    let enough: Vec<&Refinement> = groups.iter().filter(|g| g.arms.len() >= least && !fine(g)).collect();
     if enough.is_empty() {
         let why = format!("no {least} arms differ in {} alone", order.against);
         return vec![Expectation {

@@ -345,7 +345,12 @@ fn verdict(
     }
     let dearer = times.is_some_and(|times| times > 1.0 + EQUAL_COST) && goal != Goal::Cost;
     let alone = Alone { method: alike_ones.is_empty(), by_cost: dearer };
-    let (confidence, confidence_reasons) = confidence(manifest, measure, &full, first_at, &alone);
+    let (mut confidence, mut confidence_reasons) = confidence(manifest, measure, &full, first_at, &alone);
+    if goal != Goal::Cost && chosen.error > accuracy {
+        confidence = Confidence::Low;
+        let why = format!("the best is not good: an error of {} where {accuracy} was asked for", short(chosen.error));
+        confidence_reasons.push(why);
+    }
     Some(Verdict { arm: chosen.arm, alike: alike_ones, reasons, confidence, confidence_reasons })
 }
 
@@ -383,7 +388,8 @@ fn confidence(
             let why = format!("the errors of others are not told apart from its own ({close}): its cost decides");
             at_most(Confidence::Medium, why);
         } else {
-            at_most(Confidence::Low, format!("others are told apart from it neither by {close} nor by their cost"));
+            let why = format!("others are not told apart from it, neither by their errors ({close}) nor by their cost");
+            at_most(Confidence::Low, why);
         }
     }
     if first_at < levels.len() {
