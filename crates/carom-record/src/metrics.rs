@@ -18,7 +18,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use crate::History;
-pub use compare::{deviation, excess_variation, phase_shift};
+pub use compare::{deviation, phase_shift};
 pub use force::high_frequency;
 pub use ledger::energy_lost_at;
 pub use pressure::hertz;

@@ -7,7 +7,7 @@ use carom_record::metrics::WORK;
 use carom_record::study::design::{Goal, Kind};
 use carom_record::study::ranking::{Ranking, error, standing};
 use carom_record::study::reference::Standing;
-use carom_record::study::{Arm, Study, step};
+use carom_record::study::{Arm, Row, Study, step};
 
 use crate::laboratory::methods;
 use crate::study::Origins;
@@ -266,6 +266,13 @@ fn costed(study: &Study, arm: &Arm) -> bool {
     design.is_some_and(|d| !arm.part.fine && arm.part.method.as_ref().is_some_and(|m| *m != d.cost_of))
 }
 
+/// Total variation of the contact force beyond the reference's.
+fn beyond(study: &Study, row: &Row) -> String {
+    let right = standing(study.reference.as_ref(), "force_variation").established().map(|known| known.0);
+    let of = |right: f64| row.value("force_variation").map(|own| own / right - 1.0);
+    right.filter(|right| *right > 0.0).and_then(of).map_or("–".into(), number)
+}
+
 fn table(out: &mut String, study: &Study, ranking: &Ranking) {
     let matched = study.manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedCost);
     let head =
@@ -273,10 +280,10 @@ fn table(out: &mut String, study: &Study, ranking: &Ranking) {
     let _ = writeln!(
         out,
         "<table class=\"metrics ranking\"><thead><tr><th class=\"n\">Place</th><th>Method</th><th class=\"n\">Δt</th><th class=\"n\">Error</th><th class=\"n\">Energy drift</th>\
-         <th class=\"n\">by integrator</th><th class=\"n\">by contact</th><th class=\"n\">High freq.</th><th class=\"n\">Chatter</th><th class=\"n\">Late by</th>\
+         <th class=\"n\">by integrator</th><th class=\"n\">by contact</th><th class=\"n\">TV beyond</th><th class=\"n\">High freq.</th><th class=\"n\">Chatter</th><th class=\"n\">Late by</th>\
          <th class=\"n\">Newton</th><th class=\"n\">CPU (s)</th>{head}</tr></thead>"
     );
-    let columns = 12 + 2 * usize::from(matched.is_some());
+    let columns = 13 + 2 * usize::from(matched.is_some());
     for (level, ranked) in ranking.levels.iter().enumerate() {
         let anchor = matched.and_then(|d| {
             let mut arms = study.manifest.arms.iter().enumerate();
@@ -309,9 +316,12 @@ fn table(out: &mut String, study: &Study, ranking: &Ranking) {
                 escape(arm.part.method.as_ref().unwrap_or(&arm.name)),
                 step(arm, "time.step").map_or("–".into(), long),
                 number(r.error),
-                ["energy_drift", "dissipated_integrator", "dissipated_contact", "force_high_frequency", "chatter"]
-                    .map(|m| format!("<td class=\"n\">{}</td>", of(m)))
-                    .concat(),
+                ["energy_drift", "dissipated_integrator", "dissipated_contact"]
+                    .map(&of)
+                    .into_iter()
+                    .chain([beyond(study, row), of("force_high_frequency"), of("chatter")])
+                    .map(|cell| format!("<td class=\"n\">{cell}</td>"))
+                    .collect::<String>(),
                 ["newton_iterations", "cpu_time"].map(|m| format!("<td class=\"n\">{}</td>", of(m))).concat(),
             );
         }
@@ -329,7 +339,7 @@ fn table(out: &mut String, study: &Study, ranking: &Ranking) {
         out.push_str(" An exclamation mark: off the budget by more than 10 %.");
     }
     out.push_str(
-        " Beside <a href=\"ranking.csv\">ranking.csv</a> and <a href=\"reference.csv\">reference.csv</a>.</p>\n",
+        " TV beyond: total variation of the contact force over the reference's, minus 1; – where no refinement of the reference establishes that. Beside <a href=\"ranking.csv\">ranking.csv</a> and <a href=\"reference.csv\">reference.csv</a>.</p>\n",
     );
 }
 

@@ -3,10 +3,9 @@
 //! ```text
 //! deviation          √( mean (c_i − r(t_i))² ) / range of r
 //! phase shift        the τ that minimises Σ (c_i − r(t_i − τ))², by Gauss and Newton; positive: late
-//! excess variation   TV(c) / TV(r) − 1
 //! ```
 
-use super::{at, extreme, total_variation};
+use super::{at, extreme};
 
 /// Root mean square deviation over the range of the reference.
 pub fn deviation(times: &[f64], values: &[f64], reference: (&[f64], &[f64])) -> Option<f64> {
@@ -46,12 +45,6 @@ pub fn phase_shift(times: &[f64], values: &[f64], reference: (&[f64], &[f64])) -
     None
 }
 
-/// Total variation beyond the reference's.
-pub fn excess_variation(values: &[f64], reference: &[f64]) -> Option<f64> {
-    let needed = total_variation(reference);
-    (needed > 0.0).then(|| total_variation(values) / needed - 1.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -74,14 +67,12 @@ mod tests {
         assert_eq!(phase_shift(&[0.0, 1.0], &[1.0, 1.0], (&[0.0, 1.0], &[1.0, 1.0])), None);
     }
 
-    /// r = t on [0, 10] and c = t + 2: deviation 2 of the range 10. Up and down by 3 twice, against once: twice the variation.
+    /// r = t on [0, 10] and c = t + 2: deviation 2 of the range 10.
     #[test]
-    fn deviation_and_excess_by_hand() {
+    fn deviation_by_hand() {
         let reference = sampled(10, |t| t);
         let (t, c) = sampled(7, |t| t + 2.0);
         assert!((deviation(&t, &c, (&reference.0, &reference.1)).unwrap() - 0.2).abs() < 1e-15);
         assert_eq!(deviation(&t, &c, (&[0.0, 10.0], &[1.0, 1.0])), None);
-        assert_eq!(excess_variation(&[0.0, 3.0, 0.0, 3.0, 0.0], &[0.0, 1.0, 3.0, 0.0]), Some(1.0));
-        assert_eq!(excess_variation(&[0.0, 1.0], &[1.0, 1.0]), None);
     }
 }

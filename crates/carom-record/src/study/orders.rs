@@ -53,10 +53,7 @@ fn has_words(name: &str, text: &str) -> bool {
 pub fn refinements(manifest: &StudyManifest, key: &str, name: Option<&str>) -> Vec<Refinement> {
     let mut groups: Vec<Refinement> = Vec::new();
     for (i, arm) in manifest.arms.iter().enumerate() {
-        let reference = match arm.part.fine {
-            true => name.is_some(),
-            false => manifest.reference.as_ref() == Some(&arm.name),
-        };
+        let reference = if arm.part.fine { name.is_some() } else { manifest.reference.as_ref() == Some(&arm.name) };
         let Some(step) = step(arm, key).filter(|_| !reference && name.is_none_or(|n| has_words(&arm.name, n))) else {
             continue;
         };

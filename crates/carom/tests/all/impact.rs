@@ -140,3 +140,19 @@ fn total_momentum_of_two_free_bodies_is_kept_through_contact() {
     }
     assert!(active >= 3);
 }
+
+/// Steps so long that Newton's iterations run out where the pairs have just changed: a step is given up with a reason, and bisected.
+#[test]
+fn giving_up_after_a_change_of_pairs_is_told() {
+    let scheme = r#"time.scheme={ kind = "energy-momentum" }"#;
+    let step = format!("time.step={:?}", 0.85125 / 83.0);
+    let paper = include_str!("../../../../cases/paper/impact.toml");
+    let mut sim = simulation::<2>(paper, &[scheme, "contact.strike.law=\"predictor\"", &step]);
+    let mut rejected = 0;
+    while sim.state.time < 0.36 {
+        let mut report = GridReport::default();
+        sim.advance(&mut report).unwrap();
+        rejected += report.rejected;
+    }
+    assert!(rejected > 0);
+}
