@@ -320,8 +320,7 @@ fn table(out: &mut String, study: &Study, ranking: &Ranking) {
                     .map(&of)
                     .into_iter()
                     .chain([beyond(study, row), of("force_high_frequency"), of("chatter")])
-                    .map(|cell| format!("<td class=\"n\">{cell}</td>"))
-                    .collect::<String>(),
+                    .fold(String::new(), |row, cell| row + &format!("<td class=\"n\">{cell}</td>")),
                 ["newton_iterations", "cpu_time"].map(|m| format!("<td class=\"n\">{}</td>", of(m))).concat(),
             );
         }

@@ -140,7 +140,7 @@ impl Pilot {
             _ => 1.0,
         };
         let next = ((steps as f64 * (-away / power).exp()).round() as u64).max(first.div_ceil(LONGEST));
-        let middle = below.zip(above).map(|(a, b)| (a.0 + b.0) / 2);
+        let middle = below.zip(above).map(|(a, b)| u64::midpoint(a.0, b.0));
         [Some(next), middle].into_iter().flatten().find(|next| !tried(*next))
     }
 
