@@ -87,7 +87,7 @@ pub(crate) fn path(points: impl Iterator<Item = (f64, f64)>) -> String {
         keep.sort_unstable();
         keep.dedup();
         for (x, y) in keep.into_iter().filter_map(|i| column.get(i)) {
-            let _ = write!(out, "{}{x:.2} {y:.2}", if *pen_up { 'M' } else { 'L' });
+            let _ = write!(out, "{}{x:.1} {y:.1}", if *pen_up { 'M' } else { 'L' });
             *pen_up = false;
         }
         column.clear();
@@ -271,10 +271,10 @@ mod tests {
             _ => (i % 7) as f64,
         };
         let d = path((0..100_000).map(|i| (i as f64 * 1e-4, value(i))));
-        assert!(d.contains(" 99.00") && d.contains(" -55.00"));
+        assert!(d.contains(" 99.0") && d.contains(" -55.0"));
         assert_eq!(d.matches('M').count(), 2);
         assert!(d.len() < 2000, "{}", d.len());
         // Few points stay as they are.
-        assert_eq!(path([(0.0, 1.0), (1.0, 2.0), (2.0, 0.5)].into_iter()), "M0.00 1.00L1.00 2.00L2.00 0.50");
+        assert_eq!(path([(0.0, 1.0), (1.0, 2.0), (2.0, 0.5)].into_iter()), "M0.0 1.0L1.0 2.0L2.0 0.5");
     }
 }
