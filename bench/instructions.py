@@ -9,6 +9,7 @@ Valgrind runs AVX2 but no AVX-512, so that kernels are those of an ordinary mach
 
 import argparse
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -26,9 +27,9 @@ def binaries(crate):
 
 
 def benchmarks(binary):
-    """Names as divan's tree prints them, `name/argument` where there are arguments."""
-    listed = subprocess.run([binary, "--bench", "--list"], check=True, capture_output=True, text=True).stdout
-    return [line.removesuffix(": benchmark").partition("::")[2] for line in listed.splitlines() if line.endswith(": benchmark")]
+    """Paths of the benchmarks, as divan lists them to nextest."""
+    listed = subprocess.run([binary, "--list", "--format", "terse"], check=True, capture_output=True, text=True, env={**os.environ, "NEXTEST": "1"}).stdout
+    return [line.removesuffix(": benchmark") for line in listed.splitlines() if line.endswith(": benchmark")]
 
 
 def count(binary, name, calls):
@@ -50,7 +51,7 @@ def main():
             for name in benchmarks(binary):
                 if options.only in name:
                     each = (count(binary, name, 1 + MORE) - count(binary, name, 1)) / MORE
-                    print(f"{crate:16} {name:40} {each:14,.0f}", flush=True)
+                    print(f"{name:60} {each:14,.0f}", flush=True)
 
 
 main()
