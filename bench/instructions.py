@@ -18,8 +18,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 MORE = 10
 
 
-def binaries(crate):
-    build = ["cargo", "bench", "-q", "-p", crate, "--benches", "--no-run", "--message-format=json"]
+def binaries(crates):
+    build = ["cargo", "bench", "-q", *(word for crate in crates for word in ("-p", crate)), "--benches", "--no-run", "--message-format=json"]
     for line in subprocess.run(build, cwd=ROOT, check=True, capture_output=True, text=True).stdout.splitlines():
         message = json.loads(line)
         if message.get("executable") and "bench" in message["target"]["kind"]:
@@ -46,12 +46,11 @@ def main():
     parser.add_argument("--only", default="", help="benchmarks whose name contains this")
     parser.add_argument("crate", nargs="+")
     options = parser.parse_args()
-    for crate in options.crate:
-        for binary in binaries(crate):
-            for name in benchmarks(binary):
-                if options.only in name:
-                    each = (count(binary, name, 1 + MORE) - count(binary, name, 1)) / MORE
-                    print(f"{name:60} {each:14,.0f}", flush=True)
+    for binary in binaries(options.crate):
+        for name in benchmarks(binary):
+            if options.only in name:
+                each = (count(binary, name, 1 + MORE) - count(binary, name, 1)) / MORE
+                print(f"{name:60} {each:14,.0f}", flush=True)
 
 
 main()

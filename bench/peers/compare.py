@@ -17,7 +17,6 @@ import json
 import os
 import pathlib
 import platform
-import resource
 import statistics
 import subprocess
 import sys
@@ -39,31 +38,30 @@ def pinned(command):
     return ["taskset", "-c", "0", *map(str, command)]
 
 
-def children():
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
 def carom_run(binary, rings, steps, out):
+    """CPU seconds and memory in KiB of a run."""
     case = ROOT / "cases" / "perf" / f"{CASES[rings]}.toml"
-    before = children()
     command = [binary, "run", case, "--out", out, "--no-report", "--threads", 1, "--set", f"time.end={steps * job.DT}"]
-    subprocess.run(pinned(command), check=True, capture_output=True)
-    return children() - before
+    process = subprocess.Popen(pinned(command), stdout=subprocess.DEVNULL)
+    _, status, used = os.wait4(process.pid, 0)
+    if status:
+        sys.exit(f"carom run {case} ended with status {status}")
+    return used.ru_utime + used.ru_stime, used.ru_maxrss
 
 
 def carom(options, rings, steps):
     with tempfile.TemporaryDirectory() as place:
         place = pathlib.Path(place)
-        first = carom_run(options.carom, rings, 1, place / "first")
-        whole = carom_run(options.carom, rings, steps, place / "run")
+        first, _ = carom_run(options.carom, rings, 1, place / "first")
+        whole, memory = carom_run(options.carom, rings, steps, place / "run")
         manifest = json.loads((place / "run" / "manifest.json").read_text())
         with open(place / "run" / "history.csv", newline="") as file:
             rows = list(csv.DictReader(file))
     velocity = [float(row["disc.velocity_y"]) for row in rows]
     mass = 2 * float(rows[0]["kinetic"]) / velocity[0] ** 2
     return {
-        "code": "Carom", "set_up": first, "cpu_per_step": (whole - first) / (steps - 1), "newton": manifest["counters"]["newton"] / steps,
+        "code": "Carom", "set_up": first, "cpu_per_step": (whole - first) / (steps - 1), "memory_kib": memory,
+        "newton": manifest["counters"]["newton"] / steps,
         "peak_mean_force": job.peak_mean_force(mass, velocity), "rebound": velocity[-1],
     }
 
@@ -108,7 +106,7 @@ def main():
         sys.exit(f"{' and '.join(lacking)} not installed: run again with --install")
     load = os.getloadavg()[0]
     print(f"{datetime.date.today()}, {platform.machine()}, {os.cpu_count()} cores, load {load:.1f}; {options.steps} steps, {options.rounds} rounds")
-    print(f"{'dofs':>7} {'code':8} {'ms/step':>9} {'set-up s':>9} {'Newton':>7} {'peak force':>11} {'velocity':>9} {'ratio':>7}  of the rounds")
+    print(f"{'dofs':>7} {'code':8} {'ms/step':>9} {'set-up s':>9} {'MiB':>5} {'Newton':>7} {'peak force':>11} {'velocity':>9} {'ratio':>7}  of the rounds")
     for rings in options.rings:
         rows = {code: [] for code in RUNS}
         for _ in range(options.rounds):
@@ -121,7 +119,7 @@ def main():
             first = found[0]
             force = f"{first['peak_mean_force']:.2f}" if first["peak_mean_force"] is not None else "-"
             print(
-                f"{dofs:7} {code:8} {1e3 * cpu:9.2f} {set_up:9.2f} {first['newton']:7.1f} {force:>11} {first['rebound']:9.3f} "
+                f"{dofs:7} {code:8} {1e3 * cpu:9.2f} {set_up:9.2f} {first['memory_kib'] / 1024:5.0f} {first['newton']:7.1f} {force:>11} {first['rebound']:9.3f} "
                 f"{statistics.median(ratios):7.1f}  {' '.join(f'{r:.1f}' for r in ratios)}",
                 flush=True,
             )

@@ -7,13 +7,19 @@ use carom_record::Manifest;
 use crate::labels::number;
 use crate::text::escape;
 
+/// Three digits, or all of a larger number.
+fn three(x: f64) -> String {
+    let unit = if x == 0.0 { 1.0 } else { 10.0_f64.powi(x.abs().log10().floor().min(2.0) as i32 - 2) };
+    number((x / unit).round() * unit)
+}
+
 /// Width of the bar of a phase that took all the time.
 const WIDTH: f64 = 8.0;
 
 /// The section of the page.
 pub(crate) fn work(out: &mut String, m: &Manifest) {
     let steps = m.counters.get("steps").copied().unwrap_or(0);
-    let each = |whole: f64| if steps > 0 { number(whole / steps as f64) } else { "–".into() };
+    let each = |whole: f64| if steps > 0 { three(whole / steps as f64) } else { "–".into() };
     out.push_str("<h2>Where the time went</h2>\n");
     if let Some(&total) = m.timings.get("total") {
         out.push_str(
@@ -29,8 +35,8 @@ pub(crate) fn work(out: &mut String, m: &Manifest) {
     if let Some(&cpu) = m.timings.get("cpu") {
         let _ = writeln!(
             out,
-            "<p>The first thread computed for {} s, {} ms a step; wall seconds beyond that were waited for: other work on the machine, other threads, the disk.</p>",
-            number(cpu),
+            "<p>Processor time of the first thread in steps, output left out: {} s, {} ms a step. What the phases took beyond it was waited for.</p>",
+            three(cpu),
             each(1e3 * cpu)
         );
     }
@@ -51,7 +57,7 @@ fn row(out: &mut String, name: &str, seconds: f64, each: &str, share: f64, what:
         out,
         "<tr><td>{name}</td><td class=\"n\">{}</td><td class=\"n\">{each}</td><td class=\"n\">{:.0} %</td>\
          <td class=\"share\"><span style=\"width:{:.2}rem\"></span></td><td>{what}</td></tr>",
-        number(seconds),
+        three(seconds),
         100.0 * share,
         WIDTH * share
     );
