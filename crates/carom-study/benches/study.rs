@@ -27,7 +27,15 @@ fn main() {
 fn write(folder: &Path) -> Plan {
     let case = include_str!("../../../cases/perf/bar.toml");
     let (case, _) = case.split_once("[[expect]]").expect("the case expects something");
-    let case = case.replace("end = 2.0 ", "end = 0.2 ").replace("min = 5.0, max = 15.0", "min = 1.0, max = 11.0");
+    let changes = [
+        ("end = 2.0", "end = 0.2"),
+        ("min = 5.0, max = 15.0", "min = 1.0, max = 11.0"),
+        ("element = \"L2\"", "element = \"L2\"\nmass = \"lumped\""),
+    ];
+    let case = changes.iter().fold(case.to_owned(), |case, (old, new)| {
+        assert!(case.contains(old), "{old}");
+        case.replace(old, new)
+    });
     std::fs::write(folder.join("bar.toml"), case).expect("a place to write");
     std::fs::write(folder.join("study.toml"), STUDY).expect("a place to write");
     Plan::read(&folder.join("study.toml")).expect("valid")
