@@ -1,55 +1,95 @@
 #!/usr/bin/env python3
 """The performance job with Carom and its peers, in turn on one core: ratios in one run, physics side by side.
 
-    bench/peers/compare.py [--rounds N] [--steps N] [--rings 4 12] [--install]
+    bench/peers/compare.py [--rounds N] [--steps N] [--rings 4 12] [--carom PATH] [--install]
 
-GetFEM comes from Debian (python3-getfem; --install asks apt for it). Carom is target/release/carom. CPU seconds of the process per step; with few steps
-the set-up of Carom is in its figure, that of GetFEM is not.
+GetFEM comes from Debian (python3-getfem), Kratos from PyPI, into a virtual environment below target/; --install gets both. Carom is target/release/carom.
+
+Processor seconds of the process per step. What comes before the first step (reading, meshing, analysis, imports) is left out for all: the peers read their
+clock there, and a run of Carom of one step is taken off a run of all. The ratio is Carom's to the peer's in the same round, the median over the rounds.
+Forces and velocities are computed by one formula, from the disc's velocity after every step. With fewer than 400 steps the last velocity is no rebound.
 """
 
 import argparse
+import csv
+import datetime
 import json
 import os
 import pathlib
-import resource
+import platform
 import statistics
 import subprocess
 import sys
 import tempfile
 
+import job
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+VENV = ROOT / "target" / "peers-venv"
 CASES = {4: "disc-2k", 12: "disc-19k"}
 ONE = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-PYTHON = "/usr/bin/python3"
+DEBIAN = "/usr/bin/python3"
+APPLICATIONS = ["", "LinearSolversApplication", "StructuralMechanicsApplication", "ConstitutiveLawsApplication", "ContactStructuralMechanicsApplication"]
+KRATOS = ["KratosMultiphysics==10.4.4", *(f"Kratos{name}==10.4.4" for name in APPLICATIONS[1:])]
 
 
 def pinned(command):
-    return ["taskset", "-c", "0", *command]
+    return ["taskset", "-c", "0", *map(str, command)]
 
 
-def carom(rings, steps):
+def carom_run(binary, rings, steps, out):
+    """CPU seconds and memory in KiB of a run."""
     case = ROOT / "cases" / "perf" / f"{CASES[rings]}.toml"
+    command = [binary, "run", case, "--out", out, "--no-report", "--threads", 1, "--set", f"time.end={steps * job.DT}"]
+    process = subprocess.Popen(pinned(command), stdout=subprocess.DEVNULL)
+    _, status, used = os.wait4(process.pid, 0)
+    if status:
+        sys.exit(f"carom run {case} ended with status {status}")
+    return used.ru_utime + used.ru_stime, used.ru_maxrss
+
+
+def carom(options, rings, steps):
     with tempfile.TemporaryDirectory() as place:
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        out = pathlib.Path(place) / "run"
-        command = [ROOT / "target/release/carom", "run", case, "--out", out, "--no-report"]
-        subprocess.run(pinned([*map(str, command), "--set", f"time.end={steps * 1.875e-3}"]), check=True, capture_output=True)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        manifest = json.loads((out / "manifest.json").read_text())
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    got = {e["what"]: e["got"] for e in manifest["expectations"]}
+        place = pathlib.Path(place)
+        first, _ = carom_run(options.carom, rings, 1, place / "first")
+        whole, memory = carom_run(options.carom, rings, steps, place / "run")
+        manifest = json.loads((place / "run" / "manifest.json").read_text())
+        with open(place / "run" / "history.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+    velocity = [float(row["disc.velocity_y"]) for row in rows]
+    mass = 2 * float(rows[0]["kinetic"]) / velocity[0] ** 2
     return {
-        "code": "Carom", "cpu_per_step": cpu / steps, "newton": manifest["counters"]["newton"] / steps,
-        "peak_mean_force": got.get("peak_mean_force"), "rebound": got.get("last disc.velocity_y"),
+        "code": "Carom", "set_up": first, "cpu_per_step": (whole - first) / (steps - 1), "memory_kib": memory,
+        "newton": manifest["counters"]["newton"] / steps,
+        "peak_mean_force": job.peak_mean_force(mass, velocity), "rebound": velocity[-1],
     }
 
 
-def getfem(rings, steps):
-    # Quadratic triangles: half again as many rings have the same nodes as cubic ones.
-    command = [PYTHON, str(HERE / "getfem_job.py"), str(rings * 3 // 2), str(steps)]
-    done = subprocess.run(pinned(command), check=True, capture_output=True, env=ONE, text=True)
+def peer(python, script, rings, steps):
+    done = subprocess.run(pinned([python, HERE / script, rings, steps]), check=True, capture_output=True, env=ONE, text=True)
     return json.loads(done.stdout.strip().splitlines()[-1])
+
+
+# Quadratic triangles have the nodes of cubic ones with half again as many rings, linear ones with three times as many.
+RUNS = {
+    "Carom": carom,
+    "GetFEM": lambda _, rings, steps: peer(DEBIAN, "getfem_job.py", rings * 3 // 2, steps),
+    "Kratos": lambda _, rings, steps: peer(VENV / "bin" / "python", "kratos_job.py", rings * 3, steps),
+}
+
+
+def install():
+    subprocess.run(["apt-get", "install", "-yq", "--no-install-recommends", "python3-getfem"], check=True)
+    subprocess.run([sys.executable, "-m", "venv", VENV], check=True)
+    subprocess.run([VENV / "bin" / "pip", "install", "-q", "--disable-pip-version-check", *KRATOS], check=True)
+
+
+def missing():
+    imports = "; ".join("import " + ".".join(filter(None, ["KratosMultiphysics", name])) for name in APPLICATIONS)
+    for what, python, code in (("GetFEM", DEBIAN, "import getfem"), ("Kratos", VENV / "bin" / "python", imports)):
+        if not pathlib.Path(python).exists() or subprocess.run([python, "-c", code], capture_output=True).returncode:
+            yield what
 
 
 def main():
@@ -57,26 +97,32 @@ def main():
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--steps", type=int, default=400)
     parser.add_argument("--rings", type=int, nargs="+", default=[4, 12], choices=sorted(CASES))
+    parser.add_argument("--carom", type=pathlib.Path, default=ROOT / "target" / "release" / "carom")
     parser.add_argument("--install", action="store_true")
     options = parser.parse_args()
     if options.install:
-        subprocess.run(["apt-get", "install", "-yq", "--no-install-recommends", "python3-getfem"], check=True)
-    if subprocess.run([PYTHON, "-c", "import getfem"], capture_output=True).returncode:
-        sys.exit("python3-getfem is not installed: run again with --install, or apt-get install python3-getfem")
-    print(f"{'dofs':>7} {'code':8} {'ms/step':>9} {'Newton':>7} {'peak force':>11} {'rebound':>8}   ratio")
+        install()
+    if lacking := list(missing()):
+        sys.exit(f"{' and '.join(lacking)} not installed: run again with --install")
+    load = os.getloadavg()[0]
+    print(f"{datetime.date.today()}, {platform.machine()}, {os.cpu_count()} cores, load {load:.1f}; {options.steps} steps, {options.rounds} rounds")
+    print(f"{'dofs':>7} {'code':8} {'ms/step':>9} {'set-up s':>9} {'MiB':>5} {'Newton':>7} {'peak force':>11} {'velocity':>9} {'ratio':>7}  of the rounds")
     for rings in options.rings:
-        rows = {"Carom": [], "GetFEM": []}
+        rows = {code: [] for code in RUNS}
         for _ in range(options.rounds):
-            for run in (carom, getfem):
-                row = run(rings, options.steps)
-                rows[row["code"]].append(row)
+            for code, run in RUNS.items():
+                rows[code].append(run(options, rings, options.steps))
         dofs = rows["GetFEM"][0]["dofs"]
-        median = {code: statistics.median(r["cpu_per_step"] for r in found) for code, found in rows.items()}
-        ratios = [b["cpu_per_step"] / a["cpu_per_step"] for a, b in zip(rows["Carom"], rows["GetFEM"])]
         for code, found in rows.items():
-            force, rebound = (f"{found[0][k]:.2f}" if found[0][k] is not None else "-" for k in ("peak_mean_force", "rebound"))
-            ratio = f"{statistics.median(ratios):.1f}" if code == "GetFEM" else "1"
-            print(f"{dofs:7} {code:8} {1e3 * median[code]:9.2f} {found[0]['newton']:7.1f} {force:>11} {rebound:>8}   {ratio}")
+            ratios = [b["cpu_per_step"] / a["cpu_per_step"] for a, b in zip(rows["Carom"], found)]
+            cpu, set_up = (statistics.median(r[k] for r in found) for k in ("cpu_per_step", "set_up"))
+            first = found[0]
+            force = f"{first['peak_mean_force']:.2f}" if first["peak_mean_force"] is not None else "-"
+            print(
+                f"{dofs:7} {code:8} {1e3 * cpu:9.2f} {set_up:9.2f} {first['memory_kib'] / 1024:5.0f} {first['newton']:7.1f} {force:>11} {first['rebound']:9.3f} "
+                f"{statistics.median(ratios):7.1f}  {' '.join(f'{r:.1f}' for r in ratios)}",
+                flush=True,
+            )
 
 
 main()

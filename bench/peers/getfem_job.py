@@ -3,60 +3,39 @@
 
     getfem_job.py RINGS STEPS      e.g. 6 for the nodes of cases/perf/disc-2k.toml, 18 for those of disc-19k.toml
 
-Prints one JSON object: seconds of CPU per step (set-up left out), memory, dofs, peak mean force over 15 ms, velocity of the disc at the end.
+Prints one JSON object, see job.py.
 """
 
-import json
-import math
-import resource
 import sys
 
 import getfem as gf
 import numpy as np
 
+import job
+
 RINGS, STEPS = int(sys.argv[1]), int(sys.argv[2])
-DT, RHO, LAMBDA, MU = 1.875e-3, 0.25, 200.0, 15.0
 BETA, GAMMA = 0.422, 0.799
 gf.util_trace_level(0)
 
 
 def disc(rings):
-    """Triangles of concentric rings, as Carom's: corners and midside nodes, those of the arc on the circle."""
-
-    def point(k, s):
-        # Ring k, s in units of its 6k edges; a ring is a circle.
-        angle = 2 * math.pi * s / (6 * k) if k else 0.0
-        return (k / rings * math.sin(angle), 1.05 - k / rings * math.cos(angle))
-
-    cells = []
-    for k in range(1, rings + 1):
-        for sixth in range(6):
-            for j in range(k):
-                outer = [(k, sixth * k + j), (k, sixth * k + j + 1)]
-                cells.append((outer[0], outer[1], (k - 1, sixth * (k - 1) + j)))
-                if j < k - 1:
-                    inner = [(k - 1, sixth * (k - 1) + j), (k - 1, sixth * (k - 1) + j + 1)]
-                    cells.append((outer[1], inner[1], inner[0]))
-    for cell in cells:
-        corners = [point(*c) for c in cell]
+    """Quadratic triangles of the disc: corners and midside nodes, those of the arc on the circle."""
+    for cell in job.disc(rings):
+        corners = [np.array(job.point(rings, *c)) for c in cell]
 
         def middle(a, b):
             if cell[a][0] == cell[b][0] == rings:
-                return point(rings, (cell[a][1] + cell[b][1]) / 2)
-            return tuple((np.array(corners[a]) + np.array(corners[b])) / 2)
+                return job.point(rings, rings, (cell[a][1] + cell[b][1]) / 2)
+            return (corners[a] + corners[b]) / 2
 
         a, b, c = corners
         yield np.array([a, middle(0, 1), b, middle(0, 2), middle(1, 2), c]).T
 
 
 def block(across, down):
-    w, h = 4.0 / across, 1.0 / down
-    for i in range(across):
-        for j in range(down):
-            x, y = -2 + i * w, -1 + j * h
-            for corners in [((x, y), (x + w, y), (x + w, y + h)), ((x, y), (x + w, y + h), (x, y + h))]:
-                a, b, c = (np.array(p) for p in corners)
-                yield np.array([a, (a + b) / 2, b, (a + c) / 2, (b + c) / 2, c]).T
+    for cell in job.block(across, down):
+        a, b, c = (np.array(job.place(across, down, *corner)) for corner in cell)
+        yield np.array([a, (a + b) / 2, b, (a + c) / 2, (b + c) / 2, c]).T
 
 
 def mesh(cells, side):
@@ -82,7 +61,7 @@ base = [(c, f) for c, f in lower.outer_faces().T if lower.normal_of_face(int(c),
 lower.set_region(2, np.array(base).T)
 
 md = gf.Model("real")
-md.add_initialized_data("rho", RHO)
+md.add_initialized_data("rho", job.RHO)
 spaces, integrals = {}, {}
 for name, m in (("u1", upper), ("u2", lower)):
     space = gf.MeshFem(m, 2)
@@ -91,7 +70,7 @@ for name, m in (("u1", upper), ("u2", lower)):
     spaces[name], integrals[name] = space, integral
     md.add_fem_variable(name, space)
     j = f"Det(Id(2)+Grad_{name})"
-    energy = f"{MU}*((Norm_sqr(Id(2)+Grad_{name})-2)*0.5-log({j}))+{LAMBDA}*0.5*sqr(log({j}))"
+    energy = f"{job.MU}*((Norm_sqr(Id(2)+Grad_{name})-2)*0.5-log({j}))+{job.LAMBDA}*0.5*sqr(log({j}))"
     md.add_nonlinear_term(integral, energy)
 md.add_Dirichlet_condition_with_multipliers(integrals["u2"], "u2", 1, 2)
 
@@ -110,10 +89,10 @@ md.add_master_contact_boundary_to_large_sliding_contact_brick(contact, integrals
 for name in spaces:
     md.add_Newmark_scheme(name, BETA, GAMMA)
     md.add_mass_brick(integrals[name], f"Dot2_{name}", "rho")
-md.set_time_step(DT)
-falling = np.tile([0.0, -3.0], spaces["u1"].nbdof() // 2)
+md.set_time_step(job.DT)
+falling = np.tile([0.0, -job.SPEED], spaces["u1"].nbdof() // 2)
 md.set_variable("Previous_Dot_u1", falling)
-md.perform_init_time_derivative(DT / 20.0)
+md.perform_init_time_derivative(job.DT / 20.0)
 md.solve("max_res", 1e-9, "max_iter", 30)
 
 scalar = gf.MeshFem(upper, 1)
@@ -122,22 +101,10 @@ up = np.array([np.zeros(scalar.nbdof()), np.ones(scalar.nbdof())])
 load = gf.asm_volumic_source(integrals["u1"], spaces["u1"], scalar, up)
 
 
-def usage():
-    used = resource.getrusage(resource.RUSAGE_SELF)
-    return used.ru_utime + used.ru_stime, used.ru_maxrss
-
-
-begin, _ = usage()
-momentum, iterations = [-3.0 * RHO * load.sum()], 0
+begin = job.usage()
+velocity, iterations = [-job.SPEED], 0
 for step in range(STEPS):
     iterations += md.solve("max_res", 1e-8, "max_iter", 40, "lsearch", "simplest", "alpha min", 0.2)[0]
     md.shift_variables_for_time_integration()
-    momentum.append(RHO * float(load @ md.variable("Previous_Dot_u1")))
-end, memory = usage()
-window = round(15e-3 / DT)
-force = max((momentum[k + window] - momentum[k]) / (window * DT) for k in range(len(momentum) - window)) if STEPS > window else None
-print(json.dumps({
-    "code": "GetFEM", "dofs": int(spaces["u1"].nbdof() + spaces["u2"].nbdof()), "cpu_per_step": (end - begin) / STEPS,
-    "memory_kib": memory, "newton": iterations / STEPS, "peak_mean_force": force,
-    "rebound": momentum[-1] / (RHO * load.sum()),
-}))
+    velocity.append(float(load @ md.variable("Previous_Dot_u1")) / load.sum())
+job.tell("GetFEM", int(spaces["u1"].nbdof() + spaces["u2"].nbdof()), begin, iterations, job.RHO * load.sum(), velocity)

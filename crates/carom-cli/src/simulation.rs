@@ -199,14 +199,17 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
         expectations: expectations
             .map(|e| Expectation { what: e.what.clone(), wanted: e.expected.clone(), got: e.got, met: e.pass })
             .collect(),
-        profile: if options.profile {
-            run.manifest.timings.iter().map(|(k, v)| (k.clone(), *v)).collect()
-        } else {
-            Vec::new()
-        },
+        profile: if options.profile { profile(&run.manifest) } else { Vec::new() },
         report: page,
         remarks: done.remarks,
     })
+}
+
+/// Wall seconds by phase in the order of a step, then all of them, and processor time.
+fn profile(manifest: &carom_record::Manifest) -> Vec<(String, f64)> {
+    let phases = manifest.phases().into_iter().map(|(name, _, seconds)| (name.to_owned(), seconds));
+    let sums = ["total", "cpu"].into_iter().filter_map(|name| Some((name.to_owned(), *manifest.timings.get(name)?)));
+    phases.chain(sums).collect()
 }
 
 /// The page of a run: made, unless nobody wants it or nothing was computed since it was made.

@@ -51,7 +51,8 @@ fn text(outcome: &Outcome) -> String {
         lines.push(format!("  {}: {got}, {verdict} ({})", e.what, e.wanted));
     }
     for (phase, seconds) in &outcome.profile {
-        lines.push(format!("  {phase:24} {}", duration(*seconds)));
+        let each = 1e3 * seconds / outcome.steps.max(1) as f64;
+        lines.push(format!("  {phase:10} {:>10}  {:>9} ms a step", duration(*seconds), short(each)));
     }
     lines.extend(outcome.remarks.iter().map(|remark| format!("  {remark}")));
     if outcome.interrupted {
@@ -113,6 +114,8 @@ mod tests {
                 "runs/impact-2/report.html",
             ]
         );
+        let profiled = text(&Outcome { profile: vec![("assembly".into(), 1.25)], ..outcome.clone() });
+        assert!(profiled.contains("\n  assembly        1.2 s      3.125 ms a step\n"), "{profiled}");
         let stopped = text(&Outcome { interrupted: true, report: None, ..outcome });
         assert!(stopped.ends_with("carom resume runs/impact-2\nruns/impact-2"), "{stopped}");
     }

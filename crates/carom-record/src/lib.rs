@@ -33,7 +33,7 @@ mod writer;
 pub use error::RecordError;
 pub use expectation::{Bound, Deviation, Expect, Norm, OrderOf, judge};
 pub use expression::{Expression, Sign};
-pub use manifest::{Column, Expectation, Machine, Manifest, Source, Status, now};
+pub use manifest::{Column, Expectation, Machine, Manifest, PHASES, Source, Status, now};
 pub use pvd::{FieldEntry, FieldFormat};
 pub use rows::{ContactRow, Event};
 pub use run::{History, Run};

@@ -145,6 +145,15 @@ pub struct Manifest {
     pub source: Source,
 }
 
+/// Phases of a run whose wall seconds `timings` holds, in the order of a step, with what they are.
+pub const PHASES: [(&str, &str); 5] = [
+    ("assembly", "forces and tangents of cells"),
+    ("contact", "detection, gaps and their derivatives"),
+    ("factor", "filling, ordering and factoring the linear system"),
+    ("solve", "solving with the factors"),
+    ("output", "writing the record"),
+];
+
 impl Manifest {
     /// A manifest of a run that starts now on this machine.
     pub fn new(version: &str, case: serde_json::Value, source: Source, columns: Vec<Column>, threads: usize) -> Self {
@@ -167,6 +176,16 @@ impl Manifest {
             case,
             source,
         }
+    }
+
+    /// Wall seconds of each phase that was measured and what it is; the last is the rest of the total. Empty before a run has ended.
+    pub fn phases(&self) -> Vec<(&'static str, &'static str, f64)> {
+        let Some(total) = self.timings.get("total") else { return Vec::new() };
+        let known = PHASES.iter().filter_map(|&(name, what)| Some((name, what, *self.timings.get(name)?)));
+        let mut phases: Vec<_> = known.collect();
+        let rest = total - phases.iter().map(|(.., seconds)| seconds).sum::<f64>();
+        phases.push(("rest", "sums, energies, projections, decisions", rest.max(0.0)));
+        phases
     }
 
     /// Reads `manifest.json` of a run directory.

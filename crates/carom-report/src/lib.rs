@@ -24,6 +24,7 @@ mod symbols;
 mod text;
 mod verdict;
 mod verify_page;
+mod work;
 
 use std::fs;
 use std::path::{Path, PathBuf};

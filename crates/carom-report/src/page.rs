@@ -8,6 +8,7 @@ use carom_record::{FieldFormat, Run, Status, metrics};
 use crate::figures::Figure;
 use crate::labels::number;
 use crate::text::{escape, html};
+use crate::work::work;
 
 /// Log events shown; all are counted.
 const EVENTS: usize = 50;
@@ -36,7 +37,7 @@ pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&str>, notes
     out.push_str("<h2>Figures</h2>\n");
     show(&mut out, &figures[case..], case + 1);
     events(&mut out, run);
-    work(&mut out, run);
+    work(&mut out, &run.manifest);
     reproduce(&mut out, run);
     out.push_str("</body>\n</html>\n");
     out
@@ -177,26 +178,6 @@ fn events(out: &mut String, run: &Run) {
         );
     }
     out.push_str("</table></details>\n");
-}
-
-fn work(out: &mut String, run: &Run) {
-    let m = &run.manifest;
-    out.push_str(
-        "<h2>Work</h2>\n<p class=\"small\">manifest.json: counters and timings (wall seconds).</p>\n<table>\n",
-    );
-    for (name, count) in &m.counters {
-        let _ =
-            writeln!(out, "<tr><td>{}</td><td class=\"n\">{count}</td><td></td></tr>", escape(&name.replace('_', " ")));
-    }
-    for (phase, seconds) in &m.timings {
-        let each = match m.counters.get("steps") {
-            Some(&steps) if steps > 0 => format!("s, {} ms a step", number(1e3 * seconds / steps as f64)),
-            _ => "s".into(),
-        };
-        let (phase, seconds) = (escape(&phase.replace('_', " ")), number(*seconds));
-        let _ = writeln!(out, "<tr><td>{phase}</td><td class=\"n\">{seconds}</td><td>{each}</td></tr>");
-    }
-    out.push_str("</table>\n");
 }
 
 fn reproduce(out: &mut String, run: &Run) {

@@ -1,43 +1,76 @@
-//! What a step is made of, on the job of `cases/perf/disc-2k.toml` in mid-contact: cells, detection, gaps, assembly and factor, solve, whole steps.
+//! What a step is made of, on the jobs of `cases/perf/` in mid-contact: cells, detection, gaps, assembly and factor, solve, whole steps.
 //!
-//!     cargo bench -p carom            times; instruction counts with valgrind --tool=callgrind on the same binary
+//!     cargo bench -p carom                    times
+//!     bench/instructions.py carom             instructions
 
+use std::collections::BTreeSet;
 use std::hint::black_box;
 
-use carom::case::{Document, read};
+use carom::case::{Case, Document, read};
 use carom::{GridReport, Simulation};
 use carom_algebra::{Condensed, Pattern};
-use carom_contact::Linearised;
+use carom_contact::{Linearised, Pair};
 use divan::{Bencher, counter::ItemsCount};
 
 fn main() {
     divan::main();
 }
 
-/// The job at a time with about a dozen nodes in contact.
-fn in_contact() -> Simulation<2> {
-    let text = include_str!("../../../cases/perf/disc-2k.toml");
-    let case =
-        read(&Document::parse("disc-2k.toml", text, &[]).expect("the case is in the repository")).expect("valid");
-    let mut sim = Simulation::<2>::new(&case, 1).expect("valid");
+const SMALL: &str = include_str!("../../../cases/perf/disc-2k.toml");
+const LARGE: &str = include_str!("../../../cases/perf/disc-19k.toml");
+const BAR: &str = include_str!("../../../cases/perf/bar.toml");
+
+/// A job of the discs and its dofs.
+#[derive(Clone, Copy)]
+enum Job {
+    Small,
+    Large,
+}
+
+impl std::fmt::Display for Job {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Small => "2k",
+            Self::Large => "19k",
+        })
+    }
+}
+
+const JOBS: [Job; 2] = [Job::Small, Job::Large];
+
+fn case_of(text: &str) -> Case {
+    read(&Document::parse("case.toml", text, &[]).expect("the case is in the repository")).expect("valid")
+}
+
+fn at_start(job: Job) -> Simulation<2> {
+    let text = match job {
+        Job::Small => SMALL,
+        Job::Large => LARGE,
+    };
+    Simulation::new(&case_of(text), 1).expect("valid")
+}
+
+/// The job at a time with a dozen nodes (2k) in contact, or some forty (19k).
+fn in_contact(job: Job) -> Simulation<2> {
+    let mut sim = at_start(job);
     while sim.state.step < 60 {
         sim.advance(&mut GridReport::default()).expect("the job runs");
     }
     sim
 }
 
-#[divan::bench]
-fn forces_of_all_cells(bencher: Bencher) {
-    let sim = in_contact();
+#[divan::bench(args = JOBS)]
+fn forces_of_all_cells(bencher: Bencher, job: Job) {
+    let sim = in_contact(job);
     let mut force = vec![0.0; sim.model.dofs()];
     let cells: usize = sim.model.parts.iter().map(|p| p.body.mesh().cell_count()).sum();
     let bencher = bencher.counter(ItemsCount::new(cells));
     bencher.bench_local(|| sim.model.internal_force(black_box(&sim.state.y), &mut force).is_ok());
 }
 
-#[divan::bench]
-fn tangents_of_all_cells(bencher: Bencher) {
-    let sim = in_contact();
+#[divan::bench(args = JOBS)]
+fn tangents_of_all_cells(bencher: Bencher, job: Job) {
+    let sim = in_contact(job);
     let (mut force, mut tangent) = ([0.0; 20], [0.0; 400]);
     let cells: usize = sim.model.parts.iter().map(|p| p.body.mesh().cell_count()).sum();
     let bencher = bencher.counter(ItemsCount::new(cells));
@@ -51,16 +84,23 @@ fn tangents_of_all_cells(bencher: Bencher) {
     });
 }
 
-#[divan::bench]
-fn mass_times_vector(bencher: Bencher) {
-    let sim = in_contact();
+#[divan::bench(args = JOBS)]
+fn assembly(bencher: Bencher, job: Job) {
+    let mut sim = in_contact(job);
+    let mut force = vec![0.0; sim.model.dofs()];
+    bencher.bench_local(|| sim.assemble(black_box(&mut force)).is_ok());
+}
+
+#[divan::bench(args = JOBS)]
+fn mass_times_vector(bencher: Bencher, job: Job) {
+    let sim = in_contact(job);
     let mut out = vec![0.0; sim.model.dofs()];
     bencher.bench_local(|| sim.model.mass.multiply_into(black_box(&sim.state.v), &mut out));
 }
 
-#[divan::bench]
-fn detection(bencher: Bencher) {
-    let sim = in_contact();
+#[divan::bench(args = JOBS)]
+fn detection(bencher: Bencher, job: Job) {
+    let sim = in_contact(job);
     let y = sim.state.y.as_chunks::<2>().0;
     bencher.bench_local(|| {
         let mut pairs = sim.state.pairs[0].clone();
@@ -68,9 +108,9 @@ fn detection(bencher: Bencher) {
     });
 }
 
-#[divan::bench]
-fn gaps(bencher: Bencher) {
-    let sim = in_contact();
+#[divan::bench(args = JOBS)]
+fn gaps(bencher: Bencher, job: Job) {
+    let sim = in_contact(job);
     let y = sim.state.y.as_chunks::<2>().0;
     let mut gap = Linearised::default();
     bencher.counter(ItemsCount::new(sim.state.pairs[0].len())).bench_local(|| {
@@ -82,13 +122,15 @@ fn gaps(bencher: Bencher) {
     });
 }
 
-/// The consistent mass over all dofs: the pattern of the tangent, and positive definite.
+/// The consistent mass on the pattern of the tangent, positive definite; left for last are the nodes that the pairs act on.
 fn mass_matrix(sim: &Simulation<2>) -> (Pattern, Vec<f64>, Vec<usize>, Vec<usize>) {
     let mass = &sim.model.mass;
     let entries = (0..mass.nodes()).flat_map(|a| mass.row(a).map(move |(b, value)| (a, b, value)));
     let entries: Vec<_> = entries
-        .filter(|(a, b, _)| a >= b)
-        .flat_map(|(a, b, v)| (0..2).map(move |i| (2 * a + i, 2 * b + i, v)))
+        .flat_map(|(a, b, v)| {
+            [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| (2 * a + i, 2 * b + j, if i == j { v } else { 0.0 }))
+        })
+        .filter(|(i, j, _)| i >= j)
         .collect();
     let pattern = Pattern::from_entries(sim.model.dofs(), entries.iter().map(|&(i, j, _)| (i, j)));
     let mut values = vec![0.0; pattern.len()];
@@ -96,19 +138,22 @@ fn mass_matrix(sim: &Simulation<2>) -> (Pattern, Vec<f64>, Vec<usize>, Vec<usize
         values[pattern.slot(i, j).expect("just made")] += value;
     }
     let groups = (0..sim.model.dofs()).map(|dof| dof / 2).collect();
-    let last = sim.model.contacts[0].surface.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
+    let method = &sim.model.contacts[0].method;
+    let touched = |pair: &Pair| [&[method.secondary()[pair.node]], method.facet_nodes(pair.facet)].concat();
+    let touched: BTreeSet<usize> = sim.state.pairs[0].iter().flat_map(touched).collect();
+    let last = touched.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
     (pattern, values, groups, last)
 }
 
-#[divan::bench]
-fn ordering_and_analysis(bencher: Bencher) {
-    let (pattern, _, groups, last) = mass_matrix(&in_contact());
+#[divan::bench(args = JOBS)]
+fn ordering_and_analysis(bencher: Bencher, job: Job) {
+    let (pattern, _, groups, last) = mass_matrix(&in_contact(job));
     bencher.bench_local(|| Condensed::default().analyse(black_box(&pattern), &groups, &last).is_ok());
 }
 
-#[divan::bench]
-fn factor(bencher: Bencher) {
-    let (pattern, values, groups, last) = mass_matrix(&in_contact());
+#[divan::bench(args = JOBS)]
+fn factor(bencher: Bencher, job: Job) {
+    let (pattern, values, groups, last) = mass_matrix(&in_contact(job));
     let mut condensed = Condensed::default();
     condensed.analyse(&pattern, &groups, &last).expect("memory");
     bencher.bench_local(|| {
@@ -117,9 +162,9 @@ fn factor(bencher: Bencher) {
     });
 }
 
-#[divan::bench]
-fn solve(bencher: Bencher) {
-    let (pattern, values, groups, last) = mass_matrix(&in_contact());
+#[divan::bench(args = JOBS)]
+fn solve(bencher: Bencher, job: Job) {
+    let (pattern, values, groups, last) = mass_matrix(&in_contact(job));
     let mut condensed = Condensed::default();
     condensed.analyse(&pattern, &groups, &last).expect("memory");
     condensed.fill(|k| values[k]);
@@ -131,10 +176,21 @@ fn solve(bencher: Bencher) {
     });
 }
 
-#[divan::bench(sample_count = 10, sample_size = 1)]
-fn ten_steps(bencher: Bencher) {
-    bencher.with_inputs(in_contact).bench_local_values(|mut sim| {
+#[divan::bench(args = JOBS, sample_count = 5, sample_size = 1)]
+fn ten_steps(bencher: Bencher, job: Job) {
+    let state = in_contact(job).state;
+    bencher.with_inputs(|| at_start(job).resumed(state.clone())).bench_local_values(|mut sim| {
         for _ in 0..10 {
+            black_box(sim.advance(&mut GridReport::default()).is_ok());
+        }
+    });
+}
+
+#[divan::bench(sample_count = 10, sample_size = 1)]
+fn thousand_steps_of_a_bar(bencher: Bencher) {
+    let case = case_of(BAR);
+    bencher.with_inputs(|| Simulation::<1>::new(&case, 1).expect("valid")).bench_local_values(|mut sim| {
+        for _ in 0..1000 {
             black_box(sim.advance(&mut GridReport::default()).is_ok());
         }
     });

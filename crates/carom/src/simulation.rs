@@ -1,6 +1,7 @@
 //! The loop: steps on the grid of times n·Δt, bisected where one is rejected and brought back to the grid, watched by the energy guard.
 
 use carom_contact::PairEvent;
+use carom_solid::Inverted;
 
 use crate::case::{Case, Problem};
 use crate::initial::{Before, before};
@@ -194,6 +195,15 @@ impl<const D: usize> Simulation<D> {
     /// Factorisations of the linear system so far.
     pub fn factorisations(&self) -> u64 {
         self.work.system.factorisations
+    }
+
+    /// Internal forces over all dofs and their tangent, assembled where the simulation is, as every iteration with a full tangent does; the strain energy
+    /// is returned. For measurements.
+    ///
+    /// # Errors
+    /// The body's name and the cell that is inverted.
+    pub fn assemble(&mut self, force: &mut [f64]) -> Result<f64, (String, Inverted)> {
+        self.work.system.internal_tangent(&self.model, None, &self.state.y, force, None)
     }
 
     /// Advances to the next grid time.

@@ -208,7 +208,8 @@ pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
     manifest.status = if reason.is_some() { Status::Failed } else { Status::Finished };
     manifest.reason = reason.map(String::from);
     manifest.counters = [("steps".into(), 400), ("newton".into(), 1532)].into();
-    manifest.timings = [("assembly".into(), 1.234), ("factorisation".into(), 0.87), ("total".into(), 2.7)].into();
+    manifest.timings =
+        [("assembly".into(), 1.25), ("factor".into(), 0.75), ("cpu".into(), 2.25), ("total".into(), 2.5)].into();
     let expectation = |what: &str, got, pass| Expectation {
         what: what.into(),
         expected: "-0.7827 ± 0.004".into(),

@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+"""Instructions per call of the benchmarks of some crates, counted by valgrind's callgrind: the same on a loaded machine as on an idle one.
+
+    bench/instructions.py [--only NAME] CRATE…      e.g. carom-solid carom-contact carom-algebra carom
+
+Each benchmark runs twice under callgrind, with one call and with eleven; a tenth of the difference is what a call costs, set-up and harness left out.
+Valgrind runs AVX2 but no AVX-512, so that kernels are those of an ordinary machine. Needs valgrind (Debian: apt-get install valgrind).
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import re
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+MORE = 10
+
+
+def binaries(crates):
+    build = ["cargo", "bench", "-q", *(word for crate in crates for word in ("-p", crate)), "--benches", "--no-run", "--message-format=json"]
+    for line in subprocess.run(build, cwd=ROOT, check=True, capture_output=True, text=True).stdout.splitlines():
+        message = json.loads(line)
+        if message.get("executable") and "bench" in message["target"]["kind"]:
+            yield message["executable"]
+
+
+def benchmarks(binary):
+    """Paths of the benchmarks, as divan lists them to nextest."""
+    listed = subprocess.run([binary, "--list", "--format", "terse"], check=True, capture_output=True, text=True, env={**os.environ, "NEXTEST": "1"}).stdout
+    return [line.removesuffix(": benchmark") for line in listed.splitlines() if line.endswith(": benchmark")]
+
+
+def count(binary, name, calls):
+    command = [
+        "valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", binary, "--bench", "--exact", name,
+        "--sample-count", "1", "--sample-size", str(calls),
+    ]
+    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    return int(re.search(r"Collected : (\d+)", done.stderr)[1])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default="", help="benchmarks whose name contains this")
+    parser.add_argument("crate", nargs="+")
+    options = parser.parse_args()
+    for binary in binaries(options.crate):
+        for name in benchmarks(binary):
+            if options.only in name:
+                each = (count(binary, name, 1 + MORE) - count(binary, name, 1)) / MORE
+                print(f"{name:60} {each:14,.0f}", flush=True)
+
+
+main()

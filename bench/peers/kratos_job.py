@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""Disc on block with Kratos: linear triangles, mortar augmented Lagrangian contact, Bossak −0.3, Eigen's sparse LU.
+
+    kratos_job.py RINGS STEPS      e.g. 12 for the nodes of cases/perf/disc-2k.toml, 36 for those of disc-19k.toml
+
+Prints one JSON object, see job.py. Every solver option is Kratos' default or what its own tests of dynamic mortar contact use.
+"""
+
+import sys
+
+import KratosMultiphysics as Kratos
+import KratosMultiphysics.ConstitutiveLawsApplication
+import KratosMultiphysics.LinearSolversApplication
+import KratosMultiphysics.ContactStructuralMechanicsApplication
+from KratosMultiphysics.StructuralMechanicsApplication.structural_mechanics_analysis import StructuralMechanicsAnalysis
+
+import job
+
+RINGS, STEPS = int(sys.argv[1]), int(sys.argv[2])
+Kratos.Logger.GetDefaultOutput().SetSeverity(Kratos.Logger.Severity.WARNING)
+Kratos.ParallelUtilities.SetNumThreads(1)
+
+PARAMETERS = f"""{{
+    "problem_data": {{ "problem_name": "disc", "parallel_type": "OpenMP", "start_time": 0.0, "end_time": {(STEPS - 0.5) * job.DT}, "echo_level": 0 }},
+    "solver_settings": {{
+        "solver_type": "Dynamic", "time_integration_method": "implicit", "scheme_type": "bossak", "damp_factor_m": -0.3,
+        "model_part_name": "Structure", "domain_size": 2, "echo_level": 0, "analysis_type": "non_linear",
+        "model_import_settings": {{ "input_type": "use_input_model_part" }},
+        "time_stepping": {{ "time_step": {job.DT} }},
+        "contact_settings": {{ "mortar_type": "ALMContactFrictionless", "fancy_convergence_criterion": false }},
+        "clear_storage": true, "reform_dofs_at_each_step": true, "compute_reactions": false,
+        "convergence_criterion": "contact_residual_criterion",
+        "residual_relative_tolerance": 1e-4, "residual_absolute_tolerance": 1e-9, "max_iteration": 20,
+        "linear_solver_settings": {{ "solver_type": "LinearSolversApplication.sparse_lu" }}
+    }},
+    "processes": {{
+        "contact_process_list": [{{
+            "python_module": "alm_contact_process", "kratos_module": "KratosMultiphysics.ContactStructuralMechanicsApplication",
+            "process_name": "ALMContactProcess",
+            "Parameters": {{
+                "model_part_name": "Structure", "contact_model_part": {{ "0": ["Touching"] }}, "assume_master_slave": {{ "0": ["Arc"] }},
+                "contact_type": "Frictionless"
+            }}
+        }}]
+    }}
+}}"""
+
+
+def build(part):
+    """Nodes, elements and the lines that may touch; returns the nodes of the disc with their share of its area."""
+    material = part.CreateNewProperties(1)
+    lam, mu = job.LAMBDA, job.MU
+    material[Kratos.YOUNG_MODULUS] = mu * (3 * lam + 2 * mu) / (lam + mu)
+    material[Kratos.POISSON_RATIO] = lam / (2 * (lam + mu))
+    material[Kratos.DENSITY] = job.RHO
+    material[Kratos.THICKNESS] = 1.0
+    material[Kratos.CONSTITUTIVE_LAW] = Kratos.KratosGlobals.GetConstitutiveLaw("HyperElasticPlaneStrain2DLaw").Clone()
+    nodes, share = {}, {}
+
+    def node(key, at):
+        if key not in nodes:
+            nodes[key] = part.CreateNewNode(len(nodes) + 1, *at, 0.0)
+        return nodes[key]
+
+    def triangle(corners):
+        element = part.CreateNewElement("TotalLagrangianElement2D3N", part.NumberOfElements() + 1, [n.Id for n in corners], material)
+        return element.GetGeometry().Area()
+
+    across, down = 4 * RINGS, RINGS
+    for cell in job.disc(RINGS):
+        keys = [("disc", k, s % (6 * k) if k else 0) for k, s in cell]
+        corners = [node(key, job.point(RINGS, *key[1:])) for key in keys]
+        area = triangle(corners)
+        for n in corners:
+            share[n] = share.get(n, 0.0) + area / 3
+    for cell in job.block(across, down):
+        triangle([node(("block", *c), job.place(across, down, *c)) for c in cell])
+    arc = [nodes["disc", RINGS, s] for s in range(6 * RINGS)]
+    top = [nodes["block", i, down] for i in range(across, -1, -1)]
+    for name, line, closed in (("Arc", arc, True), ("Top", top, False)):
+        lines = [(a.Id, b.Id) for a, b in zip(line, line[1:] + line[:1] if closed else line[1:])]
+        first = part.NumberOfConditions() + 1
+        for number, ends in enumerate(lines, first):
+            part.CreateNewCondition("LineCondition2D2N", number, list(ends), material)
+        sides = part.CreateSubModelPart(name)
+        sides.AddNodes([n.Id for n in line])
+        sides.AddConditions(list(range(first, first + len(lines))))
+    touching = part.CreateSubModelPart("Touching")
+    touching.AddNodes([n.Id for n in arc + top])
+    touching.AddConditions(list(range(1, part.NumberOfConditions() + 1)))
+    for i in range(across + 1):
+        for variable in (Kratos.DISPLACEMENT_X, Kratos.DISPLACEMENT_Y):
+            nodes["block", i, 0].Fix(variable)
+    for n in share:
+        for ago in (0, 1):
+            n.SetSolutionStepValue(Kratos.VELOCITY_Y, ago, -job.SPEED)
+    return share
+
+
+analysis = StructuralMechanicsAnalysis(Kratos.Model(), Kratos.Parameters(PARAMETERS))
+part = analysis.model["Structure"]
+share = build(part)
+analysis.Initialize()
+area = sum(share.values())
+
+
+def falling():
+    return sum(s * n.GetSolutionStepValue(Kratos.VELOCITY_Y) for n, s in share.items()) / area
+
+
+begin = job.usage()
+velocity, iterations = [falling()], 0
+while analysis.KeepAdvancingSolutionLoop():
+    analysis.time = analysis._AdvanceTime()
+    analysis.InitializeSolutionStep()
+    if not analysis._GetSolver().SolveSolutionStep():
+        print(f"step {len(velocity)} did not converge", file=sys.stderr)
+    iterations += part.ProcessInfo[Kratos.NL_ITERATION_NUMBER]
+    analysis.FinalizeSolutionStep()
+    velocity.append(falling())
+job.tell("Kratos", 2 * part.NumberOfNodes(), begin, iterations, job.RHO * area, velocity)

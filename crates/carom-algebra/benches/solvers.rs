@@ -1,0 +1,141 @@
+//! Factors and solves on a square grid of nodes with two unknowns each, tied to all nodes within two columns and rows (as dense as quadratic triangles): the
+//! kept factor with the nodes of one side left for last, the full one of the same matrix with constraints on that side, the small systems of contact.
+//!
+//!     cargo bench -p carom-algebra            times
+//!     bench/instructions.py carom-algebra     instructions
+
+use std::hint::black_box;
+
+use carom_algebra::{Condensed, FaerSolver, LinearSolver, Pattern, Saddle, complementarity};
+use divan::Bencher;
+
+/// Nodes along an edge: 2 178 and 18 818 unknowns.
+const EDGES: [usize; 2] = [33, 97];
+/// Nodes that touch, of small systems.
+const TOUCHING: [usize; 2] = [12, 48];
+
+fn main() {
+    divan::main();
+}
+
+/// A positive definite matrix with `rows` constraints on as many nodes of the first row.
+struct Grid {
+    pattern: Pattern,
+    values: Vec<f64>,
+    groups: Vec<usize>,
+    side: Vec<usize>,
+}
+
+fn grid(edge: usize, rows: usize) -> Grid {
+    let nodes = edge * edge;
+    let mut entries = Vec::new();
+    for a in 0..nodes {
+        for b in 0..=a {
+            if (a / edge).abs_diff(b / edge).max((a % edge).abs_diff(b % edge)) <= 2 {
+                let of_pair = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(p, q)| (2 * a + p, 2 * b + q));
+                let lower = of_pair.into_iter().filter(|(i, j)| i >= j);
+                entries.extend(lower.map(|(i, j)| (i, j, if i == j { 40.0 } else { -0.7 })));
+            }
+        }
+    }
+    for row in 0..rows {
+        entries.extend([(2 * nodes + row, 2 * row, 0.1), (2 * nodes + row, 2 * row + 1, 1.0)]);
+    }
+    let pattern = Pattern::from_entries(2 * nodes + rows, entries.iter().map(|&(i, j, _)| (i, j)));
+    let mut values = vec![0.0; pattern.len()];
+    for (i, j, value) in entries {
+        values[pattern.slot(i, j).expect("made of these")] = value;
+    }
+    let groups = (0..2 * nodes).map(|dof| dof / 2).chain(0..rows).collect();
+    Grid { pattern, values, groups, side: (0..2 * edge).collect() }
+}
+
+#[divan::bench(args = EDGES)]
+fn kept_analysis(bencher: Bencher, edge: usize) {
+    let grid = grid(edge, 0);
+    bencher.bench_local(|| Condensed::default().analyse(black_box(&grid.pattern), &grid.groups, &grid.side).is_ok());
+}
+
+fn condensed(grid: &Grid) -> Condensed {
+    let mut condensed = Condensed::default();
+    condensed.analyse(&grid.pattern, &grid.groups, &grid.side).expect("memory");
+    condensed.fill(|k| grid.values[k]);
+    condensed.factor().expect("positive definite");
+    condensed
+}
+
+#[divan::bench(args = EDGES)]
+fn kept_factor(bencher: Bencher, edge: usize) {
+    let grid = grid(edge, 0);
+    let mut condensed = condensed(&grid);
+    bencher.bench_local(|| {
+        condensed.fill(|k| grid.values[k]);
+        condensed.factor().is_ok()
+    });
+}
+
+#[divan::bench(args = EDGES)]
+fn kept_solve(bencher: Bencher, edge: usize) {
+    let grid = grid(edge, 0);
+    let mut condensed = condensed(&grid);
+    let (right, mut x, mut out) = (vec![1.0; grid.pattern.size()], Vec::new(), vec![0.0; grid.pattern.size()]);
+    bencher.bench_local(|| {
+        condensed.eliminate_into(black_box(&right), &mut x);
+        condensed.substitute_into(&mut x, &mut out);
+    });
+}
+
+fn full(edge: usize) -> FaerSolver {
+    let grid = grid(edge, edge / 2);
+    let mut solver = FaerSolver::default();
+    solver.analyse(&grid.pattern, &grid.groups).expect("memory");
+    solver.values().copy_from_slice(&grid.values);
+    solver.factor().expect("regular");
+    solver
+}
+
+#[divan::bench(args = EDGES)]
+fn full_factor(bencher: Bencher, edge: usize) {
+    let mut solver = full(edge);
+    bencher.bench_local(|| solver.factor().is_ok());
+}
+
+#[divan::bench(args = EDGES)]
+fn full_solve(bencher: Bencher, edge: usize) {
+    let mut solver = full(edge);
+    let size = 2 * edge * edge + edge / 2;
+    let (right, mut out) = (vec![1.0; size], vec![0.0; size]);
+    bencher.bench_local(|| solver.solve(black_box(&right), &mut out).is_ok());
+}
+
+/// One constraint for every node that touches, two unknowns and as many that only lie near.
+#[divan::bench(args = TOUCHING)]
+fn saddle_factor_and_solve(bencher: Bencher, touching: usize) {
+    let size = 4 * touching;
+    let stiffness: Vec<f64> =
+        (0..size * size).map(|k| if k / size == k % size { 40.0 } else { -30.0 / size as f64 }).collect();
+    let mut saddle = Saddle::default();
+    let (mut x, mut multipliers) = (vec![0.0; size], vec![0.0; touching]);
+    bencher.bench_local(|| {
+        saddle.begin(black_box(&stiffness), size, touching);
+        for row in 0..touching {
+            saddle.add_row(row, 2 * row, 0.1);
+            saddle.add_row(row, 2 * row + 1, 1.0);
+        }
+        x.fill(1.0);
+        multipliers.fill(0.0);
+        let factored = saddle.factor().is_ok();
+        saddle.solve(&mut x, &mut multipliers);
+        factored
+    });
+}
+
+/// Half of the nodes stay open.
+#[divan::bench(args = TOUCHING)]
+fn complementarity_problem(bencher: Bencher, touching: usize) {
+    let n = touching;
+    let d: Vec<f64> = (0..n * n).map(|k| if k / n == k % n { 2.0 } else { 0.5 / n as f64 }).collect();
+    let b: Vec<f64> = (0..n).map(|k| (1.3 * k as f64).sin()).collect();
+    let mut z = Vec::new();
+    bencher.bench_local(|| complementarity(black_box(&d), &b, &mut z).is_ok());
+}

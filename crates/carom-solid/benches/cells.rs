@@ -1,0 +1,66 @@
+//! Kernels of one cell, deformed by a few per cent: force, tangent and discrete gradient for every shape, the tangent for every law.
+//!
+//!     cargo bench -p carom-solid              times
+//!     bench/instructions.py carom-solid       instructions
+
+use std::hint::black_box;
+
+use carom_solid::{Body, Element, Law, body, generate};
+use divan::Bencher;
+
+const SHAPES: [Element; 3] = [Element::T3, Element::T6, Element::T10];
+const RUBBER: Law = Law::NeoHookean { lambda: 200.0, mu: 15.0 };
+const LAWS: [Law; 3] =
+    [RUBBER, Law::SaintVenantKirchhoff { lambda: 200.0, mu: 15.0 }, Law::LinearElastic { lambda: 200.0, mu: 15.0 }];
+/// An inner cell.
+const CELL: usize = 5;
+
+fn main() {
+    divan::main();
+}
+
+/// A square of 32 cells, its reference positions and deformed ones.
+fn square(element: Element, law: Law) -> (Box<dyn Body<2>>, Vec<[f64; 2]>, Vec<[f64; 2]>) {
+    let mesh = generate::rectangle(element, [0.0, 0.0], [1.0, 1.0], [4, 4]).expect("valid");
+    let at = mesh.nodes.clone();
+    let moved = at.iter().map(|[x, y]| [x + 0.05 * (2.0 * y).sin(), y - 0.1 * y * x]).collect();
+    (body(mesh, law, 0.25, 1.0).expect("valid"), at, moved)
+}
+
+#[divan::bench(args = SHAPES)]
+fn force(bencher: Bencher, shape: Element) {
+    let (body, _, y) = square(shape, RUBBER);
+    let mut force = vec![0.0; 2 * shape.nodes()];
+    bencher.bench_local(|| body.cell_force(black_box(CELL), &y, &mut force).is_ok());
+}
+
+#[divan::bench(args = SHAPES)]
+fn tangent(bencher: Bencher, shape: Element) {
+    tangent_of(bencher, shape, RUBBER);
+}
+
+#[divan::bench(args = LAWS)]
+fn tangent_of_law(bencher: Bencher, law: Law) {
+    tangent_of(bencher, Element::T6, law);
+}
+
+fn tangent_of(bencher: Bencher, shape: Element, law: Law) {
+    let (body, _, y) = square(shape, law);
+    let dofs = 2 * shape.nodes();
+    let (mut force, mut tangent) = (vec![0.0; dofs], vec![0.0; dofs * dofs]);
+    bencher.bench_local(|| body.cell_tangent(black_box(CELL), &y, &mut force, &mut tangent).is_ok());
+}
+
+#[divan::bench(args = SHAPES)]
+fn discrete_gradient(bencher: Bencher, shape: Element) {
+    let (body, before, now) = square(shape, RUBBER);
+    let mut force = vec![0.0; 2 * shape.nodes()];
+    bencher.bench_local(|| body.cell_between(black_box(CELL), &before, &now, &mut force, None).is_ok());
+}
+
+#[divan::bench(args = SHAPES)]
+fn mass(bencher: Bencher, shape: Element) {
+    let (body, ..) = square(shape, RUBBER);
+    let mut mass = vec![0.0; shape.nodes() * shape.nodes()];
+    bencher.bench_local(|| body.cell_mass(black_box(CELL), &mut mass));
+}
