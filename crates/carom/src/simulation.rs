@@ -5,13 +5,13 @@ use carom_contact::PairEvent;
 use crate::case::{Case, Problem};
 use crate::initial::{Before, before};
 use crate::model::{Dimension, Model, Space, build, overlaps};
-use crate::newton::{Timings, Workspace};
 use crate::rejected::Rejected;
 use crate::scheme::stepper;
 use crate::stability;
 use crate::start::start;
 use crate::state::State;
 use crate::stepper::Stepper;
+use crate::workspace::{Timings, Workspace};
 
 /// Halvings of Δt before the run stops.
 const MOST_HALVINGS: u32 = 12;
