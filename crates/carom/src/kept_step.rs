@@ -13,6 +13,7 @@ use crate::kept::{Keeper, Point};
 use crate::model::Model;
 use crate::newton::{Measure, Trial, evaluate, mass_factor, stiffness_factor};
 use crate::rejected::Rejected;
+use crate::rows::independent_rows;
 use crate::state::State;
 use crate::system::{HoldError, Row};
 use crate::workspace::{Workspace, timed};
@@ -39,7 +40,10 @@ pub(crate) fn begin<const D: usize>(
         let measure = evaluate(model, state, trial, work, false)?;
         let held = match keeper.kept.point.clone().filter(|_| !keeper.due) {
             Some(point) => hold(model, work, &point)?,
-            None => renew(model, state, work, &[], keeper)?,
+            None => {
+                let rows = independent_rows(model, &trial.pairs, work);
+                renew(model, state, work, &rows, keeper)?
+            }
         };
         if held {
             return Ok(measure);

@@ -28,6 +28,6 @@ mod workspace;
 pub use kept::{Kept, Point};
 pub use rejected::Rejected;
 pub use simulation::{GridReport, LogEvent, Simulation, Stopped};
-pub use state::{Ahead, Ledger, Means, Previous, State};
+pub use state::{Ahead, Halved, Ledger, Means, Previous, State};
 pub use stepper::{Accepted, Explicit, Implicit, Impulsive, StepReport, Stepper};
 pub use workspace::{Timings, Workspace};

@@ -27,6 +27,8 @@ const TOUCHING: f64 = 1e-9;
 pub(crate) const NEARLY_THERE: f64 = 1e-3;
 /// Below this step, relative to L, facets are handed over before the iteration with a kept tangent has converged.
 const CLOSE: f64 = 1e-5;
+/// How often in a solve pairs are handed over as they slide, before corrections are as small as that.
+const FOLLOWS: u32 = 12;
 /// How much smaller than the tolerance the residual gets with a kept tangent.
 const KEPT_DIGITS: f64 = 1e-3;
 /// Halvings of a Newton step that inverts a cell or makes the residual much worse.
@@ -78,11 +80,18 @@ pub(crate) fn solve_stage<const D: usize>(
     let mut effort = Effort::default();
     let mut sets: Vec<ActiveSet> =
         model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect();
-    let mut predicted = Some((max_abs(&trial.increment), trial.pairs.clone())).filter(|_| !work.stage.is_static());
-    timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
     let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
     let keep = settings.tangent == TangentRule::Kept && keeps(model, work);
     let mut keeper = Keeper::new(&state.kept, keep, mass, stiffness);
+    keeper.impatient = state.halved.is_on();
+    let mut predicted = Some((max_abs(&trial.increment), trial.pairs.clone())).filter(|_| !work.stage.is_static());
+    if keep
+        && keeper.distrusts()
+        && let Some((_, pairs)) = predicted.take()
+    {
+        rest(state, before, pairs, trial);
+    }
+    timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
     let mut begun = begin(model, state, trial, work, &mut keeper);
     if matches!(begun, Err(Rejected::Inverted { .. }))
         && let Some((_, pairs)) = predicted.take()
@@ -96,7 +105,7 @@ pub(crate) fn solve_stage<const D: usize>(
         measure = evaluate(model, state, trial, work, false)?;
     }
     let mut has_tangent = keeper.full;
-    let (mut step, mut shrinking) = (f64::INFINITY, 1.0_f64);
+    let (mut step, mut shrinking, mut follows) = (f64::INFINITY, 1.0_f64, 0);
     loop {
         // What a kept tangent leaves over shrinks with the residual, not with its square: the balance is taken three digits further.
         let (next, digits) = if keeper.full { (step, 1.0) } else { (step * shrinking.min(1.0), KEPT_DIGITS) };
@@ -104,6 +113,11 @@ pub(crate) fn solve_stage<const D: usize>(
             && measure.residual <= digits * settings.tolerance * measure.forces + round_off(model, work)
             && measure.gap <= GAP_TOLERANCE * model.scale;
         let mut changed = change_sets(model, &mut sets, trial, work, settled)?;
+        if keep && !settled && follows < FOLLOWS && follow(model, trial, &mut effort) {
+            follows += 1;
+            sets.iter_mut().for_each(ActiveSet::restart);
+            changed = true;
+        }
         if !keeper.full && !settled && !changed && step <= CLOSE * model.scale {
             // Where a node will slide to is known long before the last digits are.
             let pairs = trial.pairs.clone();
@@ -145,8 +159,7 @@ pub(crate) fn solve_stage<const D: usize>(
         step = max_abs(&work.correction);
         effort.iterations += 1;
         if let Some((size, pairs)) = predicted.take()
-            && step > TRUST * size
-            && size > 0.0
+            && keeper.predicted(step <= TRUST * size || size == 0.0)
         {
             rest(state, before, pairs, trial);
             sets.iter_mut().for_each(ActiveSet::restart);
@@ -192,6 +205,17 @@ fn detect<const D: usize>(
         effort.events.extend(events.into_iter().map(|event| (k, event)));
     }
     Ok(changed)
+}
+
+/// Hands over pairs that slid well past the end of their facet; whether there was one.
+fn follow<const D: usize>(model: &Model<D>, trial: &mut Trial, effort: &mut Effort) -> bool {
+    let mut changed = false;
+    for (k, contact) in model.contacts.iter().enumerate() {
+        let mut events = Vec::new();
+        changed |= contact.method.follow(trial.y.as_chunks::<D>().0, &mut trial.pairs[k], &mut events);
+        effort.events.extend(events.into_iter().map(|event| (k, event)));
+    }
+    changed
 }
 
 /// Forces, gaps and residual at the trial, and the tangent of the bodies if asked for.

@@ -204,7 +204,8 @@ impl<const D: usize> Simulation<D> {
         let start = self.state.step as f64 * self.dt;
         let mut state = self.state.clone();
         // Progress through the grid step in units of Δt/2^level.
-        let (mut level, mut done) = (0_u32, 0_u64);
+        let rejected = report.rejected;
+        let (mut level, mut done) = (self.state.halved.level(), 0_u64);
         while done < 1 << level {
             let dt = self.dt / f64::from(1_u32 << level);
             let time = start + done as f64 * dt;
@@ -247,6 +248,7 @@ impl<const D: usize> Simulation<D> {
                 }
             }
         }
+        state.halved = self.state.halved.after(report.rejected > rejected);
         state.step += 1;
         state.time = state.step as f64 * self.dt;
         self.watch(&state)?;
