@@ -22,6 +22,8 @@ const PATIENCE: u32 = 2;
 const LONGEST_REST: u32 = 15;
 /// ln of what the first correction of a step is to shrink by.
 const DIGITS: f64 = 18.0;
+/// Most iterations, counted so, of a solve where steps have been bisected of late.
+const HURRIED: f64 = 8.0;
 /// Iterations with a kept tangent that count as one towards the allowed number.
 const KEPT_COUNT: f64 = 3.0;
 
@@ -71,8 +73,8 @@ pub(crate) struct Keeper {
     contraction: f64,
     /// How often it was slow.
     slow: u32,
-    /// Steps have been bisected of late: a full tangent is not worth trying before the step is.
-    pub(crate) impatient: bool,
+    /// Slow contractions, and iterations with kept tangents counted, after which half the step is tried before a full tangent.
+    bisects: Option<(u32, f64)>,
     /// How often corrections grew instead.
     growing: u32,
     counted: f64,
@@ -94,10 +96,15 @@ impl Keeper {
             previous: None,
             contraction: 0.0,
             slow: 0,
-            impatient: false,
+            bisects: None,
             growing: 0,
             counted: 0.0,
         }
+    }
+
+    /// Steps have been bisected of late: that is tried sooner.
+    pub(crate) fn hurry(&mut self) {
+        self.bisects = Some((PATIENCE, HURRIED));
     }
 
     /// Whether predictions have been none of late.
@@ -160,7 +167,8 @@ impl Keeper {
     /// Whether all allowed iterations are spent, or half the step is the better try: corrections have grown again and again with kept tangents, or
     /// shrunk slowly where steps are being bisected anyway.
     pub(crate) fn exhausted(&self, allowed: usize) -> bool {
-        let hopeless = self.growing > PATIENCE || (self.impatient && self.helpless());
+        let over = |(slow, counted): (u32, f64)| self.slow > slow || self.counted > counted;
+        let hopeless = self.growing > PATIENCE || self.bisects.is_some_and(over);
         self.counted > allowed as f64 - 0.5 || (!self.full && hopeless)
     }
 

@@ -38,12 +38,11 @@ pub(crate) fn begin<const D: usize>(
 ) -> Result<Measure, Rejected> {
     if !keeper.full {
         let measure = evaluate(model, state, trial, work, false)?;
-        let held = match keeper.kept.point.clone().filter(|_| !keeper.due) {
-            Some(point) => hold(model, work, &point)?,
-            None => {
-                let rows = independent_rows(model, &trial.pairs, work);
-                renew(model, state, work, &rows, keeper)?
-            }
+        let held = if let Some(point) = keeper.kept.point.clone().filter(|_| !keeper.due) {
+            hold(model, work, &point)?
+        } else {
+            let rows = independent_rows(model, &trial.pairs, work);
+            renew(model, state, work, &rows, keeper)?
         };
         if held {
             return Ok(measure);

@@ -83,7 +83,9 @@ pub(crate) fn solve_stage<const D: usize>(
     let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
     let keep = settings.tangent == TangentRule::Kept && keeps(model, work);
     let mut keeper = Keeper::new(&state.kept, keep, mass, stiffness);
-    keeper.impatient = state.halved.is_on();
+    if state.halved.is_on() {
+        keeper.hurry();
+    }
     let mut predicted = Some((max_abs(&trial.increment), trial.pairs.clone())).filter(|_| !work.stage.is_static());
     if keep
         && keeper.distrusts()
