@@ -56,7 +56,8 @@ impl Condensed {
     pub fn analyse(&mut self, pattern: &Pattern, groups: &[usize], last: &[usize]) -> Result<(), LinearError> {
         let n = pattern.size();
         let engine = |reason: String| LinearError::Engine { size: n, reason };
-        self.symbolic = None;
+        // The old factor is not wanted beside the new one.
+        (self.symbolic, self.scratch, self.factors) = (None, None, Vec::new());
         let mut is_last = vec![false; n];
         last.iter().for_each(|&i| is_last[i] = true);
         let whole = groups.iter().max().map_or(0, |g| g + 1);

@@ -6,7 +6,8 @@
 //! ```
 //!
 //! S positive definite and G of full rank make both factors exist; the saddle then has as many negative eigenvalues as rows (Benzi, Golub, Liesen,
-//! Acta Numerica 14 (2005), §3.4).
+//! Acta Numerica 14 (2005), §3.4). Where S is so only on the kernel of G, S + Σ κ gᵀg with b + Σ κ c g has the same solution and is so everywhere
+//! (ibid., §3.5: the augmented Lagrangian).
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{
@@ -33,6 +34,9 @@ pub struct Saddle {
     rows: Vec<f64>,
     /// TᵀT, then its factor.
     small: Vec<f64>,
+    /// κ of each row.
+    penalties: Vec<f64>,
+    nonzeros: Vec<usize>,
     scratch: Option<MemBuffer>,
     room: usize,
 }
@@ -45,6 +49,29 @@ impl Saddle {
         self.stiffness.extend_from_slice(stiffness);
         self.rows.clear();
         self.rows.resize(size * count, 0.0);
+        self.penalties.clear();
+        self.penalties.resize(count, 0.0);
+    }
+
+    /// S += κ gᵀg for every row g of G, `share` times as stiff along g as S is: the solution stays what it is, and an S that is positive definite
+    /// only where G x = 0 becomes so everywhere.
+    pub fn augment(&mut self, share: f64) {
+        let n = self.size.max(1);
+        for (row, penalty) in self.rows.chunks_exact(n).zip(&mut self.penalties) {
+            self.nonzeros.clear();
+            self.nonzeros.extend((0..n).filter(|&j| row[j] != 0.0));
+            let square: f64 = self.nonzeros.iter().map(|&j| row[j] * row[j]).sum();
+            let along: f64 = self.nonzeros.iter().map(|&j| row[j] * row[j] * self.stiffness[j * n + j].abs()).sum();
+            if square == 0.0 {
+                continue;
+            }
+            *penalty = share * along / (square * square);
+            for (k, &j) in self.nonzeros.iter().enumerate() {
+                for &i in &self.nonzeros[k..] {
+                    self.stiffness[j * n + i] += *penalty * row[i] * row[j];
+                }
+            }
+        }
     }
 
     /// S(i, j) += value; only the lower triangle i ≥ j counts.
@@ -88,6 +115,12 @@ impl Saddle {
         let mut x = MatMut::from_column_major_slice_mut(b, n, 1);
         let mut multipliers = MatMut::from_column_major_slice_mut(c, m, 1);
         solve_lower_triangular_in_place(lower, x.rb_mut(), Par::Seq);
+        for i in 0..m {
+            let pull = self.penalties[i] * multipliers[(i, 0)];
+            for j in 0..n {
+                x[(j, 0)] += pull * t[(j, i)];
+            }
+        }
         for i in 0..m {
             multipliers[(i, 0)] = -multipliers[(i, 0)];
         }
@@ -151,6 +184,23 @@ mod tests {
         }
         for r in 0..m {
             assert!(((0..n).map(|j| row(r, j) * x[j]).sum::<f64>() - c[r]).abs() < 1e-13);
+        }
+        // Negative along the first row alone: only with its share along that row has it a factor.
+        let push = -30.0;
+        let along = |i: usize| if i == 2 { 1.0 } else { 0.0 };
+        for share in [0.0, 20.0] {
+            saddle.begin(&stiffness, n, 1);
+            saddle.add_row(0, 2, 2.0);
+            saddle.add(2, 2, push);
+            saddle.augment(share);
+            assert_eq!(saddle.factor().is_ok(), share > 0.0);
+        }
+        let (mut x, mut multiplier) = (b.clone(), [0.5]);
+        saddle.solve(&mut x, &mut multiplier);
+        assert!((2.0 * x[2] - 0.5).abs() < 1e-13);
+        for i in 0..n {
+            let upper: f64 = (0..n).map(|j| entry(i, j) * x[j]).sum();
+            assert!((upper + along(i) * (push * x[2] + 2.0 * multiplier[0]) - b[i]).abs() < 1e-12);
         }
         saddle.begin(&stiffness, n, 2);
         (0..2).for_each(|r| saddle.add_row(r, 0, 1.0));

@@ -21,6 +21,9 @@ use crate::trajectory::crossing;
 const REACH: f64 = 1.2;
 /// How far the closest point may wander while Newton has not converged.
 const WANDER: f64 = 3.0;
+/// Beyond this a pair is handed over while Newton is on its way, and beyond that also back.
+const FOLLOWED: f64 = 1.02;
+const FOLLOWED_BACK: f64 = 1.1;
 /// Cosine of the kink between neighbouring facets above which a node past both ends has left the side (a corner's vertex cone).
 const CORNER_COSINE: f64 = 0.87;
 /// A node this much behind a facet (times the facet's length) at the start of a step came from elsewhere, not through the facet.
@@ -198,6 +201,27 @@ impl ContactMethod<2> for NodeToSegment {
         pairs.append(&mut found);
         pairs.sort_by_key(|p| p.node);
         Ok(changed)
+    }
+
+    fn follow(&self, now: &[[f64; 2]], pairs: &mut [Pair], events: &mut Vec<PairEvent>) -> bool {
+        let mut changed = false;
+        for pair in pairs.iter_mut().filter(|pair| pair.active) {
+            if pair.xi.abs() <= if pair.left.is_some() { FOLLOWED_BACK } else { FOLLOWED } {
+                continue;
+            }
+            let (from, left) = (pair.facet, pair.left.take());
+            for _ in 0..self.primary.facets() {
+                let Next::HandOver(facet, xi) = self.next_facet(pair, now) else { break };
+                (pair.left, pair.facet, pair.xi) = (Some(pair.facet), facet, xi);
+            }
+            if pair.facet == from {
+                pair.left = left;
+            } else {
+                events.push(PairEvent::HandOver { node: self.secondary[pair.node], from, to: pair.facet });
+                changed = true;
+            }
+        }
+        changed
     }
 
     fn linearise(

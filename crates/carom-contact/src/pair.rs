@@ -127,6 +127,13 @@ pub trait ContactMethod<const D: usize>: Send + Sync {
         events: &mut Vec<PairEvent>,
     ) -> Result<bool, ContactError>;
 
+    /// Hands over active pairs that have slid well past the end of their facet while the iteration goes on: what a facet extrapolates to there is no
+    /// surface. Unlike [`detect`](Self::detect), it lets a pair come back. Whether there was one is returned.
+    fn follow(&self, now: &[[f64; D]], pairs: &mut [Pair], events: &mut Vec<PairEvent>) -> bool {
+        let _ = (now, pairs, events);
+        false
+    }
+
     /// Gap of a pair at positions `y`, its gradient, and `lambda` times its second derivative. Moves `pair.xi` to the closest point.
     fn linearise(
         &self,

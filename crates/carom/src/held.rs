@@ -136,6 +136,9 @@ impl Held {
                 }
             }
         }
+        if curved {
+            saddle.augment(STIFFENING);
+        }
         saddle.factor()
     }
 
@@ -210,5 +213,7 @@ pub(crate) fn boundary<const D: usize>(
     if covers(last, rows) && last.len() <= 2 * chosen.len() { last.to_vec() } else { chosen }
 }
 
+/// What the rows add to the stiffness along themselves, as a multiple of it: enough that bending contact leaves it positive definite.
+const STIFFENING: f64 = 10.0;
 /// What is added on each side of the touched nodes, as a share of their extent.
 const MARGIN: f64 = 0.3;

@@ -17,10 +17,13 @@ const RENEWAL: f64 = 6.0;
 const SLOW: f64 = 0.5;
 /// Slow contractions of one solve after which new factors are no help: what is left out of them, contact that bends, is what is needed.
 const PATIENCE: u32 = 2;
-/// Most steps that take the full tangent after refusals in a row: none after the first, then 1, 3, 7, 15.
+/// Most steps that take the full tangent after refusals in a row, or begin at rest after predictions in a row that were none: none after the first,
+/// then 1, 3, 7, 15.
 const LONGEST_REST: u32 = 15;
 /// ln of what the first correction of a step is to shrink by.
 const DIGITS: f64 = 18.0;
+/// Most iterations, counted so, of a solve where steps have been bisected of late.
+const HURRIED: f64 = 8.0;
 /// Iterations with a kept tangent that count as one towards the allowed number.
 const KEPT_COUNT: f64 = 3.0;
 
@@ -49,6 +52,9 @@ pub struct Kept {
     rest: u32,
     /// Rest after the next refusal.
     next_rest: u32,
+    /// Steps left that begin at rest, and how many after the next prediction that is none.
+    still: u32,
+    next_still: u32,
 }
 
 /// The policy during one solve.
@@ -67,6 +73,10 @@ pub(crate) struct Keeper {
     contraction: f64,
     /// How often it was slow.
     slow: u32,
+    /// Slow contractions, and iterations with kept tangents counted, after which half the step is tried before a full tangent.
+    bisects: Option<(u32, f64)>,
+    /// How often corrections grew instead.
+    growing: u32,
     counted: f64,
 }
 
@@ -86,20 +96,49 @@ impl Keeper {
             previous: None,
             contraction: 0.0,
             slow: 0,
+            bisects: None,
+            growing: 0,
             counted: 0.0,
         }
     }
 
+    /// Steps have been bisected of late: that is tried sooner.
+    pub(crate) fn hurry(&mut self) {
+        self.bisects = Some((PATIENCE, HURRIED));
+    }
+
+    /// Whether predictions have been none of late.
+    pub(crate) fn distrusts(&mut self) -> bool {
+        let distrusts = self.kept.still > 0;
+        self.kept.still = self.kept.still.saturating_sub(1);
+        distrusts
+    }
+
+    /// Takes note of whether a prediction was good; whether it is to be dropped.
+    pub(crate) fn predicted(&mut self, good: bool) -> bool {
+        let rest = self.kept.next_still;
+        (self.kept.still, self.kept.next_still) = if good { (0, 0) } else { (rest, (2 * rest + 1).min(LONGEST_REST)) };
+        !good
+    }
+
+    /// Forgets the factor and what was spent on it.
+    fn forget(&mut self) {
+        let Kept { still, next_still, .. } = self.kept;
+        self.kept = Kept { still, next_still, ..Kept::default() };
+    }
+
     /// A new factor was made.
     pub(crate) fn renewed(&mut self, point: Arc<Point>) {
-        self.kept = Kept { point: Some(point), ..Kept::default() };
+        self.forget();
+        self.kept.point = Some(point);
         (self.due, self.fresh, self.previous, self.contraction) = (false, true, None, 0.0);
     }
 
     /// The tangent is not positive definite: full ones for a while.
     pub(crate) fn refused(&mut self) {
         let rest = self.kept.next_rest;
-        self.kept = Kept { rest, next_rest: (2 * rest + 1).min(LONGEST_REST), ..Kept::default() };
+        self.forget();
+        (self.kept.rest, self.kept.next_rest) = (rest, (2 * rest + 1).min(LONGEST_REST));
         self.full = true;
     }
 
@@ -115,6 +154,7 @@ impl Keeper {
             let left = (step / goal).ln() / -contraction.min(SLOW).ln();
             self.due = contraction > SLOW || left > RENEWAL;
             self.slow += u32::from(contraction > SLOW);
+            self.growing += u32::from(contraction > 1.0);
         }
         self.previous = Some(step);
     }
@@ -124,9 +164,12 @@ impl Keeper {
         self.slow > PATIENCE
     }
 
-    /// Whether all allowed iterations are spent.
+    /// Whether all allowed iterations are spent, or half the step is the better try: corrections have grown again and again with kept tangents, or
+    /// shrunk slowly where steps are being bisected anyway.
     pub(crate) fn exhausted(&self, allowed: usize) -> bool {
-        self.counted > allowed as f64 - 0.5
+        let over = |(slow, counted): (u32, f64)| self.slow > slow || self.counted > counted;
+        let hopeless = self.growing > PATIENCE || self.bisects.is_some_and(over);
+        self.counted > allowed as f64 - 0.5 || (!self.full && hopeless)
     }
 
     /// What the next step is to know.

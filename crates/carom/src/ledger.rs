@@ -18,8 +18,8 @@ use carom_time::{Stage, Weights};
 use crate::balance::mean_acceleration;
 use crate::case::ForceTime;
 use crate::model::{Model, dot};
-use crate::newton::Workspace;
 use crate::state::{Means, Previous, State};
+use crate::workspace::Workspace;
 
 /// Adds what a solved stage gives to the means over the step (`work.means`, cleared before the first stage). `work` holds the converged evaluation,
 /// `previous` the step before of a two-step scheme.

@@ -3,22 +3,21 @@
 //! Converged means, all at once: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus the round-off the system's diagonal stands for); |g| ≤ 1e-12·L on every active pair;
 //! no pair penetrates, pulls, or has slid off its facet. Nothing less is accepted.
 
-use std::sync::Arc;
-
 use carom_algebra::LinearError;
 use carom_contact::{ActiveSet, Contender, Linearised, Pair, PairEvent};
 use carom_time::{Internal, Stage};
 
-use crate::balance::{Forces, contact_weights, mean_acceleration, residual_into};
+use crate::balance::{contact_weights, mean_acceleration, residual_into};
 use crate::case::{NewtonSpec, TangentRule};
-use crate::held::boundary;
-use crate::kept::{Keeper, Kept, Point};
-use crate::model::{LoadsAt, Model, Prescribed};
+use crate::kept::{Keeper, Kept};
+use crate::kept_step::{begin, keeps, kept_step};
+use crate::model::Model;
 use crate::penalty::{self, Configuration};
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
-use crate::state::{Means, State};
-use crate::system::{HoldError, Row, System};
+use crate::state::State;
+use crate::system::Row;
+use crate::workspace::{Workspace, timed};
 
 /// Penetration, as a fraction of L, that counts as touching.
 pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
@@ -28,6 +27,8 @@ const TOUCHING: f64 = 1e-9;
 pub(crate) const NEARLY_THERE: f64 = 1e-3;
 /// Below this step, relative to L, facets are handed over before the iteration with a kept tangent has converged.
 const CLOSE: f64 = 1e-5;
+/// How often in a solve pairs are handed over as they slide, before corrections are as small as that.
+const FOLLOWS: u32 = 12;
 /// How much smaller than the tolerance the residual gets with a kept tangent.
 const KEPT_DIGITS: f64 = 1e-3;
 /// Halvings of a Newton step that inverts a cell or makes the residual much worse.
@@ -59,104 +60,12 @@ pub(crate) struct Effort {
     pub kept: Kept,
 }
 
-/// Scratch that is rebuilt at will and never changes a bit of a result.
-pub struct Workspace<const D: usize> {
-    /// Linear system.
-    pub(crate) system: System<D>,
-    /// Forces of the last evaluation.
-    pub(crate) forces: Forces,
-    /// Accelerations of the last evaluation.
-    pub(crate) acceleration: Vec<f64>,
-    /// Linearised gaps of every pair of every contact.
-    pub(crate) gaps: Vec<Vec<Linearised<D>>>,
-    /// ∂λ/∂g of every pair of every contact that is a spring now; 0 of the others.
-    pub(crate) stiffnesses: Vec<Vec<f64>>,
-    /// Energy of the springs of penalties at the last evaluation.
-    pub(crate) springs: f64,
-    /// The stage being solved.
-    pub(crate) stage: Stage,
-    /// Means over the step, as far as its stages are solved.
-    pub(crate) means: Means,
-    /// Wall time by phase.
-    pub timings: Timings,
-    /// r of the last evaluation over all dofs: at held ones, the force of their support.
-    pub(crate) residual: Vec<f64>,
-    /// Loads at the stage's time.
-    pub(crate) loads: LoadsAt,
-    /// Moved dofs at the stage's end.
-    pub(crate) motions: Vec<Prescribed>,
-    /// What moved dofs still have to go; zero elsewhere.
-    remaining: Vec<f64>,
-    /// ∂f_int/∂y · remaining.
-    pull: Vec<f64>,
-    right: Vec<f64>,
-    at: Vec<f64>,
-    correction: Vec<f64>,
-    multipliers: Vec<f64>,
-    saved: Trial,
-}
-
-impl<const D: usize> Workspace<D> {
-    /// Scratch for a model; cells are computed by this many threads.
-    pub fn new(model: &Model<D>, threads: usize) -> Self {
-        let zeros = vec![0.0; model.dofs()];
-        Self {
-            system: System::new(model, threads),
-            forces: Forces {
-                inertia: zeros.clone(),
-                internal: zeros.clone(),
-                loads: zeros.clone(),
-                contact: zeros.clone(),
-                known: zeros.clone(),
-            },
-            acceleration: zeros.clone(),
-            gaps: vec![Vec::new(); model.contacts.len()],
-            stiffnesses: vec![Vec::new(); model.contacts.len()],
-            springs: 0.0,
-            stage: Stage::default(),
-            means: Means::new(model.dofs()),
-            timings: Timings::default(),
-            residual: zeros.clone(),
-            loads: LoadsAt::default(),
-            motions: Vec::new(),
-            remaining: zeros.clone(),
-            pull: zeros.clone(),
-            right: Vec::new(),
-            at: zeros.clone(),
-            correction: zeros,
-            multipliers: Vec::new(),
-            saved: Trial::default(),
-        }
-    }
-}
-
-/// Wall seconds by phase, for `--profile`.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Timings {
-    /// Cell forces and tangents.
-    pub assembly: f64,
-    /// Detection, gaps and their derivatives.
-    pub contact: f64,
-    /// Filling, ordering and factoring the linear system.
-    pub factor: f64,
-    /// Solving with the factors.
-    pub solve: f64,
-}
-
-/// Runs `work` and adds the seconds it took to `clock`.
-pub(crate) fn timed<T>(clock: &mut f64, work: impl FnOnce() -> T) -> T {
-    let began = std::time::Instant::now();
-    let done = work();
-    *clock += began.elapsed().as_secs_f64();
-    done
-}
-
 /// Size of a residual and what it is measured against.
 #[derive(Clone, Copy, Debug, Default)]
-struct Measure {
-    residual: f64,
-    forces: f64,
-    gap: f64,
+pub(crate) struct Measure {
+    pub residual: f64,
+    pub forces: f64,
+    pub gap: f64,
 }
 
 /// Solves the stage in `work.stage` from the guess in `trial`. `before`: positions at the end of the stage before, for trajectories.
@@ -171,11 +80,20 @@ pub(crate) fn solve_stage<const D: usize>(
     let mut effort = Effort::default();
     let mut sets: Vec<ActiveSet> =
         model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect();
-    let mut predicted = Some((max_abs(&trial.increment), trial.pairs.clone())).filter(|_| !work.stage.is_static());
-    timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
     let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
     let keep = settings.tangent == TangentRule::Kept && keeps(model, work);
     let mut keeper = Keeper::new(&state.kept, keep, mass, stiffness);
+    if state.halved.is_on() {
+        keeper.hurry();
+    }
+    let mut predicted = Some((max_abs(&trial.increment), trial.pairs.clone())).filter(|_| !work.stage.is_static());
+    if keep
+        && keeper.distrusts()
+        && let Some((_, pairs)) = predicted.take()
+    {
+        rest(state, before, pairs, trial);
+    }
+    timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
     let mut begun = begin(model, state, trial, work, &mut keeper);
     if matches!(begun, Err(Rejected::Inverted { .. }))
         && let Some((_, pairs)) = predicted.take()
@@ -189,7 +107,7 @@ pub(crate) fn solve_stage<const D: usize>(
         measure = evaluate(model, state, trial, work, false)?;
     }
     let mut has_tangent = keeper.full;
-    let (mut step, mut shrinking) = (f64::INFINITY, 1.0_f64);
+    let (mut step, mut shrinking, mut follows) = (f64::INFINITY, 1.0_f64, 0);
     loop {
         // What a kept tangent leaves over shrinks with the residual, not with its square: the balance is taken three digits further.
         let (next, digits) = if keeper.full { (step, 1.0) } else { (step * shrinking.min(1.0), KEPT_DIGITS) };
@@ -197,6 +115,11 @@ pub(crate) fn solve_stage<const D: usize>(
             && measure.residual <= digits * settings.tolerance * measure.forces + round_off(model, work)
             && measure.gap <= GAP_TOLERANCE * model.scale;
         let mut changed = change_sets(model, &mut sets, trial, work, settled)?;
+        if keep && !settled && follows < FOLLOWS && follow(model, trial, &mut effort) {
+            follows += 1;
+            sets.iter_mut().for_each(ActiveSet::restart);
+            changed = true;
+        }
         if !keeper.full && !settled && !changed && step <= CLOSE * model.scale {
             // Where a node will slide to is known long before the last digits are.
             let pairs = trial.pairs.clone();
@@ -242,8 +165,7 @@ pub(crate) fn solve_stage<const D: usize>(
         step = max_abs(&work.correction);
         effort.iterations += 1;
         if let Some((size, pairs)) = predicted.take()
-            && step > TRUST * size
-            && size > 0.0
+            && keeper.predicted(step <= TRUST * size || size == 0.0)
         {
             rest(state, before, pairs, trial);
             sets.iter_mut().for_each(ActiveSet::restart);
@@ -271,115 +193,6 @@ fn rest(state: &State, before: &[f64], pairs: Vec<Vec<Pair>>, trial: &mut Trial)
     trial.pairs = pairs;
 }
 
-/// Whether a tangent of another time serves: not where the iteration itself moves supports, loads turn with the body, nothing but the tangent holds a
-/// body, forces are a discrete gradient or springs, or a predictor is projected between the steps.
-fn keeps<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> bool {
-    work.motions.is_empty()
-        && !model.loads.follow()
-        && !work.stage.is_static()
-        && work.stage.internal == Internal::Gradient
-        && model.contacts.iter().all(|contact| contact.penalty.is_none() && !contact.predictor)
-}
-
-/// The first evaluation, and the kept factor where there is one to keep.
-fn begin<const D: usize>(
-    model: &Model<D>,
-    state: &State,
-    trial: &mut Trial,
-    work: &mut Workspace<D>,
-    keeper: &mut Keeper,
-) -> Result<Measure, Rejected> {
-    if !keeper.full {
-        let measure = evaluate(model, state, trial, work, false)?;
-        let held = match keeper.kept.point.clone().filter(|_| !keeper.due) {
-            Some(point) => hold(model, work, &point)?,
-            None => renew(model, state, work, &[], keeper)?,
-        };
-        if held {
-            return Ok(measure);
-        }
-        keeper.refused();
-    }
-    work.system.release();
-    evaluate(model, state, trial, work, true)
-}
-
-/// Makes the factor of a point; whether there is one.
-fn hold<const D: usize>(model: &Model<D>, work: &mut Workspace<D>, point: &Arc<Point>) -> Result<bool, Rejected> {
-    let (system, scratch) = (&mut work.system, &mut work.correction);
-    match timed(&mut work.timings.factor, || system.hold(model, point, scratch)) {
-        Ok(()) => Ok(true),
-        Err(HoldError::Indefinite) => Ok(false),
-        Err(HoldError::Inverted((body, inverted))) => Err(Rejected::Inverted { body, inverted }),
-    }
-}
-
-/// Makes a factor at the present positions, or else at the start of the step; whether there is one.
-fn renew<const D: usize>(
-    model: &Model<D>,
-    state: &State,
-    work: &mut Workspace<D>,
-    rows: &[(usize, usize)],
-    keeper: &mut Keeper,
-) -> Result<bool, Rejected> {
-    let boundary = {
-        let rows = linearised(model, work, rows);
-        boundary(model, work.at.as_chunks::<D>().0, &rows, keeper.kept.point.as_deref())
-    };
-    let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
-    // An iterate far from the solution may have no positive definite tangent; the state the step began with nearly always has.
-    for at in [work.at.clone(), state.y.clone()] {
-        let point = Arc::new(Point { at, mass, stiffness, boundary: boundary.clone() });
-        if work.system.holds(&point) {
-            // The same factor again is of no help.
-            return Ok(false);
-        }
-        if hold(model, work, &point)? {
-            keeper.renewed(point);
-            return Ok(true);
-        }
-    }
-    Ok(false)
-}
-
-/// Solves with the kept factor, made anew where that is due; false where there is none.
-fn kept_step<const D: usize>(
-    model: &Model<D>,
-    state: &State,
-    work: &mut Workspace<D>,
-    rows: &[(usize, usize)],
-    keeper: &mut Keeper,
-) -> Result<bool, Rejected> {
-    let mut fresh = false;
-    while !keeper.helpless() {
-        if !fresh && (keeper.due || !work.system.covers(&linearised(model, work, rows))) {
-            if !renew(model, state, work, rows, keeper)? {
-                break;
-            }
-            fresh = true;
-        }
-        if try_kept(model, work, rows).is_ok() {
-            return Ok(true);
-        }
-        if fresh {
-            break;
-        }
-        keeper.due = true;
-    }
-    keeper.refused();
-    work.system.release();
-    Ok(false)
-}
-
-fn linearised<'a, const D: usize>(
-    model: &Model<D>,
-    work: &'a Workspace<D>,
-    rows: &[(usize, usize)],
-) -> Vec<Row<'a, D>> {
-    let weight = |k: usize| contact_weights(&work.stage, model.contacts[k].force).0;
-    rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k), compliance: 0.0 }).collect()
-}
-
 /// Brings the pairs up to date with the trial's positions; whether that asks for another solve.
 fn detect<const D: usize>(
     model: &Model<D>,
@@ -400,8 +213,19 @@ fn detect<const D: usize>(
     Ok(changed)
 }
 
+/// Hands over pairs that slid well past the end of their facet; whether there was one.
+fn follow<const D: usize>(model: &Model<D>, trial: &mut Trial, effort: &mut Effort) -> bool {
+    let mut changed = false;
+    for (k, contact) in model.contacts.iter().enumerate() {
+        let mut events = Vec::new();
+        changed |= contact.method.follow(trial.y.as_chunks::<D>().0, &mut trial.pairs[k], &mut events);
+        effort.events.extend(events.into_iter().map(|event| (k, event)));
+    }
+    changed
+}
+
 /// Forces, gaps and residual at the trial, and the tangent of the bodies if asked for.
-fn evaluate<const D: usize>(
+pub(crate) fn evaluate<const D: usize>(
     model: &Model<D>,
     state: &State,
     trial: &mut Trial,
@@ -593,23 +417,6 @@ fn stuck<const D: usize>(model: &Model<D>, trial: &Trial, work: &Workspace<D>) -
         }
     }
     Ok(())
-}
-
-/// Solves for `work.correction` and `work.multipliers` with the kept factor.
-fn try_kept<const D: usize>(
-    model: &Model<D>,
-    work: &mut Workspace<D>,
-    rows: &[(usize, usize)],
-) -> Result<(), LinearError> {
-    let weight = |k: usize| contact_weights(&work.stage, model.contacts[k].force).0;
-    let gaps: Vec<Row<D>> =
-        rows.iter().map(|&(k, p)| Row { gap: &work.gaps[k][p], weight: weight(k), compliance: 0.0 }).collect();
-    let right: Vec<f64> = gaps.iter().map(|row| -row.weight * row.gap.gap).collect();
-    timed(&mut work.timings.factor, || work.system.constrain(model, &gaps))?;
-    work.right.clear();
-    work.right.extend(work.residual.iter().map(|r| -r));
-    let (system, forces) = (&mut work.system, &work.right);
-    timed(&mut work.timings.solve, || system.solve(model, forces, &right, &mut work.correction, &mut work.multipliers))
 }
 
 /// Solves for `work.correction` and `work.multipliers`.

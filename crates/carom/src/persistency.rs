@@ -12,12 +12,13 @@ use carom_contact::Linearised;
 use crate::case::Persistency;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;
-use crate::newton::{Workspace, add_gradient};
+use crate::newton::add_gradient;
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::state::State;
 use crate::stepper::averaged_contact_into;
 use crate::system::Row;
+use crate::workspace::Workspace;
 
 /// Projects `state` if one of the new contacts (contact, node) asks for it. The jump of kinetic energy is booked as contact work and returned.
 pub(crate) fn project<const D: usize>(

@@ -7,7 +7,7 @@ use carom_algebra::Vector;
 use carom_contact::Pair;
 
 use crate::model::Model;
-use crate::newton::Workspace;
+use crate::workspace::Workspace;
 
 /// Rows shorter than this (their gradient is of order one) say nothing about free dofs.
 const SHORT_ROW: f64 = 1e-8;

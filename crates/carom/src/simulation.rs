@@ -6,13 +6,13 @@ use carom_solid::Inverted;
 use crate::case::{Case, Problem};
 use crate::initial::{Before, before};
 use crate::model::{Dimension, Model, Space, build, overlaps};
-use crate::newton::{Timings, Workspace};
 use crate::rejected::Rejected;
 use crate::scheme::stepper;
 use crate::stability;
 use crate::start::start;
 use crate::state::State;
 use crate::stepper::Stepper;
+use crate::workspace::{Timings, Workspace};
 
 /// Halvings of Δt before the run stops.
 const MOST_HALVINGS: u32 = 12;
@@ -214,7 +214,8 @@ impl<const D: usize> Simulation<D> {
         let start = self.state.step as f64 * self.dt;
         let mut state = self.state.clone();
         // Progress through the grid step in units of Δt/2^level.
-        let (mut level, mut done) = (0_u32, 0_u64);
+        let rejected = report.rejected;
+        let (mut level, mut done) = (self.state.halved.level(), 0_u64);
         while done < 1 << level {
             let dt = self.dt / f64::from(1_u32 << level);
             let time = start + done as f64 * dt;
@@ -257,6 +258,7 @@ impl<const D: usize> Simulation<D> {
                 }
             }
         }
+        state.halved = self.state.halved.after(report.rejected > rejected);
         state.step += 1;
         state.time = state.step as f64 * self.dt;
         self.watch(&state)?;

@@ -12,7 +12,6 @@ use carom_contact::Linearised;
 use crate::initial::Before;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;
-use crate::newton::Workspace;
 use crate::penalty::{self, Configuration};
 use crate::persistency::{drive, linearise_all, take_accelerations};
 use crate::rejected::Rejected;
@@ -20,6 +19,7 @@ use crate::rows::independent_rows;
 use crate::state::State;
 use crate::stepper::averaged_contact_into;
 use crate::system::Row;
+use crate::workspace::Workspace;
 
 /// A moved support may be this far, relative to L, from where its formula has it at t = 0.
 const NEAR: f64 = 1e-9;

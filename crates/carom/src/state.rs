@@ -134,4 +134,40 @@ pub struct State {
     pub ahead: Ahead,
     /// What the kept factor was made of.
     pub kept: Kept,
+    /// How grid steps went of late.
+    pub halved: Halved,
+}
+
+/// Grid steps that had to be bisected: after several in a row the next ones begin with half the step, 1, 3, 7, … of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Halved {
+    /// Grid steps left that begin with half the step.
+    left: u32,
+    /// How many after the next one that is bisected.
+    next: u32,
+}
+
+impl Halved {
+    /// Most grid steps that begin with half the step before the whole one is tried again.
+    const MOST: u32 = 63;
+
+    /// Whether the last grid step was bisected, or begun with half the step.
+    pub(crate) fn is_on(self) -> bool {
+        self.next > 0
+    }
+
+    /// How often the next grid step is halved from the start.
+    pub(crate) fn level(self) -> u32 {
+        u32::from(self.left > 0)
+    }
+
+    /// After a grid step; `bisected`: whether it was rejected in full.
+    #[must_use]
+    pub(crate) fn after(self, bisected: bool) -> Self {
+        match (self.left, bisected) {
+            (0, false) => Self::default(),
+            (0, true) => Self { left: self.next, next: (2 * self.next + 1).min(Self::MOST) },
+            (left, _) => Self { left: left - 1, next: self.next },
+        }
+    }
 }

@@ -115,7 +115,7 @@ impl<const D: usize> System<D> {
         });
         Self {
             stiffness: vec![0.0; base.len()],
-            follower: vec![0.0; base.len()],
+            follower: vec![0.0; if model.loads.follow() { base.len() } else { 0 }],
             mass,
             facet_slots,
             slots,
@@ -224,7 +224,11 @@ impl<const D: usize> System<D> {
         self.internal_tangent(model, None, &point.at, force, None).map_err(HoldError::Inverted)?;
         self.factorisations += 1;
         let parts = (self.mass.as_slice(), self.stiffness.as_slice());
-        self.held.factor(model, &self.base, point, parts).map_err(|_| HoldError::Indefinite)
+        self.held.factor(model, &self.base, point, parts).map_err(|_| HoldError::Indefinite)?;
+        // The memory of a full tangent is as large again.
+        (self.solver, self.merged, self.from_base) = (FaerSolver::default(), Pattern::default(), Vec::new());
+        self.analysed = false;
+        Ok(())
     }
 
     /// Whether the kept factor is that of a point.
@@ -232,9 +236,9 @@ impl<const D: usize> System<D> {
         self.held.point.as_ref() == Some(point)
     }
 
-    /// Forgets the kept factor.
+    /// Forgets the kept factor, memory and all.
     pub(crate) fn release(&mut self) {
-        self.held.point = None;
+        self.held = Held::default();
     }
 
     /// Whether the kept factor can take these rows.
@@ -262,8 +266,9 @@ impl<const D: usize> System<D> {
         let values = self.solver.values();
         values.fill(0.0);
         for (k, &slot) in self.from_base.iter().enumerate() {
+            let follower = self.follower.get(k).copied().unwrap_or_default();
             values[slot] =
-                mass_factor * self.mass[k] + stiffness_factor * self.stiffness[k] - follower_factor * self.follower[k];
+                mass_factor * self.mass[k] + stiffness_factor * self.stiffness[k] - follower_factor * follower;
         }
         let n = self.base.size();
         for (r, row) in rows.iter().enumerate() {

@@ -26,11 +26,12 @@ use super::watch::{along, approach, carried, depth, gap_at, gradients_into, look
 use super::{Accepted, StepReport, Stepper};
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;
-use crate::newton::{GAP_TOLERANCE, Workspace, add_gradient, timed};
+use crate::newton::{GAP_TOLERANCE, add_gradient};
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::stability::lumped;
 use crate::state::State;
+use crate::workspace::{Workspace, timed};
 
 /// Linearisations of the gaps in a step before it is rejected; two to five are usual.
 const ROUNDS: u32 = 60;

@@ -8,10 +8,11 @@ use crate::balance::known_into;
 use crate::case::{ForceTime, NewtonSpec, TangentRule};
 use crate::ledger;
 use crate::model::{Model, dot};
-use crate::newton::{GAP_TOLERANCE, Trial, Workspace, add_gradient, solve_stage};
+use crate::newton::{GAP_TOLERANCE, Trial, add_gradient, solve_stage};
 use crate::persistency::project;
 use crate::rejected::Rejected;
 use crate::state::{Previous, State};
+use crate::workspace::Workspace;
 
 /// The implicit stepper.
 pub struct Implicit {

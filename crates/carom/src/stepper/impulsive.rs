@@ -27,12 +27,12 @@ use crate::case::NewtonSpec;
 use crate::ledger::{book_kinetic, open_work, work_of_loads};
 use crate::model::Model;
 use crate::newton::{
-    NEARLY_THERE, Trial, Workspace, add_gradient, follower_factor, mass_factor, max_abs, round_off, stiffness_factor,
-    timed,
+    NEARLY_THERE, Trial, add_gradient, follower_factor, mass_factor, max_abs, round_off, stiffness_factor,
 };
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::state::State;
+use crate::workspace::{Workspace, timed};
 
 /// A predicted gap above minus this fraction of L is open: at a tie round-off must not decide.
 const TIE: f64 = 1e-10;

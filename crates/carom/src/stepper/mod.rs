@@ -13,9 +13,9 @@ pub use impulsive::Impulsive;
 use carom_contact::PairEvent;
 
 use crate::model::Model;
-use crate::newton::Workspace;
 use crate::rejected::Rejected;
 use crate::state::State;
+use crate::workspace::Workspace;
 
 /// What happened in a step, for the record.
 #[derive(Clone, Debug, Default)]
