@@ -1,0 +1,40 @@
+//! A node that slides along a chain of facets while Newton's method goes on: it is followed to the facet it is at, in one go, and back.
+
+use carom_contact::{ContactMethod, Detection, NodeToSegment, Pair, PairEvent, Surface};
+
+/// Facets of length 1 from x = 0 to x = 4, and a node (0) at `x`, pressed onto them.
+fn scene(x: f64) -> (NodeToSegment, Vec<[f64; 2]>) {
+    let facets: Vec<Vec<usize>> = (0..4).map(|k| vec![k + 2, k + 1]).collect();
+    let mut y = vec![[x, 0.0]];
+    y.extend((0..5).map(|k| [f64::from(k), 0.0]));
+    (NodeToSegment::new(vec![0], Surface::new(&facets), Detection::ClosestPoint), y)
+}
+
+/// Facet and place of a pair on the facet from x = 1 to x = 2, followed to a node at `x`.
+fn followed(x: f64, left: Option<usize>) -> (usize, f64, Vec<PairEvent>) {
+    let (contact, y) = scene(x);
+    // ξ runs against x here: the outward normal of the chain looks up.
+    let xi = 2.0 * (1.5 - x);
+    let mut pairs = [Pair { node: 0, facet: 1, xi, active: true, lambda: -1.0, start: None, left }];
+    let mut events = Vec::new();
+    assert_eq!(contact.follow(&y, &mut pairs, &mut events), !events.is_empty());
+    (pairs[0].facet, pairs[0].xi, events)
+}
+
+#[test]
+fn a_node_is_followed_over_several_facets_at_once() {
+    let (facet, xi, events) = followed(2.1, None);
+    assert!(facet == 2 && (xi - 0.8).abs() < 1e-12, "{facet} {xi}");
+    assert_eq!(events, [PairEvent::HandOver { node: 0, from: 1, to: 2 }]);
+    // 1.2 facets further: the closest point on the next one lies beyond its end.
+    let (facet, xi, _) = followed(3.05, None);
+    assert!(facet == 3 && (xi - 0.9).abs() < 1e-12, "{facet} {xi}");
+}
+
+#[test]
+fn a_node_barely_past_the_end_stays() {
+    assert_eq!(followed(2.005, None).0, 1);
+    // Handed over from there before: it goes back only when it is clearly there.
+    assert_eq!(followed(2.04, Some(2)).0, 1);
+    assert_eq!(followed(2.06, Some(2)).0, 2);
+}
