@@ -27,6 +27,9 @@ const HURRIED: f64 = 8.0;
 /// Iterations with a kept tangent that count as one towards the allowed number.
 const KEPT_COUNT: f64 = 3.0;
 
+/// Stages whose factors of mass and stiffness agree to this, relatively, have the same matrix: both of a step of Bathe's rule do, but for round-off.
+const SAME: f64 = 1e-12;
+
 /// All that the factor is made of.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Point {
@@ -86,7 +89,8 @@ impl Keeper {
         let mut kept = kept.clone();
         let resting = kept.rest > 0;
         kept.rest = kept.rest.saturating_sub(1);
-        let fits = kept.point.as_ref().is_some_and(|p| p.mass == mass && p.stiffness == stiffness);
+        let same = |a: f64, b: f64| (a - b).abs() <= SAME * b.abs();
+        let fits = kept.point.as_ref().is_some_and(|p| same(p.mass, mass) && same(p.stiffness, stiffness));
         let due = !fits || (kept.steps > 0 && kept.last > (RENEWAL + kept.spent) / f64::from(kept.steps));
         Self {
             kept,

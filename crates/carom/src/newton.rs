@@ -68,10 +68,11 @@ pub(crate) struct Measure {
     pub gap: f64,
 }
 
-/// Solves the stage in `work.stage` from the guess in `trial`. `before`: positions at the end of the stage before, for trajectories.
+/// Solves the stage in `work.stage` from the guess in `trial`. `kept`: the factor of the stage before; `before`: positions at its end, for trajectories.
 pub(crate) fn solve_stage<const D: usize>(
     model: &Model<D>,
     state: &State,
+    kept: &Kept,
     before: &[f64],
     settings: &NewtonSpec,
     trial: &mut Trial,
@@ -82,7 +83,7 @@ pub(crate) fn solve_stage<const D: usize>(
         model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect();
     let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
     let keep = settings.tangent == TangentRule::Kept && keeps(model, work);
-    let mut keeper = Keeper::new(&state.kept, keep, mass, stiffness);
+    let mut keeper = Keeper::new(kept, keep, mass, stiffness);
     if state.halved.is_on() {
         keeper.hurry();
     }

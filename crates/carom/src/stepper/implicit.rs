@@ -5,7 +5,7 @@ use carom_time::{Before, Internal, Kernel, Memory, Stage, Weights};
 
 use super::{Accepted, StepReport, Stepper};
 use crate::balance::known_into;
-use crate::case::{ForceTime, NewtonSpec, TangentRule};
+use crate::case::{ForceTime, NewtonSpec};
 use crate::ledger;
 use crate::model::{Model, dot};
 use crate::newton::{GAP_TOLERANCE, Trial, add_gradient, solve_stage};
@@ -22,11 +22,7 @@ pub struct Implicit {
 
 impl Implicit {
     /// A stepper of a kernel.
-    pub fn new(kernel: Box<dyn Kernel>, mut newton: NewtonSpec) -> Self {
-        if kernel.stages() > 1 {
-            // The matrix changes from stage to stage: there is no one factor to keep.
-            newton.tangent = TangentRule::Full;
-        }
+    pub fn new(kernel: Box<dyn Kernel>, newton: NewtonSpec) -> Self {
         Self { kernel, newton }
     }
 }
@@ -71,7 +67,7 @@ impl<const D: usize> Stepper<D> for Implicit {
             let before = finished.last().map_or(&state.y, |point| &point.y);
             go_on(&next.v, &next.a, (work.stage.end - end) * dt, &mut trial);
             end = work.stage.end;
-            let effort = solve_stage(model, state, before, &self.newton, &mut trial, work)?;
+            let effort = solve_stage(model, state, &next.kept, before, &self.newton, &mut trial, work)?;
             report.newton += effort.iterations;
             report.events.extend(effort.events);
             next.kept = effort.kept;
@@ -176,7 +172,7 @@ impl Implicit {
         stage.acceleration.at_start.clear();
         stage.acceleration.at_start.extend(free.iter().map(|d| -d / (dt * dt)));
         known_into(model, &work.stage, state, &mut work.forces);
-        solve_stage(model, state, &state.y, &self.newton, &mut trial, work)?;
+        solve_stage(model, state, &state.kept, &state.y, &self.newton, &mut trial, work)?;
         Ok(Some(trial.increment.iter().zip(&free).map(|(d, free)| d - free).collect()))
     }
 
