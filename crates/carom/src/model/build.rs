@@ -41,6 +41,9 @@ where
             None => initial_position.extend(places),
         }
         nodal(part, k, "velocity", &spec.velocity, &mut initial_velocity, &mut problems);
+        // Where a formula has no value the rest is told too: every dof needs a number.
+        initial_position.resize(reference.len(), 0.0);
+        initial_velocity.resize(reference.len(), 0.0);
     }
 
     let mut fixed = vec![false; dofs];

@@ -93,6 +93,11 @@ fn bodies_must_not_overlap_where_they_start() {
         problems(&["body.tube.position=[\"X\", \"1.04 - Y\"]"]),
         ["body[0].position: the initial position turns a cell inside out"]
     );
+    // No value at a node of a side that is held.
+    assert_eq!(
+        problems(&["body.anvil.velocity=[\"1/(X + 1)\", \"0\"]"]),
+        ["body[1].velocity: the initial velocity has no value"]
+    );
     // Nor do they where the primary has room.
     assert!(problems(&[LOWER, "body.anvil.position=[\"X\", \"1.1*(Y + 0.5) - 0.6\"]"]).is_empty());
 }
