@@ -1,4 +1,4 @@
-//! The examples of the book run as the book says, and give what they expect.
+//! The examples of the book run as the book says, and give what they expect; every kind of scheme has its page, and its rows in the verification.
 
 #![allow(clippy::unwrap_used)]
 
@@ -30,4 +30,25 @@ fn a_run_that_starts_from_another() {
     assert_eq!(missing.status.code(), Some(2));
     let said = text(&missing.stderr);
     assert!(said.contains("cannot be started from") && said.contains("--set:1:"), "{said}");
+}
+
+/// A kind of the table that a user does not meet, or that the suite does not measure, is not done.
+#[test]
+fn every_scheme_has_a_page_and_rows_in_the_suite() {
+    let read = |path: &str| {
+        let path = format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"));
+        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
+    };
+    let contents = read("docs/book/src/SUMMARY.md");
+    let orders = read("cases/order/orders.toml") + &read("cases/order/nonsmooth.toml");
+    let damping = read("cases/order/damping.toml");
+    for kind in carom_time::KINDS {
+        let (name, row) = (kind.name, format!("kind = \"{}\"", kind.name));
+        assert!(contents.contains(&format!("(integrators/{name}.md)")), "SUMMARY.md has no integrators/{name}.md");
+        assert!(read(&format!("docs/book/src/integrators/{name}.md")).contains(&row), "{name}.md shows no {row}");
+        if name != carom_time::STATIC {
+            assert!(orders.contains(&row), "neither cases/order/orders.toml nor nonsmooth.toml has {row}");
+            assert!(damping.contains(&row), "cases/order/damping.toml has no {row}");
+        }
+    }
 }

@@ -7,6 +7,7 @@ use carom::Simulation;
 use carom::case::{Case, SchemeSpec};
 use carom::frequencies::{Frequencies, frequencies};
 use carom_record::RecordError;
+use carom_time::Integrator;
 
 use crate::Plan;
 
@@ -15,14 +16,14 @@ const POINTS: i32 = 24;
 
 /// ρ of the whole amplification matrix, ξ and period error of its principal pair at Ω; none where that pair does not oscillate.
 fn at(scheme: &SchemeSpec, omega_dt: f64) -> [Option<f64>; 3] {
-    if let Some(scheme) = scheme.nonsmooth() {
+    let Ok(integrator) = scheme.integrator() else { return [None; 3] };
+    if let Integrator::Nonsmooth(scheme, _) = &integrator {
         let pair = scheme.oscillation(omega_dt);
         let [damping, period] =
             [pair.map(|(modulus, angle)| -modulus.ln() / angle), pair.map(|(_, angle)| omega_dt / angle - 1.0)];
         return [Some(scheme.spectral_radius(omega_dt)), damping, period];
     }
-    let Ok(integrator) = scheme.integrator() else { return [None; 3] };
-    let kernel = integrator.kernel();
+    let Some(kernel) = integrator.kernel() else { return [None; 3] };
     let pair = carom_time::map::principal(kernel, omega_dt);
     let radius = carom_time::map::spectral_radius(kernel, omega_dt);
     [Some(radius), pair.map(|p| p.damping_ratio), pair.map(|p| p.period_error)]

@@ -83,7 +83,19 @@ pub struct Explanation {
 /// # Ok::<(), carom_time::SchemeError>(())
 /// ```
 pub fn explain(scheme: &Scheme) -> Explanation {
-    let names = names(scheme);
+    explained(scheme, names(scheme))
+}
+
+/// The same of one that was asked for by this name.
+pub(crate) fn explain_alpha(scheme: &Scheme, asked: &Name) -> Explanation {
+    let mut names = names(scheme);
+    if names.iter().all(|name| name.kind != asked.kind) {
+        names.insert(0, asked.clone());
+    }
+    explained(scheme, names)
+}
+
+fn explained(scheme: &Scheme, names: Vec<Name>) -> Explanation {
     let mut references: Vec<_> = names.iter().filter_map(|name| Some(info(name.kind)?.reference)).collect();
     references.dedup();
     // The raw parameters are one more way to say it, not one more source.

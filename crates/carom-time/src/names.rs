@@ -3,8 +3,11 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::family::{KINDS, KindInfo, scheme};
-use crate::scheme::Scheme;
+use crate::error::SchemeError;
+use crate::integrator::Integrator;
+use crate::kind::{KindInfo, scheme};
+use crate::scheme::{ForceRule, Scheme};
+use crate::schemes::KINDS;
 
 /// A way to ask for a scheme.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -13,6 +16,17 @@ pub struct Name {
     pub kind: &'static str,
     /// Parameters by key.
     pub parameters: BTreeMap<&'static str, f64>,
+}
+
+impl Name {
+    /// What it stands for. `forces` is for the α family.
+    ///
+    /// # Errors
+    /// As [`scheme`].
+    pub fn integrator(&self, forces: ForceRule) -> Result<Integrator, SchemeError> {
+        let given = self.parameters.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();
+        scheme(self.kind, &given, forces)
+    }
 }
 
 impl std::fmt::Display for Name {
@@ -35,10 +49,10 @@ pub struct Elsewhere {
     pub note: &'static str,
 }
 
-/// Every way to ask for these four parameters, most particular first. Each candidate is built through the catalogue and compared.
+/// The published ways to ask for these four parameters that are known here, most particular first. Each candidate is built through the catalogue and compared.
 pub(crate) fn names(of: &Scheme) -> Vec<Name> {
     let Scheme { alpha_m, alpha_f, beta, gamma, .. } = *of;
-    let candidates: [(&str, &[(&'static str, f64)]); 7] = [
+    let candidates: [(&'static str, &[(&'static str, f64)]); 7] = [
         ("hu", &[]),
         ("newmark", &[("beta", beta), ("gamma", gamma)]),
         ("newmark", &[("rho_inf", (3.0 - 2.0 * gamma) / (1.0 + 2.0 * gamma))]),
@@ -54,10 +68,10 @@ pub(crate) fn names(of: &Scheme) -> Vec<Name> {
     let made = candidates.into_iter().filter_map(|(kind, parameters)| {
         // ρ∞ from a quotient may leave [0, 1] by a rounding.
         let clean = |x: f64| if (x - x.round()).abs() < 1e-14 { x.round() + 0.0 } else { x };
-        let parameters: BTreeMap<_, _> = parameters.iter().map(|&(key, value)| (key, clean(value))).collect();
-        let given = parameters.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();
-        let made = scheme(kind, &given, of.forces).ok()?.alpha().filter(same)?;
-        (made.forces == of.forces).then_some(Name { kind: info(kind)?.name, parameters })
+        let parameters = parameters.iter().map(|&(key, value)| (key, clean(value))).collect();
+        let name = Name { kind, parameters };
+        let made = name.integrator(of.forces).ok()?.alpha().filter(same)?;
+        (made.forces == of.forces).then_some(name)
     });
     made.collect()
 }

@@ -1,4 +1,4 @@
-//! The α family as data: what a step of eq. (15) needs, and the published ways to choose it.
+//! The α family as data: what a step of eq. (15) needs. The published ways to choose it are files of `schemes/`.
 //!
 //! ```text
 //! (1 − α_m) M a_{s+1} + α_m M a_s + (1 − α_f) f_{s+1} + α_f f_s = 0                              (15)
@@ -37,86 +37,8 @@ pub struct Scheme {
     pub forces: ForceRule,
 }
 
-/// Constructors by published name. All average forces; see [`Scheme::with_forces`].
+/// Constructors by published name stand in [`crate::schemes`]; all average forces, see [`Scheme::with_forces`].
 impl Scheme {
-    /// Four raw parameters. Refused: what is not finite, β ≤ 0 (no implicit step), α_m = 1 or α_f = 1 (no new inertia or no new force).
-    pub fn generalized_alpha(alpha_m: f64, alpha_f: f64, beta: f64, gamma: f64) -> Result<Self, SchemeError> {
-        let scheme = Self { alpha_m, alpha_f, beta, gamma, forces: ForceRule::AverageForces };
-        scheme.checked()
-    }
-
-    /// Newmark 1959. (¼, ½) is the trapezoidal rule.
-    ///
-    /// ```
-    /// let trapezoidal = carom_time::Scheme::newmark(0.25, 0.5)?;
-    /// assert_eq!((trapezoidal.alpha_m, trapezoidal.alpha_f), (0.0, 0.0));
-    /// assert!(carom_time::Scheme::newmark(0.0, 0.5).is_err());
-    /// # Ok::<(), carom_time::SchemeError>(())
-    /// ```
-    pub fn newmark(beta: f64, gamma: f64) -> Result<Self, SchemeError> {
-        Self::generalized_alpha(0.0, 0.0, beta, gamma)
-    }
-
-    /// Newmark with damping, order 1: γ = (3 − ρ∞)/(2(1 + ρ∞)), β = (γ + ½)²/4.
-    pub fn newmark_damped(rho_inf: f64) -> Result<Self, SchemeError> {
-        let r = in_unit_interval(rho_inf)?;
-        let gamma = (3.0 - r) / (2.0 * (1.0 + r));
-        Self::newmark(0.25 * (gamma + 0.5) * (gamma + 0.5), gamma)
-    }
-
-    /// Hu 1997: γ = 3/2, β = 1. The damped Newmark rule at ρ∞ = 0, first order.
-    pub const fn hu() -> Self {
-        Self { alpha_m: 0.0, alpha_f: 0.0, beta: 1.0, gamma: 1.5, forces: ForceRule::AverageForces }
-    }
-
-    /// Hilber, Hughes and Taylor 1977 by α = α_f ≥ 0 (their α is −α_f): γ = ½ + α, β = (1 + α)²/4. Above 1/3 ρ∞ rises again:
-    /// used as given, [`Scheme::remarks`] says so.
-    ///
-    /// ```
-    /// let hht = carom_time::Scheme::hht(0.25)?;
-    /// assert_eq!((hht.gamma, hht.beta), (0.75, 0.390625));
-    /// let refused = carom_time::Scheme::hht(-0.05).unwrap_err().to_string();
-    /// assert!(refused.contains("write alpha = 0.05"));
-    /// # Ok::<(), carom_time::SchemeError>(())
-    /// ```
-    pub fn hht(alpha: f64) -> Result<Self, SchemeError> {
-        if alpha < 0.0 && alpha.is_finite() {
-            let hint = format!(
-                "write alpha = {}: here alpha is the share of the old forces, the opposite of the α of the 1977 paper",
-                -alpha
-            );
-            return Err(SchemeError::OutOfRange { key: "alpha", value: alpha, range: "[0, 1)", hint });
-        }
-        if alpha >= 1.0 {
-            let hint = "the usual range is 0 to 1/3".to_owned();
-            return Err(SchemeError::OutOfRange { key: "alpha", value: alpha, range: "[0, 1)", hint });
-        }
-        finite("alpha", alpha)?;
-        Self::generalized_alpha(0.0, alpha, 0.25 * (1.0 + alpha) * (1.0 + alpha), 0.5 + alpha)
-    }
-
-    /// Wood, Bossak and Zienkiewicz 1980: α_m = (ρ∞ − 1)/(ρ∞ + 1) ≤ 0, γ = ½ − α_m, β = (1 − α_m)²/4.
-    pub fn wbz(rho_inf: f64) -> Result<Self, SchemeError> {
-        let r = in_unit_interval(rho_inf)?;
-        let alpha_m = (r - 1.0) / (r + 1.0);
-        Self::generalized_alpha(alpha_m, 0.0, 0.25 * (1.0 - alpha_m) * (1.0 - alpha_m), 0.5 - alpha_m)
-    }
-
-    /// Chung and Hulbert 1993, eq. (16), (17): α_m = (2ρ∞ − 1)/(ρ∞ + 1), α_f = ρ∞/(ρ∞ + 1), γ = ½ − α_m + α_f, β = (1 − α_m + α_f)²/4.
-    ///
-    /// ```
-    /// let scheme = carom_time::Scheme::chung_hulbert(0.6)?;
-    /// assert!((scheme.alpha_m - 0.125).abs() < 1e-15 && (scheme.beta - 0.390625).abs() < 1e-15);
-    /// assert!(carom_time::Scheme::chung_hulbert(1.2).is_err());
-    /// # Ok::<(), carom_time::SchemeError>(())
-    /// ```
-    pub fn chung_hulbert(rho_inf: f64) -> Result<Self, SchemeError> {
-        let r = in_unit_interval(rho_inf)?;
-        // α_f − α_m = (1 − ρ∞)/(1 + ρ∞), formed without cancellation.
-        let (alpha_m, alpha_f, shift) = ((2.0 * r - 1.0) / (r + 1.0), r / (r + 1.0), (1.0 - r) / (1.0 + r));
-        Self::generalized_alpha(alpha_m, alpha_f, 0.25 * (1.0 + shift) * (1.0 + shift), 0.5 + shift)
-    }
-
     /// The same scheme with another rule for what α_f averages.
     #[must_use]
     pub const fn with_forces(self, forces: ForceRule) -> Self {
@@ -146,7 +68,7 @@ impl Scheme {
     }
 }
 
-fn finite(key: &'static str, value: f64) -> Result<f64, SchemeError> {
+pub(crate) fn finite(key: &'static str, value: f64) -> Result<f64, SchemeError> {
     if value.is_finite() {
         Ok(value)
     } else {

@@ -26,6 +26,11 @@ pub struct Weights {
     pub contact: f64,
 }
 
+impl Weights {
+    /// Every force in full.
+    pub const FULL: Self = Self { mass: 1.0, internal: 1.0, external: 1.0, contact: 1.0 };
+}
+
 /// A nodal vector as an affine function of the increment of positions since the step's start: slope·(y − y_s) + at_start.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Affine {
@@ -77,6 +82,13 @@ pub struct Stage {
 }
 
 impl Stage {
+    /// Everything but the maps of a stage whose balance holds at its end.
+    pub fn at_the_end(&mut self, end: f64, mean: [f64; 3]) {
+        (self.end, self.mean) = (end, mean);
+        (self.weights, self.before, self.average) = (Weights::FULL, Weights::default(), 0.0);
+        self.internal = Internal::Gradient;
+    }
+
     /// Whether the balance has no inertia: velocities and accelerations are then zero, and time only parametrises the loads.
     pub fn is_static(&self) -> bool {
         self.weights.mass == 0.0

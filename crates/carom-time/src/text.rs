@@ -4,10 +4,11 @@ use std::fmt::{Display, Formatter, Result};
 use serde::Serialize;
 
 use crate::explain::{Accuracy, Explanation};
-use crate::family::scheme;
+use crate::integrator::Explained;
 use crate::names::short;
-use crate::nonsmooth_text::{NonsmoothExplanation, explain_all_nonsmooth};
+use crate::nonsmooth_text::NonsmoothExplanation;
 use crate::scheme::{ForceRule, Scheme};
+use crate::schemes::KINDS;
 
 /// ξ and PE without noise of the last digits.
 fn cell(x: Option<f64>, scale: f64) -> String {
@@ -87,29 +88,6 @@ pub struct Catalogue {
     pub nonsmooth: Vec<NonsmoothExplanation>,
 }
 
-/// Members shown of each kind.
-const SHOWN: &[(&str, &[(&str, f64)])] = &[
-    ("newmark", &[("beta", 0.25), ("gamma", 0.5)]),
-    ("newmark", &[("rho_inf", 0.9)]),
-    ("newmark", &[("rho_inf", 0.6)]),
-    ("hu", &[]),
-    ("hht", &[("alpha", 0.05)]),
-    ("hht", &[("alpha", 0.25)]),
-    ("wbz", &[("rho_inf", 0.6)]),
-    ("wbz", &[("rho_inf", 0.1)]),
-    ("chung-hulbert", &[("rho_inf", 0.8)]),
-    ("chung-hulbert", &[("rho_inf", 0.6)]),
-    ("chung-hulbert", &[("rho_inf", 0.1)]),
-    ("chung-hulbert", &[("rho_inf", 0.0)]),
-    ("generalized-alpha", &[("alpha_m", 0.5), ("alpha_f", 0.5), ("beta", 0.25), ("gamma", 0.5)]),
-    ("backward-euler", &[]),
-    ("bdf2", &[]),
-    ("tr-bdf2", &[]),
-    ("bathe", &[("rho_inf", 0.0)]),
-    ("bathe", &[("rho_inf", 0.6)]),
-    ("energy-momentum", &[]),
-];
-
 /// The catalogue as a table.
 ///
 /// ```
@@ -117,24 +95,31 @@ const SHOWN: &[(&str, &[(&str, f64)])] = &[
 /// assert_eq!(hu.map(|row| (row.order, row.rho_inf, row.held_steps)), Some((1, 0.0, Some(2))));
 /// ```
 pub fn explain_all() -> Catalogue {
-    let row = |&(kind, parameters): &(&'static str, &[(&str, f64)])| {
-        let given = parameters.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();
-        let scheme = scheme(kind, &given, ForceRule::AverageForces).ok()?;
-        // Raw parameters stand in their columns.
-        let shown = if parameters.len() > 2 { &[] } else { parameters };
-        let words: Vec<_> = shown.iter().map(|(key, value)| format!("{key} {value}")).collect();
-        let told = scheme.explain();
-        Some(CatalogueRow {
-            kind,
-            parameters: words.join(", "),
-            scheme: told.scheme,
-            order: told.order,
-            rho_inf: told.rho_inf,
-            accuracy: told.accuracy.into_iter().find(|a| a.steps_per_period == 10)?,
-            held_steps: told.held.steps,
-        })
-    };
-    Catalogue { rows: SHOWN.iter().filter_map(row).collect(), nonsmooth: explain_all_nonsmooth() }
+    let mut told = Catalogue { rows: Vec::new(), nonsmooth: Vec::new() };
+    let shown = KINDS.iter().flat_map(|kind| kind.members.iter().map(move |member| (kind, member)));
+    for (kind, member) in shown.filter(|(_, member)| member.shown) {
+        match kind.named(member).integrator(ForceRule::AverageForces).map(|made| made.explain()) {
+            Ok(Explained::Stages(scheme)) => told.rows.extend(row(kind.name, member.parameters, *scheme)),
+            Ok(Explained::Nonsmooth(scheme)) => told.nonsmooth.push(scheme),
+            Err(_) => {}
+        }
+    }
+    told
+}
+
+fn row(kind: &'static str, parameters: &[(&str, f64)], told: Explanation) -> Option<CatalogueRow> {
+    // Raw parameters stand in their columns.
+    let shown = if parameters.len() > 2 { &[] } else { parameters };
+    let words: Vec<_> = shown.iter().map(|(key, value)| format!("{key} {value}")).collect();
+    Some(CatalogueRow {
+        kind,
+        parameters: words.join(", "),
+        scheme: told.scheme,
+        order: told.order,
+        rho_inf: told.rho_inf,
+        accuracy: told.accuracy.into_iter().find(|a| a.steps_per_period == 10)?,
+        held_steps: told.held.steps,
+    })
 }
 
 impl Display for Catalogue {
@@ -174,13 +159,16 @@ impl Display for Catalogue {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{KINDS, explain};
+    use crate::explain;
 
+    /// All but equilibrium, which integrates nothing.
     #[test]
     fn every_kind_is_shown() {
         let table = explain_all();
-        assert_eq!(table.rows.len(), SHOWN.len());
-        assert!(KINDS.iter().all(|kind| table.rows.iter().any(|row| row.kind == kind.name)));
+        let shown = KINDS.iter().flat_map(|kind| kind.members).filter(|member| member.shown);
+        assert_eq!(table.rows.len() + table.nonsmooth.len(), shown.count());
+        let names = || table.rows.iter().map(|row| row.kind).chain(table.nonsmooth.iter().map(|told| told.kind));
+        assert!(KINDS.iter().all(|kind| kind.name == crate::STATIC || names().any(|name| name == kind.name)));
     }
 
     #[test]

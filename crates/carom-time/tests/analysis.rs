@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 
-use carom_time::{ForceRule, Kernel, Memory, Oscillator, Root, Scheme, Stage, explain};
+use carom_time::{ForceRule, KINDS, Kernel, Memory, Oscillator, Root, Scheme, Stage, explain};
 
 fn ch(r: f64) -> Scheme {
     Scheme::chung_hulbert(r).unwrap()
@@ -18,13 +18,9 @@ fn many() -> Vec<Scheme> {
     let rho = [0.0, 0.1, 0.3, 0.6, 0.9, 1.0];
     let mut all: Vec<_> =
         rho.iter().flat_map(|&r| [ch(r), Scheme::wbz(r).unwrap(), Scheme::newmark_damped(r).unwrap()]).collect();
-    all.extend([
-        hht_of(0.5),
-        hht_of(0.9),
-        Scheme::hht(0.4).unwrap(),
-        Scheme::hu(),
-        Scheme::newmark(0.25, 0.5).unwrap(),
-    ]);
+    let members = KINDS.iter().flat_map(|kind| kind.members.iter().map(|member| kind.named(member)));
+    all.extend(members.filter_map(|name| name.integrator(ForceRule::AverageForces).unwrap().alpha()));
+    all.push(hht_of(0.9));
     all.extend([Scheme::newmark(1.0 / 6.0, 0.5).unwrap(), Scheme::generalized_alpha(-0.2, 0.3, 0.8, 1.1).unwrap()]);
     all
 }

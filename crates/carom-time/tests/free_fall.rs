@@ -3,23 +3,12 @@
 
 #![allow(clippy::unwrap_used)]
 
-use carom_time::{ForceRule, Oscillator, Scheme, Stage};
+use carom_time::{ForceRule, KINDS, Oscillator, Scheme, Stage};
 
 fn family() -> Vec<Scheme> {
-    let made = [
-        Scheme::newmark(0.25, 0.5),
-        Scheme::newmark_damped(0.6),
-        Ok(Scheme::hu()),
-        Scheme::hht(0.05),
-        Scheme::hht(1.0 / 3.0),
-        Scheme::wbz(0.6),
-        Scheme::chung_hulbert(0.0),
-        Scheme::chung_hulbert(0.1),
-        Scheme::chung_hulbert(0.6),
-        Scheme::chung_hulbert(1.0),
-        Scheme::generalized_alpha(-0.2, 0.3, 0.6, 0.9),
-    ];
-    let averaged = made.into_iter().map(Result::unwrap);
+    let members = KINDS.iter().flat_map(|kind| kind.members.iter().map(|member| kind.named(member)));
+    let named = members.filter_map(|name| name.integrator(ForceRule::AverageForces).unwrap().alpha());
+    let averaged = named.chain([Scheme::generalized_alpha(-0.2, 0.3, 0.6, 0.9).unwrap()]);
     averaged.flat_map(|scheme| [scheme, scheme.with_forces(ForceRule::AverageState)]).collect()
 }
 

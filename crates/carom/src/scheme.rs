@@ -1,6 +1,6 @@
 //! From a scheme's name in the case to what steps: a kernel of implicit stages, or a scheme with a contact law of its own.
 
-use carom_time::{Integrator, Kernel, Nonsmooth, STATIC, SchemeError, Static};
+use carom_time::{Integrator, Kernel, Nonsmooth, STATIC, SchemeError};
 
 use crate::case::{Case, ContactLaw, Problem, SchemeSpec};
 use crate::model::Model;
@@ -12,7 +12,7 @@ impl SchemeSpec {
         self.kind == STATIC
     }
 
-    /// The scheme by its name and parameters, where it is a list of implicit stages with inertia.
+    /// The scheme by its name and parameters.
     ///
     /// # Errors
     /// Unknown kinds, missing, superfluous or inadmissible parameters.
@@ -22,18 +22,9 @@ impl SchemeSpec {
 
     /// The scheme with a contact law of its own; `None` where the kind is none of these.
     pub fn nonsmooth(&self) -> Option<Nonsmooth> {
-        carom_time::nonsmooth(&self.kind, &self.parameters)?.ok()
-    }
-
-    /// Whether it can be used.
-    ///
-    /// # Errors
-    /// As [`Self::integrator`].
-    pub fn checked(&self) -> Result<(), SchemeError> {
-        match carom_time::nonsmooth(&self.kind, &self.parameters) {
-            Some(made) => made.map(|_| ()),
-            None if self.is_static() => Ok(()),
-            None => self.integrator().map(|_| ()),
+        match self.integrator() {
+            Ok(Integrator::Nonsmooth(scheme, _)) => Some(scheme),
+            _ => None,
         }
     }
 
@@ -52,32 +43,29 @@ impl SchemeSpec {
 
     /// Whether no system is solved, so that the mass must be diagonal and the step short.
     pub fn is_explicit(&self) -> bool {
-        matches!(self.nonsmooth(), Some(Nonsmooth::CentralDifference | Nonsmooth::PaoliSchatzman))
+        matches!(self.nonsmooth(), Some(Nonsmooth::Explicit(_)))
     }
 
-    /// The scheme as a list of implicit stages.
-    ///
-    /// # Errors
-    /// As [`Self::integrator`], located at `time.scheme`.
-    pub fn kernel(&self) -> Result<Box<dyn Kernel>, Vec<Problem>> {
-        if self.is_static() {
-            return Ok(Box::new(Static));
-        }
-        self.integrator().map(Integrator::into_kernel).map_err(|error| {
-            let path = format!("time.scheme.{}", error.key());
-            vec![Problem::new(path, "the scheme cannot be used", error.to_string(), "carom explain lists schemes")]
-        })
+    /// The scheme as a list of implicit stages; `None` where it cannot be used or contact is not a force in their balance.
+    pub fn kernel(&self) -> Option<Box<dyn Kernel>> {
+        self.integrator().ok()?.into_kernel()
     }
 }
 
 /// The stepper of a case.
 ///
 /// # Errors
-/// As [`SchemeSpec::kernel`].
+/// As [`SchemeSpec::integrator`], located at `time.scheme`.
 pub(crate) fn stepper<const D: usize>(case: &Case, model: &Model<D>) -> Result<Box<dyn Stepper<D>>, Vec<Problem>> {
-    Ok(match case.time.scheme.nonsmooth() {
-        None => Box::new(Implicit::new(case.time.scheme.kernel()?, case.newton.clone())),
-        Some(Nonsmooth::Impulse(scheme)) => Box::new(Impulsive::new(scheme, case.newton.clone())),
-        Some(_) => Box::new(Explicit::new(model)),
+    let newton = || case.newton.clone();
+    let integrator = case.time.scheme.integrator().map_err(|error| {
+        let path = format!("time.scheme.{}", error.key());
+        vec![Problem::new(path, "the scheme cannot be used", error.to_string(), "carom explain lists schemes")]
+    })?;
+    Ok(match integrator {
+        Integrator::Alpha(scheme, _) => Box::new(Implicit::new(Box::new(scheme), newton())),
+        Integrator::Stages(kernel, _) => Box::new(Implicit::new(kernel, newton())),
+        Integrator::Nonsmooth(Nonsmooth::Impulse(scheme), _) => Box::new(Impulsive::new(scheme, newton())),
+        Integrator::Nonsmooth(Nonsmooth::Explicit(_), _) => Box::new(Explicit::new(model)),
     })
 }

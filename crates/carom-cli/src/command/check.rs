@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use carom::case::{Case, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec};
 use carom::stability::SAFETY;
+use carom_time::Explained;
 
 use crate::exit::{Exit, Failure};
 use crate::out;
@@ -106,13 +107,14 @@ fn counted(body: &BodyFacts) -> String {
 
 /// What the scheme's parameters imply.
 fn derived(spec: &SchemeSpec) -> Option<String> {
-    if let Some(scheme) = spec.nonsmooth() {
-        return Some(scheme.rho_inf().map_or_else(
-            || format!("order {}, explicit", scheme.order()),
-            |rho| format!("order {}, ρ∞ = {}, impulses", scheme.order(), short(rho)),
-        ));
+    if spec.is_static() {
+        return None;
     }
-    let scheme = carom_time::scheme(&spec.kind, &spec.parameters, spec.forces).ok()?;
-    let told = scheme.explain();
-    Some(format!("order {}, ρ∞ = {}", told.order, short(told.rho_inf)))
+    Some(match spec.integrator().ok()?.explain() {
+        Explained::Stages(told) => format!("order {}, ρ∞ = {}", told.order, short(told.rho_inf)),
+        Explained::Nonsmooth(told) => match told.rho_inf {
+            None => format!("order {}, explicit", told.order),
+            Some(rho) => format!("order {}, ρ∞ = {}, impulses", told.order, short(rho)),
+        },
+    })
 }

@@ -41,11 +41,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             help: "carom explain lists the time integrators".into(),
         });
     }
-    if let Some(scheme) = spec.nonsmooth() {
-        return tell(&carom_time::explain_nonsmooth(&scheme), arguments.json);
-    }
-    let scheme = carom_time::scheme(&spec.kind, &spec.parameters, spec.forces)
-        .map_err(|e| Failure::Argument { what: e.to_string(), help: String::new() })?;
+    let scheme = spec.integrator().map_err(|e| Failure::Argument { what: e.to_string(), help: String::new() })?;
     tell(&scheme.explain(), arguments.json)
 }
 

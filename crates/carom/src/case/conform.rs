@@ -166,7 +166,7 @@ impl Check {
                     }
                 }
             }
-            (Kind::Variant(variants), Value::Table(table)) => self.variant(table, variants, path),
+            (Kind::Variant(variants), Value::Table(table)) => self.variant(table, variants(), path),
             _ => self.wrong(node, key, path),
         }
     }
@@ -372,8 +372,9 @@ fn homes(word: &str) -> Vec<&'static str> {
         for key in table.keys {
             match key.kind {
                 Kind::Table(table) | Kind::Tables(table) | Kind::SideOr(table) => visit(table, word, found),
-                Kind::Variant(variants) if variants.tag == word => found.push(variants.name),
+                Kind::Variant(variants) if variants().tag == word => found.push(variants().name),
                 Kind::Variant(variants) => {
+                    let variants = variants();
                     let all = variants.tables.iter().map(|(_, t)| t).chain(variants.or);
                     found.extend(all.filter(|t| t.key(word).is_some()).map(|t| t.name));
                 }

@@ -77,12 +77,12 @@ pub(super) fn read(
     path: &str,
     problems: &mut Vec<Problem>,
 ) -> Option<MeshSpec> {
-    if let Some(spec) = keys::SHAPES.or.filter(|_| table.get("file").is_some()) {
+    if let Some(spec) = keys::shapes().or.filter(|_| table.get("file").is_some()) {
         let v = View { table, keys: spec.keys, preset };
         return mesh_file::read(v, dimension, element, folder, path, problems);
     }
     let shape = table.get("shape")?.text()?;
-    let v = View { table, keys: keys::SHAPES.table(shape)?.keys, preset };
+    let v = View { table, keys: keys::shapes().table(shape)?.keys, preset };
     let wanted = if shape == "interval" { 1 } else { 2 };
     if wanted != dimension {
         let what = format!("the shape \"{shape}\" is of dimension {wanted}");

@@ -273,17 +273,13 @@ fn time(v: View, problems: &mut Vec<Problem>) -> Option<TimeSpec> {
 
 fn scheme(table: &Table, preset: Preset, path: &str, problems: &mut Vec<Problem>) -> Option<SchemeSpec> {
     let kind = table.get("kind")?.text()?;
-    let v = View { table, keys: keys::SCHEMES.table(kind)?.keys, preset };
+    let v = View { table, keys: keys::schemes().table(kind)?.keys, preset };
     let numbers = v.keys.iter().filter(|k| matches!(k.kind, Kind::Number(_)));
-    if kind == carom_time::STATIC {
-        let forces = carom_time::ForceRule::AverageForces;
-        return Some(SchemeSpec { kind: kind.to_owned(), parameters: std::collections::BTreeMap::new(), forces });
-    }
     let parameters = numbers.filter_map(|k| Some((k.name.to_owned(), v.number(k.name)?))).collect();
     let forces =
         if v.keys.iter().any(|k| k.name == "forces") { v.choice("forces")? } else { carom_time::ForceRule::default() };
     let spec = SchemeSpec { kind: kind.to_owned(), parameters, forces };
-    if let Err(error) = spec.checked()
+    if let Err(error) = spec.integrator()
         && !problems.iter().any(|p| p.path.starts_with(path))
     {
         let help = match &error {
@@ -293,7 +289,7 @@ fn scheme(table: &Table, preset: Preset, path: &str, problems: &mut Vec<Problem>
             }
             SchemeError::UnknownKind { .. } => suggest::help(kind, error.known().iter().copied()),
         };
-        let why = keys::SCHEMES.table(kind).map_or(keys::SCHEMES.doc, |t| t.doc);
+        let why = keys::schemes().table(kind).map_or(keys::schemes().doc, |t| t.doc);
         problems.push(Problem::new(joined(path, error.key()), error.to_string(), why, help));
     }
     Some(spec)
@@ -309,7 +305,7 @@ pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, Case
     let kind_line = format!("kind = {}", toml_edit::Value::from(kind));
     let text = std::iter::once(kind_line).chain(parameters.iter().map(line)).collect::<Vec<_>>().join("\n");
     let document = Document::parse("scheme", &text, &[])?;
-    let mut problems = conform::variant(document.root(), &keys::SCHEMES);
+    let mut problems = conform::variant(document.root(), keys::schemes());
     let spec = scheme(document.root(), Preset::Default, "", &mut problems);
     spec.filter(|_| problems.is_empty()).ok_or_else(|| document.diagnose_all(&problems))
 }

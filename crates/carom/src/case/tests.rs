@@ -180,15 +180,21 @@ fn later_problems_are_placed() {
     assert_eq!(place("newton.tolerance").0, 0);
 }
 
+/// A member as `explain` and cases name it is read as that member, and the example of each key is a value it takes.
 #[test]
-fn scheme_tables_are_the_catalogue() {
-    // Besides the integrators there is equilibrium, which has nothing to analyse.
-    let keys = |table: &keys::Table| table.keys.iter().map(|k| k.name).filter(|k| *k != "forces").collect::<Vec<_>>();
-    let tables = keys::SCHEMES.tables.iter().filter(|(name, _)| *name != carom_time::STATIC);
-    let ours: Vec<_> = tables.map(|(name, table)| (*name, keys(table))).collect();
-    let implicit = carom_time::KINDS.iter().map(|k| (k.name, k.all_keys()));
-    let others = carom_time::NONSMOOTH_KINDS.iter().map(|k| (k.name, k.keys.to_vec()));
-    assert_eq!(ours, implicit.chain(others).collect::<Vec<_>>());
+fn every_member_of_every_kind_is_read() {
+    for kind in carom_time::KINDS {
+        for member in kind.members {
+            let parameters: Vec<_> = member.parameters.iter().map(|(key, value)| format!("{key}={value:?}")).collect();
+            let spec = read_scheme(kind.name, &parameters).unwrap();
+            assert_eq!((&*spec.kind, spec.parameters.len()), (kind.name, member.parameters.len()));
+            assert!(member.parameters.iter().all(|(key, value)| spec.parameters[*key] == *value), "{}", kind.name);
+        }
+        for set in kind.sets {
+            let examples: Vec<_> = set.iter().map(|p| format!("{}={}", p.key, p.example)).collect();
+            read_scheme(kind.name, &examples).unwrap();
+        }
+    }
 }
 
 #[test]

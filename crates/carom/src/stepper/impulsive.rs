@@ -41,7 +41,7 @@ const HALVINGS: usize = 8;
 
 /// The stepper of impulses.
 pub struct Impulsive {
-    scheme: Impulse,
+    scheme: Box<dyn Impulse>,
     newton: NewtonSpec,
 }
 
@@ -63,7 +63,7 @@ struct Rows<const D: usize> {
 
 impl Impulsive {
     /// A stepper of a scheme.
-    pub fn new(scheme: Impulse, newton: NewtonSpec) -> Self {
+    pub fn new(scheme: Box<dyn Impulse>, newton: NewtonSpec) -> Self {
         Self { scheme, newton }
     }
 }
@@ -79,7 +79,8 @@ impl<const D: usize> Stepper<D> for Impulsive {
     ) -> Result<Accepted, Rejected> {
         let mut stage = std::mem::take(&mut work.stage);
         let memory = Memory { states: &[(&state.y, &state.v, &state.a)], before: None };
-        let shares = self.scheme.stage_into(dt, &memory, &mut stage);
+        self.scheme.stage_into(0, dt, &memory, &mut stage);
+        let shares = self.scheme.shares(dt);
         work.stage = stage;
         begin(model, state, to, work)?;
         known_into(model, &work.stage, state, &mut work.forces);

@@ -3,6 +3,7 @@
 use carom::case::{Case, Document, read};
 use carom::model::{Dimension, Space};
 use carom::{GridReport, Simulation};
+use carom_time::{KINDS, KindInfo, Member};
 
 /// Two discs that meet off centre, in contact within the run.
 pub(crate) const DISCS: &str = r#"
@@ -43,6 +44,12 @@ pub(crate) fn case<S: AsRef<str>>(text: &str, sets: &[S]) -> Case {
     let sets: Vec<String> = sets.iter().map(|set| set.as_ref().to_owned()).collect();
     let document = Document::parse("case.toml", text, &sets).unwrap_or_else(|e| panic!("{e}"));
     read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)))
+}
+
+/// The members of every kind with a contact law of its own, or of every other: as a case asks for it, with what is published of it.
+pub(crate) fn schemes(nonsmooth: bool) -> impl Iterator<Item = (String, &'static Member)> {
+    let kinds = KINDS.iter().filter(move |kind| kind.is_nonsmooth() == nonsmooth);
+    kinds.flat_map(|kind: &KindInfo| kind.members.iter().map(|member| (kind.named(member).to_string(), member)))
 }
 
 /// A simulation of a case, on one thread.

@@ -42,7 +42,7 @@ impl Check<'_> {
             self.add(path("law"), "contacts have different laws", why, "give all contacts one law");
         }
         let Some(scheme) = self.draft.time.as_ref().map(|time| &time.scheme) else { return };
-        if let Ok(kernel) = scheme.kernel()
+        if let Some(kernel) = scheme.kernel()
             && !kernel.has_predictor()
         {
             let what = format!("scheme `{}` has no predictor to project", scheme.kind);

@@ -13,8 +13,8 @@ impl Check<'_> {
             self.masses(spec);
             self.still_supports(spec);
             self.rules_of_stages(spec);
-            self.restitutions(spec, scheme);
-        } else if spec.checked().is_ok() {
+            self.restitutions(spec, &scheme);
+        } else if spec.integrator().is_ok() {
             self.no_restitution(spec, "the balance at the end of a step holds positions");
         }
         for (i, contact) in draft.contacts.iter().enumerate() {
@@ -108,8 +108,8 @@ impl Check<'_> {
         }
     }
 
-    fn restitutions(&mut self, spec: &SchemeSpec, scheme: Nonsmooth) {
-        if scheme == Nonsmooth::CentralDifference {
+    fn restitutions(&mut self, spec: &SchemeSpec, scheme: &Nonsmooth) {
+        if matches!(scheme, Nonsmooth::Explicit(scheme) if !scheme.restitution) {
             self.no_restitution(spec, "its force keeps the next positions out of contact, and no more");
         }
     }

@@ -1,10 +1,12 @@
 //! The keys of a case file, once: what the reader accepts, what the schema and the documentation say.
 
+mod schemes;
+mod shapes;
 mod tables;
-mod variants;
 
+pub use schemes::schemes;
+pub use shapes::shapes;
 pub use tables::{CASE, EXPECT};
-pub use variants::{SCHEMES, SHAPES};
 
 /// A table of the case file: its keys, and those of later versions.
 #[derive(Debug)]
@@ -97,7 +99,7 @@ pub enum Kind {
     /// Any number of tables, `[[name]]`.
     Tables(&'static Table),
     /// A table whose keys depend on the value of one of them.
-    Variant(&'static Variants),
+    Variant(fn() -> &'static Variants),
 }
 
 /// Tables told apart by the value of the key `tag`.
@@ -213,7 +215,7 @@ impl Kind {
             Self::SideOr(_) => "a side \"body.side\", or a rigid { plane = { point, normal } }".into(),
             Self::Table(_) => "a table { key = value }".into(),
             Self::Tables(table) => format!("tables written {}", table.name),
-            Self::Variant(variants) => format!("a table {{ {} = \"…\", … }}", variants.tag),
+            Self::Variant(variants) => format!("a table {{ {} = \"…\", … }}", variants().tag),
         }
     }
 }

@@ -4,7 +4,7 @@ use super::Kind::{
     Choice, Choices, Count, Formula, Formulas, FormulasOr, Name, Number, NumberOrFalse, Numbers, Side, SideOr, Sides,
     Tables, Text, Truth, Variant, Vector,
 };
-use super::{ANY, IN_SPACE, IN_SPACE_AND_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, SCHEMES, SHAPES, Table, key};
+use super::{ANY, IN_SPACE, IN_SPACE_AND_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, schemes, shapes};
 
 /// The whole file.
 pub const CASE: Table = Table {
@@ -118,7 +118,7 @@ const BODY: Table = Table {
             "Cell type: L2 L3 L4 in dimension 1, T3 T6 T10 in dimension 2.",
         )
         .example("\"T6\""),
-        key("mesh", Variant(&SHAPES), "Shape and fineness.")
+        key("mesh", Variant(shapes), "Shape and fineness.")
             .example("{ shape = \"rectangle\", min = [0.0, 0.0], max = [1.0, 1.0], cells = [8, 8] }"),
         key("place", Kind::Table(&PLACE), "Turns and moves the mesh before anything else sees it.")
             .optional()
@@ -349,7 +349,7 @@ const TIME: Table = Table {
             .unit("time")
             .example("1.875e-3")
             .later("a table { initial, min, max, … }"),
-        key("scheme", Variant(&SCHEMES), "Time integrator.").example("{ kind = \"chung-hulbert\", rho_inf = 0.1 }"),
+        key("scheme", Variant(schemes), "Time integrator.").example("{ kind = \"chung-hulbert\", rho_inf = 0.1 }"),
         key(
             "energy_guard",
             NumberOrFalse(POSITIVE),

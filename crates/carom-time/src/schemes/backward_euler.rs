@@ -5,14 +5,22 @@
 //! ```
 //!
 //! Order 1, ρ∞ = 0 (any text on ordinary differential equations; Hairer, Wanner, Solving ODEs II, §IV.3).
-use crate::stage::{Kernel, Memory, Stage, Weights};
+use crate::kind::{Build, KindInfo, Member};
+use crate::stage::{Kernel, Memory, Stage};
+
+pub(super) const KIND: KindInfo = KindInfo {
+    name: "backward-euler",
+    summary: "All forces at the end; first order, ρ∞ = 0.",
+    reference: "Hairer, Wanner 1996",
+    sets: &[&[]],
+    // A step adds g Δt²/2 to the fall.
+    members: &[Member::new(&[], 1, 0.0).falling(|n| 0.5 * n)],
+    build: Build::Stages(|_| Ok(Box::new(BackwardEuler))),
+};
 
 /// The backward Euler rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BackwardEuler;
-
-/// All forces at the end of the stage.
-pub(crate) const AT_THE_END: Weights = Weights { mass: 1.0, internal: 1.0, external: 1.0, contact: 1.0 };
 
 impl Kernel for BackwardEuler {
     fn stages(&self) -> usize {
@@ -25,7 +33,7 @@ impl Kernel for BackwardEuler {
 
     fn stage_into(&self, _k: usize, dt: f64, memory: &Memory, stage: &mut Stage) {
         let (_, v, _) = memory.states[0];
-        at_the_end(stage, 1.0, [0.0, 0.0, 1.0]);
+        stage.at_the_end(1.0, [0.0, 0.0, 1.0]);
         stage.velocity.slope = 1.0 / dt;
         stage.velocity.at_start.clear();
         stage.velocity.at_start.resize(v.len(), 0.0);
@@ -33,12 +41,4 @@ impl Kernel for BackwardEuler {
         stage.acceleration.at_start.clear();
         stage.acceleration.at_start.extend(v.iter().map(|v| -v / dt));
     }
-}
-
-/// Everything but the maps of a stage whose balance holds at its end.
-pub(crate) fn at_the_end(stage: &mut Stage, end: f64, mean: [f64; 3]) {
-    stage.end = end;
-    stage.mean = mean;
-    (stage.weights, stage.before, stage.average) = (AT_THE_END, Weights::default(), 0.0);
-    stage.internal = crate::stage::Internal::Gradient;
 }

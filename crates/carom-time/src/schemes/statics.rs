@@ -1,10 +1,20 @@
 //! Equilibrium without inertia, f_int + f_cont − f_ext = 0 at the end of every step: t is the load parameter.
 
-use crate::backward_euler::at_the_end;
+use crate::kind::{Build, KindInfo};
 use crate::stage::{Kernel, Memory, Stage};
 
 /// The name it goes by in a case file.
 pub const STATIC: &str = "static";
+
+pub(super) const KIND: KindInfo = KindInfo {
+    name: STATIC,
+    summary: "Equilibrium at every step, without inertia: t is the load parameter.",
+    reference: "",
+    sets: &[&[]],
+    // Nothing to integrate, nothing to claim.
+    members: &[],
+    build: Build::Stages(|_| Ok(Box::new(Static))),
+};
 
 /// Load steps: the kernel whose mass has no weight. Velocities and accelerations are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -17,7 +27,7 @@ impl Kernel for Static {
 
     fn stage_into(&self, _k: usize, _dt: f64, memory: &Memory, stage: &mut Stage) {
         let dofs = memory.states[0].0.len();
-        at_the_end(stage, 1.0, [0.0, 0.0, 1.0]);
+        stage.at_the_end(1.0, [0.0, 0.0, 1.0]);
         stage.weights.mass = 0.0;
         for map in [&mut stage.velocity, &mut stage.acceleration] {
             map.slope = 0.0;

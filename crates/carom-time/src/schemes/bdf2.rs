@@ -7,8 +7,19 @@
 //!
 //! Order 2, ρ∞ = 0 (Gear 1971). Where there is no step before of the same size, backward Euler takes its place. The mean force of a step follows from
 //! M (v_{s+1} − v_s) = ⅓ M (v_s − v_{s−1}) + ⅔ Δt M a_{s+1}.
-use crate::backward_euler::{BackwardEuler, at_the_end};
+use super::backward_euler::BackwardEuler;
+use crate::kind::{Build, KindInfo, Member};
 use crate::stage::{Kernel, Memory, Stage};
+
+pub(super) const KIND: KindInfo = KindInfo {
+    name: "bdf2",
+    summary: "Two-step backward differentiation; second order, ρ∞ = 0.",
+    reference: "Gear 1971",
+    sets: &[&[]],
+    // It begins with a step of backward Euler: ¾ g Δt² in all.
+    members: &[Member::new(&[], 2, 0.0).falling(|n| 0.75 * (1.0 - 3f64.powf(-n)))],
+    build: Build::Stages(|_| Ok(Box::new(Bdf2))),
+};
 
 /// The two-step rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +41,7 @@ impl Kernel for Bdf2 {
     fn stage_into(&self, k: usize, dt: f64, memory: &Memory, stage: &mut Stage) {
         let Some(before) = memory.before else { return BackwardEuler.stage_into(k, dt, memory, stage) };
         let (_, v, _) = memory.states[0];
-        at_the_end(stage, 1.0, [1.0 / 3.0, 0.0, 2.0 / 3.0]);
+        stage.at_the_end(1.0, [1.0 / 3.0, 0.0, 2.0 / 3.0]);
         stage.velocity.slope = 1.5 / dt;
         stage.velocity.at_start.clear();
         stage.velocity.at_start.extend(before.increment.iter().map(|d| -0.5 * d / dt));

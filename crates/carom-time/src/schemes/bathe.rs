@@ -8,10 +8,24 @@
 //!
 //! with M a₁ + f₁ = 0 and M a₂ + f₂ = 0: two solves a step, contact held at both ends with its own multiplier. γ is (2 − √(2 + 2ρ∞))/(1 − ρ∞) without the
 //! 0/0 at ρ∞ = 1. At ρ∞ = 0 it is TR-BDF2 (Bank and others 1985) with γ = 2 − √2, which makes both stage matrices equal. Order 2.
-use crate::backward_euler::at_the_end;
+use super::RHO_INF;
 use crate::error::SchemeError;
+use crate::kind::{Build, KindInfo, Member};
 use crate::scheme::in_unit_interval;
 use crate::stage::{Kernel, Memory, Stage};
+
+pub(super) const KIND: KindInfo = KindInfo {
+    name: "bathe",
+    summary: "Composite rule of Noh and Bathe.",
+    reference: "Noh, Bathe 2019",
+    sets: &[&[RHO_INF]],
+    members: &[
+        Member::new(&[("rho_inf", 0.0)], 2, 0.0),
+        Member::new(&[("rho_inf", 0.6)], 2, 0.6),
+        Member::new(&[("rho_inf", 1.0)], 2, 1.0).hidden(),
+    ],
+    build: Build::Stages(|p| Ok(Box::new(Bathe::new(p[0])?))),
+};
 
 /// The composite rule for one ρ∞.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +40,7 @@ impl Bathe {
     /// By its spectral radius at infinity, in [0, 1].
     ///
     /// ```
-    /// let bathe = carom_time::Bathe::new(0.0)?;
+    /// let bathe = carom_time::schemes::bathe::Bathe::new(0.0)?;
     /// assert!((bathe.gamma - (2.0 - 2f64.sqrt())).abs() < 1e-15 && (bathe.q[1] - 0.5f64.sqrt() / 2.0).abs() < 1e-15);
     /// # Ok::<(), carom_time::SchemeError>(())
     /// ```
@@ -54,7 +68,7 @@ impl Kernel for Bathe {
         stage.acceleration.at_start.clear();
         if k == 0 {
             let h = self.gamma * dt;
-            at_the_end(stage, self.gamma, [0.0, q0, q1]);
+            stage.at_the_end(self.gamma, [0.0, q0, q1]);
             stage.velocity.slope = 2.0 / h;
             stage.velocity.at_start.extend(v0.iter().map(|v| -v));
             stage.acceleration.slope = 4.0 / (h * h);
@@ -62,7 +76,7 @@ impl Kernel for Bathe {
             return;
         }
         let (_, v1, a1) = memory.states[1];
-        at_the_end(stage, 1.0, [0.0, 0.0, q2]);
+        stage.at_the_end(1.0, [0.0, 0.0, q2]);
         stage.velocity.slope = 1.0 / (q2 * dt);
         stage.velocity.at_start.extend(v0.iter().zip(v1).map(|(v0, v1)| -(q0 * v0 + q1 * v1) / q2));
         stage.acceleration.slope = 1.0 / (q2 * q2 * dt * dt);

@@ -6,8 +6,17 @@
 //!
 //! Energy, momentum and moment of momentum of free motion are kept exactly, for any hyperelastic law and any rotation. Order 2, ρ∞ = 1. The acceleration
 //! it carries is the mean one of the step, (v_{s+1} − v_s)/Δt. A contact force acts at the end of the step.
-use crate::backward_euler::AT_THE_END;
-use crate::stage::{Internal, Kernel, Memory, Stage, Weights};
+use crate::kind::{Build, KindInfo, Member};
+use crate::stage::{Internal, Kernel, Memory, Stage};
+
+pub(super) const KIND: KindInfo = KindInfo {
+    name: "energy-momentum",
+    summary: "Midpoint rule with a discrete gradient; conserves energy and momenta.",
+    reference: "Simo, Tarnow 1992; Gonzalez 2000",
+    sets: &[&[]],
+    members: &[Member::new(&[], 2, 1.0)],
+    build: Build::Stages(|_| Ok(Box::new(EnergyMomentum))),
+};
 
 /// The energy–momentum method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,10 +40,8 @@ impl Kernel for EnergyMomentum {
 
     fn stage_into(&self, _k: usize, dt: f64, memory: &Memory, stage: &mut Stage) {
         let (_, v, _) = memory.states[0];
-        stage.end = 1.0;
-        stage.mean = [0.0, 0.0, 1.0];
-        (stage.weights, stage.before, stage.average) = (AT_THE_END, Weights::default(), 0.5);
-        stage.internal = Internal::DiscreteGradient;
+        stage.at_the_end(1.0, [0.0, 0.0, 1.0]);
+        (stage.average, stage.internal) = (0.5, Internal::DiscreteGradient);
         stage.velocity.slope = 2.0 / dt;
         stage.velocity.at_start.clear();
         stage.velocity.at_start.extend(v.iter().map(|v| -v));

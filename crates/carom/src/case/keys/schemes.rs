@@ -1,0 +1,46 @@
+//! Kinds of schemes, made from the table of `carom-time`: a scheme declares its parameters beside its formula.
+
+use std::ops::Bound;
+use std::sync::LazyLock;
+
+use carom_time::{KINDS, KindInfo, Parameter};
+
+use super::Kind::{Choice, Number};
+use super::{Key, Range, Table, Variants, key};
+
+const FORCES: Key = key(
+    "forces",
+    Choice(&["average-forces", "average-state"], &[]),
+    "What is averaged over the step with α_f: the forces (eq. 15), or the state they are evaluated at.",
+)
+.default("\"average-forces\"");
+
+/// Time integrators.
+pub fn schemes() -> &'static Variants {
+    // Made once, for the life of the process.
+    static SCHEMES: LazyLock<Variants> = LazyLock::new(|| Variants {
+        name: "scheme",
+        tag: "kind",
+        doc: "Published name of the integrator.",
+        tables: KINDS.iter().map(|kind| (kind.name, table(kind))).collect::<Vec<_>>().leak(),
+        or: None,
+        later: &[],
+        later_keys: &[],
+    });
+    &SCHEMES
+}
+
+fn table(kind: &KindInfo) -> Table {
+    let number = |parameter: &Parameter| {
+        let end = |bound| match bound {
+            Bound::Included(x) => Some((x, true)),
+            Bound::Excluded(x) => Some((x, false)),
+            Bound::Unbounded => None,
+        };
+        let range = Range { low: end(parameter.range.0), high: end(parameter.range.1) };
+        let key = key(parameter.key, Number(range), parameter.meaning).example(parameter.example);
+        if kind.sets.len() > 1 { key.optional() } else { key }
+    };
+    let keys: Vec<Key> = kind.parameters().into_iter().map(number).chain(kind.is_alpha().then_some(FORCES)).collect();
+    Table { name: format!("scheme \"{}\"", kind.name).leak(), doc: kind.summary, keys: keys.leak(), later: &[] }
+}
