@@ -172,7 +172,7 @@ fn json_of(toml: &str) -> Option<Value> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::keys::{self, Variants};
+    use super::super::keys::Variants;
     use super::*;
 
     /// Every key of every table, visited once per place.
