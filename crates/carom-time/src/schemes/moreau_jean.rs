@@ -79,3 +79,21 @@ impl Impulse for MoreauJean {
         ImpulseShares { force: 1.0 / dt, ..ImpulseShares::default() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A free mass stopped by P: d = Δt(v + θ P/m), by d = Δt(θ v_{n+1} + (1 − θ) v_n) and v_{n+1} = v_n + P/m.
+    #[test]
+    fn a_jump_moves_the_position_by_its_share() {
+        let (dt, mass, v, p) = (0.1, 2.0, -3.0, 6.0);
+        for theta in [0.5, 0.6, 1.0] {
+            let (scheme, mut stage) = (MoreauJean { theta }, Stage::default());
+            scheme.stage_into(0, dt, &Memory { states: &[(&[0.0], &[v], &[0.0])], before: None }, &mut stage);
+            let a = &stage.acceleration;
+            let d = (scheme.shares(dt).force * p / mass - a.at_start[0]) / a.slope;
+            assert!((d - dt * (v + theta * p / mass)).abs() < 1e-14, "θ = {theta}: {d}");
+        }
+    }
+}
