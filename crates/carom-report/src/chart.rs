@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use crate::axis::{Axis, range};
 use crate::labels::with_unit;
 use crate::text;
+use crate::trace::path;
 
 const WIDTH: f64 = 720.0;
 const LEFT: f64 = 74.0;
@@ -71,40 +72,6 @@ pub(crate) fn open(title: &str, width: f64, height: f64) -> String {
 /// A text element; `extra` holds further attributes.
 pub(crate) fn write_text(out: &mut String, x: f64, y: f64, extra: &str, label: &str) {
     let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" {extra}>{}</text>", text::svg(label));
-}
-
-/// Points of a curve in pixels, thinned to what half a pixel can show: first, lowest, highest, last of each column of pixels.
-/// Gaps stay gaps.
-pub(crate) fn path(points: impl Iterator<Item = (f64, f64)>) -> String {
-    let mut out = String::new();
-    let mut pen_up = true;
-    let mut column: Vec<(f64, f64)> = Vec::new();
-    let mut emit = |column: &mut Vec<(f64, f64)>, pen_up: &mut bool| {
-        let by_height = |a: &usize, b: &usize| column[*a].1.total_cmp(&column[*b].1);
-        let low = (0..column.len()).min_by(by_height);
-        let high = (0..column.len()).max_by(by_height);
-        let mut keep: Vec<usize> = [Some(0), low, high, column.len().checked_sub(1)].into_iter().flatten().collect();
-        keep.sort_unstable();
-        keep.dedup();
-        for (x, y) in keep.into_iter().filter_map(|i| column.get(i)) {
-            let _ = write!(out, "{}{x:.1} {y:.1}", if *pen_up { 'M' } else { 'L' });
-            *pen_up = false;
-        }
-        column.clear();
-    };
-    for (x, y) in points {
-        if !(x.is_finite() && y.is_finite()) {
-            emit(&mut column, &mut pen_up);
-            pen_up = true;
-            continue;
-        }
-        if column.first().is_some_and(|first| (first.0 * 2.0).floor() != (x * 2.0).floor()) {
-            emit(&mut column, &mut pen_up);
-        }
-        column.push((x, y));
-    }
-    emit(&mut column, &mut pen_up);
-    out
 }
 
 impl Chart<'_> {
@@ -254,27 +221,5 @@ fn write_legend(out: &mut String, panel: &Panel, rows: &[Vec<usize>], top: f64) 
             write_text(out, x + 27.0, y + 4.3, "", &series.label);
             x += entry_width(series);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn thinning_keeps_extremes_and_gaps() {
-        // 100 000 points on 10 pixels, one spike up, one down, one gap.
-        let value = |i: usize| match i {
-            31_234 => 99.0,
-            67_890 => -55.0,
-            80_000 => f64::NAN,
-            _ => (i % 7) as f64,
-        };
-        let d = path((0..100_000).map(|i| (i as f64 * 1e-4, value(i))));
-        assert!(d.contains(" 99.0") && d.contains(" -55.0"));
-        assert_eq!(d.matches('M').count(), 2);
-        assert!(d.len() < 2000, "{}", d.len());
-        // Few points stay as they are.
-        assert_eq!(path([(0.0, 1.0), (1.0, 2.0), (2.0, 0.5)].into_iter()), "M0.0 1.0L1.0 2.0L2.0 0.5");
     }
 }

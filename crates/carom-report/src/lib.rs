@@ -22,6 +22,7 @@ mod study;
 mod study_page;
 mod symbols;
 mod text;
+mod trace;
 mod verdict;
 mod verify_page;
 mod work;

@@ -9,7 +9,7 @@ use crate::axis::{Axis, range};
 use crate::chart::{open, scaled, write_text};
 use crate::labels::with_unit;
 use crate::palette::LINES;
-use crate::text;
+use crate::{text, trace};
 
 const WIDTH: f64 = 720.0;
 const LEFT: f64 = 62.0;
@@ -185,17 +185,12 @@ impl Plot {
                 "<clipPath id=\"{id}\"><rect x=\"{x0:.1}\" y=\"{y0:.1}\" width=\"{wide:.1}\" height=\"{high:.1}\"/></clipPath>"
             );
             if let Some([x, low, up]) = &pane.band {
-                let there = x.iter().zip(up).map(|(x, y)| (to_x(*x), to_y(*y)));
-                let back = x.iter().zip(low).rev().map(|(x, y)| (to_x(*x), to_y(*y)));
-                let points: Vec<String> = there
-                    .chain(back)
-                    .filter(|p| p.0.is_finite() && p.1.is_finite())
-                    .map(|p| format!("{:.1} {:.1}", p.0, p.1))
-                    .collect();
+                let upper = x.iter().zip(up).map(|(x, y)| (to_x(*x), to_y(*y)));
+                let lower = x.iter().zip(low).map(|(x, y)| (to_x(*x), to_y(*y)));
                 let _ = writeln!(
                     out,
-                    "<path clip-path=\"url(#{id})\" d=\"M{}z\" fill=\"#cfcfcf\" stroke=\"#cfcfcf\" stroke-width=\"2.5\" stroke-linejoin=\"round\"/>",
-                    points.join("L")
+                    "<path clip-path=\"url(#{id})\" d=\"{}\" fill=\"#cfcfcf\" stroke=\"#cfcfcf\" stroke-width=\"2.5\" stroke-linejoin=\"round\"/>",
+                    trace::area(upper, lower)
                 );
             }
             for (value, label) in &y_axis.axis.ticks {
@@ -338,7 +333,7 @@ fn marks(
 fn draw(out: &mut String, curve: &Curve, id: &str, to_x: &dyn Fn(f64) -> f64, to_y: &dyn Fn(f64) -> f64) {
     let (color, dashes, marker) = style(curve.style);
     let points: Vec<(f64, f64)> = curve.x.iter().zip(&curve.y).map(|(x, y)| (to_x(*x), to_y(*y))).collect();
-    let d = crate::chart::path(points.iter().copied());
+    let d = trace::path(points.iter().copied());
     // Alone in its pane it needs no dashes to be known by.
     let dashes = if curve.marked || curve.label.is_empty() { "" } else { dashes };
     let _ = writeln!(

@@ -1,0 +1,213 @@
+//! A curve as SVG path data, with no more points than a picture shows.
+//!
+//! Two rules, one after the other. In each column of half a pixel the first, lowest, highest and last point stay: what is left out of a column is within half a
+//! pixel of what is drawn. Of these, points go that are within a tenth of a pixel of the line between two others that stay (D. H. Douglas, T. K. Peucker,
+//! Cartographica 10, 1973); the lowest and the highest of all, the first and the last always stay. What remains is written in tenths of a pixel, each from the
+//! point before as written, so that nothing drifts.
+
+use crate::bands::Point;
+
+/// Width of a column in pixels.
+const COLUMN: f64 = 0.5;
+/// How far from the line drawn a point may be that the second rule leaves out, in pixels.
+const BOUND: f64 = 0.1;
+
+/// Path data of a curve in pixels; gaps stay gaps.
+pub(crate) fn path(points: impl Iterator<Item = (f64, f64)>) -> String {
+    let points: Vec<(f64, f64)> = points.collect();
+    let parts = points.split(|p| !(p.0.is_finite() && p.1.is_finite())).filter(|part| !part.is_empty());
+    let mut out = String::new();
+    let mut at = [0; 2];
+    for part in parts {
+        write(&mut out, &mut at, &thinned(part));
+    }
+    out
+}
+
+/// Path data of the area between two edges in pixels, both from left to right.
+pub(crate) fn area(upper: impl Iterator<Item = (f64, f64)>, lower: impl Iterator<Item = (f64, f64)>) -> String {
+    let edge = |points: &mut dyn Iterator<Item = (f64, f64)>| {
+        thinned(&points.filter(|p| p.0.is_finite() && p.1.is_finite()).collect::<Vec<_>>())
+    };
+    let (mut upper, mut lower) = (upper, lower);
+    let mut around = edge(&mut upper);
+    around.extend(edge(&mut lower).into_iter().rev());
+    let mut out = String::new();
+    write(&mut out, &mut [0; 2], &around);
+    if !out.is_empty() {
+        out.push('z');
+    }
+    out
+}
+
+fn thinned(points: &[(f64, f64)]) -> Vec<Point> {
+    let points = columns(points);
+    let by_height = |a: &usize, b: &usize| points[*a][1].total_cmp(&points[*b][1]);
+    let all = 0..points.len();
+    let ends = all.clone().take(1).chain(all.clone().last());
+    let mut fixed: Vec<usize> =
+        ends.chain(all.clone().min_by(by_height)).chain(all.clone().max_by(by_height)).collect();
+    fixed.sort_unstable();
+    fixed.dedup();
+    let mut keep = vec![false; points.len()];
+    fixed.iter().for_each(|&i| keep[i] = true);
+    let mut open: Vec<(usize, usize)> = fixed.windows(2).map(|pair| (pair[0], pair[1])).collect();
+    while let Some((a, b)) = open.pop() {
+        let off = |i: usize| (i, distance(points[i], points[a], points[b]));
+        let farthest = (a + 1..b).map(off).max_by(|p, q| p.1.total_cmp(&q.1));
+        if let Some((i, _)) = farthest.filter(|(_, off)| *off > BOUND) {
+            keep[i] = true;
+            open.extend([(a, i), (i, b)]);
+        }
+    }
+    all.filter(|&i| keep[i]).map(|i| points[i]).collect()
+}
+
+/// First, lowest, highest and last point of each column.
+fn columns(points: &[(f64, f64)]) -> Vec<Point> {
+    let same = |a: &(f64, f64), b: &(f64, f64)| (a.0 / COLUMN).floor() == (b.0 / COLUMN).floor();
+    let mut out = Vec::new();
+    for column in points.chunk_by(same) {
+        let by_height = |a: &usize, b: &usize| column[*a].1.total_cmp(&column[*b].1);
+        let all = 0..column.len();
+        let mut keep = [Some(0), all.clone().min_by(by_height), all.max_by(by_height), column.len().checked_sub(1)];
+        keep.sort_unstable();
+        let mut last = None;
+        for i in keep.into_iter().flatten() {
+            if last.replace(i) != Some(i) {
+                out.push([column[i].0, column[i].1]);
+            }
+        }
+    }
+    out
+}
+
+/// Distance of a point from the stretch between two others.
+fn distance(p: Point, a: Point, b: Point) -> f64 {
+    let (d, r) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+    let square = d[0] * d[0] + d[1] * d[1];
+    let along = if square > 0.0 { ((r[0] * d[0] + r[1] * d[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
+    (r[0] - along * d[0]).hypot(r[1] - along * d[1])
+}
+
+/// Appends one part: a move and lines, each relative to the point before.
+fn write(out: &mut String, at: &mut [i64; 2], points: &[Point]) {
+    for (k, p) in points.iter().enumerate() {
+        let end = p.map(|x| (x * 10.0).round() as i64);
+        // The first move of a path is from the origin; after a move lines need no letter.
+        if k == 0 {
+            out.push('m');
+        }
+        for (i, (to, from)) in end.iter().zip(&*at).enumerate() {
+            let by = to - from;
+            if (k > 0 || i > 0) && by >= 0 {
+                out.push(' ');
+            }
+            tenths(out, by);
+        }
+        *at = end;
+    }
+}
+
+/// A number of tenths, as short as SVG allows.
+fn tenths(out: &mut String, n: i64) {
+    if n < 0 {
+        out.push('-');
+    }
+    let (whole, rest) = (n.unsigned_abs() / 10, n.unsigned_abs() % 10);
+    if whole > 0 || rest == 0 {
+        out.push_str(&whole.to_string());
+    }
+    if rest > 0 {
+        out.push('.');
+        out.push_str(&rest.to_string());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points of path data, part by part.
+    fn read(d: &str) -> Vec<Vec<Point>> {
+        let mut parts = Vec::new();
+        let mut at = [0.0; 2];
+        for part in d.trim_end_matches('z').split('m').filter(|p| !p.is_empty()) {
+            let numbers: Vec<f64> = part.replace('-', " -").split_whitespace().map(|n| n.parse().unwrap()).collect();
+            let mut points = Vec::new();
+            for by in numbers.chunks(2) {
+                at = [at[0] + by[0], at[1] + by[1]];
+                points.push(at);
+            }
+            parts.push(points);
+        }
+        parts
+    }
+
+    fn away(p: (f64, f64), line: &[Point]) -> f64 {
+        line.windows(2).map(|ab| distance([p.0, p.1], ab[0], ab[1])).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn extremes_and_gaps_are_kept() {
+        // 100 000 points on 10 pixels, one spike up, one down, one gap.
+        let value = |i: usize| match i {
+            31_234 => 99.0,
+            67_890 => -55.0,
+            80_000 => f64::NAN,
+            _ => (i % 7) as f64,
+        };
+        let d = path((0..100_000).map(|i| (i as f64 * 1e-4, value(i))));
+        let parts = read(&d);
+        let heights: Vec<f64> = parts.concat().iter().map(|p| p[1]).collect();
+        assert!([99.0, -55.0].iter().all(|e| heights.iter().any(|h| (h - e).abs() < 1e-9)), "{d}");
+        assert_eq!(parts.len(), 2);
+        assert!(d.len() < 2000, "{}", d.len());
+    }
+
+    /// Every point of the curve is near the line drawn: within the bound and half the diagonal of the grid of a tenth.
+    #[test]
+    fn what_is_left_out_is_near_what_is_drawn() {
+        let grid = 0.05 * f64::sqrt(2.0);
+        // A column has at most one of these points: the second rule alone.
+        let curve: Vec<(f64, f64)> = (0..1200)
+            .map(|i| f64::from(i) * 0.55)
+            .map(|x| (x, 90.0 + 60.0 * (x / 40.0).sin() * (-x / 300.0).exp()))
+            .collect();
+        let d = path(curve.iter().copied());
+        let line = read(&d).concat();
+        let worst = curve.iter().map(|p| away(*p, &line)).fold(0.0, f64::max);
+        assert!(worst <= BOUND + grid && worst > 0.5 * BOUND, "{worst}");
+        assert!(line.len() < curve.len() / 5, "{} of {}", line.len(), curve.len());
+        // Lowest, highest, first and last are there to the grid.
+        let edge = |better: fn(f64, f64) -> bool| {
+            curve.iter().copied().reduce(|a, b| if better(b.1, a.1) { b } else { a }).unwrap()
+        };
+        for p in [edge(|a, b| a < b), edge(|a, b| a > b), curve[0], curve[1199]] {
+            assert!(line.iter().any(|q| (q[0] - p.0).abs() < 0.051 && (q[1] - p.1).abs() < 0.051), "{p:?}");
+        }
+        // Many points in a column: both rules.
+        let curve: Vec<(f64, f64)> = (0..60_000)
+            .map(|i| f64::from(i) * 0.005)
+            .map(|x| (x, 70.0 + 60.0 * (x * 9.0).sin() * (x / 70.0).cos()))
+            .collect();
+        let line = read(&path(curve.iter().copied())).concat();
+        let worst = curve.iter().map(|p| away(*p, &line)).fold(0.0, f64::max);
+        assert!(worst <= COLUMN + BOUND + grid, "{worst}");
+    }
+
+    #[test]
+    fn short_numbers_without_drift() {
+        assert_eq!(path([(0.0, 1.0), (1.0, 2.0), (2.0, 0.5)].into_iter()), "m0 1 1 1 1-1.5");
+        assert_eq!(
+            area([(0.0, 1.0), (9.0, 1.2)].into_iter(), [(0.0, 3.0), (9.0, 3.0)].into_iter()),
+            "m0 1 9 .2 0 1.8-9 0z"
+        );
+        assert_eq!(path([(f64::NAN, 1.0)].into_iter()), "");
+        assert_eq!(area([].into_iter(), [].into_iter()), "");
+        // A thousand bends of a third of a tenth of a pixel each end where they should.
+        let zigzag = (0..1000).map(|i| (f64::from(i) * 0.633, f64::from(i % 2) * 5.0));
+        let end = *read(&path(zigzag)).concat().last().unwrap();
+        assert!((end[0] - 632.4).abs() < 1e-6 && (end[1] - 5.0).abs() < 1e-6, "{end:?}");
+    }
+}
