@@ -204,14 +204,23 @@ fn theory(study: &Study) -> Option<Plot> {
     let mut marks: Vec<(f64, String)> = Vec::new();
     for row in rows("frequencies.csv").unwrap_or_default() {
         let (word, Ok(omega)) = (&row[0], row[1].parse::<f64>()) else { continue };
-        let symbol = if word == "highest" { "ω_{max}".to_owned() } else { format!("ω_{{{word}}}") };
         // The lowest stand too close for a word each.
-        marks
-            .push((omega * long, if ["1", "highest"].contains(&word) { format!("{symbol}Δt") } else { String::new() }));
+        let symbol = match word {
+            "1" => "ω_{1}Δt",
+            "highest" => "ω_{max}Δt",
+            "spring" => "ω_{c}Δt",
+            _ => "",
+        };
+        marks.push((omega * long, symbol.to_owned()));
         if short < 0.9 * long {
             marks.push((omega * short, String::new()));
         }
     }
+    let springs = if marks.iter().any(|m| m.1.starts_with("ω_{c}")) {
+        " ω_{c}: the stiffest contact spring of a penalty on its node alone, the other side at rest."
+    } else {
+        ""
+    };
     let mut names: Vec<&str> = Vec::new();
     for row in &table {
         if !names.contains(&&row[0]) {
@@ -238,9 +247,10 @@ fn theory(study: &Study) -> Option<Plot> {
     };
     Some(Plot {
         name: "theory".into(),
-        caption: "Theory of the schemes on an undamped oscillator of frequency ω. Vertical lines: the model's own frequencies at the longest step, with a word, and at the \
-                  shortest. A node held by a multiplier is at ωΔt = ∞, where only ρ_{∞} counts."
-            .into(),
+        caption: format!(
+            "Theory of the schemes on an undamped oscillator of frequency ω. Vertical lines: the model's own frequencies at the longest step, with a word, and at the \
+             shortest.{springs} A node held by a multiplier is at ωΔt = ∞, where only ρ_{{∞}} counts."
+        ),
         x_label: "ωΔt".into(),
         log: [true, false],
         across: 1,

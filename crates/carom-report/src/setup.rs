@@ -62,6 +62,31 @@ fn tuple(v: &[f64]) -> String {
     if parts.len() == 1 { parts[0].clone() } else { format!("({})", parts.join(", ")) }
 }
 
+/// A rigid plane of dimension 2 as far as it is drawn.
+struct RigidPlane {
+    ends: [Point; 2],
+    /// Unit normal out of the solid.
+    normal: Point,
+}
+
+/// The rigid planes of a case, along bodies in a box: from side to side where they lie rather flat, else from the bottom to the top.
+fn rigid_planes(case: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Vec<RigidPlane> {
+    let planes = list(case, "contacts").iter().filter_map(|c| c.pointer("/primary/plane"));
+    let one = |plane: &Value| {
+        let ([px, py], [nx, ny]) =
+            (vector(plane.get("point")).try_into().ok()?, vector(plane.get("normal")).try_into().ok()?);
+        let normal = direction([0.0; 2], [nx, ny]);
+        let [nx, ny]: Point = normal;
+        let ends = if ny.abs() >= nx.abs() {
+            [x0, x1].map(|x| [x, py - (x - px) * nx / ny])
+        } else {
+            [y0, y1].map(|y| [px - (y - py) * ny / nx, y])
+        };
+        (normal != [0.0; 2]).then_some(RigidPlane { ends, normal })
+    };
+    planes.filter_map(|plane| one(plane)).collect()
+}
+
 /// The figure, from the initial fields; nothing where there are no cells.
 pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     let flat = fields.blocks.iter().all(|b| b.cell == Cell::Curve);
@@ -74,6 +99,10 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     for point in list(&run.manifest.case, "contacts").iter().filter_map(|c| c.pointer("/primary/plane/point")) {
         let x = vector(Some(point)).first().copied().filter(|_| flat).unwrap_or(frame[0]);
         (frame[0], frame[1]) = (frame[0].min(x), frame[1].max(x));
+    }
+    let planes = if flat { Vec::new() } else { rigid_planes(&run.manifest.case, frame) };
+    for p in planes.iter().flat_map(|plane| plane.ends) {
+        frame = [frame[0].min(p[0]), frame[1].max(p[0]), frame[2].min(p[1]), frame[3].max(p[1])];
     }
     let [x0, x1, y0, y1] = frame;
     let size = [x1 - x0, if flat { 1.0 } else { y1 - y0 }];
@@ -94,7 +123,7 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     let mut out = open("The case", right + margin + 36.0 + KEY, (bottom + 44.0).max(lines + 8.0));
     setup.axes(&mut out, [left - margin, right + margin, top - margin, bottom]);
     setup.bodies(&mut out);
-    setup.planes(&mut out, [left - 0.6 * margin, right + 0.6 * margin]);
+    setup.planes(&mut out, &planes, 0.6 * margin);
     setup.supports(&mut out);
     setup.contacts(&mut out);
     setup.loads(&mut out);
@@ -247,21 +276,26 @@ impl Setup<'_> {
         }
     }
 
-    /// Rigid planes, hatched on their solid side.
-    fn planes(&self, out: &mut String, [left, right]: [f64; 2]) {
-        for plane in list(self.case(), "contacts").iter().filter_map(|c| c.pointer("/primary/plane")) {
-            let (point, normal) = (vector(plane.get("point")), vector(plane.get("normal")));
-            let [p, n] = [point, normal].map(|v| [v.first().copied().unwrap_or(0.0), v.get(1).copied().unwrap_or(0.0)]);
-            let (p, n) = (self.to(p), direction([0.0; 2], [-n[0], n[1]]));
-            let (tangent, length) =
-                if self.flat { ([0.0, 1.0], BAR + 8.0) } else { ([-n[1], n[0]], 0.5 * (right - left)) };
-            let center = if self.flat { p } else { plus(p, (0.5 * (left + right) - p[0]) * tangent[0], tangent) };
-            let ends = [-length, length].map(|s| (plus(center, s, tangent), n));
-            wall(out, &ends, 0.0);
+    /// Rigid planes, hatched on their solid side: a wall in dimension 1, else lines drawn `air` pixels beyond the bodies.
+    fn planes(&self, out: &mut String, planes: &[RigidPlane], air: f64) {
+        let mut draw = |ends: [Point; 2], outward: Point| {
+            wall(out, &ends.map(|p| (p, outward)), 0.0);
             let mut pen = Pen::default();
-            pen.go(ends[0].0);
-            pen.draw(&[ends[1].0]);
+            pen.go(ends[0]);
+            pen.draw(&[ends[1]]);
             Self::stroke(out, &pen, PRIMARY);
+        };
+        for plane in planes {
+            let [a, b] = plane.ends.map(|p| self.to(p));
+            let along = direction(a, b);
+            draw([plus(a, -air, along), plus(b, air, along)], [-plane.normal[0], plane.normal[1]]);
+        }
+        let walls = list(self.case(), "contacts").iter().filter_map(|c| c.pointer("/primary/plane"));
+        for wall in walls.filter(|_| self.flat) {
+            let [x, y] = self.to([vector(wall.get("point")).first().copied().unwrap_or(0.0), 0.0]);
+            let inward = vector(wall.get("normal")).first().copied().unwrap_or(1.0);
+            let half = BAR + 8.0;
+            draw([[x, y - half], [x, y + half]], [-inward.signum(), 0.0]);
         }
     }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use carom_record::Run;
 use carom_record::metrics::{contact_force, probe_columns};
 use carom_record::study::Study;
+use carom_record::study::checks::fingerprint;
 use carom_record::study::reference::FORCE;
 
 use crate::labels::{symbol, with_unit, words};
@@ -29,11 +30,24 @@ pub(crate) struct Column {
     pub(crate) curves: Vec<(usize, Vec<f64>, Vec<f64>)>,
 }
 
-/// What the records of the arms say of how they came about.
+/// What the record of an arm says of how it came about.
+pub(crate) struct Origin {
+    /// Number of the arm.
+    pub(crate) arm: usize,
+    /// Hash of its input.
+    pub(crate) input: String,
+    /// Fingerprint of its tables.
+    pub(crate) record: String,
+    /// Rejected steps.
+    pub(crate) rejected: u64,
+    /// Events that are no change of contact.
+    pub(crate) told: usize,
+}
+
+/// Those of all arms.
 #[derive(Default)]
 pub(crate) struct Origins {
-    /// Number of the arm, hash of its input, rejected steps, events that are no change of contact.
-    pub(crate) arms: Vec<(usize, String, u64, usize)>,
+    pub(crate) arms: Vec<Origin>,
 }
 
 /// Makes figures, tables and page of a study directory, from the records alone; arm by arm, so that long histories do not add up.
@@ -51,7 +65,8 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
         collect(&mut columns, arm, run);
         let told = run.log.iter().filter(|e| ["fallback", "cycle", "no-stress"].contains(&e.kind.as_str())).count();
         let rejected = run.manifest.counters.get("rejected").copied().unwrap_or_default();
-        origins.arms.push((arm, run.manifest.input_hash.clone(), rejected, told));
+        let (input, record) = (run.manifest.input_hash.clone(), fingerprint(&run.directory).unwrap_or_default());
+        origins.arms.push(Origin { arm, input, record, rejected, told });
     })?;
     study.write_tables()?;
     let mut plots = laboratory::plots(&study, &columns, &time);

@@ -5,14 +5,17 @@ use std::fmt::Write as _;
 use carom_record::Status;
 use carom_record::study::{Study, Verdict};
 
-use crate::convergence;
 use crate::plot::{Plot, style};
 use crate::study::Origins;
 use crate::text::{escape, html};
 use crate::verdict;
+use crate::{convergence, integrity};
 
 /// Arms in one table of metrics; more make more tables.
 const ACROSS: usize = 8;
+
+/// Values of a key that are told one by one.
+const FEW: usize = 4;
 
 /// More arms than these are folded away.
 const MANY: usize = 12;
@@ -59,7 +62,7 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
     metrics(&mut out, study);
     convergence::show(&mut out, study);
     verdict::phases(&mut out, study);
-    verdict::integrity(&mut out, study, origins);
+    integrity::show(&mut out, study, origins);
     reproduce(&mut out, study);
     out.push_str("</body>\n</html>\n");
     out
@@ -89,17 +92,29 @@ fn setup(out: &mut String, study: &Study, picture: Option<&str>) {
             escape(&study.manifest.source.case_path)
         );
     }
-    let mut varied: Vec<&str> = Vec::new();
-    for arm in study.manifest.arms.iter().filter(|a| !a.part.fine) {
-        for key in arm.sets.iter().filter_map(|set| Some(set.split_once('=')?.0.trim())) {
-            if !varied.contains(&key) {
-                varied.push(key);
-            }
+    let mut varied: Vec<(&str, Vec<&str>)> = Vec::new();
+    let sets = study.manifest.arms.iter().filter(|a| !a.part.fine).flat_map(|a| &a.sets);
+    for (key, value) in sets.filter_map(|set| set.split_once('=')) {
+        let (key, value) = (key.trim(), value.trim());
+        match varied.iter_mut().find(|(k, _)| *k == key) {
+            Some((_, values)) if values.contains(&value) => {}
+            Some((_, values)) => values.push(value),
+            None => varied.push((key, vec![value])),
         }
     }
+    let told = |(key, values): &(&str, Vec<&str>)| {
+        let values = match values.len() {
+            n if n > FEW => format!("{n} values"),
+            _ => values.iter().map(|v| format!("<code>{}</code>", escape(v))).collect::<Vec<_>>().join(", "),
+        };
+        format!("<li><code>{}</code>: {values}</li>", escape(key))
+    };
     if !varied.is_empty() {
-        let keys: Vec<String> = varied.iter().map(|key| format!("<code>{}</code>", escape(key))).collect();
-        let _ = writeln!(out, "<p>Varied: {}.</p>", keys.join(", "));
+        let _ = writeln!(
+            out,
+            "<p>Varied, where an arm does not leave it as the case has it:</p>\n<ul>{}</ul>",
+            varied.iter().map(told).collect::<String>()
+        );
     }
     verdict::design(out, study);
 }
@@ -281,6 +296,19 @@ fn bibtex(study: &Study) -> String {
     )
 }
 
+/// Files of a study directory, where it has them.
+const FILES: [&str; 9] = [
+    "study.json",
+    "study.csv",
+    "study_tidy.csv",
+    "ranking.csv",
+    "reference.csv",
+    "claims.csv",
+    "theory.csv",
+    "frequencies.csv",
+    "checks.json",
+];
+
 fn reproduce(out: &mut String, study: &Study) {
     let m = &study.manifest;
     let case = escape(&m.source.case_path);
@@ -298,6 +326,16 @@ fn reproduce(out: &mut String, study: &Study) {
         escape(&m.machine.arch),
         escape(&m.source.study),
         escape(&m.source.case)
+    );
+    let files: String = FILES
+        .iter()
+        .filter(|name| study.directory.join(name).is_file())
+        .map(|name| format!(" · <a href=\"{name}\">{name}</a>"))
+        .collect();
+    let _ = writeln!(
+        out,
+        "<p>The folder of this page is the record of the study, and enough to make the page again with <code>carom report</code>: put it into an archive whole. In it: \
+         <code>arms/</code>{files}</p>"
     );
     let _ = writeln!(out, "<h2>To cite</h2>\n<pre>{}</pre>", escape(&bibtex(study)));
     for (path, text) in &m.source.others {

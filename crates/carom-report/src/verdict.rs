@@ -1,16 +1,15 @@
-//! The verdict of a study and what stands behind it: ranking, what cannot be ranked on, orders by phase, integrity.
+//! The verdict of a study and what stands behind it: ranking, what cannot be ranked on, orders by phase.
 
 use std::fmt::Write as _;
 
-use carom_record::Status;
 use carom_record::metrics::WORK;
 use carom_record::study::design::{Goal, Kind};
 use carom_record::study::ranking::{Ranking, error, standing};
 use carom_record::study::reference::Standing;
-use carom_record::study::{Arm, Row, Study, step};
+use carom_record::study::{Arm, Study, step};
 
 use crate::laboratory::methods;
-use crate::study::Origins;
+use crate::ranked;
 use crate::study_page::number as long;
 use crate::text::{escape, html};
 
@@ -27,10 +26,10 @@ const SIDE: [(&str, &str); 8] = [
 ];
 
 /// Costs are matched within this share of the budget.
-const OFF_BUDGET: f64 = 0.1;
+pub(crate) const OFF_BUDGET: f64 = 0.1;
 
 /// A number in three digits: the tables have them all.
-fn number(x: f64) -> String {
+pub(crate) fn number(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return long(x);
     }
@@ -142,7 +141,7 @@ pub(crate) fn rankings(out: &mut String, study: &Study) {
             html(&measure.words),
             number(measure.uncertainty)
         );
-        table(out, study, ranking);
+        ranked_table(out, study, ranking);
     }
     other_goals(out, study);
     let Some(reference) = &study.reference else {
@@ -225,22 +224,30 @@ pub(crate) fn design(out: &mut String, study: &Study) {
             out.push_str("<p>The arms are as written: neither their steps nor their costs were made equal.</p>\n");
         }
         Some((Kind::MatchedStep, _)) => {
-            out.push_str("<p>Matched step: at a level every method has the same step.</p>\n");
+            let _ = writeln!(out, "<p>Matched step: at a level every method has the same step. {}.</p>", levels(study));
         }
         Some((Kind::MatchedCost, of)) => {
             let _ = writeln!(
                 out,
-                "<p>Matched cost: at a level every method has the step at which it costs what <b>{}</b> does. Cost is counted (Newton iterations and factorisations, or \
+                "<p>Matched cost: at a level every method has the step at which it costs what <b>{}</b> does. {} of that method. Cost is counted (Newton iterations and factorisations, or \
                  steps) and weighted by processor seconds that a pilot run measured (<code>pilots/</code>); the column of processor time is what the arms themselves took.</p>",
-                escape(of)
+                escape(of),
+                levels(study)
             );
             out.push_str(&unmatched(study));
         }
     }
 }
 
+/// The steps of the levels, in words.
+fn levels(study: &Study) -> String {
+    let steps = study.manifest.design.iter().flat_map(|d| &d.steps);
+    let steps: Vec<String> = steps.enumerate().map(|(i, h)| format!("level {}: Δt = {}", i + 1, long(*h))).collect();
+    steps.join("; ").replacen('l', "L", 1)
+}
+
 /// Whether costs were matched within the tenth that is claimed, and of which arms not.
-fn unmatched(study: &Study) -> String {
+pub(crate) fn unmatched(study: &Study) -> String {
     let off = |arm: &&Arm| arm.part.cost.is_none_or(|share| (share - 1.0).abs() > OFF_BUDGET);
     let matched: Vec<&Arm> = study.manifest.arms.iter().filter(|a| costed(study, a)).collect();
     let missed: Vec<&Arm> = matched.iter().copied().filter(off).collect();
@@ -261,71 +268,14 @@ fn unmatched(study: &Study) -> String {
 }
 
 /// Whether the arm was given a cost to match.
-fn costed(study: &Study, arm: &Arm) -> bool {
+pub(crate) fn costed(study: &Study, arm: &Arm) -> bool {
     let design = study.manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedCost);
     design.is_some_and(|d| !arm.part.fine && arm.part.method.as_ref().is_some_and(|m| *m != d.cost_of))
 }
 
-/// Total variation of the contact force beyond the reference's.
-fn beyond(study: &Study, row: &Row) -> String {
-    let right = standing(study.reference.as_ref(), "force_variation").established().map(|known| known.0);
-    let of = |right: f64| row.value("force_variation").map(|own| own / right - 1.0);
-    right.filter(|right| *right > 0.0).and_then(of).map_or("–".into(), number)
-}
-
-fn table(out: &mut String, study: &Study, ranking: &Ranking) {
+fn ranked_table(out: &mut String, study: &Study, ranking: &Ranking) {
     let matched = study.manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedCost);
-    let head =
-        if matched.is_some() { "<th class=\"n\">Counted / budget</th><th class=\"n\">CPU / budget</th>" } else { "" };
-    let _ = writeln!(
-        out,
-        "<table class=\"metrics ranking\"><thead><tr><th class=\"n\">Place</th><th>Method</th><th class=\"n\">Δt</th><th class=\"n\">Error</th><th class=\"n\">Energy drift</th>\
-         <th class=\"n\">by integrator</th><th class=\"n\">by contact</th><th class=\"n\">TV beyond</th><th class=\"n\">High freq.</th><th class=\"n\">Chatter</th><th class=\"n\">Late by</th>\
-         <th class=\"n\">Newton</th><th class=\"n\">CPU (s)</th>{head}</tr></thead>"
-    );
-    let columns = 13 + 2 * usize::from(matched.is_some());
-    for (level, ranked) in ranking.levels.iter().enumerate() {
-        let anchor = matched.and_then(|d| {
-            let mut arms = study.manifest.arms.iter().enumerate();
-            let (i, _) = arms.find(|(_, a)| a.part.level == level && a.part.method.as_ref() == Some(&d.cost_of))?;
-            study.rows[i].value("cpu_time")
-        });
-        if ranking.levels.len() > 1 {
-            let _ = writeln!(out, "<tr><td colspan=\"{columns}\"><b>Level {}</b></td></tr>", level + 1);
-        }
-        for r in ranked {
-            let (arm, row) = (&study.manifest.arms[r.arm], &study.rows[r.arm]);
-            let of = |name: &str| row.value(name).map_or("–".into(), number);
-            let late = study
-                .compared
-                .get(r.arm)
-                .and_then(Option::as_ref)
-                .and_then(|c| c.late.as_ref())
-                .map_or("–".into(), |l| number(l.1));
-            let share = |share: Option<f64>| {
-                let Some(share) = share else { return "<td class=\"n\">–</td>".to_owned() };
-                let mark = if (share - 1.0).abs() <= OFF_BUDGET { "" } else { " !" };
-                format!("<td class=\"n\">{}{mark}</td>", number(share))
-            };
-            let measured = anchor.zip(row.value("cpu_time")).map(|(budget, cost)| cost / budget);
-            let ratio = if matched.is_some() { share(arm.part.cost) + &share(measured) } else { String::new() };
-            let _ = writeln!(
-                out,
-                "<tr><td class=\"n\">{}</td><td class=\"method\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>{}<td class=\"n\">{late}</td>{}{ratio}</tr>",
-                r.place,
-                escape(arm.part.method.as_ref().unwrap_or(&arm.name)),
-                step(arm, "time.step").map_or("–".into(), long),
-                number(r.error),
-                ["energy_drift", "dissipated_integrator", "dissipated_contact"]
-                    .map(&of)
-                    .into_iter()
-                    .chain([beyond(study, row), of("force_high_frequency"), of("chatter")])
-                    .fold(String::new(), |row, cell| row + &format!("<td class=\"n\">{cell}</td>")),
-                ["newton_iterations", "cpu_time"].map(|m| format!("<td class=\"n\">{}</td>", of(m))).concat(),
-            );
-        }
-    }
-    out.push_str("</table>\n");
+    ranked::tables(out, study, ranking);
     let placed = |arm: &usize| ranking.levels.iter().flatten().any(|r| r.arm == *arm);
     let without = methods(study).into_iter().flat_map(|(_, arms)| arms).filter(|arm| !placed(arm));
     let without: Vec<String> = without.map(|arm| escape(&study.rows[arm].name)).collect();
@@ -338,7 +288,7 @@ fn table(out: &mut String, study: &Study, ranking: &Ranking) {
         out.push_str(" An exclamation mark: off the budget by more than 10 %.");
     }
     out.push_str(
-        " TV beyond: total variation of the contact force over the reference's, minus 1; – where no refinement of the reference establishes that. Beside <a href=\"ranking.csv\">ranking.csv</a> and <a href=\"reference.csv\">reference.csv</a>.</p>\n",
+        " Errors and energies are relative; ± is the uncertainty of the reference. Energy drift: its largest change at any time; lost in an impact: over the one that changes it most; by integrator and by contact: what each took by the end. TV beyond: total variation of the contact force over the reference's, minus 1. Peak: the stress averaged over a sixteenth of the contact. Orders: of the errors against the reference at the two finest levels, before the first contact and after it. Beside <a href=\"ranking.csv\">ranking.csv</a> and <a href=\"reference.csv\">reference.csv</a>.</p>\n",
     );
 }
 
@@ -349,7 +299,7 @@ pub(crate) fn phases(out: &mut String, study: &Study) {
     }
     out.push_str("<h2>Order before and across the impact</h2>\n<table><thead><tr><th>Method</th><th>Column</th><th>Before the first contact</th><th>After it</th></tr></thead>\n");
     let cell = |order: &Result<f64, String>| match order {
-        Ok(order) => format!("{order:.2}"),
+        Ok(order) => format!("{order:.2}").replace('-', "−"),
         Err(why) => format!("<span class=\"small\">no order ({})</span>", escape(why)),
     };
     for o in &study.phase_orders {
@@ -363,26 +313,4 @@ pub(crate) fn phases(out: &mut String, study: &Study) {
         );
     }
     out.push_str("</table>\n<p class=\"small\">From the errors against the reference at the two finest levels, root mean square over the rows of the phase.</p>\n");
-}
-
-/// What can be said for the numbers.
-pub(crate) fn integrity(out: &mut String, study: &Study, origins: &Origins) {
-    out.push_str("<h2>Integrity</h2>\n<table><thead><tr><th>Arm</th><th>Ended</th><th class=\"n\">Rejected steps</th><th class=\"n\">Cycles, fallbacks</th><th class=\"n\">Deepest penetration</th><th>Input hash</th></tr></thead>\n");
-    for (arm, hash, rejected, told) in &origins.arms {
-        let row = &study.rows[*arm];
-        let word = if row.status == Some(Status::Finished) { "finished" } else { "not finished" };
-        let _ = writeln!(
-            out,
-            "<tr><td>{}</td><td>{word}</td><td class=\"n\">{rejected}</td><td class=\"n\">{told}</td><td class=\"n\">{}</td><td><code>{}</code></td></tr>",
-            escape(&row.name),
-            row.value("penetration").map_or("–".into(), number),
-            hash.get(..16).unwrap_or(hash)
-        );
-    }
-    out.push_str("</table>\n");
-    if study.manifest.arms.iter().any(|arm| costed(study, arm)) {
-        out.push_str(&unmatched(study));
-    }
-    out.push_str("<p class=\"small\">An arm's records are the same bits for any number of jobs and threads, after a stop and <code>carom resume</code>, and with any output; the suite \
-                  tests that. Events stand in each arm's <code>log.jsonl</code>.</p>\n");
 }

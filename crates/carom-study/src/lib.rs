@@ -5,6 +5,7 @@
 //! records alone: [`carom_record::study`].
 
 mod arms;
+mod checks;
 mod expects;
 mod file;
 mod matched;

@@ -11,7 +11,7 @@ use carom::recording::{self, End, Options, Progress, RunError};
 use carom_record::study::{Study, StudyManifest};
 use carom_record::{RecordError, Status};
 
-use crate::{Plan, matched, theory};
+use crate::{Plan, checks, matched, theory};
 
 /// What happens to an arm, told by its number.
 #[derive(Clone, Debug)]
@@ -132,6 +132,9 @@ pub fn go_on(
         compute(&manifest, directory, i, begun.get(&i) == Some(&true), progress, stop)
     };
     side_by_side(order, jobs, &one, observe, stop)?;
+    if manifest.goal.is_some() && !stop.load(Ordering::Relaxed) {
+        checks::make(&manifest, directory, stop)?;
+    }
     let study = Study::open(directory, &mut |_, _| ())?;
     let ended = |row: &carom_record::study::Row| matches!(row.status, Some(Status::Finished | Status::Failed));
     let interrupted = !study.rows.iter().all(ended);

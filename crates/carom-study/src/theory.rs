@@ -1,11 +1,11 @@
 //! What theory says of a study's schemes, for its page: `theory.csv`, spectral radius, damping ratio and period error of every method on the test
-//! oscillator, and `frequencies.csv`, the model's own frequencies. Both are made when the study begins.
+//! oscillator, and `frequencies.csv`, the model's own frequencies and those of contact springs. Both are made when the study begins.
 
 use std::path::Path;
 
 use carom::Simulation;
 use carom::case::{Case, SchemeSpec};
-use carom::frequencies::{Frequencies, frequencies};
+use carom::frequencies::{Frequencies, frequencies, spring};
 use carom_record::RecordError;
 use carom_time::Integrator;
 
@@ -57,7 +57,13 @@ pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
     let Some(found) = plan.arms.first().and_then(|arm| of_case(&arm.case)) else { return Ok(()) };
     let lowest = found.lowest.iter().enumerate().map(|(k, omega)| format!("{},{omega:?}", k + 1));
     let highest = found.highest.map(|omega| format!("highest,{omega:?}"));
-    let lines: Vec<String> = std::iter::once("mode,omega".to_owned()).chain(lowest).chain(highest).collect();
+    // Arms at several steps have the same springs.
+    let mut springs: Vec<f64> = plan.arms.iter().filter_map(|arm| spring_of(&arm.case)).collect();
+    springs.sort_by(f64::total_cmp);
+    springs.dedup();
+    let springs = springs.into_iter().map(|omega| format!("spring,{omega:?}"));
+    let lines: Vec<String> =
+        std::iter::once("mode,omega".to_owned()).chain(lowest).chain(highest).chain(springs).collect();
     put(directory, "frequencies.csv", &lines)
 }
 
@@ -65,6 +71,13 @@ fn of_case(case: &Case) -> Option<Frequencies> {
     match case.dimension {
         1 => frequencies(&Simulation::<1>::new(case, 1).ok()?.model),
         _ => frequencies(&Simulation::<2>::new(case, 1).ok()?.model),
+    }
+}
+
+fn spring_of(case: &Case) -> Option<f64> {
+    match case.dimension {
+        1 => spring(&Simulation::<1>::new(case, 1).ok()?.model),
+        _ => spring(&Simulation::<2>::new(case, 1).ok()?.model),
     }
 }
 

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use carom::case::{CaseError, Diagnostic};
 use carom_record::Status;
+use carom_record::study::checks::fingerprint;
 use carom_study::{Event, Plan, go_on, start};
 
 const CASE: &str = r#"
@@ -193,6 +194,13 @@ fn a_design_builds_its_arms_and_ranks_them() {
     // Hu's scheme dissipates the vibration that the impact leaves: last at both steps, and the verdict says so.
     let first: Vec<&str> = ranking.levels.iter().map(|l| study.rows[l[0].arm].name.as_str()).collect();
     assert_eq!(first, ["CH, Δt 1e-2", "CH, Δt 5e-3"]);
+    // With two threads, and stopped where it touches and resumed: the same bits, and nothing left behind.
+    let checks = study.checks.as_ref().unwrap();
+    assert_eq!((checks.arm.as_str(), checks.threads.0), ("Hu, Δt 1e-2", 2));
+    assert!(checks.touching == 1 && (1..40).contains(&checks.resumed.0), "{checks:?}");
+    assert_eq!((&checks.threads.1, &checks.resumed.1), (&checks.fingerprint, &checks.fingerprint));
+    assert_ne!(checks.fingerprint, fingerprint(&out.join(&study.manifest.arms[1].directory)).unwrap());
+    assert!(!out.join("checks").exists());
     assert_eq!(ranking.levels[0].len(), 2);
     let verdict = ranking.verdict.unwrap();
     assert_eq!(study.manifest.arms[verdict.arm].part.method.as_deref(), Some("CH"));

@@ -7,6 +7,12 @@
 //!
 //! Rigid motions have ω² below 1e-9 of the highest and are left out. Rayleigh's quotient xᵀKx/xᵀMx gives ω² to twice the digits of x. Where a node has no
 //! mass the highest is infinite; σ then refers to the mean eigenvalue trace(K)/trace(M). Contact is open (Bathe, "Finite element procedures", §11.2).
+//!
+//! The spring of a penalty on its node alone, the other side at rest:
+//!
+//! ```text
+//! ω² = k mᵢ⁻¹,   mᵢ⁻¹ = eᵢᵀ M⁻¹ eᵢ      acceleration of the node under a unit force at it; the stiffest of all nodes
+//! ```
 
 use crate::model::{Model, dot};
 use crate::system::System;
@@ -74,6 +80,31 @@ pub fn frequencies<const D: usize>(model: &Model<D>) -> Option<Frequencies> {
     Some(Frequencies { lowest, highest: highest.map(f64::sqrt) })
 }
 
+/// Frequency of the stiffest contact spring on its node; none without springs, or where a node has no mass.
+pub fn spring<const D: usize>(model: &Model<D>) -> Option<f64> {
+    if model.contacts.iter().all(|c| c.penalty.is_none()) || model.free.iter().any(|dof| model.massless[*dof]) {
+        return None;
+    }
+    let mut system = System::new(model, 1);
+    let mut force = vec![0.0; model.dofs()];
+    system.internal_tangent(model, None, &model.reference, &mut force, None).ok()?;
+    system.factor(model, 1.0, 0.0, 0.0, &[]).ok()?;
+    let mut highest: Option<f64> = None;
+    let springs = |c: &'_ crate::model::Contact<D>| {
+        let stiffness = c.penalty.clone().unwrap_or_default();
+        c.method.secondary().iter().copied().zip(stiffness).collect::<Vec<_>>()
+    };
+    for (node, stiffness) in model.contacts.iter().flat_map(springs) {
+        for (i, _) in model.free.iter().enumerate().filter(|(_, dof)| **dof / D == node) {
+            let mut unit = vec![0.0; model.free.len()];
+            unit[i] = 1.0;
+            let square = stiffness * solved(model, &mut system, &unit)?[i];
+            highest = Some(highest.map_or(square, |h| h.max(square)));
+        }
+    }
+    highest.map(f64::sqrt)
+}
+
 fn power<const D: usize>(model: &Model<D>, system: &mut System<D>, mut x: Vec<f64>) -> Option<f64> {
     system.factor(model, 1.0, 0.0, 0.0, &[]).ok()?;
     let mut square = 0.0;
@@ -121,6 +152,22 @@ mod tests {
     use super::*;
     use crate::Simulation;
     use crate::case::{Document, read};
+
+    /// The end of a bar of linear cells with lumped mass ρAh/2, on a spring of `stiffness` times its tangent EA/h: ω² = 2 s c²/h².
+    #[test]
+    fn a_spring_on_half_a_cell() {
+        let text = include_str!("../../../cases/bar/single.toml");
+        let model = |sets: &[&str]| {
+            let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
+            let document = Document::parse("single.toml", text, &sets).unwrap();
+            Simulation::<1>::new(&read(&document).unwrap(), 1).unwrap().model
+        };
+        let penalty =
+            ["contact.wall.enforcement=\"penalty\"", "contact.wall.stiffness=8.0", "body.bar.mass=\"lumped\""];
+        let omega = spring(&model(&penalty)).unwrap();
+        assert!((omega / (4.0 * 30.0 / 0.1) - 1.0).abs() < 1e-12, "{omega}");
+        assert_eq!(spring(&model(&[])), None);
+    }
 
     /// A free bar of n linear cells with consistent mass: ω_k² = (6c²/h²)(1 − cos θ)/(2 + cos θ), θ = kπ/n; the highest, k = n, is √12 c/h (Hughes, "The
     /// finite element method", §7.3.1). c = 30, h = 0.1.

@@ -5,11 +5,13 @@
 //!            arms/01-hu/ …           one run directory per arm
 //!            study.csv               one row per arm, one column per metric
 //!            study_tidy.csv          arm,metric,value,unit
+//!            checks.json             an arm computed again with more threads, and resumed (of a study with a goal)
 //!            claims.csv              what was claimed, both numbers, the verdict
 //!            study.html figures/     the page
 //! ```
 
 mod arms;
+pub mod checks;
 mod claim;
 pub mod compared;
 pub mod design;
@@ -27,6 +29,7 @@ use crate::metrics::{self, Metric};
 use crate::question::{Question, Series};
 use crate::{Expect, Expectation, Machine, Manifest, RecordError, Run, Source, Status, files, judge};
 pub use arms::ArmRecords;
+use checks::Checks;
 pub use claim::{Comparison, Verdict};
 use compared::{Compared, PhaseOrders};
 use design::{Design, Goal, Part};
@@ -278,6 +281,8 @@ pub struct Study {
     pub ranking: Option<Ranking>,
     /// What it would be by the other goals.
     pub other_rankings: Vec<Ranking>,
+    /// What was tried on one of its arms.
+    pub checks: Option<Checks>,
 }
 
 impl Study {
@@ -329,6 +334,7 @@ impl Study {
         let other_rankings: Vec<Ranking> =
             others.map(|goal| Ranking::of(goal, &manifest, &rows, &compared, reference.as_ref())).collect();
         let phase_orders = reference.as_ref().map(|r| phase_orders(&manifest, &compared, r)).unwrap_or_default();
+        let checks = Checks::read(directory)?;
         let directory = directory.to_path_buf();
         Ok(Self {
             directory,
@@ -341,6 +347,7 @@ impl Study {
             phase_orders,
             ranking,
             other_rankings,
+            checks,
         })
     }
 

@@ -1,0 +1,176 @@
+//! The arms of a study in the order of its ranking, in three tables narrow enough to be printed: errors and cost; energy and the contact force; contact,
+//! stresses and orders. What no arm has a value of has no column.
+
+use std::fmt::Write as _;
+
+use carom_record::study::compared::is_stress;
+use carom_record::study::design::{Design, Kind};
+use carom_record::study::ranking::{Ranking, error, standing};
+use carom_record::study::reference::Standing;
+use carom_record::study::{Study, step};
+
+use crate::study_page::number as long;
+use crate::text::{escape, html};
+use crate::verdict::{OFF_BUDGET, number};
+
+/// Probes' stresses with a column of their own at most.
+const STRESSES: usize = 3;
+
+/// A heading and the cells below it, in the order of the arms.
+struct Column {
+    head: String,
+    cells: Vec<Option<String>>,
+}
+
+/// The ranked arms, and whatever can be put into columns of them.
+struct Ranked<'a> {
+    study: &'a Study,
+    arms: Vec<usize>,
+}
+
+impl Ranked<'_> {
+    fn column(&self, head: &str, cell: impl Fn(usize) -> Option<String>) -> Column {
+        Column { head: head.to_owned(), cells: self.arms.iter().map(|arm| cell(*arm)).collect() }
+    }
+
+    /// A metric as it is.
+    fn metric(&self, head: &str, metric: &str) -> Column {
+        self.column(head, |arm| self.study.rows[arm].value(metric).map(number))
+    }
+
+    /// Error of a metric against the reference, where a refinement establishes it and it is not zero.
+    fn error(&self, head: &str, metric: &str) -> Column {
+        let known = standing(self.study.reference.as_ref(), metric);
+        let Standing::Established { value: right, uncertainty } = known else { return self.column(head, |_| None) };
+        let relative = if right == 0.0 { f64::INFINITY } else { uncertainty / right.abs() };
+        let head = if relative > 0.0 { format!("{head} ± {}", number(relative)) } else { head.to_owned() };
+        self.column(&head, |arm| {
+            self.study.rows[arm].value(metric).filter(|_| relative.is_finite()).map(|v| number(error(v, right)))
+        })
+    }
+
+    /// Total variation of the contact force beyond the reference's.
+    fn beyond(&self) -> Column {
+        let right = standing(self.study.reference.as_ref(), "force_variation").established();
+        let right = right.map(|known| known.0).filter(|right| *right > 0.0);
+        self.column("TV beyond", |arm| Some(number(self.study.rows[arm].value("force_variation")? / right? - 1.0)))
+    }
+
+    fn late(&self) -> Column {
+        self.column("Late by", |arm| Some(number(self.study.compared.get(arm)?.as_ref()?.late.as_ref()?.1)))
+    }
+
+    /// Steps and processor time beside the budget.
+    fn budgets(&self, design: &Design) -> [Column; 2] {
+        let share = |share: f64| {
+            let mark = if (share - 1.0).abs() <= OFF_BUDGET { "" } else { " !" };
+            format!("{}{mark}", number(share))
+        };
+        let parts = |arm: usize| &self.study.manifest.arms[arm].part;
+        let measured = |arm: usize| {
+            let level = parts(arm).level;
+            let mut arms = self.study.manifest.arms.iter();
+            let anchor = arms.position(|a| a.part.level == level && a.part.method.as_ref() == Some(&design.cost_of))?;
+            Some(share(self.study.rows[arm].value("cpu_time")? / self.study.rows[anchor].value("cpu_time")?))
+        };
+        [self.column("Counted / budget", |arm| parts(arm).cost.map(share)), self.column("CPU / budget", measured)]
+    }
+
+    /// Errors of the stresses' mean peaks, each probe's by itself.
+    fn stresses(&self) -> Vec<Column> {
+        let metrics = self.study.metrics();
+        let peaks = metrics.iter().filter_map(|m| m.name.strip_suffix(":peak_mean")).filter(|c| is_stress(c));
+        peaks.take(STRESSES).map(|c| self.error(&format!("{c} peak"), &format!("{c}:peak_mean"))).collect()
+    }
+
+    /// Observed orders of the first displacement that has them, before the first contact and across it.
+    fn orders(&self) -> [Column; 2] {
+        let orders = &self.study.phase_orders;
+        let named = orders.iter().find(|o| o.across.is_ok() || o.smooth.is_ok()).map(|o| o.column.clone());
+        let of = |arm: usize| {
+            let arm = &self.study.manifest.arms[arm];
+            let method = arm.part.method.as_ref().unwrap_or(&arm.name);
+            orders.iter().find(|o| o.method == *method && Some(&o.column) == named.as_ref())
+        };
+        let cell = |order: &Result<f64, String>| order.as_ref().ok().map(|p| format!("{p:.2}").replace('-', "−"));
+        let what = named.clone().unwrap_or_default();
+        [
+            self.column(&format!("{what} order before"), |arm| cell(&of(arm)?.smooth)),
+            self.column(&format!("{what} order across"), |arm| cell(&of(arm)?.across)),
+        ]
+    }
+}
+
+/// Adds the tables.
+pub(crate) fn tables(out: &mut String, study: &Study, ranking: &Ranking) {
+    let ranked = Ranked { study, arms: ranking.levels.iter().flatten().map(|r| r.arm).collect() };
+    let errors: Vec<f64> = ranking.levels.iter().flatten().map(|r| r.error).collect();
+    let place = |arm: usize| ranked.arms.iter().position(|a| *a == arm);
+    let matched = study.manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedCost);
+    let mut first = vec![
+        ranked.column("Δt", |arm| step(&study.manifest.arms[arm], "time.step").map(long)),
+        ranked.column("Error", |arm| place(arm).map(|i| number(errors[i]))),
+        ranked.late(),
+        ranked.metric("Steps", "steps"),
+        ranked.metric("Newton its", "newton_iterations"),
+        ranked.metric("Rejected", "rejected_steps"),
+        ranked.metric("CPU (s)", "cpu_time"),
+        ranked.metric("Wall (s)", "wall_time"),
+    ];
+    first.extend(matched.into_iter().flat_map(|design| ranked.budgets(design)));
+    table(out, "Error and cost", ranking, study, &first);
+    let second = [
+        ranked.metric("Energy drift", "energy_drift"),
+        ranked.metric("lost at the end", "energy_lost"),
+        ranked.metric("lost in an impact", "energy_lost_impact"),
+        ranked.metric("by integrator", "dissipated_integrator"),
+        ranked.metric("by contact", "dissipated_contact"),
+        ranked.beyond(),
+        ranked.metric("High freq.", "force_high_frequency"),
+        ranked.metric("Chatter", "chatter"),
+    ];
+    table(out, "Energy, and roughness of the contact force", ranking, study, &second);
+    let mut third = vec![
+        ranked.metric("Penetration", "penetration"),
+        ranked.metric("its mean", "penetration_mean"),
+        ranked.error("Impulse x", "impulse_x"),
+        ranked.error("Impulse y", "impulse_y"),
+        ranked.error("Restitution", "restitution"),
+        ranked.error("Duration", "contact_duration"),
+    ];
+    third.extend(ranked.stresses());
+    third.extend(ranked.orders());
+    table(out, "Penetration; errors of contact and stress; orders", ranking, study, &third);
+}
+
+fn table(out: &mut String, title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) {
+    let shown: Vec<&Column> = columns.iter().filter(|c| c.cells.iter().any(Option::is_some)).collect();
+    if shown.is_empty() {
+        return;
+    }
+    let heads: String = shown.iter().map(|c| format!("<th class=\"n\">{}</th>", html(&c.head))).collect();
+    let _ = writeln!(
+        out,
+        "<h3>{title}</h3>\n<table class=\"metrics ranking\"><thead><tr><th class=\"n\">Place</th><th>Method</th>{heads}</tr></thead>"
+    );
+    let mut row = 0;
+    for (level, ranked) in ranking.levels.iter().enumerate() {
+        if ranking.levels.len() > 1 {
+            let _ = writeln!(out, "<tr><td colspan=\"{}\"><b>Level {}</b></td></tr>", shown.len() + 2, level + 1);
+        }
+        for r in ranked {
+            let arm = &study.manifest.arms[r.arm];
+            let cell = |c: &&Column| format!("<td class=\"n\">{}</td>", c.cells[row].as_deref().unwrap_or("–"));
+            let cells: String = shown.iter().map(cell).collect();
+            let name = escape(arm.part.method.as_ref().unwrap_or(&arm.name));
+            let _ = writeln!(out, "<tr><td class=\"n\">{}</td><td class=\"method\">{name}</td>{cells}</tr>", r.place);
+            row += 1;
+        }
+    }
+    out.push_str("</table>\n");
+    let missing: Vec<String> =
+        columns.iter().filter(|c| c.cells.iter().all(Option::is_none)).map(|c| html(&c.head)).collect();
+    if !missing.is_empty() {
+        let _ = writeln!(out, "<p class=\"small\">No value of: {}.</p>", missing.join(", "));
+    }
+}

@@ -1,0 +1,79 @@
+//! What a study with a goal tries on itself once its arms have ended: the arm with the least work is computed with two threads, and once more, stopped at the
+//! first step at which something touches (the last but one where nothing does) and resumed from its files. The tables of all three must have the same bits.
+//!
+//! What was found stands in `checks.json` and on the page. The repetitions are kept, in `checks/`, only where they differ.
+
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use carom::case::Case;
+use carom::recording::{self, End, Options, Progress};
+use carom_record::study::checks::{Checks, fingerprint};
+use carom_record::study::{Arm, StudyManifest};
+use carom_record::{Manifest, RecordError, Status};
+
+use crate::run::StudyError;
+
+/// Threads of the repetition: the arms have one.
+const THREADS: usize = 2;
+
+/// Tries it, unless it was tried before or no arm has finished; stops when asked to, and then nothing is written.
+///
+/// # Errors
+/// What the machine refused.
+pub(crate) fn make(manifest: &StudyManifest, directory: &Path, stop: &AtomicBool) -> Result<(), StudyError> {
+    if directory.join("checks.json").is_file() {
+        return Ok(());
+    }
+    let work = |arm: &Arm| {
+        let run = Manifest::read(&directory.join(&arm.directory)).ok()?;
+        let count = |name: &str| run.counters.get(name).copied().unwrap_or_default();
+        (run.status == Status::Finished).then(|| count("newton") + count("steps"))
+    };
+    let arms = manifest.arms.iter().filter_map(|arm| Some((work(arm)?, arm)));
+    let Some((_, arm)) = arms.min_by_key(|(work, _)| *work) else { return Ok(()) };
+    let case: Case = serde_json::from_value(arm.case.clone())
+        .map_err(|e| StudyError::Incompatible { arm: arm.name.clone(), what: e.to_string() })?;
+    let refused = |source| StudyError::Arm { arm: arm.name.clone(), source };
+    let folder = directory.join("checks");
+    let clear = || match fs::remove_dir_all(&folder) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(RecordError::Io { action: "remove", path: folder.clone(), source })
+        }
+        _ => Ok(()),
+    };
+    clear()?;
+    fs::create_dir_all(&folder).map_err(|source| RecordError::Io { action: "create", path: folder.clone(), source })?;
+    let (threads, resumed) = (folder.join("threads"), folder.join("resumed"));
+    let source = || manifest.source_of(arm);
+    let done = recording::run(&case, source(), &threads, Options { threads: THREADS }, &mut |_| (), stop);
+    if done.map_err(refused)?.end == End::Interrupted {
+        return Ok(clear()?);
+    }
+    let (halt, mut at, mut touching) = (AtomicBool::new(false), 0, 0);
+    let mut watch = |p: &Progress| {
+        let here = p.active > 0 || p.step + 1 >= p.steps;
+        if !halt.load(Ordering::Relaxed) && (here || stop.load(Ordering::Relaxed)) {
+            halt.store(true, Ordering::Relaxed);
+            (at, touching) = (p.step, p.active);
+        }
+    };
+    recording::run(&case, source(), &resumed, Options { threads: 1 }, &mut watch, &halt).map_err(refused)?;
+    let done = recording::resume(&resumed, Options { threads: 1 }, &mut |_| (), stop).map_err(refused)?;
+    if done.end == End::Interrupted {
+        return Ok(clear()?);
+    }
+    let checks = Checks {
+        arm: arm.name.clone(),
+        fingerprint: fingerprint(&directory.join(&arm.directory))?,
+        threads: (THREADS, fingerprint(&threads)?),
+        resumed: (at, fingerprint(&resumed)?),
+        touching,
+    };
+    checks.write(directory)?;
+    if checks.fingerprint == checks.threads.1 && checks.fingerprint == checks.resumed.1 {
+        clear()?;
+    }
+    Ok(())
+}
