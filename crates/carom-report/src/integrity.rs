@@ -7,7 +7,7 @@ use carom_record::study::Study;
 
 use crate::study::Origins;
 use crate::text::escape;
-use crate::verdict::{costed, number, unmatched};
+use crate::verdict::{number, unmatched};
 
 /// Digits of a hash that are shown.
 const DIGITS: usize = 12;
@@ -33,7 +33,7 @@ pub(crate) fn show(out: &mut String, study: &Study, origins: &Origins) {
     out.push_str("</table>\n<p class=\"small\">Input: blake3 of the case and what the arm sets. Record: blake3 of <code>history.csv</code> and <code>contact.csv</code>; a repetition with the \
                   same version on the same platform has the same. Events stand in each arm's <code>log.jsonl</code>.</p>\n");
     tried(out, study);
-    if study.manifest.arms.iter().any(|arm| costed(study, arm)) {
+    if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) {
         out.push_str(&unmatched(study));
     }
 }

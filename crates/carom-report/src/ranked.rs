@@ -69,6 +69,9 @@ impl Ranked<'_> {
         let parts = |arm: usize| &self.study.manifest.arms[arm].part;
         let measured = |arm: usize| {
             let level = parts(arm).level;
+            if design.kind == Kind::MatchedStep && !self.study.manifest.by_cost(&self.study.manifest.arms[arm]) {
+                return None;
+            }
             let mut arms = self.study.manifest.arms.iter();
             let anchor = arms.position(|a| a.part.level == level && a.part.method.as_ref() == Some(&design.cost_of))?;
             Some(share(self.study.rows[arm].value("cpu_time")? / self.study.rows[anchor].value("cpu_time")?))
@@ -106,7 +109,8 @@ pub(crate) fn tables(out: &mut String, study: &Study, ranking: &Ranking) {
     let ranked = Ranked { study, arms: ranking.levels.iter().flatten().map(|r| r.arm).collect() };
     let errors: Vec<f64> = ranking.levels.iter().flatten().map(|r| r.error).collect();
     let place = |arm: usize| ranked.arms.iter().position(|a| *a == arm);
-    let matched = study.manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedCost);
+    let matched =
+        study.manifest.design.as_ref().filter(|_| study.manifest.arms.iter().any(|a| study.manifest.by_cost(a)));
     let mut first = vec![
         ranked.column("Δt", |arm| step(&study.manifest.arms[arm], "time.step").map(long)),
         ranked.column("Error", |arm| place(arm).map(|i| number(errors[i]))),

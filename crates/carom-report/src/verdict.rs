@@ -225,6 +225,20 @@ pub(crate) fn design(out: &mut String, study: &Study) {
         }
         Some((Kind::MatchedStep, _)) => {
             let _ = writeln!(out, "<p>Matched step: at a level every method has the same step. {}.</p>", levels(study));
+            let by_cost = study.manifest.methods().into_iter().filter(|method| {
+                let mut arms = study.manifest.arms.iter();
+                arms.any(|arm| arm.part.method.as_deref() == Some(method) && study.manifest.by_cost(arm))
+            });
+            let by_cost: Vec<String> = by_cost.map(escape).collect();
+            if let Some(design) = study.manifest.design.as_ref().filter(|_| !by_cost.is_empty()) {
+                let _ = writeln!(
+                    out,
+                    "<p>By cost, not by step: {}. Each has the step at which its counted cost is that of <b>{}</b> at the level.</p>",
+                    by_cost.join("; "),
+                    escape(&design.cost_of)
+                );
+                out.push_str(&unmatched(study));
+            }
         }
         Some((Kind::MatchedCost, of)) => {
             let _ = writeln!(
@@ -249,10 +263,10 @@ fn levels(study: &Study) -> String {
 /// Whether costs were matched within the tenth that is claimed, and of which arms not.
 pub(crate) fn unmatched(study: &Study) -> String {
     let off = |arm: &&Arm| arm.part.cost.is_none_or(|share| (share - 1.0).abs() > OFF_BUDGET);
-    let matched: Vec<&Arm> = study.manifest.arms.iter().filter(|a| costed(study, a)).collect();
+    let matched: Vec<&Arm> = study.manifest.arms.iter().filter(|a| study.manifest.by_cost(a)).collect();
     let missed: Vec<&Arm> = matched.iter().copied().filter(off).collect();
     if missed.is_empty() {
-        return "<p>The counted cost of every arm is within 10 % of its budget.</p>\n".to_owned();
+        return "<p>The counted cost of every arm whose cost is matched is within 10 % of its budget.</p>\n".to_owned();
     }
     let told = |arm: &&Arm| {
         let share = arm.part.cost.map_or("none".to_owned(), number);
@@ -267,14 +281,7 @@ pub(crate) fn unmatched(study: &Study) -> String {
     )
 }
 
-/// Whether the arm was given a cost to match.
-pub(crate) fn costed(study: &Study, arm: &Arm) -> bool {
-    let design = study.manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedCost);
-    design.is_some_and(|d| !arm.part.fine && arm.part.method.as_ref().is_some_and(|m| *m != d.cost_of))
-}
-
 fn ranked_table(out: &mut String, study: &Study, ranking: &Ranking) {
-    let matched = study.manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedCost);
     ranked::tables(out, study, ranking);
     let placed = |arm: &usize| ranking.levels.iter().flatten().any(|r| r.arm == *arm);
     let without = methods(study).into_iter().flat_map(|(_, arms)| arms).filter(|arm| !placed(arm));
@@ -284,7 +291,7 @@ fn ranked_table(out: &mut String, study: &Study, ranking: &Ranking) {
         let _ = writeln!(out, "<p class=\"small\">In no place, because {why}: {}.</p>", without.join("; "));
     }
     out.push_str("<p class=\"small\">Arms that share a place are not told apart: their errors differ by no more than the uncertainty of the reference, or 5 %.");
-    if matched.is_some() {
+    if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) {
         out.push_str(" An exclamation mark: off the budget by more than 10 %.");
     }
     out.push_str(

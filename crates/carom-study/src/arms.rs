@@ -38,7 +38,7 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
             case: arm.case.clone(),
             expect: (expect, format!("{path}.expect")),
             path,
-            part: Part::default(),
+            part: Part { by_cost: arm.by_cost, ..Part::default() },
         });
     }
     let combinations: usize = if file.grid.is_empty() { 0 } else { file.grid.iter().map(|(_, v)| v.len()).product() };
@@ -72,10 +72,10 @@ fn levels(methods: &[Draft], file: &StudyFile) -> Vec<Draft> {
     let steps = &file.steps;
     let cost_of = file.cost_of.as_ref().or(methods.first().map(|m| &m.name));
     let at = |(method, level): (&Draft, usize)| {
-        let part = Part { method: Some(method.name.clone()), level, ..Part::default() };
+        let part = Part { method: Some(method.name.clone()), level, ..method.part.clone() };
         let Some(step) = steps.get(level) else { return Draft { part, ..method.clone() } };
         let mut sets = method.sets.clone();
-        let costed = file.design == Some(Kind::MatchedCost) && cost_of != Some(&method.name);
+        let costed = (file.design == Some(Kind::MatchedCost) || method.part.by_cost) && cost_of != Some(&method.name);
         let own = sets.iter().find_map(|(set, _)| set.strip_prefix("time.step=")?.trim().parse::<f64>().ok());
         // A step of the method's own gives way.
         sets.retain(|(set, _)| !set.starts_with("time.step="));
@@ -199,13 +199,15 @@ mod tests {
             set: step.map(|s| ("time.step".to_owned(), s.parse().unwrap())).into_iter().collect(),
             case: None,
             expect: None,
+            by_cost: step.is_some(),
         };
-        let file = StudyFile {
-            design: Some(Kind::MatchedCost),
+        let of = |design: Kind| StudyFile {
+            design: Some(design),
             steps: vec![0.01, 0.005],
-            arms: vec![arm("Hu", Some("1.0")), arm("explicit", Some("0.002"))],
+            arms: vec![arm("Hu", None), arm("explicit", Some("0.002"))],
             ..StudyFile::default()
         };
+        let file = of(Kind::MatchedCost);
         let arms = all(&file);
         assert_eq!(arms[1].name, "Hu, Δt 5e-3");
         assert_eq!(
@@ -213,5 +215,10 @@ mod tests {
             ("explicit, cost of Δt 5e-3", "time.step=0.001")
         );
         assert_eq!(arms[0].sets[0].0, "time.step=0.01");
+        // One that asks for it has a cost where the others have steps.
+        let same = all(&of(Kind::MatchedStep));
+        let sets = |arms: &[Draft]| arms.iter().map(|a| (a.name.clone(), a.sets.clone())).collect::<Vec<_>>();
+        assert_eq!(sets(&same), sets(&arms));
+        assert!(same[3].part.by_cost && !same[0].part.by_cost);
     }
 }

@@ -22,7 +22,7 @@ pub(crate) const KEYS: [&str; 13] = [
     "expect",
 ];
 pub(crate) const FINE: [&str; 2] = ["set", "refine"];
-pub(crate) const ARM: [&str; 4] = ["name", "case", "set", "expect"];
+pub(crate) const ARM: [&str; 5] = ["name", "case", "set", "expect", "match"];
 pub(crate) const CLAIM: [&str; 2] = ["text", "compare"];
 
 /// The reference that is computed where no arm has this name.
@@ -64,6 +64,8 @@ pub(crate) struct ArmEntry {
     pub(crate) case: Option<String>,
     /// What is expected of its record, as written.
     pub(crate) expect: Option<String>,
+    /// Whether it is given a cost where the design gives steps.
+    pub(crate) by_cost: bool,
 }
 
 impl StudyFile {
@@ -108,8 +110,9 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
         }
         let expect = expected(document, table, &format!("{path}.expect"), problems);
         let case = text(table, "case", &path, problems);
+        let by_cost = matched(table, &path, file.design, problems);
         match text(table, "name", &path, problems) {
-            Some(name) => file.arms.push(ArmEntry { name, set, case, expect }),
+            Some(name) => file.arms.push(ArmEntry { name, set, case, expect, by_cost }),
             None if table.contains_key("name") => {}
             None => problems.push(
                 Problem::new(
@@ -238,6 +241,29 @@ fn expected(document: &Document, table: &dyn TableLike, path: &str, problems: &m
         }
     };
     Some(text.lines().map(str::trim).collect::<Vec<_>>().join(" "))
+}
+
+/// Whether an arm is to have the cost of another, in a design of matched steps.
+fn matched(table: &dyn TableLike, path: &str, design: Option<Kind>, problems: &mut Vec<Problem>) -> bool {
+    let word = text(table, "match", path, problems);
+    let place = format!("{path}.match");
+    match (word.as_deref(), design) {
+        (None, _) => return false,
+        (Some("cost"), Some(Kind::MatchedStep)) => return true,
+        (Some("cost"), _) => problems.push(Problem::new(
+            place,
+            "`match` without a design of matched steps",
+            "it takes an arm out of the steps that the others have in common",
+            "add `design = \"matched-step\"`; with \"matched-cost\" every arm is matched by cost already",
+        )),
+        (Some(word), _) => problems.push(Problem::new(
+            place,
+            format!("an arm cannot match \"{word}\""),
+            "the only word is \"cost\"",
+            "match = \"cost\"",
+        )),
+    }
+    false
 }
 
 /// Dotted keys are tables to TOML and one key here.

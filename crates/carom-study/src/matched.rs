@@ -21,8 +21,7 @@ use std::sync::{Mutex, PoisonError};
 
 use carom::case::Case;
 use carom::recording::{self, Options, Progress};
-use carom_record::study::StudyManifest;
-use carom_record::study::design::Kind;
+use carom_record::study::{Arm, StudyManifest};
 use carom_record::{Manifest, RecordError, Status};
 use serde::{Deserialize, Serialize};
 
@@ -152,7 +151,7 @@ impl Pilot {
     }
 }
 
-/// Settles the steps of every arm of a design with matched cost, and computes these arms. Whether it came to its end.
+/// Settles the steps of every arm whose cost is matched, and computes these arms. Whether it came to its end.
 ///
 /// # Errors
 /// What the machine refused.
@@ -163,15 +162,14 @@ pub(crate) fn settle(
     observe: &mut dyn FnMut(&Event),
     stop: &AtomicBool,
 ) -> Result<bool, StudyError> {
-    let Some(design) = manifest.design.clone().filter(|d| d.kind == Kind::MatchedCost) else { return Ok(true) };
-    let of = |own: bool| {
-        let mine = |i: &usize| {
-            let part = &manifest.arms[*i].part;
-            !part.fine && part.method.as_ref().is_some_and(|m| (*m == design.cost_of) == own)
-        };
-        (0..manifest.arms.len()).filter(mine).collect::<Vec<_>>()
-    };
-    let (anchors, others) = (of(true), of(false));
+    let Some(design) = manifest.design.clone() else { return Ok(true) };
+    let those =
+        |mine: &dyn Fn(&Arm) -> bool| (0..manifest.arms.len()).filter(|i| mine(&manifest.arms[*i])).collect::<Vec<_>>();
+    let others = those(&|arm| manifest.by_cost(arm));
+    if others.is_empty() {
+        return Ok(true);
+    }
+    let anchors = those(&|arm| !arm.part.fine && arm.part.method.as_ref() == Some(&design.cost_of));
     let not_ended = |i: &usize| {
         let status = manifest.state(directory, &manifest.arms[*i]).map(|s| s.0);
         !matches!(status, Ok(Some(Status::Finished | Status::Failed)))

@@ -21,6 +21,10 @@ pub fn schema() -> Value {
         text("Another case file, relative to the study, instead of the study's."),
         set(case::changes(), set_doc),
         expects(),
+        one_of(
+            "In a design of matched steps: this method gets, level by level, the step at which it costs what `cost_of` does, as an explicit scheme must.",
+            &["cost"],
+        ),
     ];
     let claim = [text("A statement, in words."), text("What decides it: 'METRIC of \"ARM\" > METRIC of \"ARM\"'.")];
     let study = [
@@ -31,7 +35,9 @@ pub fn schema() -> Value {
             &["matched-step", "matched-cost"],
         ),
         json!({ "type": "array", "minItems": 1, "items": { "type": "number", "exclusiveMinimum": 0 }, "description": "Falling time steps of the levels of a design; the case's own step if left out." }),
-        text("The method whose cost the others are given, with matched cost; the first if left out."),
+        text(
+            "The method whose cost the others are given, with matched cost or `match = \"cost\"`; the first if left out.",
+        ),
         one_of("What arms are ranked by.", &Goal::NAMES.map(|(name, ..)| name)),
         json!({ "type": "number", "exclusiveMinimum": 0, "description": "The error that is good enough, 0.05 if left out." }),
         text(

@@ -17,7 +17,7 @@ pub enum Kind {
 pub struct Design {
     /// What is equal at a level.
     pub kind: Kind,
-    /// The method whose cost the others are given, with matched cost.
+    /// The method whose cost the others are given, with matched cost or by their own wish.
     pub cost_of: String,
     /// Steps of the levels, the coarsest first; with matched cost those of `cost_of`.
     pub steps: Vec<f64>,
@@ -82,7 +82,10 @@ pub struct Part {
     /// Number of its level.
     #[serde(default)]
     pub level: usize,
-    /// Its counted cost over the budget of its level, with matched cost; none for the method whose cost is matched.
+    /// Whether it is given the cost of `cost_of` where the others have the level's step.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub by_cost: bool,
+    /// Its counted cost over the budget of its level, where its cost is matched.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cost: Option<f64>,
     /// Whether it is one of the three runs of the computed reference.

@@ -32,7 +32,7 @@ pub use arms::ArmRecords;
 use checks::Checks;
 pub use claim::{Comparison, Verdict};
 use compared::{Compared, PhaseOrders};
-use design::{Design, Goal, Part};
+use design::{Design, Goal, Kind, Part};
 pub use orders::{Refinement, numeric_keys, refinements, step};
 use ranking::Ranking;
 use reference::{Kept, Reference};
@@ -164,6 +164,13 @@ impl StudyManifest {
             }
         }
         methods
+    }
+
+    /// Whether an arm gets the step at which it costs what `cost_of` does.
+    pub fn by_cost(&self, arm: &Arm) -> bool {
+        let Some(design) = &self.design else { return false };
+        let other = arm.part.method.as_ref().is_some_and(|m| *m != design.cost_of);
+        !arm.part.fine && other && (design.kind == Kind::MatchedCost || arm.part.by_cost)
     }
 
     /// The error that is good enough: 0.05 if nothing was said.

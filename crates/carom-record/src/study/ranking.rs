@@ -6,7 +6,7 @@
 //! told apart from the best the cheapest is recommended; processor times within a tenth of the least are equal, and the smaller error decides between them.
 
 use super::compared::{Compared, established, is_stress, is_trajectory};
-use super::design::Goal;
+use super::design::{Goal, Kind};
 use super::reference::{IDEAL, Reference, Standing};
 use super::{Row, StudyManifest};
 
@@ -350,6 +350,12 @@ fn verdict(
         confidence = Confidence::Low;
         let why = format!("the best is not good: an error of {} where {accuracy} was asked for", short(chosen.error));
         confidence_reasons.push(why);
+    }
+    let arm = &manifest.arms[chosen.arm];
+    if let Some(design) = manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedStep && manifest.by_cost(arm)) {
+        confidence = if confidence > Confidence::Medium { Confidence::Medium } else { confidence };
+        confidence_reasons
+            .push(format!("it is compared at the cost of {}, the others at their common step", design.cost_of));
     }
     Some(Verdict { arm: chosen.arm, alike: alike_ones, reasons, confidence, confidence_reasons })
 }
