@@ -231,6 +231,27 @@ fn matched_cost_settles_and_resumes_at_the_same_steps() {
     assert!((again.manifest.arms[1].case["time"]["step"].as_f64().unwrap() - 0.4 / settled[1] as f64).abs() < 1e-15);
 }
 
+/// Beside arms at the common step, one explicit arm at the cost of the first: only its step is settled, and what is settled is what its case has.
+#[test]
+fn an_arm_matches_cost_where_the_others_match_steps() {
+    let (folder, path) = folder(
+        "design = \"matched-step\"\nsteps = [0.01]\ngoal = \"energy\"\n[[arm]]\nname = \"CH\"\n[[arm]]\nname = \"Hu\"\n\
+         set = { \"time.scheme\" = { kind = \"hu\" } }\n[[arm]]\nname = \"explicit\"\nmatch = \"cost\"\n\
+         set = { \"time.scheme\" = { kind = \"central-difference\" }, \"body.bar.mass\" = \"lumped\", \"time.step\" = 0.005 }\n",
+    );
+    let plan = Plan::read(&path).unwrap();
+    assert_eq!(plan.manifest.arms.iter().map(|a| a.steps).collect::<Vec<_>>(), [40, 40, 80]);
+    assert_eq!(plan.manifest.arms[2].name, "explicit, cost of Δt 1e-2");
+    let out = folder.path().join("out");
+    let study = start(&plan, &out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
+    let arms = &study.manifest.arms;
+    assert!(study.rows.iter().all(|r| r.status == Some(Status::Finished)));
+    assert_eq!(arms.iter().map(|a| study.manifest.by_cost(a)).collect::<Vec<_>>(), [false, false, true]);
+    assert!((arms[0].steps, arms[1].steps) == (40, 40) && arms[0].part.cost.is_none() && arms[2].part.cost.is_some());
+    assert_eq!(study.rows[2].value("steps"), Some(arms[2].steps as f64));
+    assert!(out.join("pilots/03-explicit-cost-of-dt-1e-2/pilot.json").is_file());
+}
+
 #[test]
 fn wrong_designs_are_told() {
     let first = |study: &str| wrong(study)[0].clone();
@@ -241,6 +262,9 @@ fn wrong_designs_are_told() {
         first("design = \"matched-step\"\nsteps = [0.005, 0.01]\n[[arm]]\nname = \"a\"\n").what.contains("falling")
     );
     assert!(first("design = \"matched-cost\"\ncost_of = \"b\"\n[[arm]]\nname = \"a\"\n").what.contains("no method"));
+    let found = first("[[arm]]\nname = \"a\"\nmatch = \"cost\"\n");
+    assert!(found.line == 4 && found.what.contains("without a design"), "{found:?}");
+    assert!(first("design = \"matched-step\"\n[[arm]]\nname = \"a\"\nmatch = \"step\"\n").what.contains("\"step\""));
     assert!(first("goal = \"forces\"\n[[arm]]\nname = \"a\"\n").help.contains("\"force\""));
     assert!(first("[fine]\nrefine = 4\n[[arm]]\nname = \"a\"\n").what.contains("not used"));
 }
