@@ -4,6 +4,7 @@
 
 mod forces;
 mod key;
+mod planes;
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -62,31 +63,6 @@ fn tuple(v: &[f64]) -> String {
     if parts.len() == 1 { parts[0].clone() } else { format!("({})", parts.join(", ")) }
 }
 
-/// A rigid plane of dimension 2 as far as it is drawn.
-struct RigidPlane {
-    ends: [Point; 2],
-    /// Unit normal out of the solid.
-    normal: Point,
-}
-
-/// The rigid planes of a case, along bodies in a box: from side to side where they lie rather flat, else from the bottom to the top.
-fn rigid_planes(case: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Vec<RigidPlane> {
-    let planes = list(case, "contacts").iter().filter_map(|c| c.pointer("/primary/plane"));
-    let one = |plane: &Value| {
-        let ([px, py], [nx, ny]) =
-            (vector(plane.get("point")).try_into().ok()?, vector(plane.get("normal")).try_into().ok()?);
-        let normal = direction([0.0; 2], [nx, ny]);
-        let [nx, ny]: Point = normal;
-        let ends = if ny.abs() >= nx.abs() {
-            [x0, x1].map(|x| [x, py - (x - px) * nx / ny])
-        } else {
-            [y0, y1].map(|y| [px - (y - py) * ny / nx, y])
-        };
-        (normal != [0.0; 2]).then_some(RigidPlane { ends, normal })
-    };
-    planes.filter_map(|plane| one(plane)).collect()
-}
-
 /// The figure, from the initial fields; nothing where there are no cells.
 pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     let flat = fields.blocks.iter().all(|b| b.cell == Cell::Curve);
@@ -100,7 +76,7 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
         let x = vector(Some(point)).first().copied().filter(|_| flat).unwrap_or(frame[0]);
         (frame[0], frame[1]) = (frame[0].min(x), frame[1].max(x));
     }
-    let planes = if flat { Vec::new() } else { rigid_planes(&run.manifest.case, frame) };
+    let planes = if flat { Vec::new() } else { planes::rigid(&run.manifest.case, frame) };
     for p in planes.iter().flat_map(|plane| plane.ends) {
         frame = [frame[0].min(p[0]), frame[1].max(p[0]), frame[2].min(p[1]), frame[3].max(p[1])];
     }
@@ -273,29 +249,6 @@ impl Setup<'_> {
                     if across { rollers(out, &walk) } else { guides(out, &walk, held) }
                 }
             }
-        }
-    }
-
-    /// Rigid planes, hatched on their solid side: a wall in dimension 1, else lines drawn `air` pixels beyond the bodies.
-    fn planes(&self, out: &mut String, planes: &[RigidPlane], air: f64) {
-        let mut draw = |ends: [Point; 2], outward: Point| {
-            wall(out, &ends.map(|p| (p, outward)), 0.0);
-            let mut pen = Pen::default();
-            pen.go(ends[0]);
-            pen.draw(&[ends[1]]);
-            Self::stroke(out, &pen, PRIMARY);
-        };
-        for plane in planes {
-            let [a, b] = plane.ends.map(|p| self.to(p));
-            let along = direction(a, b);
-            draw([plus(a, -air, along), plus(b, air, along)], [-plane.normal[0], plane.normal[1]]);
-        }
-        let walls = list(self.case(), "contacts").iter().filter_map(|c| c.pointer("/primary/plane"));
-        for wall in walls.filter(|_| self.flat) {
-            let [x, y] = self.to([vector(wall.get("point")).first().copied().unwrap_or(0.0), 0.0]);
-            let inward = vector(wall.get("normal")).first().copied().unwrap_or(1.0);
-            let half = BAR + 8.0;
-            draw([[x, y - half], [x, y + half]], [-inward.signum(), 0.0]);
         }
     }
 
