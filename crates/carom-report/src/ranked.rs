@@ -152,7 +152,7 @@ fn table(out: &mut String, title: &str, ranking: &Ranking, study: &Study, column
     if shown.is_empty() {
         return;
     }
-    let heads: String = shown.iter().map(|c| format!("<th class=\"n\">{}</th>", html(&c.head))).collect();
+    let heads = shown.iter().fold(String::new(), |row, c| row + &format!("<th class=\"n\">{}</th>", html(&c.head)));
     let _ = writeln!(
         out,
         "<h3>{title}</h3>\n<table class=\"metrics ranking\"><thead><tr><th class=\"n\">Place</th><th>Method</th>{heads}</tr></thead>"

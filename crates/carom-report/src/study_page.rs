@@ -327,11 +327,8 @@ fn reproduce(out: &mut String, study: &Study) {
         escape(&m.source.study),
         escape(&m.source.case)
     );
-    let files: String = FILES
-        .iter()
-        .filter(|name| study.directory.join(name).is_file())
-        .map(|name| format!(" · <a href=\"{name}\">{name}</a>"))
-        .collect();
+    let there = FILES.iter().filter(|name| study.directory.join(name).is_file());
+    let files = there.fold(String::new(), |list, name| list + &format!(" · <a href=\"{name}\">{name}</a>"));
     let _ = writeln!(
         out,
         "<p>The folder of this page is the record of the study, and enough to make the page again with <code>carom report</code>: put it into an archive whole. In it: \

@@ -29,7 +29,7 @@ pub(super) fn rigid(case: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Vec<RigidPlane>
         };
         (normal != [0.0; 2]).then_some(RigidPlane { ends, normal })
     };
-    planes.filter_map(|plane| one(plane)).collect()
+    planes.filter_map(one).collect()
 }
 
 impl Setup<'_> {
