@@ -23,7 +23,7 @@ const MANY: usize = 12;
 /// What the page of a run does not need.
 const CSS: &str = "td.method { min-width: 10rem; } .verdict { border: 2px solid #0072b2; border-radius: 6px; padding: .2rem 1.1rem .6rem; margin: 1rem 0; background: #f4f9fd; } \
 .verdict.none { border-color: #8a5a00; background: #fdf8ee; } .verdict dt { font-weight: 600; margin-top: .5rem; } .verdict dd { margin-left: 1.2rem; } span.miss { color: #a32b00; font-weight: 600; } td.undecided { color: #8a5a00; font-weight: 600; } th.n { text-align: right; } \
-table.metrics td, table.metrics th { padding-right: .7rem; } table.ranking { font-size: .78rem; } table.ranking td, table.ranking th { padding-right: .45rem; } .ranking td.method { min-width: 7rem; } svg.line { vertical-align: middle; } \
+table.metrics td, table.metrics th { padding-right: .7rem; } table.ranking { font-size: .78rem; } table.ranking td, table.ranking th { padding-right: .45rem; } .ranking td.method { min-width: 7rem; } .ranking code { font-size: inherit; } svg.line { vertical-align: middle; } \
 @media print { body { -webkit-print-color-adjust: exact; print-color-adjust: exact; } .metrics { font-size: 8.5pt; } }\n";
 
 /// The page.
