@@ -5,8 +5,9 @@
 //!     bench/instructions.py carom-algebra     instructions
 
 use std::hint::black_box;
+use std::sync::Arc;
 
-use carom_algebra::{Condensed, FaerSolver, LinearSolver, Pattern, Saddle, complementarity};
+use carom_algebra::{Condensed, Elimination, FaerSolver, LinearSolver, Pattern, Precision, Saddle, complementarity};
 use divan::Bencher;
 
 /// Nodes along an edge: 2 178 and 18 818 unknowns.
@@ -53,14 +54,16 @@ fn grid(edge: usize, rows: usize) -> Grid {
 #[divan::bench(args = EDGES)]
 fn kept_analysis(bencher: Bencher, edge: usize) {
     let grid = grid(edge, 0);
-    bencher.bench_local(|| Condensed::default().analyse(black_box(&grid.pattern), &grid.groups, &grid.side).is_ok());
+    bencher.bench_local(|| Elimination::new(black_box(&grid.pattern), &grid.groups, &grid.side).is_ok());
+}
+
+fn elimination(grid: &Grid) -> Arc<Elimination> {
+    Arc::new(Elimination::new(&grid.pattern, &grid.groups, &grid.side).expect("memory"))
 }
 
 fn condensed(grid: &Grid) -> Condensed {
-    let mut condensed = Condensed::default();
-    condensed.analyse(&grid.pattern, &grid.groups, &grid.side).expect("memory");
-    condensed.fill(|k| grid.values[k]);
-    condensed.factor().expect("positive definite");
+    let mut condensed = Condensed::new(&elimination(grid), Precision::Double).expect("memory");
+    condensed.factor(|k| grid.values[k]).expect("positive definite");
     condensed
 }
 
@@ -68,10 +71,7 @@ fn condensed(grid: &Grid) -> Condensed {
 fn kept_factor(bencher: Bencher, edge: usize) {
     let grid = grid(edge, 0);
     let mut condensed = condensed(&grid);
-    bencher.bench_local(|| {
-        condensed.fill(|k| grid.values[k]);
-        condensed.factor().is_ok()
-    });
+    bencher.bench_local(|| condensed.factor(|k| grid.values[k]).is_ok());
 }
 
 #[divan::bench(args = EDGES)]

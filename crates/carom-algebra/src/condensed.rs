@@ -11,6 +11,8 @@
 // A loop is compiled for wide registers only where it is inlined into `wide`.
 #![allow(clippy::inline_always)]
 
+use std::sync::Arc;
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltParams, LltRegularization};
 use faer::linalg::matmul::matmul;
@@ -22,6 +24,7 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::traits::RealField;
 use faer::{Accum, MatMut, MatRef, Par, Side, Spec};
 
 use crate::faer_engine::grouped_ordering;
@@ -29,9 +32,9 @@ use crate::linear::LinearError;
 use crate::pattern::Pattern;
 use crate::simd::{add_scaled, dot, wide};
 
-/// A factor whose last unknowns are left for a dense solve.
-#[derive(Default)]
-pub struct Condensed {
+/// What of a factor the pattern and the choice of last unknowns decide: several matrices share it.
+#[derive(Debug)]
+pub struct Elimination {
     /// Place of each unknown in the elimination.
     place: Vec<u32>,
     inner: usize,
@@ -39,25 +42,17 @@ pub struct Condensed {
     rows: Vec<u32>,
     /// Where each entry of the pattern went.
     slots: Vec<u32>,
-    values: Vec<f64>,
-    symbolic: Option<SymbolicCholesky<u32>>,
-    factors: Vec<f64>,
-    schur: Vec<f64>,
-    trailing: Vec<f64>,
-    gathered: Vec<f64>,
-    scratch: Option<MemBuffer>,
+    symbolic: SymbolicCholesky<u32>,
 }
 
-impl Condensed {
+impl Elimination {
     /// Orders and analyses a pattern; unknowns of one group stay together, those in `last` come last.
     ///
     /// # Errors
     /// The engine ran out of memory.
-    pub fn analyse(&mut self, pattern: &Pattern, groups: &[usize], last: &[usize]) -> Result<(), LinearError> {
+    pub fn new(pattern: &Pattern, groups: &[usize], last: &[usize]) -> Result<Self, LinearError> {
         let n = pattern.size();
         let engine = |reason: String| LinearError::Engine { size: n, reason };
-        // The old factor is not wanted beside the new one.
-        (self.symbolic, self.scratch, self.factors) = (None, None, Vec::new());
         let mut is_last = vec![false; n];
         last.iter().for_each(|&i| is_last[i] = true);
         let whole = groups.iter().max().map_or(0, |g| g + 1);
@@ -68,77 +63,12 @@ impl Condensed {
         let merged: Vec<usize> = merged.iter().map(|g| names.partition_point(|name| name < g)).collect();
         let (forward, _) = grouped_ordering(pattern, &merged).map_err(engine)?;
         let order = forward.iter().filter(|&&i| !is_last[i]).chain(forward.iter().filter(|&&i| is_last[i]));
-        self.place.clear();
-        self.place.resize(n, 0);
-        order.enumerate().for_each(|(place, &i)| self.place[i] = place as u32);
-        self.inner = n - last.len();
-        self.permute(pattern);
-        let symbolic = self.structure(n).map_err(engine)?;
-        let SymbolicCholeskyRaw::Supernodal(raw) = symbolic.raw() else {
-            return Err(engine("no supernodes".into()));
-        };
-        self.factors.clear();
-        self.factors.resize(raw.len_val(), 0.0);
-        let space =
-            factorize_supernodal_numeric_llt_scratch::<u32, f64>(raw, Par::Seq, Spec::<LltParams, f64>::default());
-        self.scratch = Some(MemBuffer::try_new(space).map_err(|e| engine(format!("{e:?}")))?);
-        self.symbolic = Some(symbolic);
-        Ok(())
-    }
-
-    /// The lower triangle in the order of elimination, columns compressed, rows as they come.
-    fn permute(&mut self, pattern: &Pattern) {
-        let n = pattern.size();
-        let place = &self.place;
-        let mut fill = vec![0_u32; n + 1];
-        let entry = |i: usize, j: usize| (place[i].max(place[j]), place[i].min(place[j]) as usize);
-        for j in 0..n {
-            pattern.column(j).iter().for_each(|&i| fill[entry(i, j).1 + 1] += 1);
-        }
-        for j in 0..n {
-            fill[j + 1] += fill[j];
-        }
-        self.starts.clone_from(&fill);
-        self.rows.clear();
-        self.rows.resize(pattern.len(), 0);
-        self.slots.clear();
-        self.slots.resize(pattern.len(), 0);
-        for j in 0..n {
-            for k in pattern.starts[j]..pattern.starts[j + 1] {
-                let (row, column) = entry(pattern.rows[k], j);
-                let slot = fill[column];
-                fill[column] += 1;
-                self.rows[slot as usize] = row;
-                self.slots[k] = slot;
-            }
-        }
-        self.values.clear();
-        self.values.resize(pattern.len(), 0.0);
-    }
-
-    /// Symbolic factor of the upper triangle, the last unknowns tied together by the row of their first.
-    fn structure(&self, n: usize) -> Result<SymbolicCholesky<u32>, String> {
-        let first = self.inner as u32;
-        let mut columns: Vec<Vec<u32>> = vec![Vec::new(); n];
-        for j in 0..n {
-            let (start, end) = (self.starts[j] as usize, self.starts[j + 1] as usize);
-            self.rows[start..end].iter().for_each(|&i| columns[i as usize].push(j as u32));
-        }
-        columns.iter_mut().skip(self.inner).for_each(|column| column.push(first));
-        let (mut starts, mut rows) = (vec![0_u32], Vec::new());
-        for column in &mut columns {
-            column.sort_unstable();
-            column.dedup();
-            rows.append(column);
-            starts.push(rows.len() as u32);
-        }
-        let params = CholeskySymbolicParams {
-            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-            ..Default::default()
-        };
-        let upper = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows);
-        factorize_symbolic_cholesky(upper, Side::Upper, SymmetricOrdering::Identity, params)
-            .map_err(|e| format!("{e:?}"))
+        let mut place = vec![0; n];
+        order.enumerate().for_each(|(k, &i)| place[i] = k as u32);
+        let inner = n - last.len();
+        let (starts, rows, slots) = permuted(pattern, &place);
+        let symbolic = structure(&starts, &rows, inner).map_err(engine)?;
+        Ok(Self { place, inner, starts, rows, slots, symbolic })
     }
 
     /// Number of unknowns eliminated last.
@@ -151,47 +81,220 @@ impl Condensed {
         (self.place[unknown] as usize).checked_sub(self.inner)
     }
 
-    /// Sets the matrix: `value(k)` for entry k of the pattern.
-    pub fn fill(&mut self, value: impl Fn(usize) -> f64) {
-        for (k, &slot) in self.slots.iter().enumerate() {
-            self.values[slot as usize] = value(k);
+    fn supernodes(&self) -> Result<&SymbolicSupernodalCholesky<u32>, LinearError> {
+        match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Supernodal(raw) => Ok(raw),
+            SymbolicCholeskyRaw::Simplicial(_) => {
+                Err(LinearError::Engine { size: self.place.len(), reason: "no supernodes".into() })
+            }
         }
     }
+}
 
-    /// Factors the matrix last set.
-    ///
-    /// # Errors
-    /// It is not positive definite.
-    pub fn factor(&mut self) -> Result<(), LinearError> {
-        let n = self.place.len();
-        let (Some(symbolic), Some(scratch)) = (&self.symbolic, &mut self.scratch) else {
-            return Err(LinearError::Engine { size: n, reason: "factor before analyse".into() });
-        };
-        let SymbolicCholeskyRaw::Supernodal(raw) = symbolic.raw() else { return Ok(()) };
-        let structure = SymbolicSparseColMatRef::new_unsorted_checked(n, n, &self.starts, None, &self.rows);
+/// The lower triangle in the order of elimination, columns compressed, rows as they come: starts, rows, and where each entry of the pattern went.
+fn permuted(pattern: &Pattern, place: &[u32]) -> (Vec<u32>, Vec<u32>, Vec<u32>) {
+    let n = pattern.size();
+    let mut fill = vec![0_u32; n + 1];
+    let entry = |i: usize, j: usize| (place[i].max(place[j]), place[i].min(place[j]) as usize);
+    for j in 0..n {
+        pattern.column(j).iter().for_each(|&i| fill[entry(i, j).1 + 1] += 1);
+    }
+    for j in 0..n {
+        fill[j + 1] += fill[j];
+    }
+    let starts = fill.clone();
+    let (mut rows, mut slots) = (vec![0; pattern.len()], vec![0; pattern.len()]);
+    for j in 0..n {
+        for k in pattern.starts[j]..pattern.starts[j + 1] {
+            let (row, column) = entry(pattern.rows[k], j);
+            let slot = fill[column];
+            fill[column] += 1;
+            rows[slot as usize] = row;
+            slots[k] = slot;
+        }
+    }
+    (starts, rows, slots)
+}
+
+/// Symbolic factor, the last unknowns tied together by the row of their first.
+fn structure(starts: &[u32], rows: &[u32], inner: usize) -> Result<SymbolicCholesky<u32>, String> {
+    let n = starts.len() - 1;
+    // The upper triangle: the columns of the lower one in ascending order fill each of its columns in ascending order.
+    let tied = |row: usize| usize::from(row > inner);
+    let mut fill = vec![0_u32; n + 1];
+    rows.iter().for_each(|&i| fill[i as usize + 1] += 1);
+    for i in 0..n {
+        fill[i + 1] += fill[i] + tied(i) as u32;
+    }
+    let mut upper = vec![0_u32; *fill.last().unwrap_or(&0) as usize];
+    let first = fill.clone();
+    for j in 0..n {
+        for &i in &rows[starts[j] as usize..starts[j + 1] as usize] {
+            upper[fill[i as usize] as usize] = j as u32;
+            fill[i as usize] += 1;
+        }
+    }
+    let (mut columns, mut entries) = (vec![0_u32], Vec::with_capacity(upper.len()));
+    for i in 0..n {
+        let column = &mut upper[first[i] as usize..first[i + 1] as usize];
+        if tied(i) == 1 {
+            column[column.len() - 1] = inner as u32;
+            column.sort_unstable();
+        }
+        let begin = entries.len();
+        for &j in &*column {
+            if entries.len() == begin || entries[entries.len() - 1] != j {
+                entries.push(j);
+            }
+        }
+        columns.push(entries.len() as u32);
+    }
+    let params = CholeskySymbolicParams {
+        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+        ..Default::default()
+    };
+    let upper = SymbolicSparseColMatRef::new_checked(n, n, &columns, None, &entries);
+    factorize_symbolic_cholesky(upper, Side::Upper, SymmetricOrdering::Identity, params).map_err(|e| format!("{e:?}"))
+}
+
+/// Entries of a factor: all of their digits, or half of them in half of the memory and the time. What takes the factor for an approximation loses nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    /// 53 bits.
+    Double,
+    /// 24 bits.
+    Single,
+}
+
+/// A number of the factor.
+trait Entry: RealField + Copy + Into<f64> {
+    fn rounded(value: f64) -> Self;
+}
+
+impl Entry for f64 {
+    fn rounded(value: f64) -> Self {
+        value
+    }
+}
+
+impl Entry for f32 {
+    fn rounded(value: f64) -> Self {
+        value as f32
+    }
+}
+
+/// A matrix in the order of elimination, and its factor.
+struct Entries<T> {
+    values: Vec<T>,
+    factors: Vec<T>,
+    scratch: MemBuffer,
+}
+
+enum Numbers {
+    Double(Entries<f64>),
+    Single(Entries<f32>),
+}
+
+impl<T: Entry> Entries<T> {
+    fn new(elimination: &Elimination) -> Result<Self, LinearError> {
+        let raw = elimination.supernodes()?;
+        let space = factorize_supernodal_numeric_llt_scratch::<u32, T>(raw, Par::Seq, Spec::<LltParams, T>::default());
+        let engine = |reason: String| LinearError::Engine { size: elimination.place.len(), reason };
+        let scratch = MemBuffer::try_new(space).map_err(|e| engine(format!("{e:?}")))?;
+        Ok(Self { values: Vec::new(), factors: vec![T::rounded(0.0); raw.len_val()], scratch })
+    }
+
+    fn factor(&mut self, elimination: &Elimination, value: impl Fn(usize) -> f64) -> Result<(), LinearError> {
+        let Elimination { starts, rows, slots, place, .. } = elimination;
+        let n = place.len();
+        self.values.resize(slots.len(), T::rounded(0.0));
+        for (k, &slot) in slots.iter().enumerate() {
+            self.values[slot as usize] = T::rounded(value(k));
+        }
+        let structure = SymbolicSparseColMatRef::new_unsorted_checked(n, n, starts, None, rows);
         factorize_supernodal_numeric_llt(
             &mut self.factors,
             SparseColMatRef::new(structure, &self.values),
             LltRegularization::default(),
-            raw,
+            elimination.supernodes()?,
             Par::Seq,
-            MemStack::new(scratch),
+            MemStack::new(&mut self.scratch),
             Spec::default(),
         )
         .map_err(|error| {
             let faer::linalg::cholesky::llt::factor::LltError::NonPositivePivot { index } = error;
             LinearError::Singular { size: n, pivot: index, value: 0.0 }
         })?;
-        if self.factors.iter().any(|x| !x.is_finite()) {
+        if self.factors.iter().any(|&x| !x.into().is_finite()) {
             return Err(LinearError::Inaccurate { size: n, residual: f64::NAN });
         }
-        condense(raw, &self.factors, self.inner, n, &mut self.trailing, &mut self.schur);
+        Ok(())
+    }
+}
+
+/// A factor whose last unknowns are left for a dense solve.
+pub struct Condensed {
+    elimination: Arc<Elimination>,
+    numbers: Numbers,
+    schur: Vec<f64>,
+    trailing: Vec<f64>,
+    gathered: Vec<f64>,
+}
+
+impl Condensed {
+    /// Room for the factor of a matrix with this structure.
+    ///
+    /// # Errors
+    /// The engine ran out of memory.
+    pub fn new(elimination: &Arc<Elimination>, precision: Precision) -> Result<Self, LinearError> {
+        let numbers = match precision {
+            Precision::Double => Numbers::Double(Entries::new(elimination)?),
+            Precision::Single => Numbers::Single(Entries::new(elimination)?),
+        };
+        let elimination = elimination.clone();
+        Ok(Self { elimination, numbers, schur: Vec::new(), trailing: Vec::new(), gathered: Vec::new() })
+    }
+
+    /// The structure.
+    pub fn elimination(&self) -> &Arc<Elimination> {
+        &self.elimination
+    }
+
+    /// What its entries are.
+    pub fn precision(&self) -> Precision {
+        match self.numbers {
+            Numbers::Double(_) => Precision::Double,
+            Numbers::Single(_) => Precision::Single,
+        }
+    }
+
+    /// Factors a matrix: `value(k)` for entry k of the pattern.
+    ///
+    /// # Errors
+    /// It is not positive definite.
+    pub fn factor(&mut self, value: impl Fn(usize) -> f64) -> Result<(), LinearError> {
+        let elimination = &*self.elimination;
+        let (raw, inner) = (elimination.supernodes()?, elimination.inner);
+        let (n, trailing, schur) = (elimination.place.len(), &mut self.trailing, &mut self.schur);
+        match &mut self.numbers {
+            Numbers::Double(entries) => {
+                entries.factor(elimination, value)?;
+                condense(raw, &entries.factors, inner, n, trailing, schur);
+            }
+            Numbers::Single(entries) => {
+                entries.factor(elimination, value)?;
+                condense(raw, &entries.factors, inner, n, trailing, schur);
+            }
+        }
         Ok(())
     }
 
-    /// Gives the memory of the matrix back once it is factored for good; it is analysed anew before another is set.
+    /// Gives the memory of the matrix back once it is factored for good.
     pub fn seal(&mut self) {
-        (self.rows, self.slots, self.values) = (Vec::new(), Vec::new(), Vec::new());
+        match &mut self.numbers {
+            Numbers::Double(entries) => entries.values = Vec::new(),
+            Numbers::Single(entries) => entries.values = Vec::new(),
+        }
     }
 
     /// S, column by column.
@@ -203,55 +306,56 @@ impl Condensed {
     pub fn eliminate_into(&mut self, rhs: &[f64], x: &mut Vec<f64>) {
         x.clear();
         x.resize(rhs.len(), 0.0);
-        for (value, &place) in rhs.iter().zip(&self.place) {
+        let Elimination { inner, place, .. } = &*self.elimination;
+        for (value, &place) in rhs.iter().zip(place) {
             x[place as usize] = *value;
         }
-        let Some(raw) = supernodes(self.symbolic.as_ref()) else { return };
-        let (factors, inner, gathered) = (&self.factors, self.inner, &mut self.gathered);
+        let Ok(raw) = self.elimination.supernodes() else { return };
+        let (numbers, gathered) = (&self.numbers, &mut self.gathered);
         wide(
             #[inline(always)]
-            || forward(raw, factors, inner, gathered, x),
+            || match numbers {
+                Numbers::Double(entries) => forward(raw, &entries.factors, *inner, gathered, x),
+                Numbers::Single(entries) => forward(raw, &entries.factors, *inner, gathered, x),
+            },
         );
     }
 
     /// Backward through the inner unknowns, the last ones known, and into the order of the pattern.
     pub fn substitute_into(&mut self, x: &mut [f64], out: &mut [f64]) {
-        if let Some(raw) = supernodes(self.symbolic.as_ref()) {
-            let (factors, inner, gathered) = (&self.factors, self.inner, &mut self.gathered);
+        let Elimination { inner, place, .. } = &*self.elimination;
+        if let Ok(raw) = self.elimination.supernodes() {
+            let (numbers, gathered) = (&self.numbers, &mut self.gathered);
             let x = &mut *x;
             wide(
                 #[inline(always)]
-                || backward(raw, factors, inner, gathered, x),
+                || match numbers {
+                    Numbers::Double(entries) => backward(raw, &entries.factors, *inner, gathered, x),
+                    Numbers::Single(entries) => backward(raw, &entries.factors, *inner, gathered, x),
+                },
             );
         }
-        for (value, &place) in out.iter_mut().zip(&self.place) {
+        for (value, &place) in out.iter_mut().zip(place) {
             *value = x[place as usize];
         }
     }
 
     /// The last unknowns of a vector in the order of elimination.
     pub fn kept_part<'a>(&self, x: &'a mut [f64]) -> &'a mut [f64] {
-        &mut x[self.inner..]
-    }
-}
-
-fn supernodes(symbolic: Option<&SymbolicCholesky<u32>>) -> Option<&SymbolicSupernodalCholesky<u32>> {
-    match symbolic?.raw() {
-        SymbolicCholeskyRaw::Supernodal(raw) => Some(raw),
-        SymbolicCholeskyRaw::Simplicial(_) => None,
+        &mut x[self.elimination.inner..]
     }
 }
 
 /// One supernode: its first column, its columns, the rows below them, its values (column-major, all rows).
-struct Supernode<'a> {
+struct Supernode<'a, T> {
     first: usize,
     columns: usize,
     below: &'a [u32],
-    values: &'a [f64],
+    values: &'a [T],
 }
 
 #[inline(always)]
-fn supernode<'a>(raw: &'a SymbolicSupernodalCholesky<u32>, factors: &'a [f64], s: usize) -> Supernode<'a> {
+fn supernode<'a, T>(raw: &'a SymbolicSupernodalCholesky<u32>, factors: &'a [T], s: usize) -> Supernode<'a, T> {
     let (first, end) = (raw.supernode_begin()[s] as usize, raw.supernode_end()[s] as usize);
     let rows = raw.col_ptr_for_row_idx()[s] as usize;
     let values = raw.col_ptr_for_val()[s] as usize..raw.col_ptr_for_val()[s + 1] as usize;
@@ -260,9 +364,9 @@ fn supernode<'a>(raw: &'a SymbolicSupernodalCholesky<u32>, factors: &'a [f64], s
 }
 
 #[inline(always)]
-fn forward(
+fn forward<T: Entry>(
     raw: &SymbolicSupernodalCholesky<u32>,
-    factors: &[f64],
+    factors: &[T],
     inner: usize,
     gathered: &mut Vec<f64>,
     x: &mut [f64],
@@ -278,7 +382,7 @@ fn forward(
         gathered.resize(node.below.len(), 0.0);
         for c in 0..take {
             let column = &node.values[c * height..(c + 1) * height];
-            let value = x[node.first + c] / column[c];
+            let value = x[node.first + c] / column[c].into();
             x[node.first + c] = value;
             add_scaled(&mut x[node.first + c + 1..node.first + node.columns], -value, &column[c + 1..node.columns]);
             add_scaled(gathered, -value, &column[node.columns..]);
@@ -290,9 +394,9 @@ fn forward(
 }
 
 #[inline(always)]
-fn backward(
+fn backward<T: Entry>(
     raw: &SymbolicSupernodalCholesky<u32>,
-    factors: &[f64],
+    factors: &[T],
     inner: usize,
     gathered: &mut Vec<f64>,
     x: &mut [f64],
@@ -310,15 +414,15 @@ fn backward(
             let column = &node.values[c * height..(c + 1) * height];
             let known = dot(&column[node.columns..], gathered)
                 + dot(&column[c + 1..node.columns], &x[node.first + c + 1..node.first + node.columns]);
-            x[node.first + c] = (x[node.first + c] - known) / column[c];
+            x[node.first + c] = (x[node.first + c] - known) / column[c].into();
         }
     }
 }
 
 /// S = L_BB L_BBᵀ from the last columns of the factor.
-fn condense(
+fn condense<T: Entry>(
     raw: &SymbolicSupernodalCholesky<u32>,
-    factors: &[f64],
+    factors: &[T],
     inner: usize,
     n: usize,
     trailing: &mut Vec<f64>,
@@ -338,10 +442,10 @@ fn condense(
         for c in inner.saturating_sub(node.first)..node.columns {
             let (values, target) = (&node.values[c * height..(c + 1) * height], (node.first + c - inner) * kept);
             for r in c..node.columns {
-                trailing[target + node.first + r - inner] = values[r];
+                trailing[target + node.first + r - inner] = values[r].into();
             }
             for (&row, value) in node.below.iter().zip(&values[node.columns..]) {
-                trailing[target + row as usize - inner] = *value;
+                trailing[target + row as usize - inner] = (*value).into();
             }
         }
     }
@@ -380,20 +484,21 @@ mod tests {
             let exact: Vec<f64> = (0..n).map(|i| (i as f64 * 0.7).sin()).collect();
             let mut rhs = vec![0.0; n];
             pattern.multiply_add(&values, &exact, &mut rhs);
-            let mut condensed = Condensed::default();
-            condensed.analyse(&pattern, &groups, &last).unwrap();
-            condensed.fill(|k| values[k]);
-            condensed.factor().unwrap();
-            assert_eq!(condensed.kept(), last.len());
-            let (mut x, mut out) = (Vec::new(), vec![0.0; n]);
-            condensed.eliminate_into(&rhs, &mut x);
-            let mut saddle = Saddle::default();
-            saddle.begin(condensed.schur(), condensed.kept(), 0);
-            saddle.factor().unwrap();
-            saddle.solve(condensed.kept_part(&mut x), &mut []);
-            condensed.substitute_into(&mut x, &mut out);
-            let error = out.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            assert!(error < 1e-13, "{m} {}: {error:e}", last.len());
+            let elimination = Arc::new(Elimination::new(&pattern, &groups, &last).unwrap());
+            assert_eq!(elimination.kept(), last.len());
+            for (precision, digits) in [(Precision::Double, 1e-13), (Precision::Single, 1e-5)] {
+                let mut condensed = Condensed::new(&elimination, precision).unwrap();
+                condensed.factor(|k| values[k]).unwrap();
+                let (mut x, mut out) = (Vec::new(), vec![0.0; n]);
+                condensed.eliminate_into(&rhs, &mut x);
+                let mut saddle = Saddle::default();
+                saddle.begin(condensed.schur(), elimination.kept(), 0);
+                saddle.factor().unwrap();
+                saddle.solve(condensed.kept_part(&mut x), &mut []);
+                condensed.substitute_into(&mut x, &mut out);
+                let error = out.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                assert!(error < digits, "{m} {}: {error:e}", last.len());
+            }
         }
     }
 
@@ -401,9 +506,8 @@ mod tests {
     fn an_indefinite_matrix_is_refused() {
         let (pattern, mut values, groups) = grid(4);
         values[pattern.slot(5, 5).unwrap()] = -1.0;
-        let mut condensed = Condensed::default();
-        condensed.analyse(&pattern, &groups, &[30, 31]).unwrap();
-        condensed.fill(|k| values[k]);
-        assert!(matches!(condensed.factor(), Err(LinearError::Singular { .. })));
+        let elimination = Arc::new(Elimination::new(&pattern, &groups, &[30, 31]).unwrap());
+        let mut condensed = Condensed::new(&elimination, Precision::Double).unwrap();
+        assert!(matches!(condensed.factor(|k| values[k]), Err(LinearError::Singular { .. })));
     }
 }

@@ -11,7 +11,7 @@ mod simd;
 mod small;
 
 pub use complementarity::complementarity;
-pub use condensed::Condensed;
+pub use condensed::{Condensed, Elimination, Precision};
 pub use difference::jacobian_error;
 pub use faer_engine::FaerSolver;
 pub use linear::{Inertia, LinearError, LinearSolver, SolveReport};

@@ -12,25 +12,25 @@ pub fn wide<R>(work: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(work)
 }
 
-/// y += a x.
+/// y += a x; x may be of single precision.
 #[inline(always)]
-pub(crate) fn add_scaled(y: &mut [f64], a: f64, x: &[f64]) {
+pub(crate) fn add_scaled<T: Copy + Into<f64>>(y: &mut [f64], a: f64, x: &[T]) {
     for (y, x) in y.iter_mut().zip(x) {
-        *y += a * x;
+        *y += a * (*x).into();
     }
 }
 
-/// x·y, summed in eight strands.
+/// x·y, summed in eight strands; x may be of single precision.
 #[inline(always)]
-pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
+pub(crate) fn dot<T: Copy + Into<f64>>(x: &[T], y: &[f64]) -> f64 {
     let (x, x_rest) = x.as_chunks::<LANES>();
     let (y, y_rest) = y.as_chunks::<LANES>();
     let mut strands = [0.0; LANES];
     for (x, y) in x.iter().zip(y) {
         for l in 0..LANES {
-            strands[l] += x[l] * y[l];
+            strands[l] += x[l].into() * y[l];
         }
     }
-    let rest: f64 = x_rest.iter().zip(y_rest).map(|(x, y)| x * y).sum();
+    let rest: f64 = x_rest.iter().zip(y_rest).map(|(x, y)| (*x).into() * y).sum();
     strands.iter().sum::<f64>() + rest
 }

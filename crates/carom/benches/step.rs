@@ -5,10 +5,11 @@
 
 use std::collections::BTreeSet;
 use std::hint::black_box;
+use std::sync::Arc;
 
 use carom::case::{Case, Document, read};
 use carom::{GridReport, Simulation};
-use carom_algebra::{Condensed, Pattern};
+use carom_algebra::{Condensed, Elimination, Pattern, Precision};
 use carom_contact::{Linearised, Pair};
 use divan::{Bencher, counter::ItemsCount};
 
@@ -148,27 +149,23 @@ fn mass_matrix(sim: &Simulation<2>) -> (Pattern, Vec<f64>, Vec<usize>, Vec<usize
 #[divan::bench(args = JOBS)]
 fn ordering_and_analysis(bencher: Bencher, job: Job) {
     let (pattern, _, groups, last) = mass_matrix(&in_contact(job));
-    bencher.bench_local(|| Condensed::default().analyse(black_box(&pattern), &groups, &last).is_ok());
+    bencher.bench_local(|| Elimination::new(black_box(&pattern), &groups, &last).is_ok());
 }
 
 #[divan::bench(args = JOBS)]
 fn factor(bencher: Bencher, job: Job) {
     let (pattern, values, groups, last) = mass_matrix(&in_contact(job));
-    let mut condensed = Condensed::default();
-    condensed.analyse(&pattern, &groups, &last).expect("memory");
-    bencher.bench_local(|| {
-        condensed.fill(|k| values[k]);
-        condensed.factor().is_ok()
-    });
+    let elimination = Arc::new(Elimination::new(&pattern, &groups, &last).expect("memory"));
+    let mut condensed = Condensed::new(&elimination, Precision::Double).expect("memory");
+    bencher.bench_local(|| condensed.factor(|k| values[k]).is_ok());
 }
 
 #[divan::bench(args = JOBS)]
 fn solve(bencher: Bencher, job: Job) {
     let (pattern, values, groups, last) = mass_matrix(&in_contact(job));
-    let mut condensed = Condensed::default();
-    condensed.analyse(&pattern, &groups, &last).expect("memory");
-    condensed.fill(|k| values[k]);
-    condensed.factor().expect("positive definite");
+    let elimination = Arc::new(Elimination::new(&pattern, &groups, &last).expect("memory"));
+    let mut condensed = Condensed::new(&elimination, Precision::Double).expect("memory");
+    condensed.factor(|k| values[k]).expect("positive definite");
     let (right, mut x, mut out) = (vec![1.0; pattern.size()], Vec::new(), vec![0.0; pattern.size()]);
     bencher.bench_local(|| {
         condensed.eliminate_into(black_box(&right), &mut x);

@@ -9,51 +9,26 @@
 
 use std::sync::Arc;
 
-use carom_algebra::{Condensed, LinearError, Pattern, Saddle};
+use carom_algebra::{Condensed, Elimination, LinearError, Pattern, Precision, Saddle};
 
 use crate::kept::Point;
 use crate::model::Model;
 use crate::system::Row;
-
-/// A factor and the nodes it was analysed for.
-#[derive(Default)]
-struct Factor {
-    condensed: Condensed,
-    boundary: Option<Vec<usize>>,
-}
 
 /// Factors of the kept tangent and of the mass matrix, and the scratch of their solves.
 #[derive(Default)]
 pub(crate) struct Held {
     /// What the tangent's factor was made of.
     pub(crate) point: Option<Arc<Point>>,
-    tangent: Factor,
-    mass: Factor,
+    tangent: Option<Condensed>,
+    mass: Option<Condensed>,
     of_mass: bool,
+    /// The last structure and its boundary: that of both as a rule.
+    last: Option<(Vec<usize>, Arc<Elimination>)>,
     saddle: Saddle,
     right: Vec<f64>,
     x: Vec<f64>,
     solution: Vec<f64>,
-}
-
-impl Factor {
-    fn analyse<const D: usize>(
-        &mut self,
-        model: &Model<D>,
-        pattern: &Pattern,
-        boundary: &[usize],
-    ) -> Result<bool, LinearError> {
-        if self.boundary.as_deref() == Some(boundary) {
-            return Ok(false);
-        }
-        self.boundary = None;
-        let groups: Vec<usize> = model.free.iter().map(|dof| dof / D).collect();
-        let dofs = boundary.iter().flat_map(|node| (0..D).map(move |i| node * D + i));
-        let last: Vec<usize> = dofs.map(|dof| model.unknown[dof]).filter(|&u| u != usize::MAX).collect();
-        self.condensed.analyse(pattern, &groups, &last)?;
-        self.boundary = Some(boundary.to_vec());
-        Ok(true)
-    }
 }
 
 impl Held {
@@ -69,11 +44,44 @@ impl Held {
         (mass, stiffness): (&[f64], &[f64]),
     ) -> Result<(), LinearError> {
         self.point = None;
-        self.tangent.analyse(model, pattern, &point.boundary)?;
-        self.tangent.condensed.fill(|k| point.mass * mass[k] + point.stiffness * stiffness[k]);
-        self.tangent.condensed.factor()?;
+        let elimination = self.elimination(model, pattern, &point.boundary)?;
+        let precision = precision(pattern, point, mass, stiffness);
+        let fits = |t: &Condensed| Arc::ptr_eq(t.elimination(), &elimination) && t.precision() == precision;
+        if !self.tangent.as_ref().is_some_and(fits) {
+            // The old factor is not wanted beside the new one.
+            self.tangent = None;
+            self.tangent = Some(Condensed::new(&elimination, precision)?);
+        }
+        if let Some(tangent) = &mut self.tangent {
+            tangent.factor(|k| point.mass * mass[k] + point.stiffness * stiffness[k])?;
+        }
         self.point = Some(point.clone());
         Ok(())
+    }
+
+    /// The order of elimination that leaves these nodes for last.
+    fn elimination<const D: usize>(
+        &mut self,
+        model: &Model<D>,
+        pattern: &Pattern,
+        boundary: &[usize],
+    ) -> Result<Arc<Elimination>, LinearError> {
+        if let Some((nodes, elimination)) = &self.last
+            && nodes == boundary
+        {
+            return Ok(elimination.clone());
+        }
+        let groups: Vec<usize> = model.free.iter().map(|dof| dof / D).collect();
+        let dofs = boundary.iter().flat_map(|node| (0..D).map(move |i| node * D + i));
+        let last: Vec<usize> = dofs.map(|dof| model.unknown[dof]).filter(|&u| u != usize::MAX).collect();
+        let elimination = Arc::new(Elimination::new(pattern, &groups, &last)?);
+        self.last = Some((boundary.to_vec(), elimination.clone()));
+        Ok(elimination)
+    }
+
+    /// Forgets the factors, memory and all; how to eliminate is remembered.
+    pub(crate) fn release(&mut self) {
+        (self.point, self.tangent, self.mass) = (None, None, None);
     }
 
     /// Whether the kept factor can take these rows.
@@ -91,10 +99,13 @@ impl Held {
     ) -> Result<(), LinearError> {
         let kept = self.point.as_ref().filter(|point| covers(&point.boundary, rows));
         let boundary = kept.map_or_else(|| nodes(rows), |point| point.boundary.clone());
-        if self.mass.analyse(model, pattern, &boundary)? {
-            self.mass.condensed.fill(|k| mass[k]);
-            self.mass.condensed.factor().inspect_err(|_| self.mass.boundary = None)?;
-            self.mass.condensed.seal();
+        let elimination = self.elimination(model, pattern, &boundary)?;
+        if !self.mass.as_ref().is_some_and(|factor| Arc::ptr_eq(factor.elimination(), &elimination)) {
+            self.mass = None;
+            let mut factor = Condensed::new(&elimination, Precision::Double)?;
+            factor.factor(|k| mass[k])?;
+            factor.seal();
+            self.mass = Some(factor);
         }
         self.of_mass = true;
         self.constrain(model, rows, false)
@@ -114,10 +125,13 @@ impl Held {
         rows: &[Row<D>],
         curved: bool,
     ) -> Result<(), LinearError> {
-        let condensed = if self.of_mass { &self.mass.condensed } else { &self.tangent.condensed };
-        let saddle = &mut self.saddle;
-        saddle.begin(condensed.schur(), condensed.kept(), rows.len());
-        let place = |dof: usize| Some(model.unknown[dof]).filter(|&u| u != usize::MAX).map(|u| condensed.kept_place(u));
+        let Some(condensed) = (if self.of_mass { &self.mass } else { &self.tangent }) else {
+            return Err(no_factor(model));
+        };
+        let (saddle, elimination) = (&mut self.saddle, condensed.elimination());
+        saddle.begin(condensed.schur(), elimination.kept(), rows.len());
+        let place =
+            |dof: usize| Some(model.unknown[dof]).filter(|&u| u != usize::MAX).map(|u| elimination.kept_place(u));
         for (r, row) in rows.iter().enumerate() {
             let gap = row.gap;
             for p in 0..gap.count {
@@ -151,7 +165,8 @@ impl Held {
         increment: &mut [f64],
         multipliers: &mut Vec<f64>,
     ) -> Result<(), LinearError> {
-        let condensed = if self.of_mass { &mut self.mass.condensed } else { &mut self.tangent.condensed };
+        let condensed = if self.of_mass { &mut self.mass } else { &mut self.tangent };
+        let Some(condensed) = condensed else { return Err(no_factor(model)) };
         self.right.clear();
         self.right.extend(model.free.iter().map(|&dof| forces[dof]));
         condensed.eliminate_into(&self.right, &mut self.x);
@@ -171,6 +186,19 @@ impl Held {
             Err(LinearError::Inaccurate { size: self.solution.len(), residual: f64::NAN })
         }
     }
+}
+
+/// Single precision where the factor is large, so that reading it is what a solve costs, and the matrix is so well conditioned that what half of the digits
+/// leave over of a correction is far below what an old tangent leaves. A diagonal of `STIFF` times the mass's bounds the condition number of the matrix
+/// scaled to a unit diagonal by some hundred times that (λ_max ≤ the dofs of a cell, λ_min ≥ that of the scaled mass matrix over `STIFF`).
+fn precision(pattern: &Pattern, point: &Point, mass: &[f64], stiffness: &[f64]) -> Precision {
+    let mut diagonal = pattern.starts[..pattern.size()].iter();
+    let soft = |&k: &usize| point.stiffness * stiffness[k] <= STIFF * point.mass * mass[k];
+    if pattern.size() >= LARGE && diagonal.all(soft) { Precision::Single } else { Precision::Double }
+}
+
+fn no_factor<const D: usize>(model: &Model<D>) -> LinearError {
+    LinearError::Engine { size: model.free.len(), reason: "solve before factor".into() }
 }
 
 fn nodes<const D: usize>(rows: &[Row<D>]) -> Vec<usize> {
@@ -213,6 +241,10 @@ pub(crate) fn boundary<const D: usize>(
     if covers(last, rows) && last.len() <= 2 * chosen.len() { last.to_vec() } else { chosen }
 }
 
+/// Unknowns from which a factor does not fit into the processor's caches.
+const LARGE: usize = 10_000;
+/// Largest ratio of stiffness to mass, (ωΔt)² and a factor, on the diagonal of a factor of single precision.
+const STIFF: f64 = 1e3;
 /// What the rows add to the stiffness along themselves, as a multiple of it: enough that bending contact leaves it positive definite.
 const STIFFENING: f64 = 10.0;
 /// What is added on each side of the touched nodes, as a share of their extent.

@@ -64,6 +64,8 @@ pub struct Kept {
 #[derive(Debug)]
 pub(crate) struct Keeper {
     pub(crate) kept: Kept,
+    /// Kept tangents are wanted in this solve.
+    keep: bool,
     /// The full tangent is taken in every iteration.
     pub(crate) full: bool,
     /// A new tangent is wanted before the next solve.
@@ -94,6 +96,7 @@ impl Keeper {
         let due = !fits || (kept.steps > 0 && kept.last > (RENEWAL + kept.spent) / f64::from(kept.steps));
         Self {
             kept,
+            keep,
             full: !keep || resting,
             due,
             fresh: false,
@@ -143,7 +146,7 @@ impl Keeper {
         let rest = self.kept.next_rest;
         self.forget();
         (self.kept.rest, self.kept.next_rest) = (rest, (2 * rest + 1).min(LONGEST_REST));
-        self.full = true;
+        (self.full, self.growing) = (true, 0);
     }
 
     /// Takes note of a correction of size `step`; `goal` is the size that ends the iteration, `changed` whether the active set or facets just changed.
@@ -168,12 +171,12 @@ impl Keeper {
         self.slow > PATIENCE
     }
 
-    /// Whether all allowed iterations are spent, or half the step is the better try: corrections have grown again and again with kept tangents, or
-    /// shrunk slowly where steps are being bisected anyway.
+    /// Whether all allowed iterations are spent, or half the step is the better try: corrections have grown again and again, with kept tangents or with
+    /// full ones after them, or shrunk slowly where steps are being bisected anyway.
     pub(crate) fn exhausted(&self, allowed: usize) -> bool {
-        let over = |(slow, counted): (u32, f64)| self.slow > slow || self.counted > counted;
+        let over = |(slow, counted): (u32, f64)| !self.full && (self.slow > slow || self.counted > counted);
         let hopeless = self.growing > PATIENCE || self.bisects.is_some_and(over);
-        self.counted > allowed as f64 - 0.5 || (!self.full && hopeless)
+        self.counted > allowed as f64 - 0.5 || (self.keep && hopeless)
     }
 
     /// What the next step is to know.

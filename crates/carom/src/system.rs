@@ -238,7 +238,7 @@ impl<const D: usize> System<D> {
 
     /// Forgets the kept factor, memory and all.
     pub(crate) fn release(&mut self) {
-        self.held = Held::default();
+        self.held.release();
     }
 
     /// Whether the kept factor can take these rows.
