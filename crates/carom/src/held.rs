@@ -41,11 +41,13 @@ impl Held {
         model: &Model<D>,
         pattern: &Pattern,
         point: &Arc<Point>,
+        double: bool,
         (mass, stiffness): (&[f64], &[f64]),
     ) -> Result<(), LinearError> {
         self.point = None;
         let elimination = self.elimination(model, pattern, &point.boundary)?;
-        let precision = precision(pattern, point, mass, stiffness);
+        let single = !double && single_is_enough(pattern, point, mass, stiffness);
+        let precision = if single { Precision::Single } else { Precision::Double };
         let fits = |t: &Condensed| Arc::ptr_eq(t.elimination(), &elimination) && t.precision() == precision;
         if !self.tangent.as_ref().is_some_and(fits) {
             // The old factor is not wanted beside the new one.
@@ -188,13 +190,14 @@ impl Held {
     }
 }
 
-/// Single precision where the factor is large, so that reading it is what a solve costs, and the matrix is so well conditioned that what half of the digits
-/// leave over of a correction is far below what an old tangent leaves. A diagonal of `STIFF` times the mass's bounds the condition number of the matrix
-/// scaled to a unit diagonal by some hundred times that (λ_max ≤ the dofs of a cell, λ_min ≥ that of the scaled mass matrix over `STIFF`).
-fn precision(pattern: &Pattern, point: &Point, mass: &[f64], stiffness: &[f64]) -> Precision {
+/// Whether half of the digits are enough for a factor: it is large, so that reading it is what a solve costs, and the matrix is so well conditioned that
+/// what rounding leaves over of a correction is far below what an old tangent leaves. Scaled to a unit diagonal the matrix has a condition number of at
+/// most some hundred times the largest quotient of its diagonal and the mass's: λ_max is at most the number of dofs of a cell, and its λ_min at least that
+/// of the scaled mass matrix over that quotient.
+fn single_is_enough(pattern: &Pattern, point: &Point, mass: &[f64], stiffness: &[f64]) -> bool {
     let mut diagonal = pattern.starts[..pattern.size()].iter();
     let soft = |&k: &usize| point.stiffness * stiffness[k] <= STIFF * point.mass * mass[k];
-    if pattern.size() >= LARGE && diagonal.all(soft) { Precision::Single } else { Precision::Double }
+    pattern.size() >= LARGE && diagonal.all(soft)
 }
 
 fn no_factor<const D: usize>(model: &Model<D>) -> LinearError {
@@ -249,3 +252,21 @@ const STIFF: f64 = 1e3;
 const STIFFENING: f64 = 10.0;
 /// What is added on each side of the touched nodes, as a share of their extent.
 const MARGIN: f64 = 0.3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_of_the_digits_are_for_large_factors_that_mass_holds_together() {
+        let point = Point { mass: 2.0, stiffness: 2.0, ..Point::default() };
+        let enough = |size: usize, mass: f64, stiffness: f64| {
+            let pattern = Pattern::from_entries(size, []);
+            let (mut masses, mut stiffnesses) = (vec![1.0; size], vec![10.0; size]);
+            (masses[7], stiffnesses[7]) = (mass, stiffness);
+            single_is_enough(&pattern, &point, &masses, &stiffnesses)
+        };
+        assert!(enough(LARGE, 1.0, 999.0));
+        assert!(!enough(LARGE - 1, 1.0, 999.0) && !enough(LARGE, 1.0, 1001.0) && !enough(LARGE, 0.0, 1.0));
+    }
+}

@@ -66,6 +66,8 @@ pub(crate) struct Keeper {
     pub(crate) kept: Kept,
     /// Kept tangents are wanted in this solve.
     keep: bool,
+    /// Their factors have all their digits.
+    pub(crate) double: bool,
     /// The full tangent is taken in every iteration.
     pub(crate) full: bool,
     /// A new tangent is wanted before the next solve.
@@ -97,6 +99,7 @@ impl Keeper {
         Self {
             kept,
             keep,
+            double: false,
             full: !keep || resting,
             due,
             fresh: false,

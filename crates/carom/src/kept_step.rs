@@ -39,7 +39,7 @@ pub(crate) fn begin<const D: usize>(
     if !keeper.full {
         let measure = evaluate(model, state, trial, work, false)?;
         let held = if let Some(point) = keeper.kept.point.clone().filter(|_| !keeper.due) {
-            hold(model, work, &point)?
+            hold(model, work, &point, keeper.double)?
         } else {
             let rows = independent_rows(model, &trial.pairs, work);
             renew(model, state, work, &rows, keeper)?
@@ -54,9 +54,14 @@ pub(crate) fn begin<const D: usize>(
 }
 
 /// Makes the factor of a point; whether there is one.
-fn hold<const D: usize>(model: &Model<D>, work: &mut Workspace<D>, point: &Arc<Point>) -> Result<bool, Rejected> {
+fn hold<const D: usize>(
+    model: &Model<D>,
+    work: &mut Workspace<D>,
+    point: &Arc<Point>,
+    double: bool,
+) -> Result<bool, Rejected> {
     let (system, scratch) = (&mut work.system, &mut work.correction);
-    match timed(&mut work.timings.factor, || system.hold(model, point, scratch)) {
+    match timed(&mut work.timings.factor, || system.hold(model, point, double, scratch)) {
         Ok(()) => Ok(true),
         Err(HoldError::Indefinite) => Ok(false),
         Err(HoldError::Inverted((body, inverted))) => Err(Rejected::Inverted { body, inverted }),
@@ -83,7 +88,7 @@ fn renew<const D: usize>(
             // The same factor again is of no help.
             return Ok(false);
         }
-        if hold(model, work, &point)? {
+        if hold(model, work, &point, keeper.double)? {
             keeper.renewed(point);
             return Ok(true);
         }

@@ -82,8 +82,9 @@ pub(crate) fn solve_stage<const D: usize>(
     let mut sets: Vec<ActiveSet> =
         model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect();
     let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
-    let keep = settings.tangent == TangentRule::Kept && keeps(model, work);
+    let keep = settings.tangent != TangentRule::Full && keeps(model, work);
     let mut keeper = Keeper::new(kept, keep, mass, stiffness);
+    keeper.double = settings.tangent == TangentRule::KeptDouble;
     if state.halved.is_on() {
         keeper.hurry();
     }

@@ -213,18 +213,24 @@ impl<const D: usize> System<D> {
         self.base.multiply_add(&self.stiffness, x, out);
     }
 
-    /// Makes the factor of a point, unless it is there already.
+    /// Makes the factor of a point, unless it is there already; `double`: with all its digits.
     ///
     /// # Errors
     /// A cell is inverted there, or the matrix is not positive definite.
-    pub(crate) fn hold(&mut self, model: &Model<D>, point: &Arc<Point>, force: &mut [f64]) -> Result<(), HoldError> {
+    pub(crate) fn hold(
+        &mut self,
+        model: &Model<D>,
+        point: &Arc<Point>,
+        double: bool,
+        force: &mut [f64],
+    ) -> Result<(), HoldError> {
         if self.holds(point) {
             return Ok(());
         }
         self.internal_tangent(model, None, &point.at, force, None).map_err(HoldError::Inverted)?;
         self.factorisations += 1;
         let parts = (self.mass.as_slice(), self.stiffness.as_slice());
-        self.held.factor(model, &self.base, point, parts).map_err(|_| HoldError::Indefinite)?;
+        self.held.factor(model, &self.base, point, double, parts).map_err(|_| HoldError::Indefinite)?;
         // The memory of a full tangent is as large again.
         (self.solver, self.merged, self.from_base) = (FaerSolver::default(), Pattern::default(), Vec::new());
         self.analysed = false;

@@ -456,9 +456,11 @@ pub struct NewtonSpec {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TangentRule {
-    /// When the kept one no longer pays.
+    /// When the kept one no longer pays; large factors in single precision.
     #[default]
     Kept,
+    /// The same, every factor in double precision.
+    KeptDouble,
     /// In every iteration.
     Full,
 }

@@ -374,8 +374,8 @@ const NEWTON: Table = Table {
         key("max_iterations", Count(1), "Iterations before a step is rejected.").default("20"),
         key(
             "tangent",
-            Choice(&["kept", "full"], &[]),
-            "The factored tangent is kept over iterations and steps while that pays, or formed in every iteration.",
+            Choice(&["kept", "kept-double", "full"], &[]),
+            "The factored tangent is kept over iterations and steps while that pays (factors of 10 000 unknowns and more in single precision where that is enough, or all in double), or formed in every iteration.",
         )
         .default("\"kept\""),
     ],
