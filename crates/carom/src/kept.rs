@@ -17,6 +17,8 @@ const RENEWAL: f64 = 6.0;
 const SLOW: f64 = 0.5;
 /// Slow contractions of one solve after which new factors are no help: what is left out of them, contact that bends, is what is needed.
 const PATIENCE: u32 = 2;
+/// Factors made in one solve after which half the step is the better try: Newton's method itself, on this step, goes round.
+const MOST_FACTORS: u32 = 4;
 /// Most steps that take the full tangent after refusals in a row, or begin at rest after predictions in a row that were none: none after the first,
 /// then 1, 3, 7, 15.
 const LONGEST_REST: u32 = 15;
@@ -84,6 +86,8 @@ pub(crate) struct Keeper {
     bisects: Option<(u32, f64)>,
     /// How often corrections grew instead.
     growing: u32,
+    /// Factors made in this solve.
+    factors: u32,
     counted: f64,
 }
 
@@ -108,6 +112,7 @@ impl Keeper {
             slow: 0,
             bisects: None,
             growing: 0,
+            factors: 0,
             counted: 0.0,
         }
     }
@@ -140,6 +145,7 @@ impl Keeper {
     /// A new factor was made.
     pub(crate) fn renewed(&mut self, point: Arc<Point>) {
         self.forget();
+        self.factors += 1;
         self.kept.point = Some(point);
         (self.due, self.fresh, self.previous, self.contraction) = (false, true, None, 0.0);
     }
@@ -175,10 +181,11 @@ impl Keeper {
     }
 
     /// Whether all allowed iterations are spent, or half the step is the better try: corrections have grown again and again, with kept tangents or with
-    /// full ones after them, or shrunk slowly where steps are being bisected anyway.
+    /// full ones after them, or one new factor after the other was of no lasting help, or they shrink slowly where steps are being bisected anyway.
     pub(crate) fn exhausted(&self, allowed: usize) -> bool {
         let over = |(slow, counted): (u32, f64)| !self.full && (self.slow > slow || self.counted > counted);
-        let hopeless = self.growing > PATIENCE || self.bisects.is_some_and(over);
+        let round = !self.full && self.due && self.factors >= MOST_FACTORS;
+        let hopeless = self.growing > PATIENCE || round || self.bisects.is_some_and(over);
         self.counted > allowed as f64 - 0.5 || (self.keep && hopeless)
     }
 
