@@ -7,6 +7,7 @@
 //!
 //! Gradients and second derivatives of the gaps are those of the present iterate: nodes may come, leave and slide without a new factor. Only A is old.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use carom_algebra::{Condensed, Elimination, LinearError, Pattern, Precision, Saddle};
@@ -23,8 +24,8 @@ pub(crate) struct Held {
     tangent: Option<Condensed>,
     mass: Option<Condensed>,
     of_mass: bool,
-    /// The last structure and its boundary: that of both as a rule.
-    last: Option<(Vec<usize>, Arc<Elimination>)>,
+    /// The latest structures and their boundaries, the last one that of both as a rule; a rejected step goes back to the one before.
+    latest: VecDeque<(Vec<usize>, Arc<Elimination>)>,
     saddle: Saddle,
     right: Vec<f64>,
     x: Vec<f64>,
@@ -68,16 +69,15 @@ impl Held {
         pattern: &Pattern,
         boundary: &[usize],
     ) -> Result<Arc<Elimination>, LinearError> {
-        if let Some((nodes, elimination)) = &self.last
-            && nodes == boundary
-        {
+        if let Some((_, elimination)) = self.latest.iter().find(|(nodes, _)| nodes == boundary) {
             return Ok(elimination.clone());
         }
         let groups: Vec<usize> = model.free.iter().map(|dof| dof / D).collect();
         let dofs = boundary.iter().flat_map(|node| (0..D).map(move |i| node * D + i));
         let last: Vec<usize> = dofs.map(|dof| model.unknown[dof]).filter(|&u| u != usize::MAX).collect();
         let elimination = Arc::new(Elimination::new(pattern, &groups, &last)?);
-        self.last = Some((boundary.to_vec(), elimination.clone()));
+        self.latest.truncate(REMEMBERED - 1);
+        self.latest.push_front((boundary.to_vec(), elimination.clone()));
         Ok(elimination)
     }
 
@@ -248,6 +248,8 @@ pub(crate) fn boundary<const D: usize>(
 const LARGE: usize = 10_000;
 /// Largest ratio of stiffness to mass, (ωΔt)² and a factor, on the diagonal of a factor of single precision.
 const STIFF: f64 = 1e3;
+/// Structures that are remembered.
+const REMEMBERED: usize = 2;
 /// What the rows add to the stiffness along themselves, as a multiple of it: enough that bending contact leaves it positive definite.
 const STIFFENING: f64 = 10.0;
 /// What is added on each side of the touched nodes, as a share of their extent.

@@ -17,6 +17,8 @@ const RENEWAL: f64 = 6.0;
 const SLOW: f64 = 0.5;
 /// Slow contractions of one solve after which new factors are no help: what is left out of them, contact that bends, is what is needed.
 const PATIENCE: u32 = 2;
+/// A correction as many times the last one allowed is far from the solution: what a full tangent would begin with there is no better.
+const FAR: f64 = 1e4;
 /// Factors made in one solve after which half the step is the better try: Newton's method itself, on this step, goes round.
 const MOST_FACTORS: u32 = 4;
 /// Most steps that take the full tangent after refusals in a row, or begin at rest after predictions in a row that were none: none after the first,
@@ -82,6 +84,8 @@ pub(crate) struct Keeper {
     contraction: f64,
     /// How often it was slow.
     slow: u32,
+    /// Whether the last correction was large.
+    far: bool,
     /// Slow contractions, and iterations with kept tangents counted, after which half the step is tried before a full tangent.
     bisects: Option<(u32, f64)>,
     /// How often corrections grew instead.
@@ -110,6 +114,7 @@ impl Keeper {
             previous: None,
             contraction: 0.0,
             slow: 0,
+            far: false,
             bisects: None,
             growing: 0,
             factors: 0,
@@ -161,7 +166,7 @@ impl Keeper {
     /// Takes note of a correction of size `step`; `goal` is the size that ends the iteration, `changed` whether the active set or facets just changed.
     pub(crate) fn observe(&mut self, step: f64, goal: f64, changed: bool) {
         self.counted += if self.full || self.fresh { 1.0 } else { KEPT_COUNT.recip() };
-        self.fresh = false;
+        (self.fresh, self.far) = (false, step > FAR * goal);
         if let Some(previous) = self.previous.filter(|_| !changed)
             && step > goal
         {
@@ -181,10 +186,11 @@ impl Keeper {
     }
 
     /// Whether all allowed iterations are spent, or half the step is the better try: corrections have grown again and again, with kept tangents or with
-    /// full ones after them, or one new factor after the other was of no lasting help, or they shrink slowly where steps are being bisected anyway.
+    /// full ones after them, one new factor after the other was of no lasting help, or corrections shrink slowly while they are large, or where steps are
+    /// being bisected anyway.
     pub(crate) fn exhausted(&self, allowed: usize) -> bool {
         let over = |(slow, counted): (u32, f64)| !self.full && (self.slow > slow || self.counted > counted);
-        let round = !self.full && self.due && self.factors >= MOST_FACTORS;
+        let round = !self.full && (self.due && self.factors >= MOST_FACTORS || self.helpless() && self.far);
         let hopeless = self.growing > PATIENCE || round || self.bisects.is_some_and(over);
         self.counted > allowed as f64 - 0.5 || (self.keep && hopeless)
     }
