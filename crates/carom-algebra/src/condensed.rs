@@ -168,16 +168,25 @@ pub enum Precision {
 
 /// A number of the factor.
 trait Entry: RealField + Copy + Into<f64> {
+    /// Power of two that the largest entry of the matrix is brought to; none where the range is wide enough.
+    const TOP: Option<i32>;
+
     fn rounded(value: f64) -> Self;
 }
 
 impl Entry for f64 {
+    const TOP: Option<i32> = None;
+
     fn rounded(value: f64) -> Self {
         value
     }
 }
 
+/// Where mass prevails, entries of the factor fall off with the distance of their unknowns, below what 8 bits of exponent hold; and numbers with fewer bits
+/// than 24 are slow. With the matrix near the upper end of the range they may fall by 55 decades instead of 38.
 impl Entry for f32 {
+    const TOP: Option<i32> = Some(110);
+
     fn rounded(value: f64) -> Self {
         value as f32
     }
@@ -187,6 +196,8 @@ impl Entry for f32 {
 struct Entries<T> {
     values: Vec<T>,
     factors: Vec<T>,
+    /// The matrix was multiplied by the square of this, so that the factor is by itself.
+    scale: f64,
     scratch: MemBuffer,
 }
 
@@ -201,15 +212,20 @@ impl<T: Entry> Entries<T> {
         let space = factorize_supernodal_numeric_llt_scratch::<u32, T>(raw, Par::Seq, Spec::<LltParams, T>::default());
         let engine = |reason: String| LinearError::Engine { size: elimination.place.len(), reason };
         let scratch = MemBuffer::try_new(space).map_err(|e| engine(format!("{e:?}")))?;
-        Ok(Self { values: Vec::new(), factors: vec![T::rounded(0.0); raw.len_val()], scratch })
+        Ok(Self { values: Vec::new(), factors: vec![T::rounded(0.0); raw.len_val()], scale: 1.0, scratch })
     }
 
     fn factor(&mut self, elimination: &Elimination, value: impl Fn(usize) -> f64) -> Result<(), LinearError> {
         let Elimination { starts, rows, slots, place, .. } = elimination;
         let n = place.len();
+        if let Some(top) = T::TOP {
+            let largest = (0..slots.len()).map(|k| value(k).abs()).fold(f64::MIN_POSITIVE, f64::max);
+            self.scale = 2f64.powi((top - largest.log2().ceil() as i32).div_euclid(2));
+        }
+        let square = self.scale * self.scale;
         self.values.resize(slots.len(), T::rounded(0.0));
         for (k, &slot) in slots.iter().enumerate() {
-            self.values[slot as usize] = T::rounded(value(k));
+            self.values[slot as usize] = T::rounded(square * value(k));
         }
         let structure = SymbolicSparseColMatRef::new_unsorted_checked(n, n, starts, None, rows);
         factorize_supernodal_numeric_llt(
@@ -279,11 +295,11 @@ impl Condensed {
         match &mut self.numbers {
             Numbers::Double(entries) => {
                 entries.factor(elimination, value)?;
-                condense(raw, &entries.factors, inner, n, trailing, schur);
+                condense(raw, &entries.factors, (inner, n), entries.scale.recip(), trailing, schur);
             }
             Numbers::Single(entries) => {
                 entries.factor(elimination, value)?;
-                condense(raw, &entries.factors, inner, n, trailing, schur);
+                condense(raw, &entries.factors, (inner, n), entries.scale.recip(), trailing, schur);
             }
         }
         Ok(())
@@ -327,6 +343,10 @@ impl Condensed {
         if let Ok(raw) = self.elimination.supernodes() {
             let (numbers, gathered) = (&self.numbers, &mut self.gathered);
             let x = &mut *x;
+            if let Numbers::Single(Entries { scale, .. }) = numbers {
+                // Forward and backward have divided by the scale once each, and forward has multiplied what it took to the last unknowns.
+                x[..*inner].iter_mut().for_each(|x| *x *= scale * scale);
+            }
             wide(
                 #[inline(always)]
                 || match numbers {
@@ -419,12 +439,12 @@ fn backward<T: Entry>(
     }
 }
 
-/// S = L_BB L_BBᵀ from the last columns of the factor.
+/// S = L_BB L_BBᵀ from the last columns of the factor, to be multiplied by `scale`.
 fn condense<T: Entry>(
     raw: &SymbolicSupernodalCholesky<u32>,
     factors: &[T],
-    inner: usize,
-    n: usize,
+    (inner, n): (usize, usize),
+    scale: f64,
     trailing: &mut Vec<f64>,
     schur: &mut Vec<f64>,
 ) {
@@ -442,10 +462,10 @@ fn condense<T: Entry>(
         for c in inner.saturating_sub(node.first)..node.columns {
             let (values, target) = (&node.values[c * height..(c + 1) * height], (node.first + c - inner) * kept);
             for r in c..node.columns {
-                trailing[target + node.first + r - inner] = values[r].into();
+                trailing[target + node.first + r - inner] = scale * values[r].into();
             }
             for (&row, value) in node.below.iter().zip(&values[node.columns..]) {
-                trailing[target + row as usize - inner] = (*value).into();
+                trailing[target + row as usize - inner] = scale * (*value).into();
             }
         }
     }
