@@ -11,6 +11,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::case::TangentRule;
+
 /// Cost of forming and factoring a tangent, in iterations with a kept one.
 const RENEWAL: f64 = 6.0;
 /// Contraction that is taken for convergence with a kept tangent; slower is not.
@@ -68,10 +70,8 @@ pub struct Kept {
 #[derive(Debug)]
 pub(crate) struct Keeper {
     pub(crate) kept: Kept,
-    /// Kept tangents are wanted in this solve.
-    keep: bool,
-    /// Their factors have all their digits.
-    pub(crate) double: bool,
+    /// What is wanted in this solve.
+    pub(crate) rule: TangentRule,
     /// The full tangent is taken in every iteration.
     pub(crate) full: bool,
     /// A new tangent is wanted before the next solve.
@@ -84,8 +84,8 @@ pub(crate) struct Keeper {
     contraction: f64,
     /// How often it was slow.
     slow: u32,
-    /// Whether the last correction was large.
-    far: bool,
+    /// The last correction as a multiple of the last one allowed.
+    distance: f64,
     /// Slow contractions, and iterations with kept tangents counted, after which half the step is tried before a full tangent.
     bisects: Option<(u32, f64)>,
     /// How often corrections grew instead.
@@ -97,7 +97,7 @@ pub(crate) struct Keeper {
 
 impl Keeper {
     /// The policy at the start of a solve with these factors of mass and stiffness.
-    pub(crate) fn new(kept: &Kept, keep: bool, mass: f64, stiffness: f64) -> Self {
+    pub(crate) fn new(kept: &Kept, rule: TangentRule, mass: f64, stiffness: f64) -> Self {
         let mut kept = kept.clone();
         let resting = kept.rest > 0;
         kept.rest = kept.rest.saturating_sub(1);
@@ -106,15 +106,14 @@ impl Keeper {
         let due = !fits || (kept.steps > 0 && kept.last > (RENEWAL + kept.spent) / f64::from(kept.steps));
         Self {
             kept,
-            keep,
-            double: false,
-            full: !keep || resting,
+            rule,
+            full: rule == TangentRule::Full || resting,
             due,
             fresh: false,
             previous: None,
             contraction: 0.0,
             slow: 0,
-            far: false,
+            distance: 0.0,
             bisects: None,
             growing: 0,
             factors: 0,
@@ -166,7 +165,7 @@ impl Keeper {
     /// Takes note of a correction of size `step`; `goal` is the size that ends the iteration, `changed` whether the active set or facets just changed.
     pub(crate) fn observe(&mut self, step: f64, goal: f64, changed: bool) {
         self.counted += if self.full || self.fresh { 1.0 } else { KEPT_COUNT.recip() };
-        (self.fresh, self.far) = (false, step > FAR * goal);
+        (self.fresh, self.distance) = (false, step / goal);
         if let Some(previous) = self.previous.filter(|_| !changed)
             && step > goal
         {
@@ -190,9 +189,9 @@ impl Keeper {
     /// being bisected anyway.
     pub(crate) fn exhausted(&self, allowed: usize) -> bool {
         let over = |(slow, counted): (u32, f64)| !self.full && (self.slow > slow || self.counted > counted);
-        let round = !self.full && (self.due && self.factors >= MOST_FACTORS || self.helpless() && self.far);
+        let round = !self.full && (self.due && self.factors >= MOST_FACTORS || self.helpless() && self.distance > FAR);
         let hopeless = self.growing > PATIENCE || round || self.bisects.is_some_and(over);
-        self.counted > allowed as f64 - 0.5 || (self.keep && hopeless)
+        self.counted > allowed as f64 - 0.5 || (self.rule != TangentRule::Full && hopeless)
     }
 
     /// What the next step is to know.

@@ -8,6 +8,7 @@ use carom_algebra::LinearError;
 use carom_time::Internal;
 
 use crate::balance::contact_weights;
+use crate::case::TangentRule;
 use crate::held::boundary;
 use crate::kept::{Keeper, Point};
 use crate::model::Model;
@@ -39,7 +40,7 @@ pub(crate) fn begin<const D: usize>(
     if !keeper.full {
         let measure = evaluate(model, state, trial, work, false)?;
         let held = if let Some(point) = keeper.kept.point.clone().filter(|_| !keeper.due) {
-            hold(model, work, &point, keeper.double)?
+            hold(model, work, &point, keeper.rule)?
         } else {
             let rows = independent_rows(model, &trial.pairs, work);
             renew(model, state, work, &rows, keeper)?
@@ -58,10 +59,10 @@ fn hold<const D: usize>(
     model: &Model<D>,
     work: &mut Workspace<D>,
     point: &Arc<Point>,
-    double: bool,
+    rule: TangentRule,
 ) -> Result<bool, Rejected> {
     let (system, scratch) = (&mut work.system, &mut work.correction);
-    match timed(&mut work.timings.factor, || system.hold(model, point, double, scratch)) {
+    match timed(&mut work.timings.factor, || system.hold(model, point, rule == TangentRule::KeptDouble, scratch)) {
         Ok(()) => Ok(true),
         Err(HoldError::Indefinite) => Ok(false),
         Err(HoldError::Inverted((body, inverted))) => Err(Rejected::Inverted { body, inverted }),
@@ -88,7 +89,7 @@ fn renew<const D: usize>(
             // The same factor again is of no help.
             return Ok(false);
         }
-        if hold(model, work, &point, keeper.double)? {
+        if hold(model, work, &point, keeper.rule)? {
             keeper.renewed(point);
             return Ok(true);
         }

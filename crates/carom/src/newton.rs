@@ -83,8 +83,8 @@ pub(crate) fn solve_stage<const D: usize>(
         model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect();
     let (mass, stiffness) = (mass_factor(&work.stage), stiffness_factor(&work.stage));
     let keep = settings.tangent != TangentRule::Full && keeps(model, work);
-    let mut keeper = Keeper::new(kept, keep, mass, stiffness);
-    keeper.double = settings.tangent == TangentRule::KeptDouble;
+    let rule = if keep { settings.tangent } else { TangentRule::Full };
+    let mut keeper = Keeper::new(kept, rule, mass, stiffness);
     if state.halved.is_on() {
         keeper.hurry();
     }
