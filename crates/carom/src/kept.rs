@@ -84,8 +84,8 @@ pub(crate) struct Keeper {
     contraction: f64,
     /// How often it was slow.
     slow: u32,
-    /// The last correction as a multiple of the last one allowed.
-    distance: f64,
+    /// The last correction as a multiple of the last one allowed, where bodies touch.
+    in_contact: Option<f64>,
     /// Slow contractions, and iterations with kept tangents counted, after which half the step is tried before a full tangent.
     bisects: Option<(u32, f64)>,
     /// How often corrections grew instead.
@@ -113,7 +113,7 @@ impl Keeper {
             previous: None,
             contraction: 0.0,
             slow: 0,
-            distance: 0.0,
+            in_contact: None,
             bisects: None,
             growing: 0,
             factors: 0,
@@ -162,10 +162,11 @@ impl Keeper {
         (self.full, self.growing) = (true, 0);
     }
 
-    /// Takes note of a correction of size `step`; `goal` is the size that ends the iteration, `changed` whether the active set or facets just changed.
-    pub(crate) fn observe(&mut self, step: f64, goal: f64, changed: bool) {
+    /// Takes note of a correction of size `step`; `goal` is the size that ends the iteration, `touching` whether bodies touch, `changed` whether the active
+    /// set or facets just changed.
+    pub(crate) fn observe(&mut self, step: f64, goal: f64, touching: bool, changed: bool) {
         self.counted += if self.full || self.fresh { 1.0 } else { KEPT_COUNT.recip() };
-        (self.fresh, self.distance) = (false, step / goal);
+        (self.fresh, self.in_contact) = (false, touching.then_some(step / goal));
         if let Some(previous) = self.previous.filter(|_| !changed)
             && step > goal
         {
@@ -174,7 +175,7 @@ impl Keeper {
             let left = (step / goal).ln() / -contraction.min(SLOW).ln();
             self.due = contraction > SLOW || left > RENEWAL;
             self.slow += u32::from(contraction > SLOW);
-            self.growing += u32::from(contraction > 1.0);
+            self.growing += u32::from(contraction > 1.0 && (touching || !self.full));
         }
         self.previous = Some(step);
     }
@@ -184,12 +185,14 @@ impl Keeper {
         self.slow > PATIENCE
     }
 
-    /// Whether all allowed iterations are spent, or half the step is the better try: corrections have grown again and again, with kept tangents or with
-    /// full ones after them, one new factor after the other was of no lasting help, or corrections shrink slowly while they are large, or where steps are
-    /// being bisected anyway.
+    /// Whether all allowed iterations are spent, or half the step is the better try. That is so where corrections have grown again and again, or shrink slowly
+    /// where steps are being bisected anyway. Where bodies touch, it is also so where one new factor after the other was of no lasting help, where large
+    /// corrections shrink slowly, and where they grow with full tangents too: nodes go back and forth between facets. A body in free motion gets every
+    /// chance at the step that was asked for.
     pub(crate) fn exhausted(&self, allowed: usize) -> bool {
         let over = |(slow, counted): (u32, f64)| !self.full && (self.slow > slow || self.counted > counted);
-        let round = !self.full && (self.due && self.factors >= MOST_FACTORS || self.helpless() && self.distance > FAR);
+        let round = |distance| self.due && self.factors >= MOST_FACTORS || self.helpless() && distance > FAR;
+        let round = !self.full && self.in_contact.is_some_and(round);
         let hopeless = self.growing > PATIENCE || round || self.bisects.is_some_and(over);
         self.counted > allowed as f64 - 0.5 || (self.rule != TangentRule::Full && hopeless)
     }

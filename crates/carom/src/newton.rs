@@ -176,7 +176,7 @@ pub(crate) fn solve_stage<const D: usize>(
             (step, has_tangent) = (f64::INFINITY, keeper.full);
             continue;
         }
-        keeper.observe(step, settings.tolerance * model.scale, changed);
+        keeper.observe(step, settings.tolerance * model.scale, !rows.is_empty(), changed);
         let residual = measure.residual;
         let tangent = keeper.full && step > NEARLY_THERE * model.scale;
         measure = advance(model, state, trial, work, &rows, tangent, (!changed).then_some(measure))?;
