@@ -5,8 +5,9 @@
 //! ```
 //!
 //! so that any change of A on B alone, and any constraint on B alone, is a matter of the small dense S: forward through the inner unknowns, a dense
-//! solve on B, backward. The factor is kept while B's neighbourhood changes as it likes. B is one vertex of the graph that is ordered (approximate
-//! minimum degree), then moved to the end.
+//! solve on B, backward. The factor is kept while B's neighbourhood changes as it likes.
+//!
+//! In single precision it is σ²A that is factored, L' = σL with σ a power of two.
 
 // A loop is compiled for wide registers only where it is inlined into `wide`.
 #![allow(clippy::inline_always)]
@@ -16,146 +17,16 @@ use std::sync::Arc;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltParams, LltRegularization};
 use faer::linalg::matmul::matmul;
-use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::supernodal::{
     SymbolicSupernodalCholesky, factorize_supernodal_numeric_llt, factorize_supernodal_numeric_llt_scratch,
 };
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
-};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::traits::RealField;
-use faer::{Accum, MatMut, MatRef, Par, Side, Spec};
+use faer::{Accum, MatMut, MatRef, Par, Spec};
 
-use crate::faer_engine::grouped_ordering;
+use crate::elimination::Elimination;
 use crate::linear::LinearError;
-use crate::pattern::Pattern;
 use crate::simd::{add_scaled, dot, wide};
-
-/// What of a factor the pattern and the choice of last unknowns decide: several matrices share it.
-#[derive(Debug)]
-pub struct Elimination {
-    /// Place of each unknown in the elimination.
-    place: Vec<u32>,
-    inner: usize,
-    starts: Vec<u32>,
-    rows: Vec<u32>,
-    /// Where each entry of the pattern went.
-    slots: Vec<u32>,
-    symbolic: SymbolicCholesky<u32>,
-}
-
-impl Elimination {
-    /// Orders and analyses a pattern; unknowns of one group stay together, those in `last` come last.
-    ///
-    /// # Errors
-    /// The engine ran out of memory.
-    pub fn new(pattern: &Pattern, groups: &[usize], last: &[usize]) -> Result<Self, LinearError> {
-        let n = pattern.size();
-        let engine = |reason: String| LinearError::Engine { size: n, reason };
-        let mut is_last = vec![false; n];
-        last.iter().for_each(|&i| is_last[i] = true);
-        let whole = groups.iter().max().map_or(0, |g| g + 1);
-        let merged: Vec<usize> = (0..n).map(|i| if is_last[i] { whole } else { groups[i] }).collect();
-        let mut names = merged.clone();
-        names.sort_unstable();
-        names.dedup();
-        let merged: Vec<usize> = merged.iter().map(|g| names.partition_point(|name| name < g)).collect();
-        let (forward, _) = grouped_ordering(pattern, &merged).map_err(engine)?;
-        let order = forward.iter().filter(|&&i| !is_last[i]).chain(forward.iter().filter(|&&i| is_last[i]));
-        let mut place = vec![0; n];
-        order.enumerate().for_each(|(k, &i)| place[i] = k as u32);
-        let inner = n - last.len();
-        let (starts, rows, slots) = permuted(pattern, &place);
-        let symbolic = structure(&starts, &rows, inner).map_err(engine)?;
-        Ok(Self { place, inner, starts, rows, slots, symbolic })
-    }
-
-    /// Number of unknowns eliminated last.
-    pub fn kept(&self) -> usize {
-        self.place.len() - self.inner
-    }
-
-    /// Place of an unknown among those eliminated last.
-    pub fn kept_place(&self, unknown: usize) -> Option<usize> {
-        (self.place[unknown] as usize).checked_sub(self.inner)
-    }
-
-    fn supernodes(&self) -> Result<&SymbolicSupernodalCholesky<u32>, LinearError> {
-        match self.symbolic.raw() {
-            SymbolicCholeskyRaw::Supernodal(raw) => Ok(raw),
-            SymbolicCholeskyRaw::Simplicial(_) => {
-                Err(LinearError::Engine { size: self.place.len(), reason: "no supernodes".into() })
-            }
-        }
-    }
-}
-
-/// The lower triangle in the order of elimination, columns compressed, rows as they come: starts, rows, and where each entry of the pattern went.
-fn permuted(pattern: &Pattern, place: &[u32]) -> (Vec<u32>, Vec<u32>, Vec<u32>) {
-    let n = pattern.size();
-    let mut fill = vec![0_u32; n + 1];
-    let entry = |i: usize, j: usize| (place[i].max(place[j]), place[i].min(place[j]) as usize);
-    for j in 0..n {
-        pattern.column(j).iter().for_each(|&i| fill[entry(i, j).1 + 1] += 1);
-    }
-    for j in 0..n {
-        fill[j + 1] += fill[j];
-    }
-    let starts = fill.clone();
-    let (mut rows, mut slots) = (vec![0; pattern.len()], vec![0; pattern.len()]);
-    for j in 0..n {
-        for k in pattern.starts[j]..pattern.starts[j + 1] {
-            let (row, column) = entry(pattern.rows[k], j);
-            let slot = fill[column];
-            fill[column] += 1;
-            rows[slot as usize] = row;
-            slots[k] = slot;
-        }
-    }
-    (starts, rows, slots)
-}
-
-/// Symbolic factor, the last unknowns tied together by the row of their first.
-fn structure(starts: &[u32], rows: &[u32], inner: usize) -> Result<SymbolicCholesky<u32>, String> {
-    let n = starts.len() - 1;
-    // The upper triangle: the columns of the lower one in ascending order fill each of its columns in ascending order.
-    let tied = |row: usize| usize::from(row > inner);
-    let mut fill = vec![0_u32; n + 1];
-    rows.iter().for_each(|&i| fill[i as usize + 1] += 1);
-    for i in 0..n {
-        fill[i + 1] += fill[i] + tied(i) as u32;
-    }
-    let mut upper = vec![0_u32; *fill.last().unwrap_or(&0) as usize];
-    let first = fill.clone();
-    for j in 0..n {
-        for &i in &rows[starts[j] as usize..starts[j + 1] as usize] {
-            upper[fill[i as usize] as usize] = j as u32;
-            fill[i as usize] += 1;
-        }
-    }
-    let (mut columns, mut entries) = (vec![0_u32], Vec::with_capacity(upper.len()));
-    for i in 0..n {
-        let column = &mut upper[first[i] as usize..first[i + 1] as usize];
-        if tied(i) == 1 {
-            column[column.len() - 1] = inner as u32;
-            column.sort_unstable();
-        }
-        let begin = entries.len();
-        for &j in &*column {
-            if entries.len() == begin || entries[entries.len() - 1] != j {
-                entries.push(j);
-            }
-        }
-        columns.push(entries.len() as u32);
-    }
-    let params = CholeskySymbolicParams {
-        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-        ..Default::default()
-    };
-    let upper = SymbolicSparseColMatRef::new_checked(n, n, &columns, None, &entries);
-    factorize_symbolic_cholesky(upper, Side::Upper, SymmetricOrdering::Identity, params).map_err(|e| format!("{e:?}"))
-}
 
 /// Entries of a factor: all of their digits, or half of them in half of the memory and the time. What takes the factor for an approximation loses nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -344,7 +215,7 @@ impl Condensed {
             let (numbers, gathered) = (&self.numbers, &mut self.gathered);
             let x = &mut *x;
             if let Numbers::Single(Entries { scale, .. }) = numbers {
-                // Forward and backward have divided by the scale once each, and forward has multiplied what it took to the last unknowns.
+                // Forward left z/σ; backward solves L'ᵀx = σ²(z/σ) − L'_BIᵀ x_B.
                 x[..*inner].iter_mut().for_each(|x| *x *= scale * scale);
             }
             wide(
@@ -477,7 +348,7 @@ fn condense<T: Entry>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Saddle;
+    use crate::{Pattern, Saddle};
 
     /// A grid of m × m nodes with two dofs each, springs to neighbours and between the dofs.
     fn grid(m: usize) -> (Pattern, Vec<f64>, Vec<usize>) {
@@ -519,6 +390,29 @@ mod tests {
                 let error = out.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
                 assert!(error < digits, "{m} {}: {error:e}", last.len());
             }
+        }
+    }
+
+    /// Of any size, and where mass prevails so much that entries far from the diagonal are none: there one to another falls off a thousandfold.
+    #[test]
+    fn single_precision_has_the_range_it_needs() {
+        for (factor, coupling) in [(1e-42, 1.0), (1e42, 1.0), (1.0, 1e-3)] {
+            let (pattern, mut values, groups) = grid(30);
+            for j in 0..pattern.size() {
+                let column = pattern.starts[j]..pattern.starts[j + 1];
+                column.for_each(|k| values[k] *= if pattern.rows[k] == j { factor } else { factor * coupling });
+            }
+            let exact: Vec<f64> = (0..pattern.size()).map(|i| (i as f64 * 0.7).sin()).collect();
+            let (mut rhs, mut out) = (vec![0.0; exact.len()], vec![0.0; exact.len()]);
+            pattern.multiply_add(&values, &exact, &mut rhs);
+            let elimination = Arc::new(Elimination::new(&pattern, &groups, &[]).unwrap());
+            let mut condensed = Condensed::new(&elimination, Precision::Single).unwrap();
+            condensed.factor(|k| values[k]).unwrap();
+            let mut x = Vec::new();
+            condensed.eliminate_into(&rhs, &mut x);
+            condensed.substitute_into(&mut x, &mut out);
+            let error = out.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(error < 1e-5, "{factor:e} {coupling:e}: {error:e}");
         }
     }
 

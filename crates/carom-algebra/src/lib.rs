@@ -3,6 +3,7 @@
 mod complementarity;
 mod condensed;
 mod difference;
+mod elimination;
 mod faer_engine;
 mod linear;
 mod pattern;
@@ -11,8 +12,9 @@ mod simd;
 mod small;
 
 pub use complementarity::complementarity;
-pub use condensed::{Condensed, Elimination, Precision};
+pub use condensed::{Condensed, Precision};
 pub use difference::jacobian_error;
+pub use elimination::Elimination;
 pub use faer_engine::FaerSolver;
 pub use linear::{Inertia, LinearError, LinearSolver, SolveReport};
 pub use pattern::Pattern;

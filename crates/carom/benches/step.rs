@@ -152,11 +152,19 @@ fn ordering_and_analysis(bencher: Bencher, job: Job) {
     bencher.bench_local(|| Elimination::new(black_box(&pattern), &groups, &last).is_ok());
 }
 
+/// As in a run of the job.
+fn precision(job: Job) -> Precision {
+    match job {
+        Job::Small => Precision::Double,
+        Job::Large => Precision::Single,
+    }
+}
+
 #[divan::bench(args = JOBS)]
 fn factor(bencher: Bencher, job: Job) {
     let (pattern, values, groups, last) = mass_matrix(&in_contact(job));
     let elimination = Arc::new(Elimination::new(&pattern, &groups, &last).expect("memory"));
-    let mut condensed = Condensed::new(&elimination, Precision::Double).expect("memory");
+    let mut condensed = Condensed::new(&elimination, precision(job)).expect("memory");
     bencher.bench_local(|| condensed.factor(|k| values[k]).is_ok());
 }
 
@@ -164,7 +172,7 @@ fn factor(bencher: Bencher, job: Job) {
 fn solve(bencher: Bencher, job: Job) {
     let (pattern, values, groups, last) = mass_matrix(&in_contact(job));
     let elimination = Arc::new(Elimination::new(&pattern, &groups, &last).expect("memory"));
-    let mut condensed = Condensed::new(&elimination, Precision::Double).expect("memory");
+    let mut condensed = Condensed::new(&elimination, precision(job)).expect("memory");
     condensed.factor(|k| values[k]).expect("positive definite");
     let (right, mut x, mut out) = (vec![1.0; pattern.size()], Vec::new(), vec![0.0; pattern.size()]);
     bencher.bench_local(|| {

@@ -24,7 +24,7 @@ pub(crate) struct Held {
     tangent: Option<Condensed>,
     mass: Option<Condensed>,
     of_mass: bool,
-    /// The latest structures and their boundaries, the last one that of both as a rule; a rejected step goes back to the one before.
+    /// Boundaries and structures, the one used last first: tangent and mass have the same as a rule, and a rejected step goes back to the one before.
     latest: VecDeque<(Vec<usize>, Arc<Elimination>)>,
     saddle: Saddle,
     right: Vec<f64>,
@@ -69,8 +69,9 @@ impl Held {
         pattern: &Pattern,
         boundary: &[usize],
     ) -> Result<Arc<Elimination>, LinearError> {
-        if let Some((_, elimination)) = self.latest.iter().find(|(nodes, _)| nodes == boundary) {
-            return Ok(elimination.clone());
+        if let Some(known) = self.latest.iter().position(|(nodes, _)| nodes == boundary) {
+            self.latest.swap(0, known);
+            return Ok(self.latest[0].1.clone());
         }
         let groups: Vec<usize> = model.free.iter().map(|dof| dof / D).collect();
         let dofs = boundary.iter().flat_map(|node| (0..D).map(move |i| node * D + i));
@@ -191,9 +192,10 @@ impl Held {
 }
 
 /// Whether half of the digits are enough for a factor: it is large, so that reading it is what a solve costs, and the matrix is so well conditioned that
-/// what rounding leaves over of a correction is far below what an old tangent leaves. Scaled to a unit diagonal the matrix has a condition number of at
-/// most some hundred times the largest quotient of its diagonal and the mass's: λ_max is at most the number of dofs of a cell, and its λ_min at least that
-/// of the scaled mass matrix over that quotient.
+/// what rounding leaves over of a correction is far below what an old tangent leaves. Scaled to a unit diagonal, and with a stiffness that is positive
+/// semidefinite, the matrix has a condition number of at most some hundred times the largest quotient of its diagonal and the mass's: λ_max is at most the
+/// number of dofs of a cell, and λ_min at least that of the scaled mass matrix over that quotient. Another stiffness may do worse; iterations then contract
+/// slowly or the factor does not exist, and the full tangent follows.
 fn single_is_enough(pattern: &Pattern, point: &Point, mass: &[f64], stiffness: &[f64]) -> bool {
     let mut diagonal = pattern.starts[..pattern.size()].iter();
     let soft = |&k: &usize| point.stiffness * stiffness[k] <= STIFF * point.mass * mass[k];

@@ -19,9 +19,9 @@ const RENEWAL: f64 = 6.0;
 const SLOW: f64 = 0.5;
 /// Slow contractions of one solve after which new factors are no help: what is left out of them, contact that bends, is what is needed.
 const PATIENCE: u32 = 2;
-/// A correction as many times the last one allowed is far from the solution: what a full tangent would begin with there is no better.
+/// A correction this many times the last one allowed is far from the solution: a full tangent is taken no further out.
 const FAR: f64 = 1e4;
-/// Factors made in one solve after which half the step is the better try: Newton's method itself, on this step, goes round.
+/// Factors made in one solve, beyond which half the step is tried: contact of this step goes round and round.
 const MOST_FACTORS: u32 = 4;
 /// Most steps that take the full tangent after refusals in a row, or begin at rest after predictions in a row that were none: none after the first,
 /// then 1, 3, 7, 15.
@@ -70,7 +70,7 @@ pub struct Kept {
 #[derive(Debug)]
 pub(crate) struct Keeper {
     pub(crate) kept: Kept,
-    /// What is wanted in this solve.
+    /// The rule of the case; full where nothing can be kept.
     pub(crate) rule: TangentRule,
     /// The full tangent is taken in every iteration.
     pub(crate) full: bool,
@@ -159,7 +159,7 @@ impl Keeper {
         let rest = self.kept.next_rest;
         self.forget();
         (self.kept.rest, self.kept.next_rest) = (rest, (2 * rest + 1).min(LONGEST_REST));
-        (self.full, self.growing) = (true, 0);
+        (self.full, self.growing, self.previous) = (true, 0, None);
     }
 
     /// Takes note of a correction of size `step`; `goal` is the size that ends the iteration, `touching` whether bodies touch, `changed` whether the active
@@ -185,10 +185,14 @@ impl Keeper {
         self.slow > PATIENCE
     }
 
-    /// Whether all allowed iterations are spent, or half the step is the better try. That is so where corrections have grown again and again, or shrink slowly
-    /// where steps are being bisected anyway. Where bodies touch, it is also so where one new factor after the other was of no lasting help, where large
-    /// corrections shrink slowly, and where they grow with full tangents too: nodes go back and forth between facets. A body in free motion gets every
-    /// chance at the step that was asked for.
+    /// Whether all allowed iterations are spent, or half the step is the better try, because
+    ///
+    /// - corrections have grown more often than [`PATIENCE`] allows: with kept tangents, and where bodies touch with full ones too;
+    /// - steps are being bisected anyway, and this one shrinks slowly or takes long;
+    /// - bodies touch, and one more factor is due after [`MOST_FACTORS`];
+    /// - bodies touch, and corrections shrink slowly while they are larger than [`FAR`].
+    ///
+    /// A body in free motion gets every chance at the step that was asked for.
     pub(crate) fn exhausted(&self, allowed: usize) -> bool {
         let over = |(slow, counted): (u32, f64)| !self.full && (self.slow > slow || self.counted > counted);
         let round = |distance| self.due && self.factors >= MOST_FACTORS || self.helpless() && distance > FAR;
@@ -203,5 +207,61 @@ impl Keeper {
         self.kept.last = DIGITS / -self.contraction.clamp(1e-3, SLOW).ln();
         self.kept.spent += self.kept.last;
         self.kept
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALLOWED: usize = 25;
+
+    fn keeper() -> Keeper {
+        Keeper::new(&Kept::default(), TangentRule::Kept, 1.0, 1.0)
+    }
+
+    /// Solves that shrink twentyfold and then go back to where they were: a factor each time, and no end.
+    #[test]
+    fn the_fifth_factor_in_contact_is_half_the_step() {
+        for touching in [true, false] {
+            let mut keeper = keeper();
+            let mut made = 0;
+            while made < 10 && !keeper.exhausted(ALLOWED) {
+                keeper.renewed(Arc::default());
+                made += 1;
+                keeper.observe(1e-5, 1e-9, touching, true);
+                keeper.observe(4e-6, 1e-9, touching, false);
+                assert!(keeper.due, "eleven more iterations cost more than a factor");
+            }
+            assert_eq!(made, if touching { MOST_FACTORS } else { 10 });
+        }
+    }
+
+    #[test]
+    fn a_full_tangent_in_contact_is_for_small_corrections() {
+        for (size, exhausted) in [(1e-3, true), (1e-7, false)] {
+            let mut keeper = keeper();
+            keeper.renewed(Arc::default());
+            for k in 0..5 {
+                keeper.observe(size * 0.8_f64.powi(k), 1e-9, true, false);
+            }
+            assert!(keeper.helpless());
+            assert_eq!(keeper.exhausted(ALLOWED), exhausted);
+        }
+    }
+
+    #[test]
+    fn corrections_that_grow_end_a_solve_but_for_full_tangents_in_free_motion() {
+        let grown = |full: bool, touching: bool| {
+            let mut keeper = keeper();
+            if full {
+                keeper.observe(1e-9, 1e-9, touching, false);
+                keeper.refused();
+            }
+            // The first correction with another tangent is compared with none.
+            (0..4).for_each(|k| keeper.observe(1e-3 * 2_f64.powi(k), 1e-9, touching, false));
+            keeper.exhausted(ALLOWED)
+        };
+        assert!(grown(false, false) && grown(false, true) && grown(true, true) && !grown(true, false));
     }
 }
