@@ -133,7 +133,7 @@ pub fn go_on(
     };
     side_by_side(order, jobs, &one, observe, stop)?;
     if manifest.goal.is_some() && !stop.load(Ordering::Relaxed) {
-        checks::make(&manifest, directory, stop)?;
+        checks::make(&manifest, directory, stop);
     }
     let study = Study::open(directory, &mut |_, _| ())?;
     let ended = |row: &carom_record::study::Row| matches!(row.status, Some(Status::Finished | Status::Failed));
