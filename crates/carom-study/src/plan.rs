@@ -203,6 +203,13 @@ fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) 
         let why = format!("the methods are: {}", methods.join(", "));
         problems.push(Problem::new("cost_of", format!("no method is named \"{name}\""), why, "name one of them"));
     }
+    let cost_of = file.cost_of.as_ref().or(drafts.first().and_then(|d| d.part.method.as_ref()));
+    for (i, arm) in file.arms.iter().enumerate().filter(|(_, arm)| arm.by_cost && Some(&arm.name) == cost_of) {
+        let what = format!("\"{}\" cannot match its own cost", arm.name);
+        let why = "`match = \"cost\"` gives an arm the cost of `cost_of`, the first arm where that is left out, and this arm is it";
+        let help = "name another arm in `cost_of`, or take `match` out";
+        problems.push(Problem::new(format!("arm[{i}].match"), what, why, help));
+    }
     let known = || drafts.iter().map(|d| format!("\"{}\"", d.name)).collect::<Vec<_>>().join(", ");
     let exists = |name: &str| drafts.iter().any(|d| d.name == name);
     if let Some(reference) =

@@ -1,15 +1,17 @@
 //! What theory says of a study's schemes, for its page: `theory.csv`, spectral radius, damping ratio and period error of every method on the test
 //! oscillator, and `frequencies.csv`, the model's own frequencies and those of contact springs. Both are made when the study begins.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use carom::Simulation;
-use carom::case::{Case, SchemeSpec};
+use carom::case::{Case, Enforcement, SchemeSpec};
 use carom::frequencies::{Frequencies, frequencies, spring};
 use carom_record::RecordError;
 use carom_time::Integrator;
 
 use crate::Plan;
+use crate::file::FINE_NAME;
 
 /// Points per decade of ωΔt, from 0.01 to 1000.
 const POINTS: i32 = 24;
@@ -57,8 +59,13 @@ pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
     let Some(found) = plan.arms.first().and_then(|arm| of_case(&arm.case)) else { return Ok(()) };
     let lowest = found.lowest.iter().enumerate().map(|(k, omega)| format!("{},{omega:?}", k + 1));
     let highest = found.highest.map(|omega| format!("highest,{omega:?}"));
-    // Arms at several steps have the same springs.
-    let mut springs: Vec<f64> = plan.arms.iter().filter_map(|arm| spring_of(&arm.case)).collect();
+    // Arms that differ by their step alone have the same springs, and most have none.
+    let mut seen = BTreeSet::new();
+    let stiff = plan.manifest.arms.iter().zip(&plan.arms).filter(|(arm, planned)| {
+        let name = if arm.part.fine { FINE_NAME } else { arm.part.method.as_ref().unwrap_or(&arm.name) };
+        planned.case.contacts.iter().any(|c| c.enforcement == Enforcement::Penalty) && seen.insert(name)
+    });
+    let mut springs: Vec<f64> = stiff.filter_map(|(_, planned)| spring_of(&planned.case)).collect();
     springs.sort_by(f64::total_cmp);
     springs.dedup();
     let springs = springs.into_iter().map(|omega| format!("spring,{omega:?}"));

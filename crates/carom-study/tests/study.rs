@@ -205,6 +205,15 @@ fn a_design_builds_its_arms_and_ranks_them() {
     let verdict = ranking.verdict.unwrap();
     assert_eq!(study.manifest.arms[verdict.arm].part.method.as_deref(), Some("CH"));
     assert!(out.join("ranking.csv").is_file() && out.join("reference.csv").is_file());
+    // Where it cannot be tried the study is none the worse; where it can be again, it is.
+    let (tried, repeated) = (out.join("checks.json"), out.join("checks"));
+    let again = || go_on(&out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap();
+    fs::remove_file(&tried).unwrap();
+    fs::write(&repeated, "in the way").unwrap();
+    let hindered = again();
+    assert!(!hindered.interrupted && hindered.study.checks.is_none() && !tried.exists());
+    fs::remove_file(&repeated).unwrap();
+    assert_eq!(again().study.checks, study.checks);
 }
 
 /// A method that takes one solve a step and one that projects differ little: at twice the step of the case, matched cost gives it back.
@@ -264,6 +273,12 @@ fn wrong_designs_are_told() {
     assert!(first("design = \"matched-cost\"\ncost_of = \"b\"\n[[arm]]\nname = \"a\"\n").what.contains("no method"));
     let found = first("[[arm]]\nname = \"a\"\nmatch = \"cost\"\n");
     assert!(found.line == 4 && found.what.contains("without a design"), "{found:?}");
+    for (of, line) in [("", 5), ("cost_of = \"a\"\n", 6)] {
+        let a = "[[arm]]\nname = \"a\"\nmatch = \"cost\"\n[[arm]]\nname = \"b\"\n";
+        let found = first(&format!("design = \"matched-step\"\n{of}{a}"));
+        assert!(found.line == line && found.what.contains("\"a\" cannot match its own cost"), "{found:?}");
+        assert!(found.help.contains("`cost_of`"), "{found:?}");
+    }
     assert!(first("design = \"matched-step\"\n[[arm]]\nname = \"a\"\nmatch = \"step\"\n").what.contains("\"step\""));
     assert!(first("goal = \"forces\"\n[[arm]]\nname = \"a\"\n").help.contains("\"force\""));
     assert!(first("[fine]\nrefine = 4\n[[arm]]\nname = \"a\"\n").what.contains("not used"));
