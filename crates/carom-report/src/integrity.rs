@@ -58,7 +58,7 @@ fn tried(out: &mut String, study: &Study) {
     };
     let _ = writeln!(
         out,
-        "<p>Tried on the arm with the least work, {}, record <code>{}</code>: with {} threads {}; stopped after step {}, with {touching}, and resumed from its files {}.</p>",
+        "<p>Tried on the arm with the fewest steps and iterations, {}, record <code>{}</code>: with {} threads {}; stopped after step {}, with {touching}, and resumed from its files {}.</p>",
         escape(&checks.arm),
         checks.fingerprint.get(..DIGITS).unwrap_or_default(),
         checks.threads.0,
