@@ -40,7 +40,7 @@ pub struct Ranked {
 }
 
 /// How much a verdict bears.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Confidence {
     /// The order may be chance.
     Low,
@@ -353,7 +353,7 @@ fn verdict(
     }
     let arm = &manifest.arms[chosen.arm];
     if let Some(design) = manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedStep && manifest.by_cost(arm)) {
-        confidence = if confidence > Confidence::Medium { Confidence::Medium } else { confidence };
+        confidence = confidence.min(Confidence::Medium);
         confidence_reasons
             .push(format!("it is compared at the cost of {}, the others at their common step", design.cost_of));
     }
@@ -383,9 +383,7 @@ fn confidence(
 ) -> (Confidence, Vec<String>) {
     let (mut confidence, mut reasons) = (Confidence::High, Vec::new());
     let mut at_most = |most: Confidence, why: String| {
-        if most < confidence {
-            confidence = most;
-        }
+        confidence = confidence.min(most);
         reasons.push(why);
     };
     if !alone.method {
