@@ -22,6 +22,8 @@ pub enum Nonsmooth {
 pub struct Explicit {
     /// One sentence.
     pub summary: &'static str,
+    /// Order of convergence on smooth motion.
+    pub order: u8,
     /// Whether the restitution of a contact means something.
     pub restitution: bool,
     /// What contact does.
@@ -70,7 +72,7 @@ impl Nonsmooth {
     /// Order of convergence on smooth motion.
     pub fn order(&self) -> u8 {
         match self {
-            Self::Explicit(_) => 2,
+            Self::Explicit(scheme) => scheme.order,
             Self::Impulse(scheme) => scheme.alpha().map_or_else(|| map::order(&**scheme), |alpha| alpha.order()),
         }
     }

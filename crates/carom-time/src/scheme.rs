@@ -57,11 +57,19 @@ impl Scheme {
                         implicit family cannot solve for; the trapezoidal rule has beta = 0.25";
             return Err(SchemeError::OutOfRange { key: "beta", value: self.beta, range: "> 0", hint: hint.to_owned() });
         }
+        if self.gamma <= 0.0 {
+            let hint = "γ is the share of the new acceleration in the new velocity; below ½ motion grows, the trapezoidal rule has gamma = 0.5";
+            return Err(SchemeError::OutOfRange {
+                key: "gamma",
+                value: self.gamma,
+                range: "> 0",
+                hint: hint.to_owned(),
+            });
+        }
         for (key, value, what) in [("alpha_m", self.alpha_m, "inertia"), ("alpha_f", self.alpha_f, "force")] {
-            if value == 1.0 {
-                let hint =
-                    format!("at 1 the balance holds no new {what} term and cannot be solved for the new positions");
-                return Err(SchemeError::OutOfRange { key, value, range: "finite, not 1", hint });
+            if value >= 1.0 {
+                let hint = format!("at 1 the balance holds no new {what} term, above it one of the wrong sign");
+                return Err(SchemeError::OutOfRange { key, value, range: "< 1", hint });
             }
         }
         Ok(self)

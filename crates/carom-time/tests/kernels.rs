@@ -1,4 +1,4 @@
-//! Every member of every kind that is a list of stages, impulse schemes between impacts among them: order, ρ∞ and fall against what the table says is
+//! Every member of every kind that is a list of stages, impulse schemes between impacts among them: order and ρ∞ against what the table says is
 //! published. Then tabulated damping and rational functions of the published rules.
 
 #![allow(clippy::unwrap_used)]
@@ -10,30 +10,11 @@ use carom_time::schemes::bathe::Bathe;
 use carom_time::schemes::bdf2::Bdf2;
 use carom_time::schemes::energy_momentum::EnergyMomentum;
 use carom_time::schemes::moreau_jean::MoreauJean;
-use carom_time::{
-    Explained, ForceRule, Integrator, KINDS, Kernel, Member, Nonsmooth, Oscillator, STATIC, Scheme, Stage, map,
-};
+use carom_time::{Explained, ForceRule, KINDS, Kernel, Member, Oscillator, STATIC, Scheme, map};
 
-/// Members with their kernels; of the α family under both rules.
-fn all() -> Vec<(&'static Member, String, Box<dyn Kernel>)> {
-    let mut all = Vec::new();
-    for kind in KINDS {
-        for member in kind.members {
-            let name = kind.named(member);
-            for forces in [ForceRule::AverageForces, ForceRule::AverageState] {
-                let kernel: Box<dyn Kernel> = match name.integrator(forces).unwrap() {
-                    Integrator::Nonsmooth(Nonsmooth::Impulse(scheme), _) => scheme,
-                    Integrator::Nonsmooth(Nonsmooth::Explicit(_), _) => continue,
-                    other => other.into_kernel().unwrap(),
-                };
-                if forces == ForceRule::AverageForces || kind.is_alpha() {
-                    all.push((member, format!("{name} {forces:?}"), kernel));
-                }
-            }
-        }
-    }
-    all
-}
+mod common;
+
+use common::{all, run};
 
 #[test]
 fn every_kind_has_members_and_names_nothing_twice() {
@@ -47,19 +28,6 @@ fn every_kind_has_members_and_names_nothing_twice() {
             assert!(kind.members.iter().any(|member| of(member) == keys), "{}: {keys:?}", kind.name);
         }
     }
-}
-
-/// One run of a kernel: (u, v) after `steps`.
-fn run(kernel: &dyn Kernel, oscillator: Oscillator, dt: f64, steps: u32, u: f64, v: f64) -> Vec<[f64; 3]> {
-    let (mut motion, mut before, mut stage) = (oscillator.start(u, v), None, Stage::default());
-    let mut path = vec![motion];
-    for _ in 0..steps {
-        let next = oscillator.step_after(kernel, dt, before, motion, &mut stage);
-        before = kernel.two_step().then_some([next[0] - motion[0], motion[1]]);
-        motion = next;
-        path.push(motion);
-    }
-    path
 }
 
 /// Noh and Bathe 2019, theory: ρ∞ = 0 damps 8.7e-4 and lengthens 1.6 % at ten steps a period.
@@ -166,21 +134,6 @@ fn the_numeric_map_is_the_closed_one_where_there_is_one() {
             }
             let (a, b) = (map::principal(&scheme, omega_dt).unwrap(), scheme.principal(omega_dt).unwrap());
             assert!((a.damping_ratio - b.damping_ratio).abs() < 1e-6 && (a.period_error - b.period_error).abs() < 1e-6);
-        }
-    }
-}
-
-/// Free fall is a polynomial of degree two in time, which most reproduce: what remains is round-off. The others err by what their members say.
-#[test]
-fn free_fall_errs_by_what_the_rules_say() {
-    const G: f64 = -9.81;
-    let (dt, steps) = (1.875e-3, 400);
-    let fall = Oscillator { mass: 0.25, stiffness: 0.0, force: 0.25 * G };
-    for (member, name, kernel) in all() {
-        for (n, [y, v, _]) in run(&*kernel, fall, dt, steps, 1.5, 0.3).into_iter().enumerate() {
-            let t = n as f64 * dt;
-            let error = y - (1.5 + 0.3 * t + 0.5 * G * t * t + (member.falls)(n as f64) * G * dt * dt);
-            assert!(error.abs() < 2e-12 && (v - (0.3 + G * t)).abs() < 1e-11, "{name}, step {n}: {error:e}");
         }
     }
 }

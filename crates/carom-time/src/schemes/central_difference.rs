@@ -16,6 +16,7 @@ pub(super) const KIND: KindInfo = KindInfo {
     members: &[Member::new(&[], 2, f64::INFINITY)],
     build: Build::Explicit(Explicit {
         summary: "explicit, with a lumped mass; the contact force of a step keeps the positions at its end out of contact",
+        order: 2,
         restitution: false,
         contact: &[
             "the force at a step's start keeps the positions at its end out (forward increment): no penetration but for hand-overs of facets",

@@ -23,7 +23,8 @@ pub(super) const KIND: KindInfo = KindInfo {
 };
 
 impl Scheme {
-    /// Four raw parameters. Refused: what is not finite, β ≤ 0 (no implicit step), α_m = 1 or α_f = 1 (no new inertia or no new force).
+    /// Four raw parameters. Refused: what is not finite, β ≤ 0 (no implicit step), γ ≤ 0, α_m ≥ 1 or α_f ≥ 1 (no new inertia or no new force, or one of the
+    /// wrong sign).
     pub fn generalized_alpha(alpha_m: f64, alpha_f: f64, beta: f64, gamma: f64) -> Result<Self, SchemeError> {
         let scheme = Self { alpha_m, alpha_f, beta, gamma, forces: ForceRule::AverageForces };
         scheme.checked()

@@ -17,6 +17,7 @@ pub(super) const KIND: KindInfo = KindInfo {
     members: &[Member::new(&[], 2, f64::INFINITY)],
     build: Build::Explicit(Explicit {
         summary: "explicit, with a lumped mass; what contact keeps out is (y_{n+1} + e y_{n−1})/(1 + e), e the contact's restitution",
+        order: 2,
         restitution: true,
         contact: &[
             "restitution e of the contact, 0: the same as central-difference; positions penetrate by Δt·speed where e > 0",

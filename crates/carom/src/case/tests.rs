@@ -197,6 +197,31 @@ fn every_member_of_every_kind_is_read() {
     }
 }
 
+/// Keys and constructors have the same ranges: each end is taken or refused as the table says, and what is just outside is refused, by both.
+#[test]
+fn ranges_are_those_of_the_constructors() {
+    use std::ops::{Bound, RangeBounds};
+    for (kind, set) in carom_time::KINDS.iter().flat_map(|kind| kind.sets.iter().map(move |set| (kind, set))) {
+        for parameter in *set {
+            let end = |bound, out: fn(f64) -> f64| match bound {
+                Bound::Included(x) | Bound::Excluded(x) => vec![x, out(x)],
+                Bound::Unbounded => Vec::new(),
+            };
+            let low = end(parameter.range.0, f64::next_down);
+            for value in low.into_iter().chain(end(parameter.range.1, f64::next_up)) {
+                let at =
+                    |p: &carom_time::Parameter| if p.key == parameter.key { value } else { p.example.parse().unwrap() };
+                let keys: Vec<_> = set.iter().map(|p| format!("{}={:?}", p.key, at(p))).collect();
+                let values = set.iter().map(|p| (p.key.to_owned(), at(p))).collect();
+                let built = carom_time::scheme(kind.name, &values, carom_time::ForceRule::AverageForces);
+                let takes = parameter.range.contains(&value);
+                assert_eq!(read_scheme(kind.name, &keys).is_ok(), takes, "{} {keys:?}", kind.name);
+                assert_eq!(built.is_ok(), takes, "{} {keys:?}: {built:?}", kind.name);
+            }
+        }
+    }
+}
+
 #[test]
 fn schemes_alone() {
     let read = |kind, parameters: &[&str]| {
