@@ -86,7 +86,7 @@ impl Ranked<'_> {
         peaks.take(STRESSES).map(|c| self.error(&format!("{c} peak"), &format!("{c}:peak_mean"))).collect()
     }
 
-    /// Observed orders of the first displacement that has them, before the first contact and across it.
+    /// Observed orders of the first displacement that has them, before the first contact and after it.
     fn orders(&self) -> [Column; 2] {
         let orders = &self.study.phase_orders;
         let named = orders.iter().find(|o| o.across.is_ok() || o.smooth.is_ok()).map(|o| o.column.clone());
@@ -99,7 +99,7 @@ impl Ranked<'_> {
         let what = named.clone().unwrap_or_default();
         [
             self.column(&format!("{what} order before"), |arm| cell(&of(arm)?.smooth)),
-            self.column(&format!("{what} order across"), |arm| cell(&of(arm)?.across)),
+            self.column(&format!("{what} order after"), |arm| cell(&of(arm)?.across)),
         ]
     }
 }

@@ -1,7 +1,7 @@
 //! A curve as SVG path data, with no more points than a picture shows.
 //!
-//! Two rules, one after the other. In each column of half a pixel the first, lowest, highest and last point stay: what is left out of a column is within half a
-//! pixel of what is drawn. Of these, points go that are within a tenth of a pixel of the line between two others that stay (D. H. Douglas, T. K. Peucker,
+//! Two rules, one after the other; what both leave out is within 0.6 pixels of what is drawn, and within 0.1 where no column of half a pixel has more than four
+//! points. In each such column the first, lowest, highest and last point stay: what is left out of it is within half a pixel of what stays. Of these, points go that are within a tenth of a pixel of the line between two others that stay (D. H. Douglas, T. K. Peucker,
 //! Cartographica 10, 1973); the lowest and the highest of all, the first and the last always stay. What remains is written in tenths of a pixel, each from the
 //! point before as written, so that nothing drifts.
 

@@ -25,6 +25,19 @@ const SIDE: [(&str, &str); 8] = [
     ("restitution", "error of restitution"),
 ];
 
+/// What the columns of the ranking hold.
+const COLUMNS: [&str; 9] = [
+    "Errors and energies are relative.",
+    "±: the uncertainty of the reference.",
+    "Energy drift: its largest change at any time.",
+    "Lost in an impact: over the one that changes the energy most.",
+    "By integrator: what it took by the end.",
+    "By contact: what it took by the end.",
+    "TV beyond: total variation of the contact force over the reference's, minus 1.",
+    "Peak: the stress averaged over a sixteenth of the contact.",
+    "Orders: of the errors against the reference at the two finest levels, before the first contact and after it.",
+];
+
 /// Costs are matched within this share of the budget.
 pub(crate) const OFF_BUDGET: f64 = 0.1;
 
@@ -224,7 +237,8 @@ pub(crate) fn design(out: &mut String, study: &Study) {
             out.push_str("<p>The arms are as written: neither their steps nor their costs were made equal.</p>\n");
         }
         Some((Kind::MatchedStep, _)) => {
-            let _ = writeln!(out, "<p>Matched step: at a level every method has the same step. {}.</p>", levels(study));
+            let _ =
+                writeln!(out, "<p>Matched step: at a level every method has the same step ({}).</p>", levels(study));
             let by_cost = study.manifest.methods().into_iter().filter(|method| {
                 let mut arms = study.manifest.arms.iter();
                 arms.any(|arm| arm.part.method.as_deref() == Some(method) && study.manifest.by_cost(arm))
@@ -243,7 +257,7 @@ pub(crate) fn design(out: &mut String, study: &Study) {
         Some((Kind::MatchedCost, of)) => {
             let _ = writeln!(
                 out,
-                "<p>Matched cost: at a level every method has the step at which it costs what <b>{}</b> does. {} of that method. Cost is counted (Newton iterations and factorisations, or \
+                "<p>Matched cost: at a level every method has the step at which it costs what <b>{}</b> does at its own ({}). Cost is counted (Newton iterations and factorisations, or \
                  steps) and weighted by processor seconds that a pilot run measured (<code>pilots/</code>); the column of processor time is what the arms themselves took.</p>",
                 escape(of),
                 levels(study)
@@ -256,8 +270,8 @@ pub(crate) fn design(out: &mut String, study: &Study) {
 /// The steps of the levels, in words.
 fn levels(study: &Study) -> String {
     let steps = study.manifest.design.iter().flat_map(|d| &d.steps);
-    let steps: Vec<String> = steps.enumerate().map(|(i, h)| format!("level {}: Δt = {}", i + 1, long(*h))).collect();
-    steps.join("; ").replacen('l', "L", 1)
+    let steps: Vec<String> = steps.enumerate().map(|(i, h)| format!("level {} Δt = {}", i + 1, long(*h))).collect();
+    steps.join(", ")
 }
 
 /// Whether costs were matched within the tenth that is claimed, and of which arms not.
@@ -294,17 +308,19 @@ fn ranked_table(out: &mut String, study: &Study, ranking: &Ranking) {
     if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) {
         out.push_str(" An exclamation mark: off the budget by more than 10 %.");
     }
-    out.push_str(
-        " Errors and energies are relative; ± is the uncertainty of the reference. Energy drift: its largest change at any time; lost in an impact: over the one that changes it most; by integrator and by contact: what each took by the end. TV beyond: total variation of the contact force over the reference's, minus 1. Peak: the stress averaged over a sixteenth of the contact. Orders: of the errors against the reference at the two finest levels, before the first contact and after it. Beside <a href=\"ranking.csv\">ranking.csv</a> and <a href=\"reference.csv\">reference.csv</a>.</p>\n",
-    );
+    out.push_str("</p>\n<ul class=\"small\">\n");
+    for line in COLUMNS {
+        let _ = writeln!(out, "<li>{line}</li>");
+    }
+    out.push_str("</ul>\n<p class=\"small\">All digits are in <a href=\"ranking.csv\">ranking.csv</a> and <a href=\"reference.csv\">reference.csv</a>.</p>\n");
 }
 
-/// Observed orders while motion is smooth and across the impact.
+/// Observed orders before the first contact and after it.
 pub(crate) fn phases(out: &mut String, study: &Study) {
     if study.phase_orders.is_empty() {
         return;
     }
-    out.push_str("<h2>Order before and across the impact</h2>\n<table><thead><tr><th>Method</th><th>Column</th><th>Before the first contact</th><th>After it</th></tr></thead>\n");
+    out.push_str("<h2>Order before and after the first contact</h2>\n<table><thead><tr><th>Method</th><th>Column</th><th>Before the first contact</th><th>After it</th></tr></thead>\n");
     let cell = |order: &Result<f64, String>| match order {
         Ok(order) => format!("{order:.2}").replace('-', "−"),
         Err(why) => format!("<span class=\"small\">no order ({})</span>", escape(why)),
@@ -319,5 +335,5 @@ pub(crate) fn phases(out: &mut String, study: &Study) {
             cell(&o.across)
         );
     }
-    out.push_str("</table>\n<p class=\"small\">From the errors against the reference at the two finest levels, root mean square over the rows of the phase.</p>\n");
+    out.push_str("</table>\n<p class=\"small\">From the errors against the reference at the two finest levels, root mean square over the rows before the reference's first contact, and over those after its end.</p>\n");
 }
