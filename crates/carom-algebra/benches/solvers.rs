@@ -12,6 +12,9 @@ use divan::Bencher;
 
 /// Nodes along an edge: 2 178 and 18 818 unknowns.
 const EDGES: [usize; 2] = [33, 97];
+/// The same with the precisions the kept factor may have.
+const KEPT: [(usize, Precision); 4] =
+    [(33, Precision::Double), (33, Precision::Single), (97, Precision::Double), (97, Precision::Single)];
 /// Nodes that touch, of small systems.
 const TOUCHING: [usize; 2] = [12, 48];
 
@@ -61,23 +64,23 @@ fn elimination(grid: &Grid) -> Arc<Elimination> {
     Arc::new(Elimination::new(&grid.pattern, &grid.groups, &grid.side).expect("memory"))
 }
 
-fn condensed(grid: &Grid) -> Condensed {
-    let mut condensed = Condensed::new(&elimination(grid), Precision::Double).expect("memory");
+fn condensed(grid: &Grid, precision: Precision) -> Condensed {
+    let mut condensed = Condensed::new(&elimination(grid), precision).expect("memory");
     condensed.factor(|k| grid.values[k]).expect("positive definite");
     condensed
 }
 
-#[divan::bench(args = EDGES)]
-fn kept_factor(bencher: Bencher, edge: usize) {
+#[divan::bench(args = KEPT)]
+fn kept_factor(bencher: Bencher, (edge, precision): (usize, Precision)) {
     let grid = grid(edge, 0);
-    let mut condensed = condensed(&grid);
+    let mut condensed = condensed(&grid, precision);
     bencher.bench_local(|| condensed.factor(|k| grid.values[k]).is_ok());
 }
 
-#[divan::bench(args = EDGES)]
-fn kept_solve(bencher: Bencher, edge: usize) {
+#[divan::bench(args = KEPT)]
+fn kept_solve(bencher: Bencher, (edge, precision): (usize, Precision)) {
     let grid = grid(edge, 0);
-    let mut condensed = condensed(&grid);
+    let mut condensed = condensed(&grid, precision);
     let (right, mut x, mut out) = (vec![1.0; grid.pattern.size()], Vec::new(), vec![0.0; grid.pattern.size()]);
     bencher.bench_local(|| {
         condensed.eliminate_into(black_box(&right), &mut x);

@@ -9,14 +9,11 @@
 //!
 //! In single precision it is σ²A that is factored, L' = σL with σ a power of two.
 
-// A loop is compiled for wide registers only where it is inlined into `wide`.
-#![allow(clippy::inline_always)]
-
 use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltParams, LltRegularization};
-use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::sparse::linalg::cholesky::supernodal::{
     SymbolicSupernodalCholesky, factorize_supernodal_numeric_llt, factorize_supernodal_numeric_llt_scratch,
 };
@@ -87,10 +84,11 @@ impl<T: Entry> Entries<T> {
     }
 
     fn factor(&mut self, elimination: &Elimination, value: impl Fn(usize) -> f64) -> Result<(), LinearError> {
-        let Elimination { starts, rows, slots, place, .. } = elimination;
+        let Elimination { starts, rows, slots, diagonal, place, .. } = elimination;
         let n = place.len();
         if let Some(top) = T::TOP {
-            let largest = (0..slots.len()).map(|k| value(k).abs()).fold(f64::MIN_POSITIVE, f64::max);
+            // The largest entry of a positive definite matrix is on its diagonal.
+            let largest = diagonal.iter().map(|&k| value(k as usize).abs()).fold(f64::MIN_POSITIVE, f64::max);
             self.scale = 2f64.powi((top - largest.log2().ceil() as i32).div_euclid(2));
         }
         let square = self.scale * self.scale;
@@ -112,9 +110,6 @@ impl<T: Entry> Entries<T> {
             let faer::linalg::cholesky::llt::factor::LltError::NonPositivePivot { index } = error;
             LinearError::Singular { size: n, pivot: index, value: 0.0 }
         })?;
-        if self.factors.iter().any(|&x| !x.into().is_finite()) {
-            return Err(LinearError::Inaccurate { size: n, residual: f64::NAN });
-        }
         Ok(())
     }
 }
@@ -184,7 +179,7 @@ impl Condensed {
         }
     }
 
-    /// S, column by column.
+    /// S, column by column; only the lower triangle is filled.
     pub fn schur(&self) -> &[f64] {
         &self.schur
     }
@@ -310,7 +305,7 @@ fn backward<T: Entry>(
     }
 }
 
-/// S = L_BB L_BBᵀ from the last columns of the factor, to be multiplied by `scale`.
+/// The lower triangle of S = L_BB L_BBᵀ from the last columns of the factor, to be multiplied by `scale`.
 fn condense<T: Entry>(
     raw: &SymbolicSupernodalCholesky<u32>,
     factors: &[T],
@@ -342,7 +337,8 @@ fn condense<T: Entry>(
     }
     let lower = MatRef::from_column_major_slice(trailing, kept, kept);
     let product = MatMut::from_column_major_slice_mut(schur, kept, kept);
-    matmul(product, Accum::Replace, lower, lower.transpose(), 1.0, Par::Seq);
+    let (below, above) = (BlockStructure::TriangularLower, BlockStructure::TriangularUpper);
+    matmul(product, below, Accum::Replace, lower, below, lower.transpose(), above, 1.0, Par::Seq);
 }
 
 #[cfg(test)]

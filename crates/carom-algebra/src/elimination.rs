@@ -25,6 +25,8 @@ pub struct Elimination {
     pub(crate) rows: Vec<u32>,
     /// Where each entry of the pattern went.
     pub(crate) slots: Vec<u32>,
+    /// The entries of the pattern's diagonal.
+    pub(crate) diagonal: Vec<u32>,
     symbolic: SymbolicCholesky<u32>,
 }
 
@@ -51,7 +53,8 @@ impl Elimination {
         let inner = n - last.len();
         let (starts, rows, slots) = permuted(pattern, &place);
         let symbolic = structure(&starts, &rows, inner).map_err(engine)?;
-        Ok(Self { place, inner, starts, rows, slots, symbolic })
+        let diagonal = (0..n).filter_map(|i| pattern.slot(i, i)).map(|k| k as u32).collect();
+        Ok(Self { place, inner, starts, rows, slots, diagonal, symbolic })
     }
 
     /// Number of unknowns eliminated last.

@@ -14,6 +14,7 @@ use faer::linalg::cholesky::llt::factor::{
     LltError, LltParams, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
 };
 use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, MatMut, MatRef, Par, Spec};
@@ -32,7 +33,7 @@ pub struct Saddle {
     stiffness: Vec<f64>,
     /// Gᵀ, then T; a column per row of G.
     rows: Vec<f64>,
-    /// TᵀT, then its factor.
+    /// The lower triangle of TᵀT, then its factor.
     small: Vec<f64>,
     /// κ of each row.
     penalties: Vec<f64>,
@@ -42,7 +43,7 @@ pub struct Saddle {
 }
 
 impl Saddle {
-    /// Begins with S (column-major, symmetric) and `count` empty rows.
+    /// Begins with S (column-major, its lower triangle) and `count` empty rows.
     pub fn begin(&mut self, stiffness: &[f64], size: usize, count: usize) {
         (self.size, self.count) = (size, count);
         self.stiffness.clear();
@@ -97,7 +98,8 @@ impl Saddle {
         self.small.clear();
         self.small.resize(m * m, 0.0);
         let product = MatMut::from_column_major_slice_mut(&mut self.small, m, m);
-        matmul(product, Accum::Replace, t.rb().transpose(), t.rb(), 1.0, Par::Seq);
+        let (half, whole) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
+        triangular::matmul(product, half, Accum::Replace, t.rb().transpose(), whole, t.rb(), whole, 1.0, Par::Seq);
         let diagonal: Vec<f64> = (0..m).map(|i| self.small[i * m + i]).collect();
         cholesky(&mut self.small, m, &mut self.scratch, &mut self.room)?;
         let dependent = |&i: &usize| self.small[i * m + i].powi(2) <= DEPENDENT * diagonal[i];

@@ -1,8 +1,5 @@
 //! Loops in the widest registers the machine has. Lanes never mix across widths: the bits are the same on every machine.
 
-// A loop is compiled for wide registers only where it is inlined into `wide`.
-#![allow(clippy::inline_always)]
-
 /// Lanes of a reduction; fixed, so that its order of summation is.
 const LANES: usize = 8;
 

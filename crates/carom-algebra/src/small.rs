@@ -23,36 +23,52 @@ pub struct Vector<const D: usize>(pub [f64; D]);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mat<const D: usize>(pub [[f64; D]; D]);
 
+/// Σ aᵢ b(i).
+#[inline(always)]
+fn product<const D: usize>(a: &[f64; D], b: impl Fn(usize) -> f64) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..D {
+        sum += a[i] * b(i);
+    }
+    sum
+}
+
 impl<const D: usize> Vector<D> {
     /// The zero vector.
     pub const ZERO: Self = Self([0.0; D]);
 
-    /// Scalar product.
-    #[inline]
-    pub fn dot(&self, other: &Self) -> f64 {
-        let mut sum = 0.0;
+    /// From its components. A loop, because `std::array::from_fn` is not always inlined and the arithmetic here is that of the innermost loops.
+    #[inline(always)]
+    fn of(component: impl Fn(usize) -> f64) -> Self {
+        let mut vector = Self::ZERO;
         for i in 0..D {
-            sum += self.0[i] * other.0[i];
+            vector.0[i] = component(i);
         }
-        sum
+        vector
+    }
+
+    /// Scalar product.
+    #[inline(always)]
+    pub fn dot(&self, other: &Self) -> f64 {
+        product(&self.0, |i| other.0[i])
     }
 
     /// Euclidean length.
-    #[inline]
+    #[inline(always)]
     pub fn norm(&self) -> f64 {
         self.dot(self).sqrt()
     }
 
     /// Dyadic product `self ⊗ other`.
-    #[inline]
+    #[inline(always)]
     pub fn outer(&self, other: &Self) -> Mat<D> {
-        Mat(std::array::from_fn(|i| std::array::from_fn(|j| self.0[i] * other.0[j])))
+        Mat::of(|i, j| self.0[i] * other.0[j])
     }
 }
 
 impl Vector<2> {
     /// The vector turned by −90°: the outward normal of a boundary that is walked with the body on its left.
-    #[inline]
+    #[inline(always)]
     pub fn turned_right(&self) -> Self {
         Self([self.0[1], -self.0[0]])
     }
@@ -62,38 +78,54 @@ impl<const D: usize> Mat<D> {
     /// The zero matrix.
     pub const ZERO: Self = Self([[0.0; D]; D]);
 
+    /// From its components.
+    #[inline(always)]
+    fn of(component: impl Fn(usize, usize) -> f64) -> Self {
+        let mut mat = Self::ZERO;
+        for i in 0..D {
+            for j in 0..D {
+                mat.0[i][j] = component(i, j);
+            }
+        }
+        mat
+    }
+
     /// The identity.
-    #[inline]
+    #[inline(always)]
     pub fn identity() -> Self {
-        Self(std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j)))))
+        Self::of(|i, j| f64::from(u8::from(i == j)))
     }
 
     /// Transpose.
-    #[inline]
+    #[inline(always)]
     pub fn transposed(&self) -> Self {
-        Self(std::array::from_fn(|i| std::array::from_fn(|j| self.0[j][i])))
+        Self::of(|i, j| self.0[j][i])
     }
 
     /// Matrix times vector.
-    #[inline]
+    #[inline(always)]
     pub fn apply(&self, v: &Vector<D>) -> Vector<D> {
-        Vector(std::array::from_fn(|i| (0..D).map(|j| self.0[i][j] * v.0[j]).sum()))
+        Vector::of(|i| product(&self.0[i], |j| v.0[j]))
     }
 
     /// Sum of the diagonal.
-    #[inline]
+    #[inline(always)]
     pub fn trace(&self) -> f64 {
         (0..D).map(|i| self.0[i][i]).sum()
     }
 
     /// Double contraction `A : B`.
-    #[inline]
+    #[inline(always)]
     pub fn double_dot(&self, other: &Self) -> f64 {
-        (0..D).map(|i| (0..D).map(|j| self.0[i][j] * other.0[i][j]).sum::<f64>()).sum()
+        let mut sum = 0.0;
+        for i in 0..D {
+            sum += product(&self.0[i], |j| other.0[i][j]);
+        }
+        sum
     }
 
     /// Matrix of cofactors, `det(A) A⁻ᵀ`; defined for singular matrices too.
-    #[inline]
+    #[inline(always)]
     pub fn cofactor(&self) -> Self {
         let a = &self.0;
         let mut c = Self::ZERO;
@@ -118,14 +150,14 @@ impl<const D: usize> Mat<D> {
     }
 
     /// Determinant.
-    #[inline]
+    #[inline(always)]
     pub fn det(&self) -> f64 {
         let c = self.cofactor();
-        (0..D).map(|j| self.0[0][j] * c.0[0][j]).sum()
+        product(&self.0[0], |j| c.0[0][j])
     }
 
     /// Inverse; entries are not finite where the determinant is zero.
-    #[inline]
+    #[inline(always)]
     pub fn inverse(&self) -> Self {
         self.cofactor().transposed() * (1.0 / self.det())
     }
@@ -133,14 +165,14 @@ impl<const D: usize> Mat<D> {
 
 impl<const D: usize> Index<usize> for Vector<D> {
     type Output = f64;
-    #[inline]
+    #[inline(always)]
     fn index(&self, i: usize) -> &f64 {
         &self.0[i]
     }
 }
 
 impl<const D: usize> IndexMut<usize> for Vector<D> {
-    #[inline]
+    #[inline(always)]
     fn index_mut(&mut self, i: usize) -> &mut f64 {
         &mut self.0[i]
     }
@@ -148,45 +180,45 @@ impl<const D: usize> IndexMut<usize> for Vector<D> {
 
 impl<const D: usize> Add for Vector<D> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i] + other.0[i]))
+        Self::of(|i| self.0[i] + other.0[i])
     }
 }
 
 impl<const D: usize> Sub for Vector<D> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i] - other.0[i]))
+        Self::of(|i| self.0[i] - other.0[i])
     }
 }
 
 impl<const D: usize> Neg for Vector<D> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0.map(|x| -x))
+        Self::of(|i| -self.0[i])
     }
 }
 
 impl<const D: usize> Mul<f64> for Vector<D> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, factor: f64) -> Self {
-        Self(self.0.map(|x| x * factor))
+        Self::of(|i| self.0[i] * factor)
     }
 }
 
 impl<const D: usize> AddAssign for Vector<D> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl<const D: usize> SubAssign for Vector<D> {
-    #[inline]
+    #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
@@ -194,38 +226,38 @@ impl<const D: usize> SubAssign for Vector<D> {
 
 impl<const D: usize> Add for Mat<D> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self(std::array::from_fn(|i| std::array::from_fn(|j| self.0[i][j] + other.0[i][j])))
+        Self::of(|i, j| self.0[i][j] + other.0[i][j])
     }
 }
 
 impl<const D: usize> Sub for Mat<D> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self(std::array::from_fn(|i| std::array::from_fn(|j| self.0[i][j] - other.0[i][j])))
+        Self::of(|i, j| self.0[i][j] - other.0[i][j])
     }
 }
 
 impl<const D: usize> Mul<f64> for Mat<D> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, factor: f64) -> Self {
-        Self(self.0.map(|row| row.map(|x| x * factor)))
+        Self::of(|i, j| self.0[i][j] * factor)
     }
 }
 
 impl<const D: usize> Mul for Mat<D> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        Self(std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| self.0[i][k] * other.0[k][j]).sum())))
+        Self::of(|i, j| product(&self.0[i], |k| other.0[k][j]))
     }
 }
 
 impl<const D: usize> AddAssign for Mat<D> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }

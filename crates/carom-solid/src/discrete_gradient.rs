@@ -76,9 +76,16 @@ pub(crate) fn between<const D: usize, L: Material<D>>(
 }
 
 /// ∂P/∂F of the law at a point.
+#[inline(always)]
 pub(crate) fn moduli_of<const D: usize, L: Material<D>>(law: &L, point: &L::Point) -> Moduli<D> {
     let unit = Mat::<D>::identity().0.map(Vector);
-    std::array::from_fn(|j| std::array::from_fn(|l| law.tangent(point, &unit[j], &unit[l])))
+    let mut moduli = [[Mat::ZERO; D]; D];
+    for j in 0..D {
+        for l in 0..D {
+            moduli[j][l] = law.tangent(point, &unit[j], &unit[l]);
+        }
+    }
+    moduli
 }
 
 /// The part of the moduli that has a symmetric tangent.
@@ -86,7 +93,7 @@ pub(crate) fn symmetric_part<const D: usize>(moduli: &Moduli<D>) -> Moduli<D> {
     std::array::from_fn(|j| std::array::from_fn(|l| (moduli[j][l] + moduli[l][j].transposed()) * 0.5))
 }
 
-pub(crate) fn scaled<const D: usize>(moduli: Moduli<D>, factor: f64) -> Moduli<D> {
+fn scaled<const D: usize>(moduli: Moduli<D>, factor: f64) -> Moduli<D> {
     moduli.map(|row| row.map(|block| block * factor))
 }
 

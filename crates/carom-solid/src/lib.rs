@@ -9,6 +9,7 @@ mod loaded_side;
 mod lumping;
 pub mod material;
 mod mesh;
+mod points;
 pub mod quadrature;
 mod reference;
 pub mod shape;

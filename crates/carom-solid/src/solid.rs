@@ -4,19 +4,22 @@
 //!
 //! (Coda, Paccola, Latin Am. J. Solids Struct. 4 (2007), positions as unknowns; Holzapfel, Nonlinear Solid Mechanics, §8). The difference
 //! y − X is formed here, once, so that small motions keep their digits. ∇₀φ and w = weight · det(∂X/∂ξ) · thickness of every quadrature
-//! point are computed when the body is made.
+//! point of a curved cell are computed when the body is made. Straight cells share the points of the reference cell, and have one map each, ∇₀φ = (∂X/∂ξ)⁻ᵀ ∂φ/∂ξ:
+//! what is read less is not waited for. Four points are computed at once (`points.rs`).
 //!
 //! Degrees of the rules, shape functions of degree k: straight cells 2k for force and mass; cells with curved edges 2k (k ≤ 2) or 4(k − 1)
 //! for force, 4k − 2 for mass; a law whose energy is a polynomial of degree m in F at least m (k − 1).
 
 use std::marker::PhantomData;
+use std::ops::Range;
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::{Mat, Vector, wide};
 
 use crate::body::{Body, Inverted, PointState};
-use crate::discrete_gradient::{Moduli, between, moduli_of, scaled, symmetric_part};
+use crate::discrete_gradient::{Moduli, between, moduli_of, symmetric_part};
 use crate::material::{Material, NotPositive};
 use crate::mesh::{Element, Mesh};
+use crate::points::{Blocks, LANES, Points, get, set, set_moduli, sum};
 use crate::quadrature::Rule;
 use crate::reference::{self, Bounds, Degenerate, gradient};
 use crate::shape::{Domain, Shape};
@@ -41,18 +44,25 @@ pub enum SolidError {
     Thickness(f64),
 }
 
+/// Quadrature points of a cell for forces.
+struct Place<const D: usize> {
+    points: Range<usize>,
+    /// ∇₀φ is the transpose of this times the gradients of the points: (∂X/∂ξ)⁻¹ of a straight cell.
+    inverse: Mat<D>,
+    /// Volume of the cell per weight of the points.
+    volume: f64,
+}
+
 /// A body of cells of shape `S` (`D` reference coordinates, `N` nodes) and law `L`.
 pub struct Solid<const D: usize, const N: usize, S, L> {
     mesh: Mesh<D>,
     law: L,
     density: f64,
     thickness: f64,
-    /// First quadrature point of each cell, and one more.
-    start: Vec<usize>,
-    /// ∇₀φᵃ at the quadrature points for forces.
-    gradients: Vec<[Vector<D>; N]>,
-    /// Weight · det(∂X/∂ξ) · thickness at the same points.
-    weights: Vec<f64>,
+    /// Where each cell has its quadrature points for forces.
+    places: Vec<Place<D>>,
+    /// Those of the reference cell first, then those of each curved cell.
+    points: Vec<Points<D, N>>,
     curved: Vec<bool>,
     /// Rules for masses of straight and of curved cells.
     mass_rules: [Rule<D>; 2],
@@ -77,14 +87,14 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
             law,
             density,
             thickness,
-            start: vec![0],
-            gradients: Vec::new(),
-            weights: Vec::new(),
+            places: Vec::with_capacity(cells),
+            points: pack(force_rules[0].iter().map(|(xi, weight)| (S::gradients(xi), weight))),
             curved: Vec::with_capacity(cells),
             mass_rules,
             bounds: Vec::with_capacity(cells),
             shape: PhantomData,
         };
+        let shared = 0..solid.points.len();
         for cell in 0..cells {
             let x = solid.reference(cell);
             let curved = reference::is_curved::<D, N, S>(&x);
@@ -92,12 +102,20 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
             for xi in S::NODES.iter().chain(&solid.mass_rules[usize::from(curved)].points) {
                 reference::map::<D, N, S>(&x, xi).map_err(at)?;
             }
-            for (xi, weight) in force_rules[usize::from(curved)].iter() {
-                let (gradients, jacobian) = reference::map::<D, N, S>(&x, xi).map_err(at)?;
-                solid.gradients.push(gradients);
-                solid.weights.push(weight * jacobian * thickness);
-            }
-            solid.start.push(solid.weights.len());
+            let place = if curved {
+                let mapped = force_rules[1].iter().map(|(xi, weight)| {
+                    let (gradients, jacobian) = reference::map::<D, N, S>(&x, xi).map_err(at)?;
+                    Ok((gradients, weight * jacobian * thickness))
+                });
+                let own = pack(mapped.collect::<Result<Vec<_>, SolidError>>()?.into_iter());
+                let first = solid.points.len();
+                solid.points.extend(own);
+                Place { points: first..solid.points.len(), inverse: Mat::identity(), volume: 1.0 }
+            } else {
+                let derivative = gradient(&x, &S::gradients(&S::Domain::CENTRE));
+                Place { points: shared.clone(), inverse: derivative.inverse(), volume: derivative.det() * thickness }
+            };
+            solid.places.push(place);
             solid.curved.push(curved);
             solid.bounds.push(Bounds::around(&x));
         }
@@ -116,39 +134,96 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
     }
 
     /// y − X at the nodes of a cell.
-    #[inline]
+    #[inline(always)]
     fn displacements(&self, cell: usize, y: &[[f64; D]]) -> [Vector<D>; N] {
         let nodes = self.nodes(cell);
-        std::array::from_fn(|a| Vector(y[nodes[a]]) - Vector(self.mesh.nodes[nodes[a]]))
+        let mut u = [Vector::ZERO; N];
+        for a in 0..N {
+            u[a] = Vector(y[nodes[a]]) - Vector(self.mesh.nodes[nodes[a]]);
+        }
+        u
     }
 
-    /// Strain energy, forces and, if asked for, the tangent of a cell.
-    #[inline]
-    fn integrate(
+    /// Forces and, if asked for, the tangent of a cell from `at(h)` for the gradients H of several displacement fields at a point: energy, P and the moduli.
+    #[inline(always)]
+    fn integrate<const M: usize>(
+        &self,
+        cell: usize,
+        fields: [&[[f64; D]]; M],
+        at: impl Fn([Mat<D>; M], bool) -> Result<(f64, Mat<D>, Option<Moduli<D>>), NotPositive>,
+        force: &mut [f64],
+        tangent: Option<&mut [f64]>,
+    ) -> Result<f64, Inverted> {
+        let mut u = [[Vector::ZERO; N]; M];
+        for m in 0..M {
+            u[m] = self.displacements(cell, fields[m]);
+        }
+        let mut f = [[[0.0; LANES]; D]; N];
+        let mut blocks: Blocks<D, N> = [[[[[0.0; LANES]; D]; D]; N]; N];
+        let mut energy = 0.0;
+        let Place { points, inverse, volume } = &self.places[cell];
+        for points in &self.points[points.clone()] {
+            let mut gradients = [[[[0.0; LANES]; D]; D]; M];
+            for m in 0..M {
+                gradients[m] = points.gradient(&u[m], inverse);
+            }
+            let mut stresses = [[[0.0; LANES]; D]; D];
+            let mut moduli = [[[[[0.0; LANES]; D]; D]; D]; D];
+            for l in 0..points.count {
+                let w = volume * points.weights[l];
+                let mut h = [Mat::ZERO; M];
+                for m in 0..M {
+                    h[m] = get(&gradients[m], l);
+                }
+                let (density, stress, of_point) =
+                    at(h, tangent.is_some()).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
+                energy += w * density;
+                set(&mut stresses, l, &stress, w);
+                if let Some(of_point) = of_point {
+                    set_moduli(&mut moduli, l, &of_point, w);
+                }
+            }
+            points.add_force(&stresses, inverse, &mut f);
+            if tangent.is_some() {
+                points.add_tangent(&moduli, inverse, &mut blocks);
+            }
+        }
+        for (force, f) in force.iter_mut().zip(f.as_flattened()) {
+            *force = sum(f);
+        }
+        if let Some(tangent) = tangent {
+            spread(&blocks, tangent);
+        }
+        Ok(energy)
+    }
+
+    /// The same from the law at one position.
+    #[inline(always)]
+    fn integrate_at(
         &self,
         cell: usize,
         y: &[[f64; D]],
         force: &mut [f64],
-        mut blocks: Option<&mut [[Mat<D>; N]; N]>,
+        tangent: Option<&mut [f64]>,
     ) -> Result<f64, Inverted> {
-        let u = self.displacements(cell, y);
-        let mut f = [Vector::<D>::ZERO; N];
-        let mut energy = 0.0;
-        for q in self.start[cell]..self.start[cell + 1] {
-            let (g, w) = (&self.gradients[q], self.weights[q]);
-            let point = self.law.at(&gradient(&u, g)).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
-            energy += w * self.law.energy(&point);
-            let stress = self.law.stress(&point) * w;
-            for a in 0..N {
-                f[a] += stress.apply(&g[a]);
-            }
-            if let Some(blocks) = &mut blocks {
-                add_tangent(&scaled(moduli_of(&self.law, &point), w), g, blocks);
-            }
-        }
-        force.as_chunks_mut().0.copy_from_slice(&f.map(|f| f.0));
-        Ok(energy)
+        self.integrate(
+            cell,
+            [y],
+            #[inline(always)]
+            |[h], with_moduli| {
+                let point = self.law.at(&h)?;
+                let moduli = with_moduli.then(|| moduli_of(&self.law, &point));
+                Ok((self.law.energy(&point), self.law.stress(&point), moduli))
+            },
+            force,
+            tangent,
+        )
     }
+}
+
+/// Points side by side, from their gradients and weights.
+fn pack<const D: usize, const N: usize>(points: impl Iterator<Item = ([Vector<D>; N], f64)>) -> Vec<Points<D, N>> {
+    points.collect::<Vec<_>>().chunks(LANES).map(Points::new).collect()
 }
 
 /// Numbers in range, cells whole, nodes there.
@@ -175,36 +250,16 @@ fn check<const D: usize, const N: usize>(mesh: &Mesh<D>, density: f64, thickness
     }
 }
 
-/// `blocks[b][a]` += Kᵃᵇ for a ≤ b, from moduli that hold the weight. K is bilinear in the gradients: the law is asked for unit vectors only.
-#[inline]
-fn add_tangent<const D: usize, const N: usize>(moduli: &Moduli<D>, g: &[Vector<D>; N], blocks: &mut [[Mat<D>; N]; N]) {
-    for b in 0..N {
-        let half: [Mat<D>; D] = std::array::from_fn(|j| {
-            let mut sum = Mat::ZERO;
-            for l in 0..D {
-                sum += moduli[j][l] * g[b][l];
-            }
-            sum
-        });
-        for a in 0..=b {
-            let mut sum = half[0] * g[a][0];
-            for j in 1..D {
-                sum += half[j] * g[a][j];
-            }
-            blocks[b][a] += sum;
-        }
-    }
-}
-
 /// Both halves of a symmetric matrix from the blocks a ≤ b.
-fn spread<const D: usize, const N: usize>(blocks: &[[Mat<D>; N]; N], tangent: &mut [f64]) {
+#[inline(always)]
+fn spread<const D: usize, const N: usize>(blocks: &Blocks<D, N>, tangent: &mut [f64]) {
     for b in 0..N {
         for a in 0..=b {
             for i in 0..D {
                 for j in 0..D {
-                    let (row, column) = (a * D + i, b * D + j);
-                    tangent[row * N * D + column] = blocks[b][a].0[i][j];
-                    tangent[column * N * D + row] = blocks[b][a].0[i][j];
+                    let (row, column, value) = (a * D + i, b * D + j, sum(&blocks[b][a][i][j]));
+                    tangent[row * N * D + column] = value;
+                    tangent[column * N * D + row] = value;
                 }
             }
         }
@@ -217,7 +272,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
     }
 
     fn cell_force(&self, cell: usize, y: &[[f64; D]], force: &mut [f64]) -> Result<f64, Inverted> {
-        self.integrate(cell, y, force, None)
+        wide(
+            #[inline(always)]
+            || self.integrate_at(cell, y, force, None),
+        )
     }
 
     fn cell_tangent(
@@ -227,10 +285,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
         force: &mut [f64],
         tangent: &mut [f64],
     ) -> Result<f64, Inverted> {
-        let mut blocks = [[Mat::<D>::ZERO; N]; N];
-        let energy = self.integrate(cell, y, force, Some(&mut blocks))?;
-        spread(&blocks, tangent);
-        Ok(energy)
+        wide(
+            #[inline(always)]
+            || self.integrate_at(cell, y, force, Some(tangent)),
+        )
     }
 
     fn cell_between(
@@ -241,28 +299,14 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, Inverted> {
-        let (u, next) = (self.displacements(cell, before), self.displacements(cell, now));
-        let mut f = [Vector::<D>::ZERO; N];
-        let mut blocks = [[Mat::<D>::ZERO; N]; N];
-        let mut energy = 0.0;
-        for q in self.start[cell]..self.start[cell + 1] {
-            let (g, w) = (&self.gradients[q], self.weights[q]);
-            let (end, stress, moduli) = between(&self.law, [&gradient(&u, g), &gradient(&next, g)], tangent.is_some())
-                .map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
-            energy += w * end;
-            let stress = stress * w;
-            for a in 0..N {
-                f[a] += stress.apply(&g[a]);
-            }
-            if let Some(moduli) = moduli {
-                add_tangent(&scaled(symmetric_part(&moduli), w), g, &mut blocks);
-            }
-        }
-        force.as_chunks_mut().0.copy_from_slice(&f.map(|f| f.0));
-        if let Some(tangent) = tangent {
-            spread(&blocks, tangent);
-        }
-        Ok(energy)
+        let at = |[start, end]: [Mat<D>; 2], with_moduli: bool| {
+            let (energy, stress, moduli) = between(&self.law, [&start, &end], with_moduli)?;
+            Ok((energy, stress, moduli.map(|moduli| symmetric_part(&moduli))))
+        };
+        wide(
+            #[inline(always)]
+            || self.integrate(cell, [before, now], at, force, tangent),
+        )
     }
 
     fn cell_mass(&self, cell: usize, mass: &mut [f64]) {
@@ -330,8 +374,12 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
 
     fn cell_min_det_f(&self, cell: usize, y: &[[f64; D]]) -> f64 {
         let u = self.displacements(cell, y);
-        let points = &self.gradients[self.start[cell]..self.start[cell + 1]];
-        points.iter().map(|g| self.law.volume_ratio(&gradient(&u, g))).fold(f64::INFINITY, f64::min)
+        let Place { points, inverse, .. } = &self.places[cell];
+        let ratios = self.points[points.clone()].iter().flat_map(|points| {
+            let h = points.gradient(&u, inverse);
+            (0..points.count).map(move |l| self.law.volume_ratio(&get(&h, l)))
+        });
+        ratios.fold(f64::INFINITY, f64::min)
     }
 
     fn point(&self, cell: usize, xi: &[f64], y: &[[f64; D]]) -> Result<PointState, Inverted> {

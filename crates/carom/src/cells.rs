@@ -50,8 +50,10 @@ impl Cells {
             };
         };
         let mut strain = 0.0;
-        for first in (0..count).step_by(BLOCK) {
-            let block = &mut self.block[..BLOCK.min(count - first)];
+        // What one thread has just computed is still in its cache.
+        let size = if self.pool.is_some() { BLOCK } else { 1 };
+        for first in (0..count).step_by(size) {
+            let block = &mut self.block[..size.min(count - first)];
             match &self.pool {
                 Some(pool) => {
                     pool.install(|| block.par_iter_mut().enumerate().for_each(|(k, out)| compute(first + k, out)));

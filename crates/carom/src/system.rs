@@ -22,7 +22,7 @@ use crate::held::Held;
 use crate::kept::Point;
 use crate::model::{LoadsAt, Model};
 
-/// Slot of an entry that is not stored: upper triangle, or a held dof.
+/// Slot of an entry that is not stored: that of a held dof.
 const SKIP: u32 = u32::MAX;
 
 /// Why a factor is not to be had at a point.
@@ -50,7 +50,9 @@ pub(crate) struct System<const D: usize> {
     mass: Vec<f64>,
     /// Symmetric part of ∂f_ext/∂y.
     follower: Vec<f64>,
-    /// Slots of each cell's dof pairs, cell after cell through all bodies.
+    /// Diagonals of both: read far more often than they are made.
+    diagonals: [Vec<f64>; 2],
+    /// Slots of each cell's pairs of dofs, the lower triangle by rows, cell after cell through all bodies.
     slots: Vec<u32>,
     /// The same for the facets under pressure.
     facet_slots: Vec<u32>,
@@ -75,18 +77,13 @@ impl<const D: usize> System<D> {
     pub(crate) fn new(model: &Model<D>, threads: usize) -> Self {
         let n = model.free.len();
         let mut entries = Vec::new();
-        for_each_cell_pair(model, |a, b| {
-            if a != usize::MAX && b != usize::MAX && a >= b {
-                entries.push((a, b));
-            }
-        });
+        for_each_cell_pair(model, |pair| entries.extend(pair));
         entries.sort_unstable();
         entries.dedup();
         let base = Pattern::from_entries(n, entries);
         let mut slots = Vec::new();
-        for_each_cell_pair(model, |a, b| {
-            let stored = a != usize::MAX && b != usize::MAX && a >= b;
-            slots.push(if stored { base.slot(a, b).map_or(SKIP, |s| s as u32) } else { SKIP });
+        for_each_cell_pair(model, |pair| {
+            slots.push(pair.and_then(|(a, b)| base.slot(a, b)).map_or(SKIP, |s| s as u32));
         });
         let mut mass = vec![0.0; base.len()];
         for node in 0..model.mass.nodes() {
@@ -113,8 +110,10 @@ impl<const D: usize> System<D> {
                 }
             }
         });
+        let diagonals = [diagonal_of(&base, &mass), vec![0.0; n]];
         Self {
             stiffness: vec![0.0; base.len()],
+            diagonals,
             follower: vec![0.0; if model.loads.follow() { base.len() } else { 0 }],
             mass,
             facet_slots,
@@ -187,9 +186,11 @@ impl<const D: usize> System<D> {
                         product[dof(a)] += row.iter().enumerate().map(|(b, k)| k * moved[dof(b)]).sum::<f64>();
                     }
                 }
-                for (value, slot) in k.iter().zip(slots.by_ref()) {
-                    if *slot != SKIP {
-                        stiffness[*slot as usize] += value;
+                for (row, k) in k.chunks_exact(f.len()).enumerate() {
+                    for (value, slot) in k[..=row].iter().zip(slots.by_ref()) {
+                        if *slot != SKIP {
+                            stiffness[*slot as usize] += value;
+                        }
                     }
                 }
             };
@@ -198,14 +199,14 @@ impl<const D: usize> System<D> {
                 .for_each(&*part.body, before, positions, add)
                 .map_err(|inverted| (part.name.clone(), inverted))?;
         }
+        self.diagonals[1] = diagonal_of(&self.base, &self.stiffness);
         Ok(strain)
     }
 
     /// Diagonal of `mass_factor` M + `stiffness_factor` K over the free dofs: the force that stands for one unit of displacement.
     pub(crate) fn diagonal(&self, mass_factor: f64, stiffness_factor: f64) -> impl Iterator<Item = f64> + '_ {
-        self.base.starts[..self.base.size()]
-            .iter()
-            .map(move |&s| mass_factor * self.mass[s] + stiffness_factor * self.stiffness[s])
+        let [mass, stiffness] = &self.diagonals;
+        mass.iter().zip(stiffness).map(move |(m, k)| mass_factor * m + stiffness_factor * k)
     }
 
     /// out += K x over the free dofs, with the last tangent.
@@ -454,8 +455,14 @@ fn anchor<const D: usize>(model: &Model<D>, row: &Row<D>) -> usize {
     row.gap.nodes[best]
 }
 
-/// Calls `visit(a, b)` with the unknowns of every two dofs of every cell, in the order of the cells' tangents.
-fn for_each_cell_pair<const D: usize>(model: &Model<D>, mut visit: impl FnMut(usize, usize)) {
+/// The diagonal of a symmetric matrix: the first entry of each column of its lower triangle.
+fn diagonal_of(pattern: &Pattern, values: &[f64]) -> Vec<f64> {
+    pattern.starts[..pattern.size()].iter().map(|&slot| values[slot]).collect()
+}
+
+/// Calls `visit` with the unknowns of every two dofs of every cell, the larger first, in the order of the lower triangles of the cells' tangents; with none
+/// where one is held.
+fn for_each_cell_pair<const D: usize>(model: &Model<D>, mut visit: impl FnMut(Option<(usize, usize)>)) {
     let mut unknowns = Vec::new();
     for part in &model.parts {
         let mesh = part.body.mesh();
@@ -463,9 +470,9 @@ fn for_each_cell_pair<const D: usize>(model: &Model<D>, mut visit: impl FnMut(us
             unknowns.clear();
             let dofs = mesh.cell(cell).iter().flat_map(|node| (0..D).map(move |i| (part.first_node + node) * D + i));
             unknowns.extend(dofs.map(|dof| model.unknown[dof]));
-            for &a in &unknowns {
-                for &b in &unknowns {
-                    visit(a, b);
+            for (row, &a) in unknowns.iter().enumerate() {
+                for &b in &unknowns[..=row] {
+                    visit((a != usize::MAX && b != usize::MAX).then(|| (a.max(b), a.min(b))));
                 }
             }
         }

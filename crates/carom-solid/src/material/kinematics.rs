@@ -3,7 +3,7 @@
 use carom_algebra::Mat;
 
 /// det(I + H) − 1.
-#[inline]
+#[inline(always)]
 pub fn excess_det<const D: usize>(h: &Mat<D>) -> f64 {
     match D {
         1 => h.0[0][0],
@@ -13,7 +13,7 @@ pub fn excess_det<const D: usize>(h: &Mat<D>) -> f64 {
 }
 
 /// cof(I + H) − I.
-#[inline]
+#[inline(always)]
 pub fn excess_cofactor<const D: usize>(h: &Mat<D>) -> Mat<D> {
     match D {
         1 => Mat::ZERO,
@@ -22,16 +22,17 @@ pub fn excess_cofactor<const D: usize>(h: &Mat<D>) -> Mat<D> {
     }
 }
 
-/// x − ln(1 + x), which is x²/2 for small x. With s = x/(2 + x): ln(1 + x) = 2 artanh s and x − 2s = x s.
-#[inline]
-pub(crate) fn minus_ln_1p(x: f64) -> f64 {
+/// ln(1 + x), and x − ln(1 + x), which is x²/2 for small x. With s = x/(2 + x): ln(1 + x) = 2 artanh s = 2s + r and x − 2s = x s.
+#[inline(always)]
+pub(crate) fn ln_1p(x: f64) -> [f64; 2] {
     if x.abs() > 0.1 {
-        return x - x.ln_1p();
+        return [x.ln_1p(), x - x.ln_1p()];
     }
     let s = x / (2.0 + x);
     let t = s * s;
     let series = 1.0 / 3.0 + t * (1.0 / 5.0 + t * (1.0 / 7.0 + t * (1.0 / 9.0 + t * (1.0 / 11.0 + t * (1.0 / 13.0)))));
-    x * s - 2.0 * s * t * series
+    let r = 2.0 * s * t * series;
+    [2.0 * s + r, x * s - r]
 }
 
 #[cfg(test)]
@@ -54,10 +55,13 @@ mod tests {
 
     #[test]
     fn logarithm_keeps_its_digits() {
-        for x in [0.0999_f64, -0.0999] {
-            assert!((minus_ln_1p(x) / (x - x.ln_1p()) - 1.0).abs() < 1e-14);
+        for x in [0.0999_f64, -0.0999, 0.03, 1e-5] {
+            let [ln, rest] = ln_1p(x);
+            assert!((ln / x.ln_1p() - 1.0).abs() < 4e-16, "{x}");
+            assert!((rest / (x - x.ln_1p()) - 1.0).abs() < 1e-15 / x.abs(), "{x}");
         }
         let x = 1e-9;
-        assert!((minus_ln_1p(x) / (0.5 * x * x * (1.0 - 2.0 * x / 3.0)) - 1.0).abs() < 1e-15);
+        assert!((ln_1p(x)[1] / (0.5 * x * x * (1.0 - 2.0 * x / 3.0)) - 1.0).abs() < 1e-15);
+        assert_eq!(ln_1p(0.0), [0.0, 0.0]);
     }
 }

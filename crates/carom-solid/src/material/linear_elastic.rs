@@ -26,27 +26,27 @@ impl<const D: usize> Material<D> for LinearElastic {
     const OBJECTIVE: bool = false;
     type Point = Point<D>;
 
-    #[inline]
+    #[inline(always)]
     fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
         Ok(Point((*h + h.transposed()) * 0.5))
     }
 
-    #[inline]
+    #[inline(always)]
     fn energy(&self, p: &Point<D>) -> f64 {
         0.5 * self.cauchy(p).double_dot(&p.0)
     }
 
-    #[inline]
+    #[inline(always)]
     fn stress(&self, p: &Point<D>) -> Mat<D> {
         self.cauchy(p)
     }
 
-    #[inline]
+    #[inline(always)]
     fn tangent(&self, _: &Point<D>, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
         Mat::identity() * (self.mu * a.dot(b)) + a.outer(b) * self.lambda + b.outer(a) * self.mu
     }
 
-    #[inline]
+    #[inline(always)]
     fn cauchy(&self, p: &Point<D>) -> Mat<D> {
         Mat::identity() * (self.lambda * p.0.trace()) + p.0 * (2.0 * self.mu)
     }

@@ -8,7 +8,7 @@
 
 use carom_algebra::{Mat, Vector};
 
-use super::kinematics::{excess_cofactor, excess_det, minus_ln_1p};
+use super::kinematics::{excess_cofactor, excess_det, ln_1p};
 use super::{Material, NotPositive};
 
 /// Compressible neo-Hookean law with Lamé's constants.
@@ -20,7 +20,7 @@ pub struct NeoHookean {
     pub mu: f64,
 }
 
-/// F − I, F, F⁻ᵀ, F − F⁻ᵀ, J − 1, ln J.
+/// F − I, F, F⁻ᵀ, F − F⁻ᵀ, J − 1, ln J, J − 1 − ln J.
 pub struct Point<const D: usize> {
     h: Mat<D>,
     f: Mat<D>,
@@ -28,13 +28,14 @@ pub struct Point<const D: usize> {
     difference: Mat<D>,
     excess: f64,
     ln_j: f64,
+    minus_ln: f64,
 }
 
 impl<const D: usize> Material<D> for NeoHookean {
     const ENERGY_DEGREE: usize = 0;
     type Point = Point<D>;
 
-    #[inline]
+    #[inline(always)]
     fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
         let excess = excess_det(h);
         if excess <= -1.0 || excess.is_nan() {
@@ -43,17 +44,19 @@ impl<const D: usize> Material<D> for NeoHookean {
         let c = excess_cofactor(h);
         let f = Mat::identity() + *h;
         let inverse = 1.0 / (1.0 + excess);
+        let [ln_j, minus_ln] = ln_1p(excess);
         Ok(Point {
             h: *h,
             f,
             inverse_transposed: (Mat::identity() + c) * inverse,
             difference: (*h - c + f * excess) * inverse,
             excess,
-            ln_j: excess.ln_1p(),
+            ln_j,
+            minus_ln,
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn energy(&self, p: &Point<D>) -> f64 {
         // tr H − d without subtracting: only what d has beyond its trace.
         let higher = match D {
@@ -61,16 +64,16 @@ impl<const D: usize> Material<D> for NeoHookean {
             2 => p.h.det(),
             _ => p.h.cofactor().trace() + p.h.det(),
         };
-        let isochoric = 0.5 * p.h.double_dot(&p.h) - higher + minus_ln_1p(p.excess);
+        let isochoric = 0.5 * p.h.double_dot(&p.h) - higher + p.minus_ln;
         self.mu * isochoric + 0.5 * self.lambda * p.ln_j * p.ln_j
     }
 
-    #[inline]
+    #[inline(always)]
     fn stress(&self, p: &Point<D>) -> Mat<D> {
         p.difference * self.mu + p.inverse_transposed * (self.lambda * p.ln_j)
     }
 
-    #[inline]
+    #[inline(always)]
     fn tangent(&self, p: &Point<D>, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
         let (a_tilde, b_tilde) = (p.inverse_transposed.apply(a), p.inverse_transposed.apply(b));
         Mat::identity() * (self.mu * a.dot(b))

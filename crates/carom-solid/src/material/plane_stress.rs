@@ -31,24 +31,24 @@ impl<L: Thickness> Material<2> for PlaneStress<L> {
     const OBJECTIVE: bool = <L as Material<3>>::OBJECTIVE;
     type Point = <L as Material<3>>::Point;
 
-    #[inline]
+    #[inline(always)]
     fn at(&self, h: &Mat<2>) -> Result<Self::Point, NotPositive> {
         let across = self.0.excess_stretch(h)?;
         let [[a, b], [c, d]] = h.0;
         self.0.at(&Mat([[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, across]]))
     }
 
-    #[inline]
+    #[inline(always)]
     fn energy(&self, point: &Self::Point) -> f64 {
         self.0.energy(point)
     }
 
-    #[inline]
+    #[inline(always)]
     fn stress(&self, point: &Self::Point) -> Mat<2> {
         within(&self.0.stress(point))
     }
 
-    #[inline]
+    #[inline(always)]
     fn tangent(&self, point: &Self::Point, a: &Vector<2>, b: &Vector<2>) -> Mat<2> {
         let [a, b] = [a, b].map(|v| Vector([v[0], v[1], 0.0]));
         let coupled = |v: &Vector<3>| self.0.tangent(point, v, &E3).0.map(|row| row[2]);
@@ -78,7 +78,7 @@ fn within(m: &Mat<3>) -> Mat<2> {
 
 impl Thickness for LinearElastic {
     /// ε₃₃ = −Λ tr ε/(Λ + 2μ).
-    #[inline]
+    #[inline(always)]
     fn excess_stretch(&self, h: &Mat<2>) -> Result<f64, NotPositive> {
         Ok(-self.lambda * h.trace() / (self.lambda + 2.0 * self.mu))
     }
@@ -86,7 +86,7 @@ impl Thickness for LinearElastic {
 
 impl Thickness for SaintVenantKirchhoff {
     /// E₃₃ = −Λ(E₁₁ + E₂₂)/(Λ + 2μ), F₃₃ = √(1 + 2E₃₃).
-    #[inline]
+    #[inline(always)]
     fn excess_stretch(&self, h: &Mat<2>) -> Result<f64, NotPositive> {
         let twice_trace = 2.0 * h.trace() + h.double_dot(h);
         let twice = -self.lambda * twice_trace / (self.lambda + 2.0 * self.mu);
@@ -102,7 +102,7 @@ impl Thickness for SaintVenantKirchhoff {
 impl Thickness for NeoHookean {
     /// With s = ln F₃₃: μ(e²ˢ − 1) + Λ(ln J₂ + s) = 0 by Newton's method. The left side is convex in s; for Λ ≥ 0 it rises everywhere, and the
     /// iterates come down to its one root from the second on. Λ < 0 has none where the plane is pressed together too far.
-    #[inline]
+    #[inline(always)]
     fn excess_stretch(&self, h: &Mat<2>) -> Result<f64, NotPositive> {
         let excess = excess_det(h);
         if excess <= -1.0 || excess.is_nan() {

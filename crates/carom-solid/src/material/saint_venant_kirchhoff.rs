@@ -31,7 +31,7 @@ impl<const D: usize> Material<D> for SaintVenantKirchhoff {
     const ENERGY_DEGREE: usize = 4;
     type Point = Point<D>;
 
-    #[inline]
+    #[inline(always)]
     fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
         let det_f = 1.0 + excess_det(h);
         if det_f <= 0.0 || det_f.is_nan() {
@@ -43,17 +43,17 @@ impl<const D: usize> Material<D> for SaintVenantKirchhoff {
         Ok(Point { f, left: f * f.transposed(), e, second, det_f })
     }
 
-    #[inline]
+    #[inline(always)]
     fn energy(&self, p: &Point<D>) -> f64 {
         0.5 * p.second.double_dot(&p.e)
     }
 
-    #[inline]
+    #[inline(always)]
     fn stress(&self, p: &Point<D>) -> Mat<D> {
         p.f * p.second
     }
 
-    #[inline]
+    #[inline(always)]
     fn tangent(&self, p: &Point<D>, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
         let (fa, fb) = (p.f.apply(a), p.f.apply(b));
         Mat::identity() * a.dot(&p.second.apply(b))

@@ -1,0 +1,181 @@
+//! Quadrature points side by side: sums over the nodes of a cell, for four points at once in one register.
+//!
+//! Each lane is a point; lanes are added up at the end, (0 + 1) + (2 + 3). The order of every sum is fixed, so the bits are the same on every machine.
+
+use carom_algebra::{Mat, Vector};
+
+use crate::discrete_gradient::Moduli;
+
+/// Points at once: the doubles of a register of 256 bits.
+pub(crate) const LANES: usize = 4;
+
+/// A number at each of the points.
+pub(crate) type Lanes = [f64; LANES];
+
+/// A matrix at each of the points: `[i][j][point]`.
+pub(crate) type Mats<const D: usize> = [[Lanes; D]; D];
+
+/// The blocks Kᵐⁿ, m ≤ n, of a tangent as `[n][m]`, still a strand for each lane.
+pub(crate) type Blocks<const D: usize, const N: usize> = [[Mats<D>; N]; N];
+
+/// Up to four quadrature points: of one cell, or of all that have the same but for an affine map.
+pub(crate) struct Points<const D: usize, const N: usize> {
+    /// Gradients of φᵃ as `[a][j][point]`; zero where there is no point.
+    pub(crate) gradients: [[Lanes; D]; N],
+    /// Weights with what they hold of volume.
+    pub(crate) weights: Lanes,
+    /// How many there are.
+    pub(crate) count: usize,
+}
+
+impl<const D: usize, const N: usize> Points<D, N> {
+    /// From the gradients and weights of one to four points.
+    pub(crate) fn new(points: &[([Vector<D>; N], f64)]) -> Self {
+        let mut packed = Self { gradients: [[[0.0; LANES]; D]; N], weights: [0.0; LANES], count: points.len() };
+        for (l, (gradients, weight)) in points.iter().enumerate() {
+            for a in 0..N {
+                for j in 0..D {
+                    packed.gradients[a][j][l] = gradients[a][j];
+                }
+            }
+            packed.weights[l] = *weight;
+        }
+        packed
+    }
+
+    /// H = Σ uᵃ ⊗ ∇₀φᵃ with ∇₀φᵃ = Aᵀ∇φᵃ.
+    #[inline(always)]
+    pub(crate) fn gradient(&self, u: &[Vector<D>; N], a: &Mat<D>) -> Mats<D> {
+        let mut h = [[[0.0; LANES]; D]; D];
+        for n in 0..N {
+            for i in 0..D {
+                for j in 0..D {
+                    add_product(&mut h[i][j], &[u[n][i]; LANES], &self.gradients[n][j]);
+                }
+            }
+        }
+        times(&h, a)
+    }
+
+    /// fᵃ += P Aᵀ∇φᵃ, with stresses that hold the weight.
+    #[inline(always)]
+    pub(crate) fn add_force(&self, stress: &Mats<D>, a: &Mat<D>, force: &mut [[Lanes; D]; N]) {
+        let stress = times(stress, &a.transposed());
+        for n in 0..N {
+            for i in 0..D {
+                for j in 0..D {
+                    add_product(&mut force[n][i], &stress[i][j], &self.gradients[n][j]);
+                }
+            }
+        }
+    }
+
+    /// Kᵐⁿ += ∂P/∂F : Aᵀ∇φᵐ Aᵀ∇φⁿ, with moduli that hold the weight. K is bilinear in the gradients: the law is asked for unit vectors only.
+    #[inline(always)]
+    pub(crate) fn add_tangent(&self, moduli: &[[Mats<D>; D]; D], a: &Mat<D>, blocks: &mut Blocks<D, N>) {
+        let moduli = pulled_back(moduli, a);
+        for n in 0..N {
+            let mut half = [[[[0.0; LANES]; D]; D]; D];
+            for j in 0..D {
+                for l in 0..D {
+                    add_products(&mut half[j], &moduli[j][l], &self.gradients[n][l]);
+                }
+            }
+            for m in 0..=n {
+                let mut block = blocks[n][m];
+                for j in 0..D {
+                    add_products(&mut block, &half[j], &self.gradients[m][j]);
+                }
+                blocks[n][m] = block;
+            }
+        }
+    }
+}
+
+/// Takes the moduli of one point up, times its weight.
+#[inline(always)]
+pub(crate) fn set_moduli<const D: usize>(moduli: &mut [[Mats<D>; D]; D], point: usize, of: &Moduli<D>, weight: f64) {
+    for j in 0..D {
+        for l in 0..D {
+            set(&mut moduli[j][l], point, &of[j][l], weight);
+        }
+    }
+}
+
+/// Takes the matrix of one point up, times its weight.
+#[inline(always)]
+pub(crate) fn set<const D: usize>(mats: &mut Mats<D>, point: usize, of: &Mat<D>, weight: f64) {
+    for i in 0..D {
+        for j in 0..D {
+            mats[i][j][point] = of.0[i][j] * weight;
+        }
+    }
+}
+
+/// The matrix of one point.
+#[inline(always)]
+pub(crate) fn get<const D: usize>(mats: &Mats<D>, point: usize) -> Mat<D> {
+    let mut mat = Mat::ZERO;
+    for i in 0..D {
+        for j in 0..D {
+            mat.0[i][j] = mats[i][j][point];
+        }
+    }
+    mat
+}
+
+/// Sum over the points.
+#[inline(always)]
+pub(crate) fn sum(lanes: &Lanes) -> f64 {
+    (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
+}
+
+/// B A at each of the points.
+#[inline(always)]
+fn times<const D: usize>(b: &Mats<D>, a: &Mat<D>) -> Mats<D> {
+    let mut product = [[[0.0; LANES]; D]; D];
+    for i in 0..D {
+        for j in 0..D {
+            for k in 0..D {
+                add_product(&mut product[i][j], &b[i][k], &[a.0[k][j]; LANES]);
+            }
+        }
+    }
+    product
+}
+
+/// The moduli for gradients that A has yet to act on: Σ A(m, j) A(n, l) moduli(j, l).
+#[inline(always)]
+fn pulled_back<const D: usize>(moduli: &[[Mats<D>; D]; D], a: &Mat<D>) -> [[Mats<D>; D]; D] {
+    let zero = [[[[[0.0; LANES]; D]; D]; D]; D];
+    let (mut half, mut whole) = (zero, zero);
+    for m in 0..D {
+        for j in 0..D {
+            for l in 0..D {
+                add_products(&mut half[m][l], &moduli[j][l], &[a.0[m][j]; LANES]);
+            }
+        }
+        for n in 0..D {
+            for l in 0..D {
+                add_products(&mut whole[m][n], &half[m][l], &[a.0[n][l]; LANES]);
+            }
+        }
+    }
+    whole
+}
+
+#[inline(always)]
+fn add_products<const D: usize>(sum: &mut Mats<D>, a: &Mats<D>, b: &Lanes) {
+    for i in 0..D {
+        for j in 0..D {
+            add_product(&mut sum[i][j], &a[i][j], b);
+        }
+    }
+}
+
+#[inline(always)]
+fn add_product(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
+    for l in 0..LANES {
+        sum[l] += a[l] * b[l];
+    }
+}
