@@ -193,6 +193,9 @@ impl Condensed {
             x[place as usize] = *value;
         }
         let Ok(raw) = self.elimination.supernodes() else { return };
+        if rhs.iter().all(|value| *value == 0.0) {
+            return;
+        }
         let (numbers, gathered) = (&self.numbers, &mut self.gathered);
         wide(
             #[inline(always)]

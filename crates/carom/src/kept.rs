@@ -140,6 +140,11 @@ impl Keeper {
         !good
     }
 
+    /// Factors made in this solve.
+    pub(crate) fn made(&self) -> u32 {
+        self.factors
+    }
+
     /// Forgets the factor and what was spent on it.
     fn forget(&mut self) {
         let Kept { still, next_still, .. } = self.kept;

@@ -9,6 +9,7 @@ mod initial;
 mod kept;
 mod kept_step;
 mod ledger;
+mod mixing;
 pub mod model;
 mod newton;
 mod penalty;

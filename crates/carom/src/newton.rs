@@ -109,6 +109,7 @@ pub(crate) fn solve_stage<const D: usize>(
         measure = evaluate(model, state, trial, work, false)?;
     }
     let mut has_tangent = keeper.full;
+    work.mixing.restart();
     let (mut step, mut shrinking, mut follows) = (f64::INFINITY, 1.0_f64, 0);
     loop {
         // What a kept tangent leaves over shrinks with the residual, not with its square: the balance is taken three digits further.
@@ -158,6 +159,7 @@ pub(crate) fn solve_stage<const D: usize>(
             has_tangent = keeper.full;
         }
         let rows = independent_rows(model, &trial.pairs, work);
+        let made = keeper.made();
         if keeper.full || !kept_step(model, state, work, &rows, &mut keeper)? {
             if !has_tangent {
                 measure = evaluate(model, state, trial, work, true)?;
@@ -177,6 +179,12 @@ pub(crate) fn solve_stage<const D: usize>(
             continue;
         }
         keeper.observe(step, settings.tolerance * model.scale, !rows.is_empty(), changed);
+        if changed || keeper.made() != made {
+            work.mixing.restart();
+        }
+        if !keeper.full {
+            work.mixing.improve([&mut work.correction, &mut work.multipliers], settings.mixing);
+        }
         let residual = measure.residual;
         let tangent = keeper.full && step > NEARLY_THERE * model.scale;
         measure = advance(model, state, trial, work, &rows, tangent, (!changed).then_some(measure))?;

@@ -4,6 +4,7 @@ use carom_contact::Linearised;
 use carom_time::Stage;
 
 use crate::balance::Forces;
+use crate::mixing::Mixing;
 use crate::model::{LoadsAt, Model, Prescribed};
 use crate::newton::Trial;
 use crate::state::Means;
@@ -47,6 +48,8 @@ pub struct Workspace<const D: usize> {
     pub(crate) correction: Vec<f64>,
     /// Δλ of the last solve.
     pub(crate) multipliers: Vec<f64>,
+    /// What the last iterations with one factor have shown.
+    pub(crate) mixing: Mixing,
     /// The trial before the last correction.
     pub(crate) saved: Trial,
 }
@@ -80,6 +83,7 @@ impl<const D: usize> Workspace<D> {
             at: zeros.clone(),
             correction: zeros,
             multipliers: Vec::new(),
+            mixing: Mixing::default(),
             saved: Trial::default(),
         }
     }

@@ -450,6 +450,9 @@ pub struct NewtonSpec {
     /// Whether factors are kept over iterations and steps.
     #[serde(default)]
     pub tangent: TangentRule,
+    /// Earlier iterations with the same factor that each correction is improved by.
+    #[serde(default)]
+    pub mixing: usize,
 }
 
 /// When the tangent is formed and factored.

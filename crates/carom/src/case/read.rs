@@ -315,6 +315,7 @@ fn newton(v: View) -> Option<NewtonSpec> {
         tolerance: v.number("tolerance")?,
         max_iterations: v.count("max_iterations")?,
         tangent: v.choice("tangent")?,
+        mixing: v.count("mixing")?,
     })
 }
 

@@ -94,7 +94,10 @@ fn shipped_cases_are_read() {
         assert_eq!((strike.persistency, strike.active_set), (Persistency::Project, ActiveSetRule::Within));
         assert_eq!((strike.detection, strike.force), (Detection::ClosestPoint, ForceTime::AlphaF));
         assert_eq!(case.time.energy_guard, Some(0.02));
-        assert_eq!(case.newton, NewtonSpec { tolerance: 1e-9, max_iterations: 20, tangent: TangentRule::Kept });
+        assert_eq!(
+            case.newton,
+            NewtonSpec { tolerance: 1e-9, max_iterations: 20, tangent: TangentRule::Kept, mixing: 4 }
+        );
         assert_eq!(case.units.mass, "kg");
     }
 }

@@ -378,6 +378,12 @@ const NEWTON: Table = Table {
             "The factored tangent is kept over iterations and steps while that pays (factors of 10 000 unknowns and more in single precision where that is enough, or all in double), or formed in every iteration.",
         )
         .default("\"kept\""),
+        key(
+            "mixing",
+            Count(0),
+            "Earlier corrections with a kept tangent that the next one is improved by (Anderson's mixing); 0 switches it off.",
+        )
+        .default("4"),
     ],
     later: &[],
 };
