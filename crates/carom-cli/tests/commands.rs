@@ -55,6 +55,29 @@ fn wrong_cases_exit_2_say_where_and_write_nothing() {
 }
 
 #[test]
+fn a_study_is_checked_as_a_study_and_not_run_as_a_case() {
+    let place = Place::new("study-as-case");
+    let arms = "[[arm]]\nname = \"as it is\"\n[[arm]]\nname = \"Hu\"\nset = { \"time.scheme\" = { kind = \"hu\" } }\n";
+    place.file("case.toml", IMPACT).file("study.toml", format!("title = \"Two\"\ncase = \"case.toml\"\n{arms}"));
+    let done = place.carom(&["check", "study.toml"]);
+    let told = text(&done.stdout);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    assert!(told.contains("Two (2 runs of case.toml)") && told.contains("Hu: hu, order 1"), "{told}");
+    let json = place.carom(&["check", "study.toml", "--json"]);
+    assert!(text(&json.stdout).contains("\"event\":\"check\""));
+    for (arguments, parts) in [
+        (&["run", "study.toml"][..], &["this is a study, not a case", "study.toml:2:1", "carom study"][..]),
+        (&["check", "study.toml", "--set", "time.step=1"], &["a study takes no --set"]),
+    ] {
+        let done = place.carom(arguments);
+        let told = text(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{told}");
+        assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+    }
+    assert_eq!(place.entries(), ["case.toml", "study.toml"]);
+}
+
+#[test]
 fn files_that_cannot_be_read() {
     let place = Place::new("files");
     for (name, part) in [("none.toml", "no such file"), (".", "this is a directory")] {

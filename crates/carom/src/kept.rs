@@ -88,6 +88,8 @@ pub(crate) struct Keeper {
     in_contact: Option<f64>,
     /// Slow contractions, and iterations with kept tangents counted, after which half the step is tried before a full tangent.
     bisects: Option<(u32, f64)>,
+    /// The full tangent was taken because kept ones contracted slowly.
+    last_resort: bool,
     /// How often corrections grew instead.
     growing: u32,
     /// Factors made in this solve.
@@ -115,6 +117,7 @@ impl Keeper {
             slow: 0,
             in_contact: None,
             bisects: None,
+            last_resort: false,
             growing: 0,
             factors: 0,
             counted: 0.0,
@@ -164,6 +167,7 @@ impl Keeper {
         let rest = self.kept.next_rest;
         self.forget();
         (self.kept.rest, self.kept.next_rest) = (rest, (2 * rest + 1).min(LONGEST_REST));
+        self.last_resort = self.helpless();
         (self.full, self.growing, self.previous) = (true, 0, None);
     }
 
@@ -195,13 +199,14 @@ impl Keeper {
     /// - corrections have grown more often than [`PATIENCE`] allows: with kept tangents, and where bodies touch with full ones too;
     /// - steps are being bisected anyway, and this one shrinks slowly or takes long;
     /// - bodies touch, and one more factor is due after [`MOST_FACTORS`];
-    /// - bodies touch, and corrections shrink slowly while they are larger than [`FAR`].
+    /// - bodies touch, and corrections shrink slowly while they are larger than [`FAR`], or are again with the full tangent that was to help.
     ///
     /// A body in free motion gets every chance at the step that was asked for.
     pub(crate) fn exhausted(&self, allowed: usize) -> bool {
         let over = |(slow, counted): (u32, f64)| !self.full && (self.slow > slow || self.counted > counted);
-        let round = |distance| self.due && self.factors >= MOST_FACTORS || self.helpless() && distance > FAR;
-        let round = !self.full && self.in_contact.is_some_and(round);
+        let far = self.in_contact.is_some_and(|distance| distance > FAR);
+        let again = self.in_contact.is_some() && self.due && self.factors >= MOST_FACTORS;
+        let round = if self.full { self.last_resort && far } else { again || self.helpless() && far };
         let hopeless = self.growing > PATIENCE || round || self.bisects.is_some_and(over);
         self.counted > allowed as f64 - 0.5 || (self.rule != TangentRule::Full && hopeless)
     }
@@ -251,6 +256,19 @@ mod tests {
                 keeper.observe(size * 0.8_f64.powi(k), 1e-9, true, false);
             }
             assert!(keeper.helpless());
+            assert_eq!(keeper.exhausted(ALLOWED), exhausted);
+        }
+    }
+
+    #[test]
+    fn a_full_tangent_that_leads_far_away_in_contact_was_no_help() {
+        for (touching, size, exhausted) in [(true, 1e-3, true), (true, 1e-6, false), (false, 1e-3, false)] {
+            let mut keeper = keeper();
+            keeper.renewed(Arc::default());
+            (0..5).for_each(|k| keeper.observe(1e-7 * 0.8_f64.powi(k), 1e-9, touching, false));
+            keeper.refused();
+            assert!(!keeper.exhausted(ALLOWED));
+            keeper.observe(size, 1e-9, touching, false);
             assert_eq!(keeper.exhausted(ALLOWED), exhausted);
         }
     }

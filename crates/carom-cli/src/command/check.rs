@@ -1,9 +1,10 @@
-//! `carom check`: reads and resolves a case, says what is wrong and where; runs nothing, writes nothing.
+//! `carom check`: reads and resolves a case or a study, says what is wrong and where; runs nothing, writes nothing.
 
 use std::path::PathBuf;
 
-use carom::case::{Case, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec};
+use carom::case::{Case, Document, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec};
 use carom::stability::SAFETY;
+use carom_study::Plan;
 use carom_time::Explained;
 
 use crate::exit::{Exit, Failure};
@@ -11,11 +12,13 @@ use crate::out;
 use crate::simulation::{self, BodyFacts, Facts};
 use crate::summary::short;
 
-/// Read and resolve a case, say what is wrong and where; run nothing
+/// Read and resolve a case or a study, say what is wrong and where; run nothing
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  carom check impact.toml --set time.scheme.rho_inf=0.5")]
+#[command(
+    after_help = "Examples:\n  carom check impact.toml --set time.scheme.rho_inf=0.5\n  carom check laboratory.toml"
+)]
 pub(crate) struct Arguments {
-    /// The case file
+    /// The case file, or the study file
     case: PathBuf,
     /// Replace a value of the case, as in `carom run`
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -26,6 +29,9 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    if Document::open(&arguments.case, &arguments.sets)?.is_study() {
+        return study(arguments);
+    }
     let (case, document) = super::case(&arguments.case, &arguments.sets)?;
     let facts = simulation::facts(&case, &document)?;
     if arguments.json {
@@ -34,6 +40,36 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     } else {
         out::line(&table(&case, &facts))?;
     }
+    Ok(Exit::Done)
+}
+
+/// The arms of a study, every one resolved.
+fn study(arguments: &Arguments) -> Result<Exit, Failure> {
+    if !arguments.sets.is_empty() {
+        return Err(Failure::Argument {
+            what: "a study takes no --set".into(),
+            help: "write what all arms change into `set` of the study, what one changes into `set` of its [[arm]]"
+                .into(),
+        });
+    }
+    let Plan { manifest, arms } = Plan::read(&arguments.case)?;
+    if arguments.json {
+        out::event(&serde_json::json!({ "event": "check", "study": manifest }))?;
+        return Ok(Exit::Done);
+    }
+    let mut lines = vec![format!("{} ({} runs of {})", manifest.title, arms.len(), manifest.source.case_path)];
+    for (arm, planned) in manifest.arms.iter().zip(&arms) {
+        let time = &planned.case.time;
+        let role = if manifest.reference.as_ref() == Some(&arm.name) { ", the reference" } else { "" };
+        lines.push(format!(
+            "  arm      {}: {}, {} steps of {}{role}",
+            arm.name,
+            told_scheme(&time.scheme),
+            time.steps(),
+            short(time.step)
+        ));
+    }
+    out::line(&lines.join("\n"))?;
     Ok(Exit::Done)
 }
 
@@ -74,10 +110,7 @@ fn table(case: &Case, facts: &Facts) -> String {
     for probe in &case.probes {
         lines.push(format!("  probe    {:12} at {:?} of {}", probe.name, probe.at, probe.body));
     }
-    let scheme = &case.time.scheme;
-    let parameters = scheme.parameters.iter().map(|(key, value)| format!("{key} = {value}"));
-    let told: Vec<_> = std::iter::once(scheme.kind.clone()).chain(parameters).chain(derived(scheme)).collect();
-    lines.push(format!("  scheme   {}", told.join(", ")));
+    lines.push(format!("  scheme   {}", told_scheme(&case.time.scheme)));
     let steps = case.time.steps();
     lines.push(format!("  time     {steps} steps of {} to {}", short(case.time.step), short(case.time.end)));
     let transit = short(facts.transit_steps);
@@ -87,6 +120,11 @@ fn table(case: &Case, facts: &Facts) -> String {
     }
     lines.extend(case.warnings().iter().map(|warning| format!("  warning  {warning}")));
     lines.join("\n")
+}
+
+fn told_scheme(scheme: &SchemeSpec) -> String {
+    let parameters = scheme.parameters.iter().map(|(key, value)| format!("{key} = {value}"));
+    std::iter::once(scheme.kind.clone()).chain(parameters).chain(derived(scheme)).collect::<Vec<_>>().join(", ")
 }
 
 fn told_load(load: &LoadSpec) -> String {

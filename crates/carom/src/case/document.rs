@@ -87,6 +87,16 @@ impl Document {
         self.root.table().unwrap_or(EMPTY)
     }
 
+    /// Whether it is a study, many runs of one case, by its keys.
+    pub fn is_study(&self) -> bool {
+        self.study_key().is_some()
+    }
+
+    /// A key that only a study has.
+    pub(super) fn study_key(&self) -> Option<&'static str> {
+        ["case", "arm", "grid"].into_iter().find(|key| self.root().get(key).is_some())
+    }
+
     /// Finds the line a problem is about; a key that was not written is shown at its nearest parent.
     pub fn diagnose(&self, problem: &Problem) -> Diagnostic {
         let message = [problem.what.clone(), problem.why.clone(), problem.help.clone()];

@@ -39,6 +39,11 @@ pub(super) struct Draft {
 
 /// Reads a case; on failure all problems that can be found in one pass.
 pub fn read(document: &Document) -> Result<Case, Vec<Problem>> {
+    if let Some(key) = document.study_key() {
+        let why = "`case`, `arm` and `grid` are keys of a study: many runs of one case";
+        let help = "carom study runs it, carom check reads it";
+        return Err(vec![Problem::new(key, "this is a study, not a case", why, help).at_key()]);
+    }
     let reader = Reader::of(document);
     let mut problems = conform::problems(document);
     let mut draft = Draft {
