@@ -82,14 +82,13 @@ pub(crate) struct Keeper {
     previous: Option<f64>,
     /// Slowest contraction of this step.
     contraction: f64,
-    /// How often it was slow.
+    /// How often it was slow, and had been when the full tangent was taken.
     slow: u32,
+    slow_before: u32,
     /// The last correction as a multiple of the last one allowed, where bodies touch.
     in_contact: Option<f64>,
     /// Slow contractions, and iterations with kept tangents counted, after which half the step is tried before a full tangent.
     bisects: Option<(u32, f64)>,
-    /// The full tangent was taken because kept ones contracted slowly.
-    last_resort: bool,
     /// How often corrections grew instead.
     growing: u32,
     /// Factors made in this solve.
@@ -117,7 +116,7 @@ impl Keeper {
             slow: 0,
             in_contact: None,
             bisects: None,
-            last_resort: false,
+            slow_before: 0,
             growing: 0,
             factors: 0,
             counted: 0.0,
@@ -167,7 +166,7 @@ impl Keeper {
         let rest = self.kept.next_rest;
         self.forget();
         (self.kept.rest, self.kept.next_rest) = (rest, (2 * rest + 1).min(LONGEST_REST));
-        self.last_resort = self.helpless();
+        self.slow_before = self.slow;
         (self.full, self.growing, self.previous) = (true, 0, None);
     }
 
@@ -206,7 +205,7 @@ impl Keeper {
         let over = |(slow, counted): (u32, f64)| !self.full && (self.slow > slow || self.counted > counted);
         let far = self.in_contact.is_some_and(|distance| distance > FAR);
         let again = self.in_contact.is_some() && self.due && self.factors >= MOST_FACTORS;
-        let round = if self.full { self.last_resort && far } else { again || self.helpless() && far };
+        let round = if self.full { self.slow_before > PATIENCE && far } else { again || self.helpless() && far };
         let hopeless = self.growing > PATIENCE || round || self.bisects.is_some_and(over);
         self.counted > allowed as f64 - 0.5 || (self.rule != TangentRule::Full && hopeless)
     }

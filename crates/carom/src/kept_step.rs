@@ -9,10 +9,10 @@ use carom_time::Internal;
 
 use crate::balance::contact_weights;
 use crate::case::TangentRule;
+use crate::evaluation::{Measure, Trial, evaluate, mass_factor, stiffness_factor};
 use crate::held::boundary;
 use crate::kept::{Keeper, Point};
 use crate::model::Model;
-use crate::newton::{Measure, Trial, evaluate, mass_factor, stiffness_factor};
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::state::State;

@@ -3,6 +3,7 @@
 mod balance;
 pub mod case;
 mod cells;
+mod evaluation;
 pub mod frequencies;
 mod held;
 mod initial;
@@ -24,6 +25,7 @@ mod start;
 mod state;
 mod stepper;
 mod system;
+mod touching;
 mod workspace;
 
 pub use kept::{Kept, Point};

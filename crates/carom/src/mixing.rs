@@ -12,6 +12,8 @@ use std::collections::VecDeque;
 
 use crate::model::dot;
 
+/// Numbers of a block.
+const BLOCK: usize = 2048;
 /// Pivot, as a share of the largest, below which a direction repeats the others.
 const DEPENDENT: f64 = 1e-8;
 
@@ -54,42 +56,75 @@ impl Mixing {
         if depth == 0 {
             return;
         }
-        if self.begun {
-            let oldest = if self.changes.len() < depth { self.spare.pop() } else { self.changes.pop_back() };
-            let mut change = oldest.unwrap_or_default();
-            for k in 0..2 {
-                let (now, last) = (correction[k].iter(), &self.last[k]);
-                change.correction[k].clear();
-                change.correction[k].extend(now.zip(last).map(|(now, last)| now - last));
-                let of_both = change.correction[k].iter().zip(&self.taken[k]).map(|(c, z)| c + z);
-                change.both[k].clear();
-                change.both[k].extend(of_both);
-            }
-            change.products.clear();
-            change.products.push(dot(&change.correction[0], &change.correction[0]));
-            change.products.extend(self.changes.iter().map(|old| dot(&change.correction[0], &old.correction[0])));
-            self.changes.push_front(change);
-        }
-        for (last, now) in self.last.iter_mut().zip(&correction) {
-            last.clear();
-            last.extend_from_slice(now);
-        }
-        let right: Vec<f64> = self.changes.iter().map(|change| dot(&change.correction[0], correction[0])).collect();
+        let mut right = self.take_up(&correction, depth);
         let product = |i: usize, j: usize| self.changes[i.min(j)].products[i.abs_diff(j)];
-        let shares = least_squares(product, right);
+        least_squares(product, &mut right);
         for (k, step) in correction.into_iter().enumerate() {
-            for (share, change) in shares.iter().zip(&self.changes) {
-                step.iter_mut().zip(&change.both[k]).for_each(|(step, both)| *step -= share * both);
+            self.taken[k].resize(step.len(), 0.0);
+            for range in blocks(step.len()) {
+                let step = &mut step[range.clone()];
+                for (share, change) in right.iter().zip(&self.changes) {
+                    step.iter_mut().zip(&change.both[k][range.clone()]).for_each(|(step, both)| *step -= share * both);
+                }
+                self.taken[k][range].copy_from_slice(step);
             }
-            self.taken[k].clear();
-            self.taken[k].extend_from_slice(step);
         }
-        self.begun = true;
+    }
+
+    /// Remembers a correction and what has changed since the last one; products of the changes with it.
+    fn take_up(&mut self, correction: &[&mut [f64]; 2], depth: usize) -> Vec<f64> {
+        let full = self.changes.len() == depth;
+        let oldest = if self.begun && full { self.changes.pop_back() } else { self.spare.pop() };
+        let mut new = oldest.unwrap_or_default();
+        let (mut products, mut right) = ([0.0, 0.0], vec![[0.0, 0.0]; self.changes.len()]);
+        new.products.clear();
+        for (k, now) in correction.iter().enumerate() {
+            self.last[k].resize(now.len(), 0.0);
+            self.taken[k].resize(now.len(), 0.0);
+            new.correction[k].resize(now.len(), 0.0);
+            new.both[k].resize(now.len(), 0.0);
+            for range in blocks(now.len()) {
+                let (now, last) = (&now[range.clone()], &mut self.last[k][range.clone()]);
+                let (change, both) = (&mut new.correction[k][range.clone()], &mut new.both[k][range.clone()]);
+                let taken = &self.taken[k][range.clone()];
+                for i in 0..now.len() {
+                    change[i] = now[i] - last[i];
+                    both[i] = change[i] + taken[i];
+                    last[i] = now[i];
+                }
+                // The norm is that of positions.
+                if k == 0 {
+                    add(&mut products, change, change, now);
+                    for (sums, old) in right.iter_mut().zip(&self.changes) {
+                        add(sums, &old.correction[0][range.clone()], change, now);
+                    }
+                }
+            }
+        }
+        if !std::mem::replace(&mut self.begun, true) {
+            self.spare.push(new);
+            return Vec::new();
+        }
+        new.products.push(products[0]);
+        new.products.extend(right.iter().map(|sums| sums[0]));
+        self.changes.push_front(new);
+        std::iter::once(products[1]).chain(right.into_iter().map(|sums| sums[1])).collect()
     }
 }
 
-/// Solves normal equations by elimination; unknowns whose direction repeats the earlier ones are zero.
-fn least_squares(product: impl Fn(usize, usize) -> f64, mut right: Vec<f64>) -> Vec<f64> {
+/// Blocks that fit into the processor's caches: each vector is read once.
+fn blocks(length: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
+    (0..length).step_by(BLOCK).map(move |first| first..(first + BLOCK).min(length))
+}
+
+/// Adds a·b and a·c.
+fn add(sums: &mut [f64; 2], a: &[f64], b: &[f64], c: &[f64]) {
+    sums[0] += dot(a, b);
+    sums[1] += dot(a, c);
+}
+
+/// Overwrites the right-hand side of normal equations with their solution, by elimination; unknowns whose direction repeats the earlier ones are zero.
+fn least_squares(product: impl Fn(usize, usize) -> f64, right: &mut [f64]) {
     let n = right.len();
     let mut matrix: Vec<f64> = (0..n * n).map(|k| product(k / n, k % n)).collect();
     let largest = (0..n).map(|i| matrix[i * n + i]).fold(0.0, f64::max);
@@ -108,7 +143,6 @@ fn least_squares(product: impl Fn(usize, usize) -> f64, mut right: Vec<f64>) -> 
         let known: f64 = (k + 1..n).map(|j| matrix[k * n + j] * right[j]).sum();
         right[k] = if used[k] { (right[k] - known) / matrix[k * n + k] } else { 0.0 };
     }
-    right
 }
 
 #[cfg(test)]
@@ -142,7 +176,9 @@ mod tests {
     #[test]
     fn a_direction_that_repeats_another_is_left_out() {
         let products = [[2.0, 2.0, 1.0], [2.0, 2.0, 1.0], [1.0, 1.0, 5.0]];
-        assert_eq!(least_squares(|i, j| products[i][j], vec![2.0, 2.0, 10.0]), vec![0.0, 0.0, 2.0]);
-        assert_eq!(least_squares(|_, _| 0.0, vec![0.0]), vec![0.0]);
+        let (mut right, mut of_nothing) = ([2.0, 2.0, 10.0], [0.0]);
+        least_squares(|i, j| products[i][j], &mut right);
+        least_squares(|_, _| 0.0, &mut of_nothing);
+        assert_eq!((right, of_nothing), ([0.0, 0.0, 2.0], [0.0]));
     }
 }

@@ -4,25 +4,21 @@
 //! no pair penetrates, pulls, or has slid off its facet. Nothing less is accepted.
 
 use carom_algebra::LinearError;
-use carom_contact::{ActiveSet, Contender, Linearised, Pair, PairEvent};
-use carom_time::{Internal, Stage};
+use carom_contact::{ActiveSet, Linearised, Pair, PairEvent};
 
-use crate::balance::{contact_weights, mean_acceleration, residual_into};
+use crate::balance::contact_weights;
 use crate::case::{NewtonSpec, TangentRule};
+use crate::evaluation::{Measure, Trial, evaluate, follower_factor, mass_factor, round_off, stiffness_factor};
 use crate::kept::{Keeper, Kept};
 use crate::kept_step::{begin, keeps, kept_step};
 use crate::model::Model;
-use crate::penalty::{self, Configuration};
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::state::State;
 use crate::system::Row;
+use crate::touching::{GAP_TOLERANCE, change_sets, detect, follow, stuck, touch};
 use crate::workspace::{Workspace, timed};
 
-/// Penetration, as a fraction of L, that counts as touching.
-pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
-/// Gap, as a fraction of L, of nodes that touch before the first load step.
-const TOUCHING: f64 = 1e-9;
 /// Below this step, relative to L, the next iterate may well be the last: its tangent is not formed before it is needed.
 pub(crate) const NEARLY_THERE: f64 = 1e-3;
 /// Below this step, relative to L, facets are handed over before the iteration with a kept tangent has converged.
@@ -36,19 +32,6 @@ const HALVINGS: usize = 8;
 /// Share of the predicted motion that its first correction may have: a prediction that needs more is none.
 const TRUST: f64 = 0.5;
 
-/// The unknowns of a stage while they are being found.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Trial {
-    /// d = y − y_s.
-    pub increment: Vec<f64>,
-    /// y.
-    pub y: Vec<f64>,
-    /// Pairs of each contact, multipliers included.
-    pub pairs: Vec<Vec<Pair>>,
-    /// Strain energy at the evaluated positions.
-    pub strain: f64,
-}
-
 /// What a solve cost and what happened in it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Effort {
@@ -58,14 +41,6 @@ pub(crate) struct Effort {
     pub events: Vec<(usize, PairEvent)>,
     /// The kept factor's point.
     pub kept: Kept,
-}
-
-/// Size of a residual and what it is measured against.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Measure {
-    pub residual: f64,
-    pub forces: f64,
-    pub gap: f64,
 }
 
 /// Solves the stage in `work.stage` from the guess in `trial`. `kept`: the factor of the stage before; `before`: positions at its end, for trajectories.
@@ -95,13 +70,13 @@ pub(crate) fn solve_stage<const D: usize>(
     {
         rest(state, before, pairs, trial);
     }
-    timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
+    timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort.events))?;
     let mut begun = begin(model, state, trial, work, &mut keeper);
     if matches!(begun, Err(Rejected::Inverted { .. }))
         && let Some((_, pairs)) = predicted.take()
     {
         rest(state, before, pairs, trial);
-        timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
+        timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort.events))?;
         begun = begin(model, state, trial, work, &mut keeper);
     }
     let mut measure = begun?;
@@ -118,7 +93,7 @@ pub(crate) fn solve_stage<const D: usize>(
             && measure.residual <= digits * settings.tolerance * measure.forces + round_off(model, work)
             && measure.gap <= GAP_TOLERANCE * model.scale;
         let mut changed = change_sets(model, &mut sets, trial, work, settled)?;
-        if keep && !settled && follows < FOLLOWS && follow(model, trial, &mut effort) {
+        if keep && !settled && follows < FOLLOWS && follow(model, trial, &mut effort.events) {
             follows += 1;
             sets.iter_mut().for_each(ActiveSet::restart);
             changed = true;
@@ -126,7 +101,7 @@ pub(crate) fn solve_stage<const D: usize>(
         if !keeper.full && !settled && !changed && step <= CLOSE * model.scale {
             // Where a node will slide to is known long before the last digits are.
             let pairs = trial.pairs.clone();
-            changed = timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
+            changed = timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort.events))?;
             if changed {
                 sets.iter_mut().for_each(ActiveSet::restart);
             } else {
@@ -135,7 +110,7 @@ pub(crate) fn solve_stage<const D: usize>(
             }
         }
         if settled && !changed {
-            if !timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))? {
+            if !timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort.events))? {
                 effort.kept = keeper.finish();
                 return Ok(effort);
             }
@@ -173,7 +148,7 @@ pub(crate) fn solve_stage<const D: usize>(
         {
             rest(state, before, pairs, trial);
             sets.iter_mut().for_each(ActiveSet::restart);
-            timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort))?;
+            timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort.events))?;
             measure = evaluate(model, state, trial, work, keeper.full)?;
             (step, has_tangent) = (f64::INFINITY, keeper.full);
             continue;
@@ -201,232 +176,6 @@ fn rest(state: &State, before: &[f64], pairs: Vec<Vec<Pair>>, trial: &mut Trial)
         (*increment, *y) = (start - old, *start);
     }
     trial.pairs = pairs;
-}
-
-/// Brings the pairs up to date with the trial's positions; whether that asks for another solve.
-fn detect<const D: usize>(
-    model: &Model<D>,
-    before: &[f64],
-    trial: &mut Trial,
-    effort: &mut Effort,
-) -> Result<bool, Rejected> {
-    let (before, now) = (before.as_chunks::<D>().0, trial.y.as_chunks::<D>().0);
-    let mut changed = false;
-    for (k, contact) in model.contacts.iter().enumerate() {
-        let mut events = Vec::new();
-        changed |= contact
-            .method
-            .detect(before, now, &mut trial.pairs[k], &mut events)
-            .map_err(|error| Rejected::Contact { contact: contact.name.clone(), error })?;
-        effort.events.extend(events.into_iter().map(|event| (k, event)));
-    }
-    Ok(changed)
-}
-
-/// Hands over pairs that slid well past the end of their facet; whether there was one.
-fn follow<const D: usize>(model: &Model<D>, trial: &mut Trial, effort: &mut Effort) -> bool {
-    let mut changed = false;
-    for (k, contact) in model.contacts.iter().enumerate() {
-        let mut events = Vec::new();
-        changed |= contact.method.follow(trial.y.as_chunks::<D>().0, &mut trial.pairs[k], &mut events);
-        effort.events.extend(events.into_iter().map(|event| (k, event)));
-    }
-    changed
-}
-
-/// Forces, gaps and residual at the trial, and the tangent of the bodies if asked for.
-pub(crate) fn evaluate<const D: usize>(
-    model: &Model<D>,
-    state: &State,
-    trial: &mut Trial,
-    work: &mut Workspace<D>,
-    tangent: bool,
-) -> Result<Measure, Rejected> {
-    let stage = &work.stage;
-    let between = stage.internal == Internal::DiscreteGradient;
-    let share = if between { 1.0 } else { 1.0 - stage.average };
-    for i in 0..trial.y.len() {
-        trial.y[i] = state.y[i] + trial.increment[i];
-        work.at[i] = state.y[i] + share * trial.increment[i];
-    }
-    for moved in &work.motions {
-        let target = model.reference[moved.dof] + moved.motion[0];
-        work.remaining[moved.dof] = (target - state.y[moved.dof]) - trial.increment[moved.dof];
-    }
-    let inverted = |(body, inverted)| Rejected::Inverted { body, inverted };
-    let (system, at, force) = (&mut work.system, &work.at, &mut work.forces.internal);
-    let pull = (!work.motions.is_empty()).then_some((&work.remaining[..], &mut work.pull[..]));
-    trial.strain = timed(&mut work.timings.assembly, || match (tangent, between) {
-        (true, _) => system.internal_tangent(model, between.then_some(&state.y), at, force, pull),
-        (false, true) => model.internal_between(&state.y, at, force),
-        (false, false) => model.internal_force(at, force),
-    })
-    .map_err(inverted)?;
-    if between {
-        // Springs that conserve energy act along the normals at the middle of the step, and pressures on the side as it lies there.
-        for i in 0..trial.y.len() {
-            work.at[i] = state.y[i] + 0.5 * trial.increment[i];
-        }
-    }
-    if !model.loads.is_empty() {
-        model.loads.force_into(&work.loads, &work.at, &mut work.forces.loads);
-    }
-    stage.acceleration.value_into(&trial.increment, &mut work.acceleration);
-    if !stage.is_static() {
-        for moved in &work.motions {
-            // What makes the balance, whose averages are those of the scheme's a, take this mean.
-            let before = state.a[moved.dof];
-            let mean = mean_acceleration(stage, moved.motion[2], before);
-            work.acceleration[moved.dof] = (mean - stage.before.mass * before) / stage.weights.mass;
-        }
-    }
-    model.mass.multiply_into(&work.acceleration, &mut work.forces.inertia);
-
-    let y = trial.y.as_chunks::<D>().0;
-    work.forces.contact.fill(0.0);
-    work.springs = 0.0;
-    let mut measure = Measure::default();
-    for (k, contact) in model.contacts.iter().enumerate() {
-        let weight = contact_weights(stage, contact.force).0;
-        work.gaps[k].resize(trial.pairs[k].len(), Linearised::default());
-        work.stiffnesses[k].clear();
-        work.stiffnesses[k].resize(trial.pairs[k].len(), 0.0);
-        if let Some(penalty) = &contact.penalty {
-            let at = Configuration {
-                start: &state.y,
-                middle: between.then_some(&work.at),
-                end: &trial.y,
-                moved: &trial.increment,
-            };
-            for (p, (pair, gap)) in trial.pairs[k].iter_mut().zip(&mut work.gaps[k]).enumerate() {
-                let spring = penalty::spring(&*contact.method, penalty[pair.node], pair, &at, gap)
-                    .map_err(|error| Rejected::Contact { contact: contact.name.clone(), error })?;
-                work.stiffnesses[k][p] = spring.stiffness;
-                work.springs += spring.energy;
-                if pair.active {
-                    add_gradient(gap, weight * pair.lambda, &mut work.forces.contact);
-                }
-            }
-            continue;
-        }
-        for (pair, gap) in trial.pairs[k].iter_mut().zip(&mut work.gaps[k]) {
-            match contact.method.linearise(pair, y, pair.lambda, gap) {
-                Ok(()) => {}
-                Err(error) if pair.active => {
-                    return Err(Rejected::Contact { contact: contact.name.clone(), error });
-                }
-                // An open pair whose closest point is not unique is far away.
-                Err(_) => gap.gap = f64::INFINITY,
-            }
-            if pair.active {
-                measure.gap = measure.gap.max(gap.gap.abs());
-                add_gradient(gap, weight * pair.lambda, &mut work.forces.contact);
-            }
-        }
-    }
-    measure.forces = residual_into(model, stage, &work.forces, &mut work.residual);
-    measure.residual = model.free.iter().map(|&i| work.residual[i] * work.residual[i]).sum::<f64>().sqrt();
-    Ok(measure)
-}
-
-/// force += factor ∇g.
-pub(crate) fn add_gradient<const D: usize>(gap: &Linearised<D>, factor: f64, force: &mut [f64]) {
-    for p in 0..gap.count {
-        for i in 0..D {
-            force[gap.nodes[p] * D + i] += factor * gap.gradient[p][i];
-        }
-    }
-}
-
-/// What the last digits of the positions alone make of the residual.
-pub(crate) fn round_off<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> f64 {
-    let diagonal = work.system.diagonal(mass_factor(&work.stage), stiffness_factor(&work.stage));
-    16.0 * f64::EPSILON * model.scale * diagonal.map(|d| d * d).sum::<f64>().sqrt()
-}
-
-pub(crate) fn mass_factor(stage: &Stage) -> f64 {
-    stage.weights.mass * stage.acceleration.slope
-}
-
-pub(crate) fn stiffness_factor(stage: &Stage) -> f64 {
-    match stage.internal {
-        Internal::Gradient => stage.weights.internal * (1.0 - stage.average),
-        // Its tangent is that by the end of the step already.
-        Internal::DiscreteGradient => stage.weights.internal,
-    }
-}
-
-pub(crate) fn follower_factor(stage: &Stage) -> f64 {
-    stage.weights.external * (1.0 - stage.average)
-}
-
-/// Before the first load step, lets bodies that supports leave free hold on to what they touch. Whether that is anything.
-fn touch<const D: usize>(model: &Model<D>, trial: &mut Trial, work: &Workspace<D>) -> bool {
-    if model.unheld.is_empty() || trial.pairs.iter().flatten().any(|p| p.active) {
-        return false;
-    }
-    let mut changed = false;
-    // A spring holds nothing before it is pressed.
-    let constraints = model.contacts.iter().map(|contact| contact.penalty.is_none());
-    for ((pairs, gaps), _) in trial.pairs.iter_mut().zip(&work.gaps).zip(constraints).filter(|(_, holds)| *holds) {
-        for (pair, _) in pairs.iter_mut().zip(gaps).filter(|(_, gap)| gap.gap <= TOUCHING * model.scale) {
-            (pair.active, changed) = (true, true);
-        }
-    }
-    changed
-}
-
-/// Lets each contact's active set change; a released pair loses its multiplier.
-fn change_sets<const D: usize>(
-    model: &Model<D>,
-    sets: &mut [ActiveSet],
-    trial: &mut Trial,
-    work: &Workspace<D>,
-    settled: bool,
-) -> Result<bool, Rejected> {
-    let mut changed = false;
-    // A spring presses or does not by its gap alone.
-    for (k, set) in sets.iter_mut().enumerate().filter(|(k, _)| model.contacts[*k].penalty.is_none()) {
-        let secondary = model.contacts[k].method.secondary();
-        let stiffness = stiffness_of_touch(model, work);
-        let contenders: Vec<Contender> = trial.pairs[k]
-            .iter()
-            .zip(&work.gaps[k])
-            .map(|(pair, gap)| Contender { active: pair.active, gap: gap.gap, lambda: pair.lambda, stiffness })
-            .collect();
-        let changes = set.changes(&contenders, settled).map_err(|cycle| Rejected::Cycle {
-            contact: model.contacts[k].name.clone(),
-            nodes: cycle.pairs.iter().map(|&p| secondary[trial.pairs[k][p].node]).collect(),
-        })?;
-        for p in changes {
-            let pair = &mut trial.pairs[k][p];
-            pair.active = !pair.active;
-            pair.lambda = 0.0;
-            changed = true;
-        }
-    }
-    Ok(changed)
-}
-
-/// Mean diagonal of the stage's tangent: makes a gap comparable with a multiplier.
-fn stiffness_of_touch<const D: usize>(model: &Model<D>, work: &Workspace<D>) -> f64 {
-    let sum: f64 = work.system.diagonal(mass_factor(&work.stage), stiffness_factor(&work.stage)).sum();
-    sum / model.free.len().max(1) as f64
-}
-
-/// Names an active pair that no row holds: supports leave it no way out.
-fn stuck<const D: usize>(model: &Model<D>, trial: &Trial, work: &Workspace<D>) -> Result<(), Rejected> {
-    let rows = independent_rows(model, &trial.pairs, work);
-    for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.penalty.is_none()) {
-        for (p, pair) in trial.pairs[k].iter().enumerate().filter(|(_, pair)| pair.active) {
-            let depth = -work.gaps[k][p].gap;
-            if !rows.contains(&(k, p)) && depth > GAP_TOLERANCE * model.scale {
-                let node = contact.method.secondary()[pair.node];
-                return Err(Rejected::Stuck { contact: contact.name.clone(), node, depth });
-            }
-        }
-    }
-    Ok(())
 }
 
 /// Solves for `work.correction` and `work.multipliers`.

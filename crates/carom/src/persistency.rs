@@ -10,9 +10,9 @@
 use carom_contact::Linearised;
 
 use crate::case::Persistency;
+use crate::evaluation::add_gradient;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;
-use crate::newton::add_gradient;
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::state::State;

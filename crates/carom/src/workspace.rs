@@ -4,9 +4,9 @@ use carom_contact::Linearised;
 use carom_time::Stage;
 
 use crate::balance::Forces;
+use crate::evaluation::Trial;
 use crate::mixing::Mixing;
 use crate::model::{LoadsAt, Model, Prescribed};
-use crate::newton::Trial;
 use crate::state::Means;
 use crate::system::System;
 

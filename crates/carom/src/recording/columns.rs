@@ -5,8 +5,8 @@ use carom_record::Column;
 
 use super::units::Labels;
 use crate::case::{Case, Quantity};
+use crate::evaluation::add_gradient;
 use crate::model::{Model, Part};
-use crate::newton::add_gradient;
 use crate::simulation::GridReport;
 use crate::state::State;
 

@@ -24,13 +24,14 @@ use carom_contact::{Pair, PairEvent};
 use super::implicit::difference;
 use super::watch::{along, approach, carried, depth, gap_at, gradients_into, look};
 use super::{Accepted, StepReport, Stepper};
+use crate::evaluation::add_gradient;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;
-use crate::newton::{GAP_TOLERANCE, add_gradient};
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::stability::lumped;
 use crate::state::State;
+use crate::touching::GAP_TOLERANCE;
 use crate::workspace::{Workspace, timed};
 
 /// Linearisations of the gaps in a step before it is rejected; two to five are usual.

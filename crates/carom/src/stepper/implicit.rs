@@ -6,12 +6,14 @@ use carom_time::{Before, Internal, Kernel, Memory, Stage, Weights};
 use super::{Accepted, StepReport, Stepper};
 use crate::balance::known_into;
 use crate::case::{ForceTime, NewtonSpec};
+use crate::evaluation::{Trial, add_gradient};
 use crate::ledger;
 use crate::model::{Model, dot};
-use crate::newton::{GAP_TOLERANCE, Trial, add_gradient, solve_stage};
+use crate::newton::solve_stage;
 use crate::persistency::project;
 use crate::rejected::Rejected;
 use crate::state::{Previous, State};
+use crate::touching::GAP_TOLERANCE;
 use crate::workspace::Workspace;
 
 /// The implicit stepper.

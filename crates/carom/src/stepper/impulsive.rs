@@ -24,11 +24,10 @@ use super::watch::{along, approach, carried, depth, gradients_into, look};
 use super::{Accepted, StepReport, Stepper};
 use crate::balance::{known_into, residual_into};
 use crate::case::NewtonSpec;
+use crate::evaluation::{Trial, add_gradient, follower_factor, mass_factor, round_off, stiffness_factor};
 use crate::ledger::{book_kinetic, open_work, work_of_loads};
 use crate::model::Model;
-use crate::newton::{
-    NEARLY_THERE, Trial, add_gradient, follower_factor, mass_factor, max_abs, round_off, stiffness_factor,
-};
+use crate::newton::{NEARLY_THERE, max_abs};
 use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::state::State;
