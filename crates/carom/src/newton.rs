@@ -16,7 +16,7 @@ use crate::rejected::Rejected;
 use crate::rows::independent_rows;
 use crate::state::State;
 use crate::system::Row;
-use crate::touching::{GAP_TOLERANCE, change_sets, detect, follow, stuck, touch};
+use crate::touching::{GAP_TOLERANCE, change_sets, detect, follow, look_again, stuck, touch};
 use crate::workspace::{Workspace, timed};
 
 /// Below this step, relative to L, the next iterate may well be the last: its tangent is not formed before it is needed.
@@ -100,17 +100,13 @@ pub(crate) fn solve_stage<const D: usize>(
         }
         if !keeper.full && !settled && !changed && step <= CLOSE * model.scale {
             // Where a node will slide to is known long before the last digits are.
-            let pairs = trial.pairs.clone();
-            changed = timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort.events))?;
+            changed = timed(&mut work.timings.contact, || look_again(model, before, trial, &mut effort.events))?;
             if changed {
                 sets.iter_mut().for_each(ActiveSet::restart);
-            } else {
-                // Open pairs may have come and gone: the gaps at hand belong to the old ones.
-                trial.pairs = pairs;
             }
         }
         if settled && !changed {
-            if !timed(&mut work.timings.contact, || detect(model, before, trial, &mut effort.events))? {
+            if !timed(&mut work.timings.contact, || look_again(model, before, trial, &mut effort.events))? {
                 effort.kept = keeper.finish();
                 return Ok(effort);
             }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::balance::known_into;
 use crate::case::{Document, read};
+use crate::evaluation::add_gradient;
 use crate::simulation::{GridReport, Simulation};
 use carom_time::{Kernel, Memory};
 
@@ -133,4 +134,26 @@ mesh = {{ shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [3, 2
         assert!(form.abs() < 1e-7 * size, "{on} {pressure}: {form:e}");
         assert_eq!(largest < 1e-7 * size, symmetric, "{on} {pressure}: {largest:e}");
     }
+}
+
+/// What the next step takes its share of is the force of the pairs the state has, gaps and normals taken anew.
+#[test]
+fn the_contact_force_of_every_state_is_that_of_its_pairs() {
+    let text = include_str!("../../../cases/impact/whole.toml");
+    let case = read(&Document::parse("whole.toml", text, &[]).unwrap()).unwrap();
+    let mut sim = Simulation::<2>::new(&case, 1).unwrap();
+    let (mut gap, mut touched) = (Linearised::default(), 0);
+    while sim.state.time < 0.36 {
+        sim.advance(&mut GridReport::default()).unwrap();
+        let mut force = vec![0.0; sim.model.dofs()];
+        let y = sim.state.y.as_chunks::<2>().0;
+        for pair in sim.state.pairs[0].clone().iter_mut().filter(|pair| pair.active) {
+            sim.model.contacts[0].method.linearise(pair, y, 0.0, &mut gap).unwrap();
+            add_gradient(&gap, pair.lambda, &mut force);
+            touched += 1;
+        }
+        let apart = force.iter().zip(&sim.state.f_contact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(apart < 1e-12 * (1.0 + max_abs(&force)), "step {}: {apart:e}", sim.state.step);
+    }
+    assert!(touched > 100);
 }

@@ -33,6 +33,22 @@ pub(crate) fn detect<const D: usize>(
     Ok(changed)
 }
 
+/// The same for an evaluated trial: where nothing asks for another solve its pairs stay as they are. Open ones may have come and gone, and the gaps at hand, of
+/// which the forces are made, belong to the pairs in their old order.
+pub(crate) fn look_again<const D: usize>(
+    model: &Model<D>,
+    before: &[f64],
+    trial: &mut Trial,
+    found: &mut Vec<(usize, PairEvent)>,
+) -> Result<bool, Rejected> {
+    let pairs = trial.pairs.clone();
+    let changed = detect(model, before, trial, found)?;
+    if !changed {
+        trial.pairs = pairs;
+    }
+    Ok(changed)
+}
+
 /// Hands over pairs that slid well past the end of their facet; whether there was one.
 pub(crate) fn follow<const D: usize>(model: &Model<D>, trial: &mut Trial, found: &mut Vec<(usize, PairEvent)>) -> bool {
     let mut changed = false;
