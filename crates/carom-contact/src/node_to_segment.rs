@@ -155,8 +155,9 @@ impl ContactMethod<2> for NodeToSegment {
                     Next::HandOver(facet, xi) => {
                         if pair.active {
                             events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
-                            changed = true;
                         }
+                        // In a concave joint an open pair may be in front of the one facet and behind the other.
+                        changed |= pair.active || self.gap(node, facet, xi, now) < 0.0;
                         pair.left = Some(pair.facet);
                         (pair.facet, pair.xi) = (facet, xi);
                     }

@@ -19,6 +19,7 @@ const NO_STRAIN: f64 = 1e-12;
 pub(crate) type Moduli<const D: usize> = [[Mat<D>; D]; D];
 
 /// W₁, P, and ∂P/∂F₁, which is not symmetric: F_m stands on its left, F₁ on its right.
+#[inline(always)]
 pub(crate) fn between<const D: usize, L: Material<D>>(
     law: &L,
     h: [&Mat<D>; 2],
@@ -89,15 +90,18 @@ pub(crate) fn moduli_of<const D: usize, L: Material<D>>(law: &L, point: &L::Poin
 }
 
 /// The part of the moduli that has a symmetric tangent.
+#[inline(always)]
 pub(crate) fn symmetric_part<const D: usize>(moduli: &Moduli<D>) -> Moduli<D> {
     std::array::from_fn(|j| std::array::from_fn(|l| (moduli[j][l] + moduli[l][j].transposed()) * 0.5))
 }
 
+#[inline(always)]
 fn scaled<const D: usize>(moduli: Moduli<D>, factor: f64) -> Moduli<D> {
     moduli.map(|row| row.map(|block| block * factor))
 }
 
 /// ∂P/∂F : dF.
+#[inline(always)]
 fn contracted<const D: usize>(moduli: &Moduli<D>, df: &Mat<D>) -> Mat<D> {
     let mut dp = Mat::ZERO;
     for (j, row) in moduli.iter().enumerate() {
@@ -110,16 +114,19 @@ fn contracted<const D: usize>(moduli: &Moduli<D>, df: &Mat<D>) -> Mat<D> {
     dp
 }
 
+#[inline(always)]
 fn symmetric<const D: usize>(a: &Mat<D>) -> Mat<D> {
     (*a + a.transposed()) * 0.5
 }
 
 /// E = (H + Hᵀ + HᵀH)/2.
+#[inline(always)]
 fn strain<const D: usize>(h: &Mat<D>) -> Mat<D> {
     (*h + h.transposed() + h.transposed() * *h) * 0.5
 }
 
 /// F̂ − I with F̂ upper triangular and F̂ᵀF̂ = I + 2E (Cholesky); √(1 + x) − 1 = x/(1 + √(1 + x)) keeps the digits of a small E.
+#[inline(always)]
 fn root<const D: usize>(e: &Mat<D>) -> Option<Mat<D>> {
     let mut h = Mat::ZERO;
     for i in 0..D {

@@ -219,6 +219,28 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
             tangent,
         )
     }
+
+    /// The same from the discrete gradient between two positions.
+    #[inline(always)]
+    fn integrate_between(
+        &self,
+        cell: usize,
+        ends: [&[[f64; D]]; 2],
+        force: &mut [f64],
+        tangent: Option<&mut [f64]>,
+    ) -> Result<f64, Inverted> {
+        self.integrate(
+            cell,
+            ends,
+            #[inline(always)]
+            |[start, end], with_moduli| {
+                let (energy, stress, moduli) = between(&self.law, [&start, &end], with_moduli)?;
+                Ok((energy, stress, moduli.map(|moduli| symmetric_part(&moduli))))
+            },
+            force,
+            tangent,
+        )
+    }
 }
 
 /// Points side by side, from their gradients and weights.
@@ -299,13 +321,13 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, Inverted> {
-        let at = |[start, end]: [Mat<D>; 2], with_moduli: bool| {
-            let (energy, stress, moduli) = between(&self.law, [&start, &end], with_moduli)?;
-            Ok((energy, stress, moduli.map(|moduli| symmetric_part(&moduli))))
-        };
+        // Two calls: the one for forces alone is compiled without what makes a tangent.
         wide(
             #[inline(always)]
-            || self.integrate(cell, [before, now], at, force, tangent),
+            || match tangent {
+                Some(tangent) => self.integrate_between(cell, [before, now], force, Some(tangent)),
+                None => self.integrate_between(cell, [before, now], force, None),
+            },
         )
     }
 

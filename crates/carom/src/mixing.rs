@@ -14,7 +14,7 @@ use crate::model::dot;
 
 /// Numbers of a block.
 const BLOCK: usize = 2048;
-/// Pivot, as a share of the largest, below which a direction repeats the others.
+/// Pivot, as a share of the direction's own square, below which it repeats the others.
 const DEPENDENT: f64 = 1e-8;
 
 /// Positions and multipliers.

@@ -1,6 +1,6 @@
 //! One stage solved: Newton on positions and active multipliers with the primal–dual active set inside.
 //!
-//! Converged means, all at once: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus the round-off the system's diagonal stands for); |g| ≤ 1e-12·L on every active pair;
+//! Converged means, all at once: ‖Δy‖∞ ≤ tol·L before mixing; ‖r‖ ≤ tol·Σ‖f‖ (plus the round-off the system's diagonal stands for); |g| ≤ 1e-12·L on every active pair;
 //! no pair penetrates, pulls, or has slid off its facet. Nothing less is accepted.
 
 use carom_algebra::LinearError;
@@ -85,6 +85,7 @@ pub(crate) fn solve_stage<const D: usize>(
     }
     let mut has_tangent = keeper.full;
     work.mixing.restart();
+    let mut mixed = Vec::new();
     let (mut step, mut shrinking, mut follows) = (f64::INFINITY, 1.0_f64, 0);
     loop {
         // What a kept tangent leaves over shrinks with the residual, not with its square: the balance is taken three digits further.
@@ -150,7 +151,7 @@ pub(crate) fn solve_stage<const D: usize>(
             continue;
         }
         keeper.observe(step, settings.tolerance * model.scale, !rows.is_empty(), changed);
-        if changed || keeper.made() != made {
+        if changed || keeper.made() != made || rows != mixed {
             work.mixing.restart();
         }
         if !keeper.full {
@@ -158,7 +159,12 @@ pub(crate) fn solve_stage<const D: usize>(
         }
         let residual = measure.residual;
         let tangent = keeper.full && step > NEARLY_THERE * model.scale;
-        measure = advance(model, state, trial, work, &rows, tangent, (!changed).then_some(measure))?;
+        let length;
+        (measure, length) = advance(model, state, trial, work, &rows, tangent, (!changed).then_some(measure))?;
+        if length != 1.0 {
+            work.mixing.restart();
+        }
+        mixed = rows;
         shrinking = measure.residual / residual.max(f64::MIN_POSITIVE);
         has_tangent = tangent;
     }
@@ -218,7 +224,7 @@ fn linear_step<const D: usize>(
     Ok(())
 }
 
-/// Takes the Newton step, shortened where it inverts a cell or, with an unchanged active set, makes the residual much worse.
+/// Takes the Newton step, shortened where it inverts a cell or, with an unchanged active set, makes the residual much worse; the share of it that was taken.
 fn advance<const D: usize>(
     model: &Model<D>,
     state: &State,
@@ -227,7 +233,7 @@ fn advance<const D: usize>(
     rows: &[(usize, usize)],
     tangent: bool,
     before: Option<Measure>,
-) -> Result<Measure, Rejected> {
+) -> Result<(Measure, f64), Rejected> {
     work.saved.increment.clone_from(&trial.increment);
     work.saved.pairs.clone_from(&trial.pairs);
     let merit = |m: &Measure| (m.residual / m.forces.max(f64::MIN_POSITIVE)).max(m.gap / model.scale);
@@ -240,14 +246,18 @@ fn advance<const D: usize>(
             (Ok(_), None) => false,
         };
         if !worse {
-            return outcome;
+            return outcome.map(|measure| (measure, length));
         }
         length *= 0.5;
         let shorter = take(model, state, trial, work, rows, length, tangent);
         // Where shortening does not help, the full step is as good as any: contact forces come and go.
         outcome = shorter;
     }
-    if outcome.is_ok() { take(model, state, trial, work, rows, 1.0, tangent).or(outcome) } else { outcome }
+    if outcome.is_ok() {
+        length = 1.0;
+        outcome = take(model, state, trial, work, rows, length, tangent).or(outcome);
+    }
+    outcome.map(|measure| (measure, length))
 }
 
 fn take<const D: usize>(

@@ -22,7 +22,7 @@ use crate::held::Held;
 use crate::kept::Point;
 use crate::model::{LoadsAt, Model};
 
-/// Slot of an entry that is not stored: that of a held dof.
+/// Slot of an entry that is not stored: that of a held dof, or of a facet's upper triangle.
 const SKIP: u32 = u32::MAX;
 
 /// Why a factor is not to be had at a point.
@@ -54,7 +54,7 @@ pub(crate) struct System<const D: usize> {
     diagonals: [Vec<f64>; 2],
     /// Slots of each cell's pairs of dofs, the lower triangle by rows, cell after cell through all bodies.
     slots: Vec<u32>,
-    /// The same for the facets under pressure.
+    /// Slots of every two dofs of the facets under pressure.
     facet_slots: Vec<u32>,
     cells: Cells,
     merged: Pattern,

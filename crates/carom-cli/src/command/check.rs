@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    if Document::open(&arguments.case, &arguments.sets)?.is_study() {
+    if Document::open(&arguments.case, &[])?.is_study() {
         return study(arguments);
     }
     let (case, document) = super::case(&arguments.case, &arguments.sets)?;

@@ -450,7 +450,7 @@ pub struct NewtonSpec {
     /// Whether factors are kept over iterations and steps.
     #[serde(default)]
     pub tangent: TangentRule,
-    /// Earlier iterations with the same factor that each correction is improved by.
+    /// Earlier iterations with the same factor that each correction is improved by. Runs of versions without this had none.
     #[serde(default)]
     pub mixing: usize,
 }
