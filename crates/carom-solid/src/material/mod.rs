@@ -25,7 +25,8 @@ pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 #[error("J = {0:.3e} is not positive")]
 pub struct NotPositive(pub f64);
 
-/// A hyperelastic law. What several answers need is computed once by [`Material::at`].
+/// A hyperelastic law. What several answers need is computed once by [`Material::at`]. `at`, `energy`, `stress` and `tangent` are `#[inline(always)]`: they are
+/// compiled into the loop over quadrature points, for wide registers.
 pub trait Material<const D: usize>: Send + Sync + 'static {
     /// Degree of Ψ as a polynomial in F that is to be integrated exactly; 0 if it is none.
     const ENERGY_DEGREE: usize;
