@@ -129,11 +129,7 @@ pub(crate) fn resume(
 
 /// Builds the model of a case, so that what only the model knows is checked too.
 pub(crate) fn facts(case: &Case, document: &Document) -> Result<Facts, Failure> {
-    let built = match case.dimension {
-        1 => model_facts::<1>(case),
-        _ => model_facts::<2>(case),
-    };
-    built.map_err(|problems| Failure::Case(document.diagnose_all(&problems)))
+    model_facts(case).map_err(|problems| Failure::Case(document.diagnose_all(&problems)))
 }
 
 /// Makes figures and page of a run directory from its records.
@@ -254,14 +250,12 @@ fn extremes(run: &carom_record::Run) -> Vec<Extreme> {
         .collect()
 }
 
-fn model_facts<const D: usize>(case: &Case) -> Result<Facts, Vec<carom::case::Problem>>
-where
-    carom::model::Space: carom::model::Dimension<D>,
-{
-    let model = carom::model::build::<D>(case)?;
+fn model_facts(case: &Case) -> Result<Facts, Vec<carom::case::Problem>> {
+    let model = carom::build(case)?;
+    let d = model.dimension;
     // Where another run ended, its contacts have kept the bodies apart.
-    let overlaps = if case.initial.is_none() { carom::model::overlaps(&model) } else { Vec::new() };
-    let problems = [overlaps, carom::stability::too_long(case, &model)].concat();
+    let overlaps = if case.initial.is_none() { carom::overlaps(&model) } else { Vec::new() };
+    let problems = [overlaps, carom::too_long(case, &model)].concat();
     if !problems.is_empty() {
         return Err(problems);
     }
@@ -284,10 +278,10 @@ where
                 let at = mesh.nodes.iter().map(|x| x[i]);
                 at.clone().fold(f64::NEG_INFINITY, f64::max) - at.fold(f64::INFINITY, f64::min)
             };
-            let width = (0..D).map(least).fold(f64::INFINITY, f64::min);
+            let width = (0..d).map(least).fold(f64::INFINITY, f64::min);
             transit = transit.min(width / speed / case.time.step);
         }
-        let free = part.nodes().flat_map(|n| n * D..(n + 1) * D).filter(|&dof| !model.fixed[dof]).count();
+        let free = part.nodes().flat_map(|n| n * d..(n + 1) * d).filter(|&dof| !model.fixed[dof]).count();
         bodies.push(BodyFacts {
             name: part.name.clone(),
             nodes: mesh.nodes.len(),

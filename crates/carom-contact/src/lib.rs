@@ -1,17 +1,14 @@
-//! Contact: surfaces, search, gaps and their derivatives, active sets. A function of positions; time and matrices are elsewhere.
+//! Contact: surfaces, search, gaps and their derivatives, laws, active sets. A function of positions; time and matrices are elsewhere.
 
 mod active_set;
-mod node_to_node;
-mod node_to_plane;
-mod node_to_segment;
+pub mod interface;
+pub mod kinematics;
 mod pair;
-mod projection;
-mod surface;
-mod trajectory;
+mod places;
+mod rows;
 
 pub use active_set::{ActiveSet, Contender, Cycle};
-pub use node_to_node::NodeToNode;
-pub use node_to_plane::NodeToPlane;
-pub use node_to_segment::{Detection, NodeToSegment};
-pub use pair::{ContactError, ContactMethod, Linearised, Pair, PairEvent, STENCIL};
-pub use surface::Surface;
+pub use interface::{Answer, ConservingPenalty, Interface, Penalty, Point, Unilateral};
+pub use kinematics::{Detection, Kinematics, NodeToFacet, NodeToPlane, Surface};
+pub use pair::{ContactError, Pair, PairEvent, Pairing};
+pub use rows::{Row, Rows};

@@ -126,28 +126,28 @@ impl Formula {
         self.tree.evaluate(&|k| Jet([values[k], slope(k), 0.0])).0
     }
 
-    /// Value, gradient and second derivatives with respect to the first `N` variables, by derivatives along directions:
+    /// Value, gradient and second derivatives (row-major) with respect to the first `n` variables, by derivatives along directions:
     /// ∂²f/∂x∂y = ½ (f″ along (1, 1) − ∂²f/∂x² − ∂²f/∂y²).
     ///
     /// ```
     /// let f = carom_formula::Formula::parse("X^2*Y + 3*X*t", &["X", "Y", "t"])?;
-    /// assert_eq!(f.with_gradient::<2>(&[2.0, 5.0, 1.0]), (26.0, [23.0, 4.0], [[10.0, 4.0], [4.0, 0.0]]));
+    /// assert_eq!(f.with_gradient(&[2.0, 5.0, 1.0], 2), (26.0, vec![23.0, 4.0], vec![10.0, 4.0, 4.0, 0.0]));
     /// # Ok::<(), carom_formula::FormulaError>(())
     /// ```
     ///
     /// # Panics
     /// With fewer values than variables.
-    pub fn with_gradient<const N: usize>(&self, values: &[f64]) -> (f64, [f64; N], [[f64; N]; N]) {
+    pub fn with_gradient(&self, values: &[f64], n: usize) -> (f64, Vec<f64>, Vec<f64>) {
         let along = |i: usize, j: usize| {
             let slope = |k| if k == i || k == j { 1.0 } else { 0.0 };
             self.tree.evaluate(&|k| Jet([values[k], slope(k), 0.0])).0
         };
-        let own: [[f64; 3]; N] = std::array::from_fn(|i| along(i, i));
+        let own: Vec<[f64; 3]> = (0..n).map(|i| along(i, i)).collect();
         let mixed = |i: usize, j: usize| {
             if i == j { own[i][2] } else { 0.5 * (along(i.min(j), i.max(j))[2] - own[i][2] - own[j][2]) }
         };
-        let second = std::array::from_fn(|i| std::array::from_fn(|j| mixed(i, j)));
-        (own.first().map_or_else(|| self.value(values), |o| o[0]), own.map(|o| o[1]), second)
+        let second = (0..n * n).map(|k| mixed(k / n, k % n)).collect();
+        (own.first().map_or_else(|| self.value(values), |o| o[0]), own.iter().map(|o| o[1]).collect(), second)
     }
 }
 

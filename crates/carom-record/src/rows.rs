@@ -21,7 +21,7 @@ pub struct ContactRow<'a> {
     /// Node of the secondary side.
     pub node: u64,
     /// Where it is.
-    pub point: [f64; 2],
+    pub point: [f64; 3],
     /// Facet of the primary side it is paired with.
     pub facet: u64,
     /// Coordinate of the closest point on that facet, −1 … 1.
@@ -33,25 +33,20 @@ pub struct ContactRow<'a> {
     /// −multiplier / consistent weight of the node.
     pub pressure: f64,
     /// Unit normal out of the primary: the force on the node is −multiplier · normal.
-    pub normal: [f64; 2],
+    pub normal: [f64; 3],
 }
 
-/// Header of `contact.csv`.
-pub(crate) const CONTACT_COLUMNS: [&str; 13] = [
-    "step",
-    "time",
-    "contact",
-    "node",
-    "x",
-    "y",
-    "facet",
-    "xi",
-    "gap",
-    "multiplier",
-    "pressure",
-    "normal_x",
-    "normal_y",
-];
+/// Header of `contact.csv` with this many axes.
+pub(crate) fn contact_columns(axes: usize) -> Vec<&'static str> {
+    let (places, normals) = (&["x", "y", "z"][..axes], &["normal_x", "normal_y", "normal_z"][..axes]);
+    [&["step", "time", "contact", "node"][..], places, &["facet", "xi", "gap", "multiplier", "pressure"], normals]
+        .concat()
+}
+
+/// Axes that the rows of a case's contacts have: z in space alone.
+pub(crate) fn contact_axes(case: &serde_json::Value) -> usize {
+    if case["dimension"] == 3 { 3 } else { 2 }
+}
 
 /// Something worth knowing that happened in a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -119,17 +114,15 @@ impl Table {
         Ok(self.writer.write_record(None::<&[u8]>)?)
     }
 
-    pub(crate) fn contact(&mut self, row: &ContactRow) -> io::Result<()> {
+    pub(crate) fn contact(&mut self, row: &ContactRow, axes: usize) -> io::Result<()> {
         self.integer(row.step)?;
         self.number(row.time)?;
         self.text(&row.contact)?;
         self.integer(row.node)?;
-        self.number(row.point[0])?;
-        self.number(row.point[1])?;
+        row.point[..axes].iter().try_for_each(|x| self.number(*x))?;
         self.integer(row.facet)?;
-        for value in [row.xi, row.gap, row.multiplier, row.pressure, row.normal[0], row.normal[1]] {
-            self.number(value)?;
-        }
+        [row.xi, row.gap, row.multiplier, row.pressure].iter().try_for_each(|x| self.number(*x))?;
+        row.normal[..axes].iter().try_for_each(|x| self.number(*x))?;
         self.end_row()
     }
 

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use crate::rows::CONTACT_COLUMNS;
+use crate::rows::{contact_axes, contact_columns};
 use crate::{Column, ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, pvd, vtkhdf};
 
 const HINT: &str = "`carom resume` goes back to the last checkpoint; or run the case again";
@@ -72,7 +72,7 @@ impl Run {
         Ok(Self {
             directory: directory.to_path_buf(),
             history,
-            contact: contact(&directory.join("contact.csv"))?,
+            contact: contact(&directory.join("contact.csv"), contact_axes(&manifest.case))?,
             log: log(&directory.join("log.jsonl"))?,
             fields,
             field_format,
@@ -168,23 +168,29 @@ fn history(path: &Path, columns: &[Column]) -> Result<History, RecordError> {
     Ok(History::new(columns.to_vec(), values))
 }
 
-fn contact(path: &Path) -> Result<Vec<ContactRow<'static>>, RecordError> {
+fn contact(path: &Path, axes: usize) -> Result<Vec<ContactRow<'static>>, RecordError> {
     let mut list = Vec::new();
-    rows(path, &CONTACT_COLUMNS, |record| {
-        let real = |i| number::<f64>(record, i, CONTACT_COLUMNS[i]);
-        let count = |i| number::<u64>(record, i, CONTACT_COLUMNS[i]);
+    let columns = contact_columns(axes);
+    rows(path, &columns, |record| {
+        let real = |i| number::<f64>(record, i, columns[i]);
+        let count = |i| number::<u64>(record, i, columns[i]);
+        let vector = |first: usize| {
+            let mut vector = [0.0; 3];
+            (0..axes).try_for_each(|i| real(first + i).map(|x| vector[i] = x)).map(|()| vector)
+        };
+        let after = 4 + axes;
         list.push(ContactRow {
             step: count(0)?,
             time: real(1)?,
             contact: record.get(2).unwrap_or_default().to_string().into(),
             node: count(3)?,
-            point: [real(4)?, real(5)?],
-            facet: count(6)?,
-            xi: real(7)?,
-            gap: real(8)?,
-            multiplier: real(9)?,
-            pressure: real(10)?,
-            normal: [real(11)?, real(12)?],
+            point: vector(4)?,
+            facet: count(after)?,
+            xi: real(after + 1)?,
+            gap: real(after + 2)?,
+            multiplier: real(after + 3)?,
+            pressure: real(after + 4)?,
+            normal: vector(after + 5)?,
         });
         Ok(())
     })?;

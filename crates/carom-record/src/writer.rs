@@ -8,7 +8,7 @@ use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use crate::checkpoint::{self, Header};
-use crate::rows::{CONTACT_COLUMNS, Table};
+use crate::rows::{Table, contact_axes, contact_columns};
 use crate::{ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, files, pvd, vtkhdf};
 
 const ROW_FILES: [&str; 3] = ["history.csv", "contact.csv", "log.jsonl"];
@@ -18,6 +18,8 @@ pub struct RunWriter {
     directory: PathBuf,
     /// Which history columns are integers.
     integer: Vec<bool>,
+    /// Axes of the places and normals of contact rows.
+    axes: usize,
     history: Table,
     contact: Table,
     log: BufWriter<File>,
@@ -85,7 +87,8 @@ impl RunWriter {
         manifest.write(partial)?;
         let mut header = Header { payload: payload.len() as u64, ..Header::default() };
         let columns: Vec<&str> = manifest.columns.iter().map(|c| c.name.as_str()).collect();
-        for (i, names) in [&columns[..], &CONTACT_COLUMNS, &[]].into_iter().enumerate() {
+        let of_contact = contact_columns(contact_axes(&manifest.case));
+        for (i, names) in [&columns[..], &of_contact, &[]].into_iter().enumerate() {
             let path = partial.join(ROW_FILES[i]);
             let refused = |e| RecordError::io("create", &path)(e);
             let mut table = Table::new(File::create(&path).map_err(refused)?);
@@ -141,6 +144,7 @@ impl RunWriter {
         let writer = Self {
             directory: directory.to_path_buf(),
             integer: manifest.columns.iter().map(|c| c.integer).collect(),
+            axes: contact_axes(&manifest.case),
             history: Table::new(history),
             contact: Table::new(contact),
             log: BufWriter::new(log),
@@ -187,7 +191,9 @@ impl RunWriter {
 
     /// Appends a row of `contact.csv`.
     pub fn contact(&mut self, row: &ContactRow) -> Result<(), RecordError> {
-        self.contact.contact(row).map_err(|e| RecordError::io("write", &self.directory.join(ROW_FILES[1]))(e))
+        self.contact
+            .contact(row, self.axes)
+            .map_err(|e| RecordError::io("write", &self.directory.join(ROW_FILES[1]))(e))
     }
 
     /// Appends a line of `log.jsonl`.

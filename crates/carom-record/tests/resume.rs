@@ -46,13 +46,13 @@ fn record(writer: &mut RunWriter, step: u64) -> Result<(), RecordError> {
             time,
             contact,
             node,
-            point: [1.0, 2.0],
+            point: [1.0, 2.0, 0.0],
             facet: 7,
             xi,
             gap,
             multiplier,
             pressure: f64::NAN,
-            normal: [0.6, 0.8],
+            normal: [0.6, 0.8, 0.0],
         };
         writer.contact(&row)?;
     }
@@ -197,13 +197,13 @@ fn what_is_read_is_what_was_written() {
         time: 0.1,
         contact: "a \"b\", c".into(),
         node: 5,
-        point: [0.1, -2e-9],
+        point: [0.1, -2e-9, 0.0],
         facet: 1,
         xi: -0.99,
         gap: 1e-18,
         multiplier: -7.5,
         pressure: 75.0,
-        normal: [-0.0, 1.0],
+        normal: [-0.0, 1.0, 0.0],
     };
     writer.contact(&row).unwrap();
     let event = Event::new(3, 0.1, "cycle", "line\nbreak").with("nodes", vec![1, 2]);

@@ -21,32 +21,28 @@ pub struct PointState {
     pub cauchy: [[f64; 3]; 3],
 }
 
-/// A deformable body: a mesh of `D`-dimensional positions with one material. Node numbers are the body's own.
+/// A deformable body: a mesh with one material. Node numbers are the body's own; D stands for the dimension of
+/// its mesh and N for the nodes of a cell.
 ///
-/// Units follow the case: forces per unit thickness × thickness. `y` always holds all nodes of the body.
-pub trait Body<const D: usize>: Send + Sync {
+/// Units follow the case: forces per unit thickness × thickness. `y` always holds the positions of all nodes of
+/// the body, flat and node-major, as every vector over nodes.
+pub trait Body: Send + Sync {
     /// Mesh with reference positions.
-    fn mesh(&self) -> &Mesh<D>;
+    fn mesh(&self) -> &Mesh;
 
     /// Strain energy of a cell; adds nothing, overwrites `force` (`N·D`, node-major) with ∂U/∂y.
-    fn cell_force(&self, cell: usize, y: &[[f64; D]], force: &mut [f64]) -> Result<f64, Inverted>;
+    fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted>;
 
     /// As [`Self::cell_force`], and overwrites `tangent` (`(N·D)²`, row-major, symmetric, both halves) with ∂²U/∂y².
-    fn cell_tangent(
-        &self,
-        cell: usize,
-        y: &[[f64; D]],
-        force: &mut [f64],
-        tangent: &mut [f64],
-    ) -> Result<f64, Inverted>;
+    fn cell_tangent(&self, cell: usize, y: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Result<f64, Inverted>;
 
     /// Discrete gradient of the strain energy between `before` and `now`: overwrites `force` with f such that f·(now − before) = U(now) − U(before) to
     /// round-off, and `tangent`, if asked for, with the symmetric part of ∂f/∂now. U(now) is returned.
     fn cell_between(
         &self,
         cell: usize,
-        before: &[[f64; D]],
-        now: &[[f64; D]],
+        before: &[f64],
+        now: &[f64],
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, Inverted>;
@@ -58,25 +54,24 @@ pub trait Body<const D: usize>: Send + Sync {
     fn cell_volumes(&self, cell: usize, volumes: &mut [f64]);
 
     /// Visits the quadrature points of a cell for volume integrals: shape functions (`N`), reference position, reference volume (× thickness).
-    fn each_volume_point(&self, cell: usize, visit: &mut dyn FnMut(&[f64], &[f64; D], f64));
+    fn each_volume_point(&self, cell: usize, visit: &mut dyn FnMut(&[f64], &[f64], f64));
 
-    /// Visits the same points with the reference position, the position and H = ∂y/∂X − 1 there, and the reference volume (× thickness).
-    fn each_moved_point(
-        &self,
-        cell: usize,
-        y: &[[f64; D]],
-        visit: &mut dyn FnMut(&[f64; D], &[f64; D], &[[f64; D]; D], f64),
-    );
+    /// Visits the same points with the reference position, the position and H = ∂y/∂X − 1 there (`D²`, row-major), and
+    /// the reference volume (× thickness).
+    fn each_moved_point(&self, cell: usize, y: &[f64], visit: &mut dyn FnMut(&[f64], &[f64], &[f64], f64));
 
-    /// Divergence ∂Pᵢᴶ/∂Xᴶ of the first Piola–Kirchhoff stress of a motion with H = ∂y/∂X − 1 and second derivatives ∂²yₖ/∂Xᴶ∂Xᴸ = `second[k][J][L]`;
-    /// the determinant J as an error if it is not positive.
-    fn stress_divergence(&self, h: &[[f64; D]; D], second: &[[[f64; D]; D]; D]) -> Result<[f64; D], f64>;
+    /// Divergence ∂Pᵢᴶ/∂Xᴶ of the first Piola–Kirchhoff stress of a motion with H = ∂y/∂X − 1 (`D²`, row-major) and second
+    /// derivatives ∂²yₖ/∂Xᴶ∂Xᴸ (`D³`, k first), into `out` (`D`).
+    ///
+    /// # Errors
+    /// The determinant J if it is not positive.
+    fn stress_divergence(&self, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64>;
 
     /// Smallest J over the quadrature points of a cell.
-    fn cell_min_det_f(&self, cell: usize, y: &[[f64; D]]) -> f64;
+    fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64;
 
     /// Stress at a point of a cell given in reference coordinates.
-    fn point(&self, cell: usize, xi: &[f64], y: &[[f64; D]]) -> Result<PointState, Inverted>;
+    fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted>;
 
     /// Shape functions of a cell at reference coordinates (`N`).
     fn shape(&self, xi: &[f64], values: &mut [f64]);
@@ -86,10 +81,10 @@ pub trait Body<const D: usize>: Send + Sync {
 
     /// Cells and reference coordinates at a reference point: one inside a cell, all cells that share it where it is a node or lies on an edge;
     /// empty outside the body.
-    fn locate(&self, point: &[f64; D]) -> Vec<(usize, Vec<f64>)>;
+    fn locate(&self, point: &[f64]) -> Vec<(usize, Vec<f64>)>;
 
     /// Whether a point lies in the body, its boundary included, whose nodes are at `y`.
-    fn covers(&self, y: &[[f64; D]], point: &[f64; D]) -> bool;
+    fn covers(&self, y: &[f64], point: &[f64]) -> bool;
 
     /// Density ρ₀.
     fn density(&self) -> f64;

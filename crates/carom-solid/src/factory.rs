@@ -6,7 +6,8 @@ use crate::mesh::{Element, Mesh};
 use crate::shape::{Line2, Line3, Line4, Shape, Tri3, Tri6, Tri10};
 use crate::solid::{Solid, SolidError};
 
-/// Body of a mesh: `Mesh<1>` and `Mesh<2>` can be made one. `thickness` is the area of the cross-section in dimension 1.
+/// Body of a mesh, of any dimension; in the plane of plane strain. `thickness` is the area of the cross-section in
+/// dimension 1.
 ///
 /// ```
 /// use carom_solid::{Element, Law, body, generate};
@@ -17,75 +18,59 @@ use crate::solid::{Solid, SolidError};
 /// ```
 ///
 /// # Errors
-/// If a number is out of its range, a cell is degenerate, or the element has another dimension than the space.
-pub fn body<const D: usize>(
-    mesh: Mesh<D>,
-    law: Law,
-    density: f64,
-    thickness: f64,
-) -> Result<Box<dyn Body<D>>, SolidError>
-where
-    Mesh<D>: Cells<D>,
-{
+/// If a number is out of its range, a cell is degenerate, or the element has another dimension than the mesh.
+pub fn body(mesh: Mesh, law: Law, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError> {
     match law {
-        Law::NeoHookean { lambda, mu } => mesh.with(NeoHookean { lambda, mu }, density, thickness),
-        Law::SaintVenantKirchhoff { lambda, mu } => mesh.with(SaintVenantKirchhoff { lambda, mu }, density, thickness),
-        Law::LinearElastic { lambda, mu } => mesh.with(LinearElastic { lambda, mu }, density, thickness),
+        Law::NeoHookean { lambda, mu } => any(mesh, NeoHookean { lambda, mu }, density, thickness),
+        Law::SaintVenantKirchhoff { lambda, mu } => any(mesh, SaintVenantKirchhoff { lambda, mu }, density, thickness),
+        Law::LinearElastic { lambda, mu } => any(mesh, LinearElastic { lambda, mu }, density, thickness),
     }
 }
 
-/// Body in plane stress; [`body`] makes one in plane strain. `thickness` is that of the undeformed sheet.
+/// Body in plane stress. `thickness` is that of the undeformed sheet.
 ///
 /// # Errors
-/// As [`body`].
-pub fn plane_stress_body(
-    mesh: Mesh<2>,
-    law: Law,
-    density: f64,
-    thickness: f64,
-) -> Result<Box<dyn Body<2>>, SolidError> {
+/// As [`body`], and for a mesh that is not plane.
+pub fn plane_stress_body(mesh: Mesh, law: Law, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError> {
     match law {
-        Law::NeoHookean { lambda, mu } => mesh.with(PlaneStress(NeoHookean { lambda, mu }), density, thickness),
+        Law::NeoHookean { lambda, mu } => plane(mesh, PlaneStress(NeoHookean { lambda, mu }), density, thickness),
         Law::SaintVenantKirchhoff { lambda, mu } => {
-            mesh.with(PlaneStress(SaintVenantKirchhoff { lambda, mu }), density, thickness)
+            plane(mesh, PlaneStress(SaintVenantKirchhoff { lambda, mu }), density, thickness)
         }
-        Law::LinearElastic { lambda, mu } => mesh.with(PlaneStress(LinearElastic { lambda, mu }), density, thickness),
+        Law::LinearElastic { lambda, mu } => plane(mesh, PlaneStress(LinearElastic { lambda, mu }), density, thickness),
     }
 }
 
-/// A mesh in a space whose elements have shape functions.
-pub trait Cells<const D: usize> {
-    /// Body of the mesh with a law.
-    fn with<L: Material<D>>(self, law: L, density: f64, thickness: f64) -> Result<Box<dyn Body<D>>, SolidError>;
-}
-
-impl Cells<1> for Mesh<1> {
-    fn with<L: Material<1>>(self, law: L, density: f64, thickness: f64) -> Result<Box<dyn Body<1>>, SolidError> {
-        match self.element {
-            Element::L2 => solid::<1, 2, Line2, L>(self, law, density, thickness),
-            Element::L3 => solid::<1, 3, Line3, L>(self, law, density, thickness),
-            Element::L4 => solid::<1, 4, Line4, L>(self, law, density, thickness),
-            element => Err(SolidError::Dimension { element, dimension: 1 }),
-        }
+/// Body of a law that is known in every dimension.
+fn any<L>(mesh: Mesh, law: L, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError>
+where
+    L: Material<1> + Material<2> + Material<3>,
+{
+    match mesh.element {
+        Element::L2 => solid::<1, 2, Line2, L>(mesh, law, density, thickness),
+        Element::L3 => solid::<1, 3, Line3, L>(mesh, law, density, thickness),
+        Element::L4 => solid::<1, 4, Line4, L>(mesh, law, density, thickness),
+        Element::T3 | Element::T6 | Element::T10 => plane(mesh, law, density, thickness),
+        #[cfg(test)]
+        Element::Tet4 => solid::<3, 4, crate::shape::Tet4, L>(mesh, law, density, thickness),
     }
 }
 
-impl Cells<2> for Mesh<2> {
-    fn with<L: Material<2>>(self, law: L, density: f64, thickness: f64) -> Result<Box<dyn Body<2>>, SolidError> {
-        match self.element {
-            Element::T3 => solid::<2, 3, Tri3, L>(self, law, density, thickness),
-            Element::T6 => solid::<2, 6, Tri6, L>(self, law, density, thickness),
-            Element::T10 => solid::<2, 10, Tri10, L>(self, law, density, thickness),
-            element => Err(SolidError::Dimension { element, dimension: 2 }),
-        }
+/// Body of a law of the plane.
+fn plane<L: Material<2>>(mesh: Mesh, law: L, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError> {
+    match mesh.element {
+        Element::T3 => solid::<2, 3, Tri3, L>(mesh, law, density, thickness),
+        Element::T6 => solid::<2, 6, Tri6, L>(mesh, law, density, thickness),
+        Element::T10 => solid::<2, 10, Tri10, L>(mesh, law, density, thickness),
+        element => Err(SolidError::Dimension { element, dimension: 2 }),
     }
 }
 
 fn solid<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>>(
-    mesh: Mesh<D>,
+    mesh: Mesh,
     law: L,
     density: f64,
     thickness: f64,
-) -> Result<Box<dyn Body<D>>, SolidError> {
+) -> Result<Box<dyn Body>, SolidError> {
     Ok(Box::new(Solid::<D, N, S, L>::new(mesh, law, density, thickness)?))
 }

@@ -2,6 +2,7 @@
 
 mod body;
 mod discrete_gradient;
+mod facet;
 mod factory;
 pub mod generate;
 pub mod gmsh;
@@ -10,16 +11,19 @@ mod lumping;
 pub mod material;
 mod mesh;
 mod points;
+mod positions;
 pub mod quadrature;
 mod reference;
 pub mod shape;
 mod solid;
 
 pub use body::{Body, Inverted, PointState};
-pub use factory::{Cells, body, plane_stress_body};
-pub use loaded_side::{LoadedSide, MAX_FACET_NODES};
+pub use facet::FacetShape;
+pub use factory::{body, plane_stress_body};
+pub use loaded_side::LoadedSide;
 pub use lumping::cell_lumped_mass;
 pub use material::Law;
 pub use mesh::{Element, Facet, Mesh};
+pub use positions::Positions;
 pub use shape::{LineShape, line_shape};
 pub use solid::{Solid, SolidError};

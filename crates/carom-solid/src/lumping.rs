@@ -4,7 +4,7 @@
 use crate::body::Body;
 
 /// Lumped masses of a cell (`N`); `work` holds `N²` numbers.
-pub fn cell_lumped_mass<const D: usize>(body: &dyn Body<D>, cell: usize, work: &mut [f64], masses: &mut [f64]) {
+pub fn cell_lumped_mass(body: &dyn Body, cell: usize, work: &mut [f64], masses: &mut [f64]) {
     body.cell_mass(cell, work);
     let n = masses.len();
     let total: f64 = work.iter().sum();

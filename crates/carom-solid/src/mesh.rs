@@ -1,11 +1,15 @@
-//! A body's mesh: nodes, cells of one element type, named sides.
+//! A mesh of one element type with named sides.
 //!
-//! Node order inside a cell and a facet is Gmsh's (and VTK's): corners, then the nodes of each edge in the direction of the edge, then the
-//! interior. A boundary is walked with the body on its left, so a facet's outward normal is its tangent turned right.
+//! Node order inside a cell and a facet is Gmsh's (and VTK's): corners, then the nodes of each edge in the
+//! direction of the edge, then the interior. In the plane a boundary is walked with the body on its left, so
+//! a facet's outward normal is its tangent turned right.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+
+use crate::facet::FacetShape;
+use crate::positions::Positions;
 
 /// Cell type: a simplex of degree 1, 2 or 3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -46,16 +50,49 @@ impl Element {
 
     /// Nodes of a cell.
     pub fn nodes(self) -> usize {
-        let k = self.degree();
-        match self.dimension() {
-            1 => k + 1,
-            2 => (k + 1) * (k + 2) / 2,
-            _ => (k + 1) * (k + 2) * (k + 3) / 6,
+        self.dofs() / self.dimension()
+    }
+
+    /// Degrees of freedom of a cell: nodes times dimension.
+    pub fn dofs(self) -> usize {
+        match self {
+            Self::L2 => 2,
+            Self::L3 => 3,
+            Self::L4 => 4,
+            Self::T3 => 6,
+            Self::T6 => 12,
+            Self::T10 => 20,
+            #[cfg(test)]
+            Self::Tet4 => 12,
+        }
+    }
+
+    /// Facets of a cell: places of their nodes in the cell, corners first, each walked with the body on its left.
+    pub fn facets(self) -> &'static [&'static [usize]] {
+        match self {
+            Self::L2 | Self::L3 | Self::L4 => &[&[0], &[1]],
+            Self::T3 => &[&[0, 1], &[1, 2], &[2, 0]],
+            Self::T6 => &[&[0, 1, 3], &[1, 2, 4], &[2, 0, 5]],
+            Self::T10 => &[&[0, 1, 3, 4], &[1, 2, 5, 6], &[2, 0, 7, 8]],
+            #[cfg(test)]
+            Self::Tet4 => &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]],
+        }
+    }
+
+    /// Shape of those facets; none has one in space yet.
+    pub fn facet_shape(self) -> Option<FacetShape> {
+        match self {
+            Self::L2 | Self::L3 | Self::L4 => Some(FacetShape::Point),
+            Self::T3 => Some(FacetShape::L2),
+            Self::T6 => Some(FacetShape::L3),
+            Self::T10 => Some(FacetShape::L4),
+            #[cfg(test)]
+            Self::Tet4 => None,
         }
     }
 }
 
-/// A piece of a body's boundary: one edge of a cell (dimension 2) or one node (dimension 1).
+/// A piece of a body's boundary: one node of a cell in dimension 1, one edge in the plane.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Facet {
     /// The cell it bounds.
@@ -66,20 +103,25 @@ pub struct Facet {
 
 /// Nodes, cells and named sides of one body.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mesh<const D: usize> {
+pub struct Mesh {
     /// Cell type of every cell.
     pub element: Element,
     /// Reference positions X.
-    pub nodes: Vec<[f64; D]>,
+    pub nodes: Positions,
     /// Node numbers, cell after cell.
     pub cells: Vec<usize>,
     /// Facets of each named side, in the order in which the boundary is walked.
     pub sides: BTreeMap<String, Vec<Facet>>,
-    /// What was put right when the mesh was read from a file, as sentences; nothing for built-in shapes.
+    /// What was repaired when the mesh was read from a file, as sentences; nothing for built-in shapes.
     pub repairs: Vec<String>,
 }
 
-impl<const D: usize> Mesh<D> {
+impl Mesh {
+    /// Coordinates of each node.
+    pub fn dimension(&self) -> usize {
+        self.nodes.dimension()
+    }
+
     /// Number of cells.
     pub fn cell_count(&self) -> usize {
         self.cells.len() / self.element.nodes()
@@ -104,42 +146,36 @@ impl<const D: usize> Mesh<D> {
         Some(nodes)
     }
 
-    /// Whether each node lies on the boundary: on an end of one cell alone (dimension 1), or on an edge of one cell alone (dimension 2).
+    /// Direction of a facet: that of its outward normal where the facet is a point, ±1; 1 where the walk along the
+    /// boundary gives the normal.
+    pub fn orientation(&self, facet: &Facet) -> f64 {
+        if self.element.facet_shape() != Some(FacetShape::Point) {
+            return 1.0;
+        }
+        // Out of the body is away from the other nodes of the end's cell.
+        let (end, cell) = (self.nodes[facet.nodes[0]][0], self.cell(facet.cell));
+        (end - cell.iter().map(|&n| self.nodes[n][0]).sum::<f64>() / cell.len() as f64).signum()
+    }
+
+    /// Whether each node lies on the boundary: on a facet of one cell alone.
     pub fn on_boundary(&self) -> Vec<bool> {
-        let inside = self.element.degree() - 1;
-        // Corners of a facet, in ascending order, with all its nodes.
-        let mut facets: BTreeMap<Vec<usize>, Option<Vec<usize>>> = BTreeMap::new();
+        // Nodes of a facet in ascending order, as a name that both its cells know it by.
+        let mut alone: BTreeMap<Vec<usize>, bool> = BTreeMap::new();
         for cell in (0..self.cell_count()).map(|c| self.cell(c)) {
-            let corners = self.element.dimension() + 1;
-            for k in 0..corners {
-                let (mut ends, mut nodes) = (vec![cell[k]], vec![cell[k]]);
-                if D == 2 {
-                    ends.push(cell[(k + 1) % corners]);
-                    nodes.push(ends[1]);
-                    nodes.extend(&cell[corners + k * inside..corners + (k + 1) * inside]);
-                }
-                ends.sort_unstable();
-                facets.entry(ends).and_modify(|shared| *shared = None).or_insert(Some(nodes));
+            for facet in self.element.facets() {
+                let mut nodes: Vec<usize> = facet.iter().map(|&a| cell[a]).collect();
+                nodes.sort_unstable();
+                alone.entry(nodes).and_modify(|alone| *alone = false).or_insert(true);
             }
         }
         let mut on = vec![false; self.nodes.len()];
-        facets.into_values().flatten().flatten().for_each(|node| on[node] = true);
+        let boundary = alone.into_iter().filter_map(|(nodes, alone)| alone.then_some(nodes));
+        boundary.flatten().for_each(|node| on[node] = true);
         on
     }
 
     /// Diagonal of the box around the reference nodes.
     pub fn diameter(&self) -> f64 {
-        diameter(&self.nodes)
+        self.nodes.diameter()
     }
-}
-
-/// Diagonal of the box around positions.
-pub(crate) fn diameter<const D: usize>(positions: &[[f64; D]]) -> f64 {
-    let mut square = 0.0;
-    for i in 0..D {
-        let low = positions.iter().map(|x| x[i]).fold(f64::INFINITY, f64::min);
-        let high = positions.iter().map(|x| x[i]).fold(f64::NEG_INFINITY, f64::max);
-        square += (high - low) * (high - low);
-    }
-    square.sqrt()
 }

@@ -55,7 +55,7 @@ struct Place<const D: usize> {
 
 /// A body of cells of shape `S` (`D` reference coordinates, `N` nodes) and law `L`.
 pub struct Solid<const D: usize, const N: usize, S, L> {
-    mesh: Mesh<D>,
+    mesh: Mesh,
     law: L,
     density: f64,
     thickness: f64,
@@ -75,7 +75,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
     ///
     /// # Errors
     /// If a number is out of its range or the reference shape of a cell is degenerate or turned over.
-    pub fn new(mesh: Mesh<D>, law: L, density: f64, thickness: f64) -> Result<Self, SolidError> {
+    pub fn new(mesh: Mesh, law: L, density: f64, thickness: f64) -> Result<Self, SolidError> {
         check::<D, N>(&mesh, density, thickness)?;
         let k = S::DEGREE;
         let rule = |degree: usize| S::Domain::rule(degree.max(L::ENERGY_DEGREE * (k - 1)));
@@ -125,7 +125,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
     /// Reference positions of a cell's nodes.
     fn reference(&self, cell: usize) -> [Vector<D>; N] {
         let nodes = self.nodes(cell);
-        std::array::from_fn(|a| Vector(self.mesh.nodes[nodes[a]]))
+        let places = self.mesh.nodes.of_dimension::<D>();
+        std::array::from_fn(|a| Vector(places[nodes[a]]))
     }
 
     #[inline]
@@ -135,11 +136,11 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
 
     /// y − X at the nodes of a cell.
     #[inline(always)]
-    fn displacements(&self, cell: usize, y: &[[f64; D]]) -> [Vector<D>; N] {
-        let nodes = self.nodes(cell);
+    fn displacements(&self, cell: usize, y: &[f64]) -> [Vector<D>; N] {
+        let (nodes, places, y) = (self.nodes(cell), self.mesh.nodes.of_dimension::<D>(), y.as_chunks::<D>().0);
         let mut u = [Vector::ZERO; N];
         for a in 0..N {
-            u[a] = Vector(y[nodes[a]]) - Vector(self.mesh.nodes[nodes[a]]);
+            u[a] = Vector(y[nodes[a]]) - Vector(places[nodes[a]]);
         }
         u
     }
@@ -149,7 +150,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
     fn integrate<const M: usize>(
         &self,
         cell: usize,
-        fields: [&[[f64; D]]; M],
+        fields: [&[f64]; M],
         at: impl Fn([Mat<D>; M], bool) -> Result<(f64, Mat<D>, Option<Moduli<D>>), NotPositive>,
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
@@ -202,7 +203,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
     fn integrate_at(
         &self,
         cell: usize,
-        y: &[[f64; D]],
+        y: &[f64],
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, Inverted> {
@@ -225,7 +226,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
     fn integrate_between(
         &self,
         cell: usize,
-        ends: [&[[f64; D]]; 2],
+        ends: [&[f64]; 2],
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, Inverted> {
@@ -249,8 +250,8 @@ fn pack<const D: usize, const N: usize>(points: impl Iterator<Item = ([Vector<D>
 }
 
 /// Numbers in range, cells whole, nodes there.
-fn check<const D: usize, const N: usize>(mesh: &Mesh<D>, density: f64, thickness: f64) -> Result<(), SolidError> {
-    if mesh.element.dimension() != D || mesh.element.nodes() != N {
+fn check<const D: usize, const N: usize>(mesh: &Mesh, density: f64, thickness: f64) -> Result<(), SolidError> {
+    if mesh.element.dimension() != D || mesh.dimension() != D || mesh.element.nodes() != N {
         return Err(SolidError::Dimension { element: mesh.element, dimension: D });
     }
     if !(density.is_finite() && density >= 0.0) {
@@ -288,25 +289,19 @@ fn spread<const D: usize, const N: usize>(blocks: &Blocks<D, N>, tangent: &mut [
     }
 }
 
-impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for Solid<D, N, S, L> {
-    fn mesh(&self) -> &Mesh<D> {
+impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for Solid<D, N, S, L> {
+    fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    fn cell_force(&self, cell: usize, y: &[[f64; D]], force: &mut [f64]) -> Result<f64, Inverted> {
+    fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
         wide(
             #[inline(always)]
             || self.integrate_at(cell, y, force, None),
         )
     }
 
-    fn cell_tangent(
-        &self,
-        cell: usize,
-        y: &[[f64; D]],
-        force: &mut [f64],
-        tangent: &mut [f64],
-    ) -> Result<f64, Inverted> {
+    fn cell_tangent(&self, cell: usize, y: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Result<f64, Inverted> {
         wide(
             #[inline(always)]
             || self.integrate_at(cell, y, force, Some(tangent)),
@@ -316,8 +311,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
     fn cell_between(
         &self,
         cell: usize,
-        before: &[[f64; D]],
-        now: &[[f64; D]],
+        before: &[f64],
+        now: &[f64],
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, Inverted> {
@@ -351,7 +346,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
         });
     }
 
-    fn each_volume_point(&self, cell: usize, visit: &mut dyn FnMut(&[f64], &[f64; D], f64)) {
+    fn each_volume_point(&self, cell: usize, visit: &mut dyn FnMut(&[f64], &[f64], f64)) {
         let x = self.reference(cell);
         self.each_mass_point(cell, |values, volume| {
             let mut position = Vector::<D>::ZERO;
@@ -362,12 +357,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
         });
     }
 
-    fn each_moved_point(
-        &self,
-        cell: usize,
-        y: &[[f64; D]],
-        visit: &mut dyn FnMut(&[f64; D], &[f64; D], &[[f64; D]; D], f64),
-    ) {
+    fn each_moved_point(&self, cell: usize, y: &[f64], visit: &mut dyn FnMut(&[f64], &[f64], &[f64], f64)) {
         let (x, u) = (self.reference(cell), self.displacements(cell, y));
         for (xi, weight) in self.mass_rules[usize::from(self.curved[cell])].iter() {
             let (values, local) = (S::values(xi), S::gradients(xi));
@@ -376,25 +366,27 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
             let h = gradient(&u, &local.map(|g| inverse_transposed.apply(&g)));
             let place = reference::interpolate(&values, &x);
             let moved = place + reference::interpolate(&values, &u);
-            visit(&place.0, &moved.0, &h.0, weight * derivative.det() * self.thickness);
+            visit(&place.0, &moved.0, h.0.as_flattened(), weight * derivative.det() * self.thickness);
         }
     }
 
     /// ∂Pᵢᴶ/∂Xᴶ = Σ ∂Pᵢᴶ/∂Fₖᴸ ∂²yₖ/∂Xᴶ∂Xᴸ.
-    fn stress_divergence(&self, h: &[[f64; D]; D], second: &[[[f64; D]; D]; D]) -> Result<[f64; D], f64> {
-        let point = self.law.at(&Mat(*h)).map_err(|NotPositive(det_f)| det_f)?;
+    fn stress_divergence(&self, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64> {
+        let h = Mat(std::array::from_fn(|i| std::array::from_fn(|j| h[i * D + j])));
+        let point = self.law.at(&h).map_err(|NotPositive(det_f)| det_f)?;
         let unit = Mat::<D>::identity().0.map(Vector);
         let mut sum = Vector::<D>::ZERO;
         for j in 0..D {
             for l in 0..D {
-                let bent = Vector(std::array::from_fn(|k| second[k][j][l]));
+                let bent = Vector(std::array::from_fn(|k| second[(k * D + j) * D + l]));
                 sum += self.law.tangent(&point, &unit[j], &unit[l]).apply(&bent);
             }
         }
-        Ok(sum.0)
+        out.copy_from_slice(&sum.0);
+        Ok(())
     }
 
-    fn cell_min_det_f(&self, cell: usize, y: &[[f64; D]]) -> f64 {
+    fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64 {
         let u = self.displacements(cell, y);
         let Place { points, inverse, .. } = &self.places[cell];
         let ratios = self.points[points.clone()].iter().flat_map(|points| {
@@ -404,7 +396,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
         ratios.fold(f64::INFINITY, f64::min)
     }
 
-    fn point(&self, cell: usize, xi: &[f64], y: &[[f64; D]]) -> Result<PointState, Inverted> {
+    fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted> {
         let x = self.reference(cell);
         let inverse_transposed = gradient(&x, &S::gradients(&vector(xi))).inverse().transposed();
         let g = S::gradients(&vector(xi)).map(|g| inverse_transposed.apply(&g));
@@ -430,19 +422,21 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body<D> for
         S::NODES.iter().map(|x| x.0.to_vec()).collect()
     }
 
-    fn locate(&self, point: &[f64; D]) -> Vec<(usize, Vec<f64>)> {
-        let near = (0..self.bounds.len()).filter(|&cell| self.bounds[cell].contains(point));
+    fn locate(&self, point: &[f64]) -> Vec<(usize, Vec<f64>)> {
+        let point = vector::<D>(point);
+        let near = (0..self.bounds.len()).filter(|&cell| self.bounds[cell].contains(&point.0));
         near.filter_map(|cell| {
-            let xi = reference::invert::<D, N, S>(&self.reference(cell), &Vector(*point))?;
+            let xi = reference::invert::<D, N, S>(&self.reference(cell), &point)?;
             Some((cell, xi.0.to_vec()))
         })
         .collect()
     }
 
-    fn covers(&self, y: &[[f64; D]], point: &[f64; D]) -> bool {
+    fn covers(&self, y: &[f64], point: &[f64]) -> bool {
+        let (y, point) = (y.as_chunks::<D>().0, vector::<D>(point));
         (0..self.mesh.cell_count()).any(|cell| {
             let nodes = self.nodes(cell).map(|node| Vector(y[node]));
-            Bounds::around(&nodes).contains(point) && reference::invert::<D, N, S>(&nodes, &Vector(*point)).is_some()
+            Bounds::around(&nodes).contains(&point.0) && reference::invert::<D, N, S>(&nodes, &point).is_some()
         })
     }
 

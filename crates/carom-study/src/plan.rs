@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 
-use carom::Simulation;
 use carom::case::{Case, CaseError, Diagnostic, Document, Problem, read};
+use carom::simulation;
 use carom_record::study::design::{Design, Goal};
 use carom_record::study::{Arm, Comparison, StudyManifest, StudySource};
 use carom_record::{Machine, Source, Status, now};
@@ -244,11 +244,7 @@ fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) 
 pub(crate) fn resolved(path: &Path, sets: &[String]) -> Result<Case, CaseError> {
     let document = Document::open(path, sets)?;
     let case = read(&document).map_err(|problems| document.diagnose_all(&problems))?;
-    let built = match case.dimension {
-        1 => Simulation::<1>::new(&case, 1).map(drop),
-        _ => Simulation::<2>::new(&case, 1).map(drop),
-    };
-    built.map_err(|problems| document.diagnose_all(&problems))?;
+    simulation(&case, 1).map_err(|problems| document.diagnose_all(&problems))?;
     Ok(case)
 }
 

@@ -4,9 +4,9 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use carom::Simulation;
 use carom::case::{Case, Enforcement, SchemeSpec};
 use carom::frequencies::{Frequencies, frequencies, spring};
+use carom::simulation;
 use carom_record::RecordError;
 use carom_time::Integrator;
 
@@ -75,17 +75,11 @@ pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
 }
 
 fn of_case(case: &Case) -> Option<Frequencies> {
-    match case.dimension {
-        1 => frequencies(&Simulation::<1>::new(case, 1).ok()?.model),
-        _ => frequencies(&Simulation::<2>::new(case, 1).ok()?.model),
-    }
+    frequencies(&simulation(case, 1).ok()?.model)
 }
 
 fn spring_of(case: &Case) -> Option<f64> {
-    match case.dimension {
-        1 => spring(&Simulation::<1>::new(case, 1).ok()?.model),
-        _ => spring(&Simulation::<2>::new(case, 1).ok()?.model),
-    }
+    spring(&simulation(case, 1).ok()?.model)
 }
 
 fn put(directory: &Path, name: &str, lines: &[String]) -> Result<(), RecordError> {

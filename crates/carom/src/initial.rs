@@ -2,50 +2,33 @@
 //!
 //! The meshes are made again from the case that run was resolved with, and compared node by node: names alone would let a changed mesh pass.
 
-use carom_contact::Pair;
+use carom_case::{Case, InitialSpec, Problem, Velocities};
+use carom_mechanics::model::{Manufactured, Model};
+use carom_mechanics::{Before, State};
 use carom_record::{Manifest, Status, last_checkpoint};
 
-use crate::case::{Case, InitialSpec, Problem, Velocities};
-use crate::model::{Dimension, Manufactured, Model, Space};
-use crate::state::State;
-
-/// Where a run begins, if not in the reference positions.
-pub(crate) struct Before {
-    /// Positions.
-    pub(crate) y: Vec<f64>,
-    /// Velocities.
-    pub(crate) v: Vec<f64>,
-    /// Pairs of each contact of the new case.
-    pub(crate) pairs: Vec<Vec<Pair>>,
-}
-
-impl Before {
-    /// Where a motion that is given begins.
-    ///
-    /// # Errors
-    /// A formula without a value at t = 0.
-    pub(crate) fn of<const D: usize>(motion: &Manufactured<D>, model: &Model<D>) -> Result<Self, Vec<Problem>> {
-        let (mut y, mut v) = (Vec::new(), Vec::new());
-        for place in model.reference.as_chunks::<D>().0 {
-            let [position, velocity] = motion.motion(place, 0.0).map_err(|error| {
-                let help = "change the formula so that it has a value in the whole body";
-                vec![Problem::new("manufactured.y", "the motion has no value at t = 0", error.to_string(), help)]
-            })?;
-            y.extend(position);
-            v.extend(velocity);
-        }
-        Ok(Self { y, v, pairs: vec![Vec::new(); model.contacts.len()] })
+/// Where a motion that is given begins.
+///
+/// # Errors
+/// A formula without a value at t = 0.
+pub(crate) fn given(motion: &Manufactured, model: &Model) -> Result<Before, Vec<Problem>> {
+    let (mut y, mut v) = (Vec::new(), Vec::new());
+    for place in model.reference.chunks_exact(model.dimension) {
+        let [position, velocity] = motion.motion(place, 0.0).map_err(|error| {
+            let help = "change the formula so that it has a value in the whole body";
+            vec![Problem::new("manufactured.y", "the motion has no value at t = 0", error.to_string(), help)]
+        })?;
+        y.extend(position);
+        v.extend(velocity);
     }
+    Ok(Before { y, v, pairs: vec![Vec::new(); model.contacts.len()] })
 }
 
 /// Reads the end of the run a case starts from.
 ///
 /// # Errors
 /// There is no such run, it is not finished, or its bodies are not those of the case; all under `initial.from`.
-pub(crate) fn before<const D: usize>(spec: &InitialSpec, case: &Case, model: &Model<D>) -> Result<Before, Vec<Problem>>
-where
-    Space: Dimension<D>,
-{
+pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<Before, Vec<Problem>> {
     let directory = spec.from.display();
     let wrong = |what: String, why: String, help: &str| vec![Problem::new("initial.from", what, why, help)];
     let unreadable = |why: String| {
@@ -65,8 +48,9 @@ where
     let version = |e: String| unreadable(format!("it was made by Carom {}: {e}", manifest.version));
     let old: Case = serde_json::from_value(manifest.case.clone()).map_err(|e| version(e.to_string()))?;
     let state: State = postcard::from_bytes(&payload).map_err(|e| version(e.to_string()))?;
-    if old.dimension != D {
-        let why = format!("it has dimension {}, the case {D}", old.dimension);
+    let d = model.dimension;
+    if old.dimension != d {
+        let why = format!("it has dimension {}, the case {d}", old.dimension);
         return Err(wrong(
             "the runs do not have the same dimension".into(),
             why,
@@ -79,13 +63,13 @@ where
     let mut first = 0;
     for body in &old.bodies {
         let mesh =
-            Space::mesh(body).map_err(|why| unreadable(format!("the mesh of its body \"{}\": {why}", body.name)))?;
+            body.make_mesh(d).map_err(|why| unreadable(format!("the mesh of its body \"{}\": {why}", body.name)))?;
         let nodes = mesh.nodes.len();
         meshes.push((&body.name, first, mesh));
         first += nodes;
     }
-    if state.y.len() != first * D {
-        return Err(unreadable(format!("its state has {} nodes, its meshes {first}", state.y.len() / D)));
+    if state.y.len() != first * d {
+        return Err(unreadable(format!("its state has {} nodes, its meshes {first}", state.y.len() / d)));
     }
     for part in &model.parts {
         let mesh = part.body.mesh();
@@ -100,7 +84,7 @@ where
         };
         if old.nodes != mesh.nodes || old.cells != mesh.cells || old.element != mesh.element {
             let count =
-                |m: &carom_solid::Mesh<D>| format!("{} nodes, {} cells {:?}", m.nodes.len(), m.cell_count(), m.element);
+                |m: &carom_solid::Mesh| format!("{} nodes, {} cells {:?}", m.nodes.len(), m.cell_count(), m.element);
             let why = format!(
                 "there it has {}, here {}; nodes and cells must be the same to the last digit",
                 count(old),
@@ -112,8 +96,8 @@ where
                 "give both cases the same `mesh` and `element`",
             ));
         }
-        let (to, from) = (part.first_node * D, first * D);
-        let length = mesh.nodes.len() * D;
+        let (to, from) = (part.first_node * d, first * d);
+        let length = mesh.nodes.len() * d;
         before.y[to..to + length].copy_from_slice(&state.y[from..from + length]);
         if spec.velocities == Velocities::Keep {
             before.v[to..to + length].copy_from_slice(&state.v[from..from + length]);

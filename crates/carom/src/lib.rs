@@ -1,36 +1,18 @@
 //! Impact and contact of deformable solids by the positional finite element method.
+//!
+//! A case, text or file, is read and checked by [`case`], built into a [`Simulation`] by [`simulation`], and run step by step, or
+//! into a run directory by [`recording::run`].
 
-mod balance;
-pub mod case;
-mod cells;
-mod evaluation;
-pub mod frequencies;
-mod held;
+mod build;
 mod initial;
-mod kept;
-mod kept_step;
-mod ledger;
-mod mixing;
-pub mod model;
-mod newton;
-mod penalty;
-mod persistency;
 pub mod recording;
-mod rejected;
-mod rows;
-mod scheme;
-mod simulation;
-pub mod stability;
-mod start;
-mod state;
-mod stepper;
-mod system;
-mod touching;
-mod workspace;
+mod setup;
 
-pub use kept::{Kept, Point};
-pub use rejected::Rejected;
-pub use simulation::{GridReport, LogEvent, Simulation, Stopped};
-pub use state::{Ahead, Halved, Ledger, Means, Previous, State};
-pub use stepper::{Accepted, Explicit, Implicit, Impulsive, StepReport, Stepper};
-pub use workspace::{Timings, Workspace};
+pub use build::{build, overlaps};
+pub use carom_case as case;
+pub use carom_mechanics::{
+    Accepted, Ahead, Before, Explicit, Grid, GridReport, Halved, Implicit, Impulsive, Kept, Ledger, LogEvent, Means,
+    Point, Previous, Rejected, Settings, Simulation, State, StepReport, Stepper, Stopped, Tangent, Timings, Workspace,
+    frequencies, model, stability,
+};
+pub use setup::{resumed, simulation, too_long};

@@ -4,9 +4,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use carom::case::{Case, Document, Problem};
-use carom::model::{Dimension, Space};
 use carom_record::{Block, Cell, FieldSet};
-use carom_solid::{Mesh, gmsh};
+use carom_solid::{Element, Mesh, gmsh};
 
 use crate::exit::{Exit, Failure};
 use crate::out;
@@ -44,10 +43,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let (case, document) = super::case(&arguments.case, &arguments.sets)?;
     let bytes = match (case.dimension, msh) {
         (1, true) => return argument("bars are not written as .msh".to_owned(), "write them as .vtu"),
-        (1, false) => vtu(&case, &meshes::<1>(&case, &document)?)?,
-        (_, false) => vtu(&case, &meshes::<2>(&case, &document)?)?,
+        (_, false) => vtu(&case, &meshes(&case, &document)?)?,
         (_, true) => {
-            let meshes = meshes::<2>(&case, &document)?;
+            let meshes = meshes(&case, &document)?;
             let named: Vec<_> = case.bodies.iter().map(|b| b.name.as_str()).zip(&meshes).collect();
             gmsh::write_msh41(&named).into_bytes()
         }
@@ -57,12 +55,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-fn meshes<const D: usize>(case: &Case, document: &Document) -> Result<Vec<Mesh<D>>, Failure>
-where
-    Space: Dimension<D>,
-{
-    let mesh = |(k, spec)| {
-        Space::mesh(spec).map_err(|why| {
+fn meshes(case: &Case, document: &Document) -> Result<Vec<Mesh>, Failure> {
+    let mesh = |(k, spec): (usize, &carom::case::BodySpec)| {
+        spec.make_mesh(case.dimension).map_err(|why| {
             let what = format!("the mesh of body \"{}\" cannot be made", spec.name);
             Failure::Case(document.diagnose_all(&[Problem::new(format!("body[{k}].mesh"), what, why, "")]))
         })
@@ -71,14 +66,17 @@ where
 }
 
 /// Bodies side by side; they share no points.
-fn vtu<const D: usize>(case: &Case, meshes: &[Mesh<D>]) -> Result<Vec<u8>, Failure> {
+fn vtu(case: &Case, meshes: &[Mesh]) -> Result<Vec<u8>, Failure> {
     let mut fields = FieldSet::default();
     for (spec, mesh) in case.bodies.iter().zip(meshes) {
         let first = fields.points.len();
         fields.points.extend(mesh.nodes.iter().map(|x| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))));
         fields.blocks.push(Block {
             body: spec.name.clone(),
-            cell: if D == 1 { Cell::Curve } else { Cell::Triangle },
+            cell: match mesh.element {
+                Element::L2 | Element::L3 | Element::L4 => Cell::Curve,
+                Element::T3 | Element::T6 | Element::T10 => Cell::Triangle,
+            },
             degree: mesh.element.degree(),
             connectivity: mesh.cells.iter().map(|n| first + n).collect(),
         });

@@ -14,7 +14,7 @@ use crate::mesh::{Element, Mesh};
 ///
 /// # Errors
 /// If radius or size is not positive, or the element is no triangle.
-pub fn disc(element: Element, radius: f64, center: [f64; 2], size: f64) -> Result<Mesh<2>, MeshError> {
+pub fn disc(element: Element, radius: f64, center: [f64; 2], size: f64) -> Result<Mesh, MeshError> {
     let n = check(element, radius, center, size)?;
     Ok(elevate(Rings { n, sixths: 6 }.skeleton(radius, center), element))
 }
@@ -31,7 +31,7 @@ pub fn disc(element: Element, radius: f64, center: [f64; 2], size: f64) -> Resul
 /// assert!(axis.iter().all(|&n| cylinder.nodes[n][0] == 0.0));
 /// # Ok::<(), carom_solid::generate::MeshError>(())
 /// ```
-pub fn half_disc(element: Element, radius: f64, center: [f64; 2], size: f64) -> Result<Mesh<2>, MeshError> {
+pub fn half_disc(element: Element, radius: f64, center: [f64; 2], size: f64) -> Result<Mesh, MeshError> {
     let n = check(element, radius, center, size)?;
     Ok(elevate(Rings { n, sixths: 3 }.skeleton(radius, center), element))
 }

@@ -52,7 +52,7 @@ impl Circle {
 }
 
 /// The mesh of an element type on a skeleton.
-pub(super) fn elevate(skeleton: Skeleton, element: Element) -> Mesh<2> {
+pub(super) fn elevate(skeleton: Skeleton, element: Element) -> Mesh {
     let Skeleton { points: mut nodes, triangles, sides } = skeleton;
     let k = element.degree();
     // Nodes between two corners, and the circle they lie on; an edge is known by its corners in ascending order.
@@ -100,7 +100,7 @@ pub(super) fn elevate(skeleton: Skeleton, element: Element) -> Mesh<2> {
         (side.name, side.edges.iter().map(facet).collect())
     };
     let sides: BTreeMap<_, _> = sides.into_iter().map(facets).collect();
-    Mesh { element, nodes, cells, sides, repairs: Vec::new() }
+    Mesh { element, nodes: nodes.into(), cells, sides, repairs: Vec::new() }
 }
 
 /// The nodes between an edge's corners in its direction.

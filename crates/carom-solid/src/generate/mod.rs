@@ -57,7 +57,7 @@ pub enum MeshError {
 /// assert_eq!(bar.nodes.len(), generate::interval_nodes(Element::L4, 20));
 /// # Ok::<(), carom_solid::generate::MeshError>(())
 /// ```
-pub fn interval(element: Element, min: f64, max: f64, cells: usize) -> Result<Mesh<1>, MeshError> {
+pub fn interval(element: Element, min: f64, max: f64, cells: usize) -> Result<Mesh, MeshError> {
     check(element, &[min], &[max], &[cells])?;
     let k = element.degree();
     let at = |j: usize| [lerp(min, max, j as f64 / (k * cells) as f64)];
@@ -72,7 +72,7 @@ pub fn interval(element: Element, min: f64, max: f64, cells: usize) -> Result<Me
     }
     let end = |cell, node| vec![Facet { cell, nodes: vec![node] }];
     let sides = BTreeMap::from([("left".into(), end(0, 0)), ("right".into(), end(cells - 1, cells))]);
-    Ok(Mesh { element, nodes, cells: numbers, sides, repairs: Vec::new() })
+    Ok(Mesh { element, nodes: nodes.into(), cells: numbers, sides, repairs: Vec::new() })
 }
 
 /// Number of nodes of an interval; saturates.

@@ -34,7 +34,7 @@ pub struct Refinement {
 /// assert!(cook.side_nodes("side2").unwrap().iter().all(|&n| cook.nodes[n][0] == 48.0));
 /// # Ok::<(), carom_solid::generate::MeshError>(())
 /// ```
-pub fn polygon(element: Element, points: &[[f64; 2]], size: f64, refine: &[Refinement]) -> Result<Mesh<2>, MeshError> {
+pub fn polygon(element: Element, points: &[[f64; 2]], size: f64, refine: &[Refinement]) -> Result<Mesh, MeshError> {
     if element.dimension() != 2 {
         return Err(MeshError::Dimension { element, dimension: 2 });
     }

@@ -11,7 +11,7 @@ use crate::mesh::{Element, Mesh};
 ///
 /// # Errors
 /// If an extent is not positive, there are no cells, or the element is no triangle.
-pub fn rectangle(element: Element, min: [f64; 2], max: [f64; 2], cells: [usize; 2]) -> Result<Mesh<2>, MeshError> {
+pub fn rectangle(element: Element, min: [f64; 2], max: [f64; 2], cells: [usize; 2]) -> Result<Mesh, MeshError> {
     check(element, &min, &max, &cells)?;
     let [nx, ny] = cells;
     let node = |i: usize, j: usize| j * (nx + 1) + i;

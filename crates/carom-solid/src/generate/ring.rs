@@ -22,7 +22,7 @@ use crate::mesh::{Element, Mesh};
 /// assert!(tube.side_nodes("inner").is_some_and(|nodes| nodes.len().is_multiple_of(8)));
 /// # Ok::<(), carom_solid::generate::MeshError>(())
 /// ```
-pub fn ring(element: Element, inner: f64, outer: f64, center: [f64; 2], size: f64) -> Result<Mesh<2>, MeshError> {
+pub fn ring(element: Element, inner: f64, outer: f64, center: [f64; 2], size: f64) -> Result<Mesh, MeshError> {
     if element.dimension() != 2 {
         return Err(MeshError::Dimension { element, dimension: 2 });
     }

@@ -14,7 +14,7 @@ impl MshFile {
     ///
     /// # Errors
     /// As [`body`](Self::body), and if a node joins more than two cells.
-    pub fn bar(&self, curve: &str) -> Result<Mesh<1>, MshError> {
+    pub fn bar(&self, curve: &str) -> Result<Mesh, MshError> {
         let mut part = Part::<1>::of(self, curve)?;
         match part.element {
             Element::L2 => orient::<1, 2, Line2>(&mut part, [1, 0])?,
@@ -48,6 +48,6 @@ impl MshFile {
         sides.retain(|_, facets| !facets.is_empty());
         let (element, nodes, cells) =
             (part.element, std::mem::take(&mut part.positions), std::mem::take(&mut part.cells));
-        Ok(Mesh { element, nodes, cells, sides, repairs: part.finish() })
+        Ok(Mesh { element, nodes: nodes.into(), cells, sides, repairs: part.finish() })
     }
 }

@@ -17,7 +17,7 @@ impl MshFile {
     /// # Errors
     /// With line or byte: a name that is not there, cells that are no triangles of one order 1 to 3, folded cells, coincident nodes, edges
     /// of more than two cells, nodes off the plane.
-    pub fn body(&self, surface: &str) -> Result<Mesh<2>, MshError> {
+    pub fn body(&self, surface: &str) -> Result<Mesh, MshError> {
         let mut part = Part::<2>::of(self, surface)?;
         match part.element {
             Element::T3 => orient::<2, 3, Tri3>(&mut part, [0, 2, 1])?,
@@ -28,7 +28,7 @@ impl MshFile {
         let sides = part.sides(&boundary)?;
         let (element, nodes, cells) =
             (part.element, std::mem::take(&mut part.positions), std::mem::take(&mut part.cells));
-        Ok(Mesh { element, nodes, cells, sides, repairs: part.finish() })
+        Ok(Mesh { element, nodes: nodes.into(), cells, sides, repairs: part.finish() })
     }
 }
 

@@ -87,7 +87,7 @@ impl<'a, const D: usize> Part<'a, D> {
 
     /// Two nodes at one place would hold no cells together.
     fn apart(&self) -> Result<(), MshError> {
-        let near = 1e-9 * crate::mesh::diameter(&self.positions);
+        let near = 1e-9 * crate::Positions::from(self.positions.clone()).diameter();
         let mut order: Vec<usize> = (0..self.positions.len()).collect();
         order.sort_unstable_by(|&a, &b| self.positions[a][0].total_cmp(&self.positions[b][0]));
         // Columns of equal x hold many nodes: the second coordinate is compared by sorting each column.

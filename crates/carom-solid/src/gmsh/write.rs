@@ -16,7 +16,7 @@ use crate::mesh::{Element, Facet, Mesh};
 /// assert_eq!(file.body("prism")?.nodes, prism.nodes);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn write_msh41(bodies: &[(&str, &Mesh<2>)]) -> String {
+pub fn write_msh41(bodies: &[(&str, &Mesh)]) -> String {
     let sides: Vec<(usize, &str, &[Facet])> = bodies
         .iter()
         .enumerate()
@@ -39,20 +39,12 @@ pub fn write_msh41(bodies: &[(&str, &Mesh<2>)]) -> String {
     let _ = writeln!(out, "$EndPhysicalNames\n$Entities\n0 {} {} 0", sides.len(), bodies.len());
     for (tag, (body, name, facets)) in sides.iter().enumerate() {
         let mesh = bodies[*body].1;
-        let places = facets.iter().flat_map(|f| &f.nodes).map(|&n| mesh.nodes[n]);
+        let places = facets.iter().flat_map(|f| &f.nodes).map(|&n| &mesh.nodes[n]);
         let _ = writeln!(out, "{} {} 1 {} 0", tag + 1, corners(places), group(name));
     }
     for (i, (_, mesh)) in bodies.iter().enumerate() {
         let own: Vec<_> = (0..sides.len()).filter(|&s| sides[s].0 == i).map(|s| format!(" {}", s + 1)).collect();
-        let _ = writeln!(
-            out,
-            "{} {} 1 {} {}{}",
-            i + 1,
-            corners(mesh.nodes.iter().copied()),
-            i + 1,
-            own.len(),
-            own.concat()
-        );
+        let _ = writeln!(out, "{} {} 1 {} {}{}", i + 1, corners(mesh.nodes.iter()), i + 1, own.len(), own.concat());
     }
 
     let first: Vec<usize> =
@@ -64,8 +56,8 @@ pub fn write_msh41(bodies: &[(&str, &Mesh<2>)]) -> String {
         for n in 0..mesh.nodes.len() {
             let _ = writeln!(out, "{}", first[i] + n);
         }
-        for [x, y] in &mesh.nodes {
-            let _ = writeln!(out, "{x:e} {y:e} 0");
+        for x in &mesh.nodes {
+            let _ = writeln!(out, "{:e} {:e} 0", x[0], x[1]);
         }
     }
 
@@ -104,8 +96,8 @@ fn edge(element: Element) -> Element {
 }
 
 /// Lower and upper corner of the box around places, z = 0.
-fn corners(places: impl Iterator<Item = [f64; 2]>) -> String {
+fn corners<'a>(places: impl Iterator<Item = &'a [f64]>) -> String {
     let start = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
-    let [a, b, c, d] = places.fold(start, |[a, b, c, d], [x, y]| [a.min(x), b.min(y), c.max(x), d.max(y)]);
+    let [a, b, c, d] = places.fold(start, |[a, b, c, d], x| [a.min(x[0]), b.min(x[1]), c.max(x[0]), d.max(x[1])]);
     format!("{a:e} {b:e} 0 {c:e} {d:e} 0")
 }

@@ -1,25 +1,23 @@
 //! Columns of `history.csv` (design.md §1.4): one list that gives names, units and values, so that they cannot drift apart.
 
-use carom_contact::Linearised;
+use carom_case::Case;
+use carom_contact::Rows;
+use carom_mechanics::model::{Model, Part, Quantity};
+use carom_mechanics::{GridReport, State};
 use carom_record::Column;
 
 use super::units::Labels;
-use crate::case::{Case, Quantity};
-use crate::evaluation::add_gradient;
-use crate::model::{Model, Part};
-use crate::simulation::GridReport;
-use crate::state::State;
 
-const AXES: [&str; 2] = ["x", "y"];
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Names, units and meanings of the columns of a case.
-pub fn columns<const D: usize>(case: &Case, model: &Model<D>) -> Vec<Column> {
+pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
     let label = Labels::of(case);
     let mut columns = Vec::new();
     let mut add = |name: String, unit: &str, description: &str, integer: bool| {
         columns.push(Column { name, unit: unit.into(), description: description.into(), integer });
     };
-    let axes = &AXES[..D.min(2)];
+    let axes = &AXES[..model.dimension];
     add("step".into(), "", "step on the grid of times", true);
     add("time".into(), &label.time, "time, step × Δt", false);
     add("dt".into(), &label.time, "time step of the grid", false);
@@ -37,7 +35,7 @@ pub fn columns<const D: usize>(case: &Case, model: &Model<D>) -> Vec<Column> {
     for axis in axes {
         add(format!("momentum_{axis}"), &label.momentum, "momentum of all bodies", false);
     }
-    if D > 1 {
+    if model.dimension == 2 {
         add("angular_momentum".into(), &label.angular_momentum, "moment of momentum about the origin", false);
     }
     for axis in axes {
@@ -94,20 +92,8 @@ pub fn columns<const D: usize>(case: &Case, model: &Model<D>) -> Vec<Column> {
     }
     for probe in &model.probes {
         for quantity in &probe.record {
-            let (name, unit, what) = match quantity {
-                Quantity::Ux => ("ux", &label.length, "displacement along x"),
-                Quantity::Uy => ("uy", &label.length, "displacement along y"),
-                Quantity::Vx => ("vx", &label.velocity, "velocity along x"),
-                Quantity::Vy => ("vy", &label.velocity, "velocity along y"),
-                Quantity::Ax => ("ax", &label.acceleration, "acceleration along x"),
-                Quantity::Ay => ("ay", &label.acceleration, "acceleration along y"),
-                Quantity::SigmaXx => ("sigma_xx", &label.stress, "Cauchy stress"),
-                Quantity::SigmaYy => ("sigma_yy", &label.stress, "Cauchy stress"),
-                Quantity::SigmaXy => ("sigma_xy", &label.stress, "Cauchy stress"),
-                Quantity::VonMises => ("von_mises", &label.stress, "von Mises stress of the Cauchy stress"),
-                Quantity::DetF => ("det_f", &label.none, "volume ratio J"),
-            };
-            add(format!("{}.{name}", probe.name), unit, what, false);
+            let (name, unit, what) = quantity_column(*quantity, &label);
+            add(format!("{}.{name}", probe.name), &unit, &what, false);
         }
     }
     if model.loads.manufactured.is_some() {
@@ -117,8 +103,30 @@ pub fn columns<const D: usize>(case: &Case, model: &Model<D>) -> Vec<Column> {
     columns
 }
 
+/// Name, unit and meaning of a probe's column.
+fn quantity_column(quantity: Quantity, label: &Labels) -> (String, String, String) {
+    match quantity {
+        Quantity::Displacement(i) => {
+            (format!("u{}", AXES[i]), label.length.clone(), format!("displacement along {}", AXES[i]))
+        }
+        Quantity::Velocity(i) => {
+            (format!("v{}", AXES[i]), label.velocity.clone(), format!("velocity along {}", AXES[i]))
+        }
+        Quantity::Acceleration(i) => {
+            (format!("a{}", AXES[i]), label.acceleration.clone(), format!("acceleration along {}", AXES[i]))
+        }
+        Quantity::Stress(i, j) => {
+            (format!("sigma_{}{}", AXES[i], AXES[j]), label.stress.clone(), "Cauchy stress".into())
+        }
+        Quantity::VonMises => {
+            ("von_mises".into(), label.stress.clone(), "von Mises stress of the Cauchy stress".into())
+        }
+        Quantity::DetF => ("det_f".into(), label.none.clone(), "volume ratio J".into()),
+    }
+}
+
 /// Shares of a body's nodes in its centre of mass; of its volume where it has no mass. They add up to one.
-pub(super) fn center_weights<const D: usize>(model: &Model<D>) -> Vec<f64> {
+pub(super) fn center_weights(model: &Model) -> Vec<f64> {
     let mut weights = vec![0.0; model.mass.nodes()];
     for part in &model.parts {
         let mesh = part.body.mesh();
@@ -141,16 +149,9 @@ pub(super) fn center_weights<const D: usize>(model: &Model<D>) -> Vec<f64> {
 }
 
 /// One row, in the order of [`columns`].
-pub(super) fn row<const D: usize>(
-    model: &Model<D>,
-    state: &State,
-    dt: f64,
-    report: &GridReport,
-    weights: &[f64],
-    row: &mut Vec<f64>,
-) {
+pub(super) fn row(model: &Model, state: &State, dt: f64, report: &GridReport, weights: &[f64], row: &mut Vec<f64>) {
     let ledger = &state.ledger;
-    let axes = D.min(2);
+    let d = model.dimension;
     row.clear();
     row.extend([state.step as f64, state.time, dt]);
     row.extend([ledger.kinetic, ledger.strain, ledger.potential, ledger.total()]);
@@ -158,14 +159,13 @@ pub(super) fn row<const D: usize>(
 
     let mut momentum = vec![0.0; state.v.len()];
     model.mass.multiply_into(&state.v, &mut momentum);
-    let nodal = momentum.as_chunks::<D>().0;
-    row.extend((0..axes).map(|i| nodal.iter().map(|p| p[i]).sum::<f64>()));
-    if D > 1 {
-        let y = state.y.as_chunks::<D>().0;
-        row.push(y.iter().zip(nodal).map(|(y, p)| y[0] * p[1] - y[1] * p[0]).sum());
+    row.extend((0..d).map(|i| momentum.iter().skip(i).step_by(d).sum::<f64>()));
+    if d == 2 {
+        let pairs = state.y.as_chunks::<2>().0.iter().zip(momentum.as_chunks::<2>().0);
+        row.push(pairs.map(|(y, p)| y[0] * p[1] - y[1] * p[0]).sum());
     }
-    row.extend((0..axes).map(|i| state.contact_forces.iter().map(|f| f[i]).sum::<f64>()));
-    row.extend(&ledger.impulse[..axes]);
+    row.extend((0..d).map(|i| state.contact_forces.iter().map(|f| f[i]).sum::<f64>()));
+    row.extend(&ledger.impulse[..d]);
 
     let active = state.pairs.iter().flatten().filter(|p| p.active).count();
     row.push(active as f64);
@@ -174,18 +174,17 @@ pub(super) fn row<const D: usize>(
     row.push(model.min_det_f(&state.y));
     for part in &model.parts {
         for field in [&state.y, &state.v] {
-            row.extend((0..axes).map(|i| mean(part, field, weights, i)));
+            row.extend((0..d).map(|i| mean(part, field, weights, i)));
         }
     }
     if model.contacts.len() > 1 {
-        row.extend(state.contact_forces.iter().flat_map(|f| f[..axes].to_vec()));
+        row.extend(state.contact_forces.iter().flat_map(|f| f[..d].to_vec()));
     }
     if !model.supports.is_empty() {
         let reaction = reactions(model, state);
         for support in &model.supports {
             row.extend(
-                (0..axes)
-                    .map(|i| support.dofs.iter().filter(|dof| *dof % D == i).map(|&dof| reaction[dof]).sum::<f64>()),
+                (0..d).map(|i| support.dofs.iter().filter(|dof| *dof % d == i).map(|&dof| reaction[dof]).sum::<f64>()),
             );
         }
     }
@@ -197,36 +196,36 @@ pub(super) fn row<const D: usize>(
     }
 }
 
-fn mean<const D: usize>(part: &Part<D>, field: &[f64], weights: &[f64], i: usize) -> f64 {
-    part.nodes().map(|node| weights[node] * field[node * D + i]).sum()
+fn mean(part: &Part, field: &[f64], weights: &[f64], i: usize) -> f64 {
+    let d = part.body.mesh().dimension();
+    part.nodes().map(|node| weights[node] * field[node * d + i]).sum()
 }
 
 /// Depth of the deepest secondary node, ≥ 0.
-fn penetration<const D: usize>(model: &Model<D>, state: &State) -> f64 {
-    let mut gap = Linearised::default();
-    let mut depth = 0.0_f64;
+fn penetration(model: &Model, state: &State) -> f64 {
+    let mut rows = Rows::new(model.dimension);
     for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
         for pair in pairs {
-            if contact.method.linearise(&mut pair.clone(), state.y.as_chunks::<D>().0, 0.0, &mut gap).is_ok() {
-                depth = depth.max(-gap.gap);
-            }
+            // A pair without a closest point is far away.
+            let _ = contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows);
         }
     }
-    depth
+    rows.iter().map(|row| -row.gap).fold(0.0, f64::max)
 }
 
 /// What supports do to the bodies at held dofs: M a + f_int + Gᵀλ − f_ext there.
-fn reactions<const D: usize>(model: &Model<D>, state: &State) -> Vec<f64> {
+fn reactions(model: &Model, state: &State) -> Vec<f64> {
     let mut force = vec![0.0; model.dofs()];
     model.mass.multiply_into(&state.a, &mut force);
     for i in 0..force.len() {
         force[i] += state.f_internal[i] - model.gravity[i] - state.f_external[i];
     }
-    let mut gap = Linearised::default();
+    let mut rows = Rows::new(model.dimension);
     for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
         for pair in pairs.iter().filter(|p| p.active) {
-            if contact.method.linearise(&mut pair.clone(), state.y.as_chunks::<D>().0, 0.0, &mut gap).is_ok() {
-                add_gradient(&gap, pair.lambda, &mut force);
+            rows.clear();
+            if contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_ok() {
+                rows.row(0).add_to(pair.lambda, &mut force);
             }
         }
     }

@@ -1,27 +1,27 @@
 //! A state as fields for viewers: displacement, velocity, stress (nodal mean within each body) and contact pressure.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
-use carom_contact::Linearised;
+use carom_case::Case;
+use carom_contact::{Pair, Rows};
+use carom_mechanics::State;
+use carom_mechanics::model::{Contact, Model};
 use carom_record::{Block, Cell, FieldSet, PointArray};
-use carom_solid::line_shape;
+use carom_solid::Element;
 
 use super::units::Labels;
-use crate::case::Case;
-use crate::model::{Contact, Model};
-use crate::state::State;
 
 /// Fields of a state.
-pub(super) fn field_set<const D: usize>(case: &Case, model: &Model<D>, state: &State) -> FieldSet {
+pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     let label = Labels::of(case);
-    let spatial = |x: &[f64; D]| -> [f64; 3] { std::array::from_fn(|i| if i < D { x[i] } else { 0.0 }) };
-    let vectors = |values: &[f64]| values.as_chunks::<D>().0.iter().flat_map(spatial).collect::<Vec<f64>>();
+    let spatial = |x: &[f64]| -> [f64; 3] { std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0)) };
+    let vectors = |values: &[f64]| values.chunks_exact(model.dimension).flat_map(spatial).collect::<Vec<f64>>();
     let moved: Vec<f64> = state.y.iter().zip(&model.reference).map(|(y, x)| y - x).collect();
     let blocks = model.parts.iter().map(|part| {
         let mesh = part.body.mesh();
         Block {
             body: part.name.clone(),
-            cell: if D == 1 { Cell::Curve } else { Cell::Triangle },
+            cell: cell(mesh.element),
             degree: mesh.element.degree(),
             connectivity: mesh.cells.iter().map(|n| n + part.first_node).collect(),
         }
@@ -33,7 +33,7 @@ pub(super) fn field_set<const D: usize>(case: &Case, model: &Model<D>, state: &S
         values,
     };
     FieldSet {
-        points: model.reference.as_chunks::<D>().0.iter().map(spatial).collect(),
+        points: model.reference.chunks_exact(model.dimension).map(spatial).collect(),
         blocks: blocks.collect(),
         arrays: vec![
             array("displacement", &label.length, 3, vectors(&moved)),
@@ -44,13 +44,21 @@ pub(super) fn field_set<const D: usize>(case: &Case, model: &Model<D>, state: &S
     }
 }
 
+/// The cell of a viewer that an element is.
+fn cell(element: Element) -> Cell {
+    match element {
+        Element::L2 | Element::L3 | Element::L4 => Cell::Curve,
+        Element::T3 | Element::T6 | Element::T10 => Cell::Triangle,
+    }
+}
+
 /// Cauchy stress XX YY ZZ XY YZ XZ at the nodes, mean over the cells of a node that have one there; NaN where none has (J ≤ 0).
-fn nodal_stress<const D: usize>(model: &Model<D>, state: &State) -> Vec<f64> {
+fn nodal_stress(model: &Model, state: &State) -> Vec<f64> {
     let nodes = model.mass.nodes();
     let (mut sum, mut count) = (vec![[0.0; 6]; nodes], vec![0.0_f64; nodes]);
     for part in &model.parts {
         let mesh = part.body.mesh();
-        let y = &state.y.as_chunks::<D>().0[part.nodes()];
+        let y = part.of(&state.y);
         let places = part.body.reference_nodes();
         for cell in 0..mesh.cell_count() {
             for (&node, xi) in mesh.cell(cell).iter().zip(&places) {
@@ -68,38 +76,37 @@ fn nodal_stress<const D: usize>(model: &Model<D>, state: &State) -> Vec<f64> {
     sum.iter().zip(&count).flat_map(|(s, n)| s.map(|x| x / n)).collect()
 }
 
-fn pressures<const D: usize>(case: &Case, model: &Model<D>, state: &State) -> Vec<f64> {
+fn pressures(case: &Case, model: &Model, state: &State) -> Vec<f64> {
     let mut pressure = vec![0.0; model.mass.nodes()];
     for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
         let weights = consistent_weights(contact, state, case.thickness);
         for pair in pairs.iter().filter(|p| p.active) {
-            pressure[contact.method.secondary()[pair.node]] -= pair.lambda / weights[pair.node];
+            pressure[contact.kinematics.secondary()[pair.node]] -= pair.lambda / weights[pair.node];
         }
     }
     pressure
 }
 
 /// ∫φᴺ ds over the current secondary side, times the thickness: the area a multiplier acts on. One entry per secondary node.
-pub(super) fn consistent_weights<const D: usize>(contact: &Contact<D>, state: &State, thickness: f64) -> Vec<f64> {
-    // Gauss–Legendre with three points: exact for |y'| constant and φ of degree 3.
-    const RULE: [(f64, f64); 3] =
-        [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
-    let secondary = contact.method.secondary();
-    if D == 1 {
-        return vec![thickness; secondary.len()];
-    }
-    let place: std::collections::HashMap<usize, usize> = secondary.iter().enumerate().map(|(k, &n)| (n, k)).collect();
+pub(super) fn consistent_weights(contact: &Contact, state: &State, thickness: f64) -> Vec<f64> {
+    let secondary = contact.kinematics.secondary();
+    let place: HashMap<usize, usize> = secondary.iter().enumerate().map(|(k, &n)| (n, k)).collect();
     let mut weights = vec![0.0; secondary.len()];
-    let y = state.y.as_chunks::<D>().0;
+    let (shape, d) = (contact.secondary_shape, contact.secondary_shape.dimension());
+    // Exact for |y'| constant and φ of degree 3.
+    let rule = shape.rule(5);
     for facet in &contact.secondary_facets {
-        for (xi, w) in RULE {
-            let shape = line_shape(facet.len(), xi);
-            let tangent: [f64; D] =
-                std::array::from_fn(|i| facet.iter().enumerate().map(|(k, &n)| shape.first[k] * y[n][i]).sum());
-            let length = tangent.iter().map(|t| t * t).sum::<f64>().sqrt();
-            for (k, n) in facet.iter().enumerate() {
+        for &(xi, w) in &rule {
+            let functions = shape.at(xi);
+            let mut tangent = [0.0; 2];
+            for (&n, slope) in facet.iter().zip(&functions.first) {
+                (0..d).for_each(|i| tangent[i] += slope * state.y[n * d + i]);
+            }
+            let [x, y] = shape.normal(tangent, 1.0);
+            let measure = x.hypot(y);
+            for (n, value) in facet.iter().zip(&functions.values) {
                 if let Some(&p) = place.get(n) {
-                    weights[p] += w * shape.values[k] * length * thickness;
+                    weights[p] += w * value * measure * thickness;
                 }
             }
         }
@@ -108,20 +115,16 @@ pub(super) fn consistent_weights<const D: usize>(contact: &Contact<D>, state: &S
 }
 
 /// Gap of a pair in a state and the unit normal ∂g/∂y of its secondary node; NaN where it has none.
-pub(super) fn gap_of<const D: usize>(
-    contact: &Contact<D>,
-    pair: &carom_contact::Pair,
-    state: &State,
-) -> (f64, [f64; 2]) {
-    let mut gap = Linearised::default();
-    let known = contact.method.linearise(&mut pair.clone(), state.y.as_chunks::<D>().0, 0.0, &mut gap);
-    known.map_or((f64::NAN, [f64::NAN; 2]), |()| {
-        (gap.gap, std::array::from_fn(|i| if i < D { gap.gradient[0][i] } else { 0.0 }))
-    })
+pub(super) fn gap_of(contact: &Contact, pair: &Pair, state: &State) -> (f64, [f64; 3]) {
+    let mut rows = Rows::new(contact.secondary_shape.dimension());
+    match contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows) {
+        Ok(()) => (rows.row(0).gap, rows.row(0).normal()),
+        Err(_) => (f64::NAN, [f64::NAN; 3]),
+    }
 }
 
 /// Chains of point numbers of every named side, in the order in which the boundary is walked.
-pub(super) fn sides<const D: usize>(model: &Model<D>) -> BTreeMap<String, Vec<Vec<usize>>> {
+pub(super) fn sides(model: &Model) -> BTreeMap<String, Vec<Vec<usize>>> {
     let mut named = BTreeMap::new();
     for part in &model.parts {
         for (side, facets) in &part.body.mesh().sides {

@@ -1,15 +1,14 @@
 //! Events of a step as lines of `log.jsonl`, with the names of the case.
 
+use carom_case::{BodySpec, Case, MeshSpec};
 use carom_contact::PairEvent;
+use carom_mechanics::LogEvent;
+use carom_mechanics::model::Model;
 use carom_record::Event;
-
-use crate::case::{Case, MeshSpec};
-use crate::model::Model;
-use crate::simulation::LogEvent;
 
 /// What was mended in meshes that were read from files.
 pub(super) fn repairs(case: &Case) -> Vec<Event> {
-    let of_body = |body: &crate::case::BodySpec| match &body.mesh {
+    let of_body = |body: &BodySpec| match &body.mesh {
         MeshSpec::File { repairs, .. } => repairs.clone(),
         _ => Vec::new(),
     };
@@ -20,7 +19,7 @@ pub(super) fn repairs(case: &Case) -> Vec<Event> {
 }
 
 /// An event of the step being computed.
-pub(super) fn entry<const D: usize>(model: &Model<D>, step: u64, event: &LogEvent) -> Event {
+pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
     let contact_name = |k: usize| model.contacts[k].name.as_str();
     let body_of = |node: usize| {
         let part = model.parts.iter().find(|p| p.nodes().contains(&node));

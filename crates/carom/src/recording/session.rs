@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use carom_case::{Case, Problem};
+use carom_mechanics::{GridReport, Simulation, State, Stopped};
 use carom_record::{ContactRow, Event, Manifest, RecordError, RunWriter, Source, Status};
 use cpu_time::ThreadTime;
 
@@ -11,10 +13,7 @@ use super::columns::{center_weights, columns, row};
 use super::fields::{consistent_weights, field_set, gap_of, sides};
 use super::log::{entry, repairs};
 use super::verdicts::judge;
-use crate::case::{Case, Problem};
-use crate::model::{Dimension, Space};
-use crate::simulation::{GridReport, Simulation, Stopped};
-use crate::state::State;
+use crate::setup::{resumed, simulation};
 
 /// How to run.
 #[derive(Clone, Copy, Debug)]
@@ -92,9 +91,9 @@ pub enum RunError {
 }
 
 /// What every step needs besides the simulation.
-struct Session<'a, const D: usize> {
+struct Session<'a> {
     case: &'a Case,
-    simulation: Simulation<D>,
+    simulation: Simulation,
     writer: RunWriter,
     manifest: Manifest,
     weights: Vec<f64>,
@@ -122,10 +121,16 @@ pub fn run(
     observe: &mut dyn FnMut(&Progress),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
-    match case.dimension {
-        1 => run_in::<1>(case, source, directory, options, observe, stop),
-        _ => run_in::<2>(case, source, directory, options, observe, stop),
-    }
+    let simulation = simulation(case, options.threads).map_err(RunError::Case)?;
+    let resolved = serde_json::to_value(case).map_err(|e| RunError::Incompatible { what: e.to_string() })?;
+    let version = env!("CARGO_PKG_VERSION");
+    let mut manifest = Manifest::new(version, resolved, source, columns(case, &simulation.model), options.threads);
+    manifest.sides = sides(&simulation.model);
+    manifest.warnings = case.warnings();
+    let writer = RunWriter::create(directory, &manifest, &bytes(&simulation.state)?)?;
+    let mut session = Session::new(case, simulation, writer, manifest);
+    session.write_start()?;
+    session.go(observe, stop, Vec::new())
 }
 
 /// Goes on with a run that was stopped or killed; a finished one is returned as it is.
@@ -146,46 +151,7 @@ pub fn resume(
             manifest.version
         ),
     })?;
-    match case.dimension {
-        1 => resume_in::<1>(&case, directory, options, observe, stop),
-        _ => resume_in::<2>(&case, directory, options, observe, stop),
-    }
-}
-
-fn run_in<const D: usize>(
-    case: &Case,
-    source: Source,
-    directory: &Path,
-    options: Options,
-    observe: &mut dyn FnMut(&Progress),
-    stop: &AtomicBool,
-) -> Result<Outcome, RunError>
-where
-    Space: Dimension<D>,
-{
-    let simulation = Simulation::<D>::new(case, options.threads).map_err(RunError::Case)?;
-    let resolved = serde_json::to_value(case).map_err(|e| RunError::Incompatible { what: e.to_string() })?;
-    let version = env!("CARGO_PKG_VERSION");
-    let mut manifest = Manifest::new(version, resolved, source, columns(case, &simulation.model), options.threads);
-    manifest.sides = sides(&simulation.model);
-    manifest.warnings = case.warnings();
-    let writer = RunWriter::create(directory, &manifest, &bytes(&simulation.state)?)?;
-    let mut session = Session::new(case, simulation, writer, manifest);
-    session.write_start()?;
-    session.go(observe, stop, Vec::new())
-}
-
-fn resume_in<const D: usize>(
-    case: &Case,
-    directory: &Path,
-    options: Options,
-    observe: &mut dyn FnMut(&Progress),
-    stop: &AtomicBool,
-) -> Result<Outcome, RunError>
-where
-    Space: Dimension<D>,
-{
-    let manifest = Manifest::read(directory)?;
+    let case = &case;
     if manifest.status == Status::Finished {
         // A kill may have come between the last row and the verdicts.
         if manifest.expectations.is_empty() {
@@ -206,7 +172,7 @@ where
         what: format!("the checkpoint of {} does not fit this version of Carom: {error}", directory.display()),
     })?;
     let dofs = state.y.len();
-    let simulation = Simulation::<D>::resume(case, options.threads, state).map_err(RunError::Case)?;
+    let simulation = resumed(case, options.threads, state).map_err(RunError::Case)?;
     if dofs != simulation.model.dofs() {
         return Err(RunError::Incompatible {
             what: format!("the checkpoint has {dofs} dofs, the case {}", simulation.model.dofs()),
@@ -226,11 +192,8 @@ where
     session.go(observe, stop, remarks)
 }
 
-impl<'a, const D: usize> Session<'a, D>
-where
-    Space: Dimension<D>,
-{
-    fn new(case: &'a Case, simulation: Simulation<D>, mut writer: RunWriter, manifest: Manifest) -> Self {
+impl<'a> Session<'a> {
+    fn new(case: &'a Case, simulation: Simulation, mut writer: RunWriter, manifest: Manifest) -> Self {
         writer.field_format(case.output.format);
         let at = |time: &f64| (time / simulation.dt).round() as u64;
         let field_steps = case.output.at_times.iter().map(at).collect();
@@ -346,15 +309,15 @@ where
             }
             let weights = consistent_weights(contact, state, self.case.thickness);
             for pair in pairs.iter().filter(|p| p.active) {
-                let node = contact.method.secondary()[pair.node];
-                let y = state.y.as_chunks::<D>().0[node];
+                let node = contact.kinematics.secondary()[pair.node];
+                let y = &state.y[node * model.dimension..(node + 1) * model.dimension];
                 let (gap, normal) = gap_of(contact, pair, state);
                 self.writer.contact(&ContactRow {
                     step: state.step,
                     time: state.time,
                     contact: contact.name.as_str().into(),
                     node: node as u64,
-                    point: std::array::from_fn(|i| if i < D { y[i] } else { 0.0 }),
+                    point: std::array::from_fn(|i| y.get(i).copied().unwrap_or(0.0)),
                     facet: pair.facet as u64,
                     xi: pair.xi,
                     gap,
@@ -442,7 +405,7 @@ where
     }
 }
 
-fn stressed<const D: usize>(simulation: &Simulation<D>) -> Vec<bool> {
+fn stressed(simulation: &Simulation) -> Vec<bool> {
     let Simulation { model, state, .. } = simulation;
     model.probes.iter().map(|probe| probe.has_stress(model, state)).collect()
 }

@@ -1,6 +1,6 @@
 //! Unit labels of derived quantities, from the case's labels of length, time and mass. Nothing is converted.
 
-use crate::case::Case;
+use carom_case::Case;
 
 /// Labels of every kind of column.
 #[derive(Clone, Debug)]

@@ -5,7 +5,7 @@ use std::path::Path;
 use carom_record::{Manifest, Run, Status};
 
 use super::session::RunError;
-use crate::case::ExpectSpec;
+use carom_case::ExpectSpec;
 
 /// Holds the record against the case's expectations and writes the verdicts into the manifest. A run that stopped is judged only if one of
 /// them asks whether it did.

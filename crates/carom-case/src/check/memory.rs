@@ -1,0 +1,63 @@
+//! Whether the model fits into memory, estimated before anything is allocated.
+//!
+//! Per node of degree-k cells in dimension D, with c nodes coupled to it (mean over a large mesh: 3, 4, 5 for L2 L3 L4; 7, 12, 19 for T3 T6
+//! T10): half the matrix with 8-byte values and indices, 16·D²·c/2; its factor, a fill of c·log₂n/2 by nested dissection in the plane and c/2
+//! on a line, twice (numbers and scratch); a dozen state vectors.
+
+use carom_solid::Element;
+
+use super::Check;
+use crate::{BodySpec, MeshSpec};
+
+/// Taken where the machine does not tell.
+const ASSUMED: f64 = 8.0 * 1024.0 * 1024.0 * 1024.0;
+
+/// Bytes a body of n nodes will need.
+fn bytes(element: Element, nodes: f64) -> f64 {
+    let coupled = match element {
+        Element::L2 => 3.0,
+        Element::L3 => 4.0,
+        Element::L4 => 5.0,
+        Element::T3 => 7.0,
+        Element::T6 => 12.0,
+        Element::T10 => 19.0,
+    };
+    let d = element.dimension() as f64;
+    let levels = if element.dimension() == 1 { 1.0 } else { nodes.max(2.0).log2() };
+    nodes * (16.0 * d * d * coupled * (0.5 + levels) + 12.0 * 8.0 * d)
+}
+
+/// Memory the machine can give now, in bytes.
+fn available() -> f64 {
+    let facts = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
+    let line = facts.lines().find_map(|line| line.strip_prefix("MemAvailable:"));
+    let kibibytes = line.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok());
+    kibibytes.map_or(ASSUMED, |k| k * 1024.0)
+}
+
+impl Check<'_> {
+    pub(super) fn memory(&mut self) {
+        let bodies = || self.draft.bodies.iter().enumerate().filter_map(|(i, b)| Some((i, b.as_ref()?)));
+        let need = |body: &BodySpec| bytes(body.element, body.mesh.estimate(body.element).1);
+        let total: f64 = bodies().map(|(_, b)| need(b)).sum();
+        let available = available();
+        let largest = bodies().max_by(|(_, a), (_, b)| need(a).total_cmp(&need(b)));
+        let Some((i, body)) = largest.filter(|_| total > available) else { return };
+        let (cells, nodes) = body.mesh.estimate(body.element);
+        let key = match body.mesh {
+            MeshSpec::File { .. } => "file",
+            MeshSpec::Interval { .. } | MeshSpec::Rectangle { .. } => "cells",
+            _ => "size",
+        };
+        let what =
+            format!("the mesh of `{}` is too big for the memory: {nodes:.3e} nodes in {cells:.3e} cells", body.name);
+        let why = format!("the model needs about {}, and {} are available", gibibytes(total), gibibytes(available));
+        let path = format!("body[{i}].mesh.{key}");
+        self.add(path, what, why, "use a coarser mesh or an element of lower degree");
+    }
+}
+
+fn gibibytes(bytes: f64) -> String {
+    let gib = bytes / (1024.0 * 1024.0 * 1024.0);
+    if gib < 1e6 { format!("{gib:.1} GiB") } else { format!("{gib:.1e} GiB") }
+}

@@ -1,0 +1,42 @@
+//! The mesh of a body: made by its shape or read from its file, and put where the case has it. A new built-in shape is one line here.
+
+use carom_solid::Mesh;
+use carom_solid::generate::{self, Refinement};
+
+use crate::mesh_file;
+use crate::{BodySpec, MeshSpec, RefineSpec};
+
+impl BodySpec {
+    /// The mesh in a case of this dimension.
+    ///
+    /// # Errors
+    /// Why there is none, in words.
+    pub fn make_mesh(&self, dimension: usize) -> Result<Mesh, String> {
+        let mut mesh = match self.mesh {
+            MeshSpec::File { ref file, ref surface, ref hash, .. } => mesh_file::mesh(file, dimension, surface, hash)?,
+            MeshSpec::Interval { .. } if dimension != 1 => return Err("shape \"interval\" needs dimension = 1".into()),
+            MeshSpec::Interval { min, max, cells } => said(generate::interval(self.element, min, max, cells))?,
+            _ if dimension != 2 => return Err("this shape needs dimension = 2".into()),
+            MeshSpec::Rectangle { min, max, cells } => said(generate::rectangle(self.element, min, max, cells))?,
+            MeshSpec::Disc { radius, center, size } => said(generate::disc(self.element, radius, center, size))?,
+            MeshSpec::HalfDisc { radius, center, size } => {
+                said(generate::half_disc(self.element, radius, center, size))?
+            }
+            MeshSpec::Ring { inner, outer, center, size } => {
+                said(generate::ring(self.element, inner, outer, center, size))?
+            }
+            MeshSpec::Polygon { ref points, size, ref refine } => {
+                let place = |r: &RefineSpec| Refinement { near: r.near, radius: r.radius, size: r.size };
+                said(generate::polygon(self.element, points, size, &refine.iter().map(place).collect::<Vec<_>>()))?
+            }
+        };
+        if let Some(place) = &self.place {
+            place.apply(&mut mesh);
+        }
+        Ok(mesh)
+    }
+}
+
+fn said(made: Result<Mesh, generate::MeshError>) -> Result<Mesh, String> {
+    made.map_err(|error| error.to_string())
+}

@@ -1,0 +1,126 @@
+//! A mesh from a .msh file. It is read when the case is, so that what is wrong with it stands under the key that named it; the resolved
+//! case keeps its hash, so that a run never goes on with another mesh than it began with.
+
+use std::path::Path;
+
+use carom_solid::{Element, Mesh, gmsh};
+
+use super::MeshSpec;
+use super::problem::Problem;
+use super::view::View;
+
+/// The named part of a file as a mesh of a dimension: a physical curve or surface.
+fn part(file: &gmsh::MshFile, dimension: usize, name: &str) -> Result<Mesh, gmsh::MshError> {
+    match dimension {
+        1 => file.bar(name),
+        _ => file.body(name),
+    }
+}
+
+/// What is known of a mesh without keeping it.
+struct Facts {
+    element: Element,
+    nodes: usize,
+    cells: usize,
+    sides: Vec<String>,
+    repairs: Vec<String>,
+}
+
+impl From<Mesh> for Facts {
+    fn from(mesh: Mesh) -> Self {
+        let (nodes, cells) = (mesh.nodes.len(), mesh.cell_count());
+        Self { element: mesh.element, nodes, cells, sides: mesh.sides.into_keys().collect(), repairs: mesh.repairs }
+    }
+}
+
+/// Reads the table of a mesh from a file; its path counts from the folder of the case.
+pub(super) fn read(
+    v: View,
+    dimension: usize,
+    element: Option<Element>,
+    folder: &Path,
+    path: &str,
+    problems: &mut Vec<Problem>,
+) -> Option<MeshSpec> {
+    let (name, surface) = (v.text("file")?, v.text("surface")?);
+    let joined = folder.join(&name);
+    let file = std::path::absolute(&joined).unwrap_or(joined);
+    let mut wrong = |key: &str, what: String, why: String, help: &str| {
+        problems.push(Problem::new(format!("{path}.{key}"), what, why, help));
+        None
+    };
+    let bytes = match bytes(&file) {
+        Ok(bytes) => bytes,
+        Err(why) => {
+            return wrong(
+                "file",
+                format!("the mesh \"{name}\" cannot be read"),
+                why,
+                "check the path; it counts from the folder of the case",
+            );
+        }
+    };
+    let facts = |file: gmsh::MshFile| part(&file, dimension, &surface).map(Facts::from);
+    let facts = match gmsh::read(&bytes).and_then(facts) {
+        Ok(facts) => facts,
+        Err(error) => {
+            let key = if matches!(error.fault, gmsh::Fault::NoName { .. }) { "surface" } else { "file" };
+            return wrong(key, format!("{name}: {error}"), error.why(), error.help());
+        }
+    };
+    if let Some(element) = element.filter(|e| *e != facts.element && e.dimension() == dimension) {
+        let what = format!("\"{surface}\" of {name} has {:?} cells, not {element:?}", facts.element);
+        let help =
+            format!("write element = \"{:?}\", or set Mesh.ElementOrder = {} in Gmsh", facts.element, element.degree());
+        return wrong("surface", what, "the element of a body is that of its mesh".into(), &help);
+    }
+    let hash = blake3::hash(&bytes).to_hex().to_string();
+    let Facts { nodes, cells, sides, repairs, .. } = facts;
+    Some(MeshSpec::File { file, surface, hash, nodes, cells, sides, repairs })
+}
+
+/// The file's bytes, or why there are none.
+fn bytes(file: &Path) -> Result<Vec<u8>, String> {
+    let facts = std::fs::metadata(file).map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound => format!("there is no file {}", file.display()),
+        _ => e.to_string(),
+    })?;
+    if !facts.is_file() {
+        return Err(format!("{} is not a file", file.display()));
+    }
+    std::fs::read(file).map_err(|e| e.to_string())
+}
+
+/// The mesh of a resolved case, if its file is still the one the case was resolved with.
+///
+/// # Errors
+/// In words, with the file's name.
+pub(crate) fn mesh(file: &Path, dimension: usize, surface: &str, hash: &str) -> Result<Mesh, String> {
+    let bytes = unchanged(file, hash)?;
+    let told = |e: gmsh::MshError| format!("{}: {e}; {}", file.display(), e.why());
+    gmsh::read(&bytes).and_then(|f| part(&f, dimension, surface)).map_err(told)
+}
+
+fn unchanged(file: &Path, hash: &str) -> Result<Vec<u8>, String> {
+    let bytes = bytes(file)?;
+    if blake3::hash(&bytes).to_hex().as_str() == hash {
+        return Ok(bytes);
+    }
+    let file = file.display();
+    Err(format!(
+        "the mesh file {file} has changed since the run began (BLAKE3 was {hash}): restore it, or run the case anew"
+    ))
+}
+
+impl MeshSpec {
+    /// Whether the mesh is still the one the case was resolved with: that its file is there and unchanged.
+    ///
+    /// # Errors
+    /// In words, with the file's name.
+    pub fn verify(&self) -> Result<(), String> {
+        match self {
+            Self::File { file, hash, .. } => unchanged(file, hash).map(|_| ()),
+            _ => Ok(()),
+        }
+    }
+}

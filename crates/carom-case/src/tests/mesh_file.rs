@@ -1,0 +1,65 @@
+//! Meshes from files: found from the case's folder, known by their hash, their faults placed under the key that named them.
+
+use super::*;
+
+const GMSH: &str = include_str!("../../../../cases/gmsh/gmsh.toml");
+
+/// As if it stood beside its meshes.
+fn resolved(text: &str, sets: &[&str]) -> Result<Case, Vec<Diagnostic>> {
+    resolved_as(concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/gmsh/gmsh.toml"), text, sets)
+}
+
+fn told(set: &str) -> Diagnostic {
+    let mut problems = resolved(GMSH, &[set]).expect_err(set);
+    assert_eq!(problems.len(), 1, "{problems:#?}");
+    problems.remove(0)
+}
+
+#[test]
+fn the_shipped_case_knows_its_meshes() {
+    let case = resolved(GMSH, &[]).unwrap();
+    let MeshSpec::File { file, surface, hash, sides, repairs, .. } = &case.bodies[1].mesh else { panic!() };
+    assert!(file.is_absolute() && file.ends_with("impact.msh"));
+    assert_eq!((surface.as_str(), hash.len(), repairs.len()), ("prism", 64, 0));
+    assert_eq!(*sides, ["axis", "bottom", "right", "top"]);
+    assert!(case.bodies[1].mesh.estimate(carom_solid::Element::T10).1 > 300.0);
+    let back: Case = serde_json::from_str(&serde_json::to_string(&case).unwrap()).unwrap();
+    assert_eq!(back, case);
+    assert_eq!(case.bodies[1].mesh.verify(), Ok(()));
+}
+
+#[test]
+fn what_is_wrong_stands_under_its_key() {
+    let missing = told("body.prism.mesh.file=nowhere.msh");
+    assert!(missing.what.contains("\"nowhere.msh\" cannot be read") && missing.why.contains("there is no file"));
+    assert!(told("body.prism.mesh.file=../gmsh").why.contains("is not a file"));
+    assert!(told("body.prism.mesh.file=gmsh.toml").what.contains("this is no Gmsh mesh"));
+    let name = told("body.prism.mesh.surface=prisma");
+    assert!(name.what.contains("\"prisma\"") && name.why.contains("cylinder, prism"), "{name}");
+    assert!(told("body.prism.element=T6").help.contains("element = \"T10\""));
+    let side = told("contact.strike.primary=prism.tob");
+    assert!(side.help.contains("`prism.top`"), "{side}");
+    assert!(told("body.prism.mesh={ file = \"impact.msh\" }").what.contains("no `surface`"));
+    assert!(told("body.prism.mesh={ surface = \"prism\" }").help.contains("or give `file`"));
+    let both = told("body.prism.mesh={ file = \"impact.msh\", surface = \"prism\", shape = \"disc\" }");
+    assert!(both.what.contains("unknown key `shape` in mesh from a file"), "{both}");
+}
+
+#[test]
+fn a_changed_mesh_is_noticed() {
+    let folder = std::env::temp_dir().join(format!("carom-mesh-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let copy = folder.join("copy.msh");
+    let original = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/gmsh/impact.msh");
+    std::fs::copy(original, &copy).unwrap();
+    let case = resolved(GMSH, &[&format!("body.prism.mesh.file={}", copy.display())]).unwrap();
+    assert!(case.bodies[1].make_mesh(2).is_ok());
+    let mut text = std::fs::read_to_string(&copy).unwrap();
+    text.push('\n');
+    std::fs::write(&copy, text).unwrap();
+    let why = case.bodies[1].mesh.verify().unwrap_err();
+    assert!(why.contains("copy.msh has changed"), "{why}");
+    assert!(case.bodies[1].make_mesh(2).unwrap_err().contains("has changed"));
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!(case.bodies[1].mesh.verify().unwrap_err().contains("there is no file"));
+}

@@ -1,0 +1,373 @@
+//! What messages say: some word by word, the others by their essence and their place.
+
+use super::{BARS, IMPACT, resolved};
+use crate::{CaseError, Document, read};
+
+fn shown(text: &str, sets: &[&str]) -> String {
+    let found = resolved(text, sets).expect_err("the case is wrong");
+    found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n")
+}
+
+#[test]
+fn word_by_word() {
+    assert_eq!(
+        shown(&IMPACT.replace("density", "densty"), &[]),
+        "a/case.toml:11:1: unknown key `densty` in [[material]]
+  densty = 0.25
+  ^^^^^^
+why: the keys of [[material]] are: name, law, density, lambda, mu, young, poisson
+try: did you mean `density`?"
+    );
+    assert_eq!(
+        shown(&IMPACT.replace("\"prism.top\"", "\"prism.topp\""), &[]),
+        "a/case.toml:39:11: body `prism` has no side `topp`
+  primary = \"prism.topp\"
+            ^^^^^^^^^^^^
+why: its mesh has the sides: prism.bottom, prism.right, prism.top, prism.left
+try: did you mean `prism.top`?"
+    );
+    assert_eq!(
+        shown(IMPACT, &["time.scheme.rho_inf=1.2"]),
+        "--set:1:21: `rho_inf` must be a number in [0, 1], not 1.2
+  time.scheme.rho_inf=1.2
+                      ^^^
+why: Spectral radius at infinite frequency: 0 damps it within steps, 1 not at all.
+try: write for example `rho_inf = 0.8`"
+    );
+}
+
+/// (overrides of the impact, what the message contains)
+const IMPACTS: &[(&[&str], &[&str])] = &[
+    // types and ranges
+    (&["material.rubber.density=heavy"], &["`density` must be a number ≥ 0, not the text \"heavy\""]),
+    (&["material.rubber.density=-0.25"], &["must be a number ≥ 0, not -0.25", "did you mean `density = 0.25`?"]),
+    (&["time.end=nan"], &["`end` is NaN", "every number of a case is finite"]),
+    (&["body.cylinder.gravity=[0.0, -inf]"], &["`gravity` is -inf"]),
+    (&["body.cylinder.gravity=[0.0]"], &["must be a list of 2 numbers, not a list of 1 values"]),
+    (&["body.cylinder.gravity=[0.0, 0.0, -9.81]"], &["a list of 3 values"]),
+    (&["body.cylinder.mesh.radius=0"], &["`radius` must be a number > 0, not 0"]),
+    (&["body.cylinder.mesh.size=0.0"], &["`size` must be a number > 0, not 0"]),
+    (
+        &["body.cylinder.mesh.size=0.6"],
+        &["`size` = 0.6 is larger than the radius, 0.5", "give size ≤ 0.5, for example size = 0.1"],
+    ),
+    (
+        &["body.prism.mesh={ shape = \"rectangle\", min = [0.1, -0.5], max = [0.3, 0.0], size = 0.6 }"],
+        &["`size` = 0.6 is larger than the longer side, 0.5"],
+    ),
+    (&["body.prism.mesh.cells=[8, 0]"], &["must be a whole number ≥ 1, not the whole number 0"]),
+    (&["body.prism.mesh.cells=[8, 4.0]"], &["must be a list of 2 whole numbers ≥ 1, not the number 4"]),
+    (&["body.prism.mesh.max=[1.0, -0.5]"], &["`max` = -0.5 is not greater than `min` = -0.5"]),
+    (&["thickness=0"], &["`thickness` must be a number > 0"]),
+    (&["material.rubber.mu=0"], &["`mu` must be a number > 0"]),
+    (&["material.rubber.lambda=-10"], &["Λ = -10, μ = 15 are not positive definite", "lambda must be > -10"]),
+    (&["material.rubber.young=3.0"], &["not one pair: lambda, mu, young"]),
+    (&["body.cylinder.element=T7"], &["`element` cannot be \"T7\"", "T10"]),
+    (&["body.cylinder.element=L2"], &["the element L2 is of dimension 1", "use T3, T6 or T10"]),
+    (&["dimension=3"], &["this version has no dimension 3", "later version"]),
+    (&["dimension=two"], &["`dimension` must be a whole number"]),
+    (&["newton.max_iterations=0"], &["whole number ≥ 1"]),
+    (&["time.energy_guard=true"], &["a number > 0, or false, not `true`"]),
+    // schemes
+    (&["time.scheme.kind=chung-hulber"], &["did you mean `chung-hulbert`?"]),
+    (&["time.scheme={ kind = \"bathe\", rho_inf = 1.5 }"], &["`rho_inf` must be a number in [0, 1]"]),
+    (&["time.scheme={ kind = \"hu\", rho_inf = 0.5 }"], &["unknown key `rho_inf` in scheme \"hu\"", "scheme \"wbz\""]),
+    (&["time.scheme={ kind = \"newmark\", beta = 0.25 }"], &["needs `gamma`"]),
+    (&["time.scheme={ kind = \"hht\", alpha = -0.1 }"], &["did you mean `alpha = 0.1`?"]),
+    (&["time.scheme=hu"], &["`scheme` must be a table { kind = \"…\", … }, not the text \"hu\""]),
+    // steps
+    (&["time.step=7e-3"], &["is not a multiple of the step", "end / step = 107.142857", "end = 0.749 or end = 0.756"]),
+    (&["time.step=1.0"], &["the step 1 is longer than the run"]),
+    (&["time.step=7.5e-13"], &["too many steps"]),
+    (&["output.at_times=[0.1, 0.8]"], &["0.8 is not a time of this run"]),
+    // names
+    (&["body.cylinder.material=ruber"], &["there is no material `ruber`", "did you mean `rubber`?"]),
+    (&["body.prism.name=cylinder"], &["two tables [[body]] are named `cylinder`"]),
+    (&["probe.A.name=a.b"], &["\"a.b\" cannot be a name", "`name = \"a_b\"`"]),
+    (&["probe.A.body=cylindr"], &["there is no body `cylindr`", "did you mean `cylinder`?"]),
+    (&["contact.strike.secondary=prism.left"], &["both sides of `strike` belong to the body `prism`"]),
+    (&["contact.strike.secondary=cylinder"], &["`cylinder` is not a side", "cylinder.arc, cylinder.axis"]),
+    (&["contact.strike.secondary=cylindr.arc"], &["there is no body `cylindr`", "did you mean `cylinder.arc`?"]),
+    (&["body.cylindr.element=T6"], &["no `body` is named `cylindr`", "did you mean `body.cylinder`?"]),
+    (&["expect=[{ what = \"min A.ux\", at_most = 0 }]"], &["no column `A.ux`", "did you mean `A.uy`?"]),
+    (&["expect=[{ what = \"at 0.9 A.uy\", at_most = 0 }]"], &["`0.9` is not a time of this run"]),
+    (&["expect=[{ what = \"lowest A.uy\", at_most = 0 }]"], &["is not a quantity to expect"]),
+    (&["expect=[{ what = \"restitutoin\", at_most = 1 }]"], &["there is no metric `restitutoin`", "`restitution`?"]),
+    (&["expect=[{ what = \"rms [ A.uy - A.uz ]\", at_most = 0 }]"], &["no column `A.uz`", "did you mean `A.uy`?"]),
+    (&["expect=[{ what = \"A.uy\", at_most = 0 }]"], &["no metric `A.uy`", "write for example `last A.uy`"]),
+    (&["expect=[{ what = \"last A.uy of 'x'\", at_most = 0 }]"], &["no arm \"x\"", "only a study has arms"]),
+    (
+        &["expect=[{ what = \"A.uy\", formula = \"2*sun(t)\", tolerance = 0 }]"],
+        &["no function `sun`", "did you mean `sin`"],
+    ),
+    (&["expect=[{ what = \"last A.uy\", formula = \"t\", tolerance = 0 }]"], &["is not a quantity to expect"]),
+    (&["expect=[{ what = \"last A.uy\", norm = \"rms\", at_most = 0 }]"], &["`norm` without `formula`"]),
+    (
+        &["expect=[{ what = \"order\", of = \"last A.uy\", against = \"time.step\", at_least = 2 }]"],
+        &["no number of one run", "of a study"],
+    ),
+    (&["expect=[{ what = \"last A.uy\", against = \"time.step\", at_most = 0 }]"], &["`against` without an order"]),
+    (&["expect=[{ what = \"min A.uy\", slow = 1, at_most = 0 }]"], &["`slow`", "true or false"]),
+    (&["expect=[{ what = \"A.uy\", formula = \"exact\", tolerance = 0 }]"], &["no exact formula of `A.uy`", "[exact]"]),
+    (&["exact={ \"A.uz\" = \"t\" }"], &["no column `A.uz`", "did you mean `A.uy`?"]),
+    (&["exact={ \"A.uy\" = \"s\" }"], &["no variable `s`"]),
+    (&["expect=[{ what = \"min A.uy\", value = 0 }]"], &["does not set one bound", "it has value"]),
+    // loads, motions and their formulas
+    (
+        &["load=[{ on = [\"prism.top\"], pressure = \"2*sun(t)\" }]"],
+        &[
+            "--set:1:43: the formula of `pressure`: there is no function `sun`: did you mean `sin`?",
+            "\n  load=",
+            "^^^\n",
+        ],
+    ),
+    (&["load=[{ on = [\"prism.top\"], traction = [\"X +\", 1] }]"], &["the formula ends where a number"]),
+    (&["load=[{ on = [\"prism.top\"], traction = [\"Z\", 1] }]"], &["no variable `Z`: the variables are X, Y, t"]),
+    (&["load=[{ on = [\"prism.top\"], traction = [1.0] }]"], &["`traction` must be a list of 2 numbers or formulas"]),
+    (&["load=[{ on = [\"prism.topp\"], pressure = 1 }]"], &["body `prism` has no side `topp`", "`prism.top`?"]),
+    (&["load=[{ body = \"prisma\", body_force = [0, 1] }]"], &["there is no body `prisma`", "did you mean `prism`?"]),
+    (&["load=[{ on = [\"prism.top\"] }]"], &["does not say one force and its place: it has no force and on"]),
+    (&["load=[{ body = \"prism\", pressure = 1 }]"], &["it has pressure and body"]),
+    (&["load=[{ on = [\"prism.top\"], pressure = 1, table = \"no.csv\" }]"], &["the table \"no.csv\" cannot be used"]),
+    (&["support=[{ on = [\"prism.bottom\"] }]"], &["the support neither holds nor moves"]),
+    (
+        &["support=[{ on = [\"prism.bottom\"], fix = [\"y\"], move = { y = \"t\" } }]"],
+        &["the direction y is both fixed and moved"],
+    ),
+    (&["body.prism.velocity=[\"t\", 0]"], &["no variable `t`: the variables are X, Y"]),
+    (&["body.prism.velocity={ angular = 1.0 }"], &["the rotation has no centre", "add `about = [x, y]`"]),
+    (
+        &["body.prism.velocity=[1, 0]", "time.scheme={ kind = \"static\" }"],
+        &["the scheme \"static\" has no velocities"],
+    ),
+    (&["time.scheme={ kind = \"static\", rho_inf = 1 }"], &["unknown key `rho_inf` in scheme \"static\""]),
+    // a motion that is given
+    (
+        &["manufactured.y=[\"X\", \"Y + sin(\"]"],
+        &[
+            "the formula of `y`",
+            "a manufactured motion has no support of its own",
+            "a manufactured motion has no contact",
+        ],
+    ),
+    (&["manufactured.y=[\"X\"]"], &["`y` must be a list of 2 numbers or formulas"]),
+    (&["expect=[{ what = \"last error_l2\", at_most = 0 }]"], &["no column `error_l2`"]),
+    // contact without mass
+    (&["material.rubber.density=0"], &["nothing that touches in `strike` has mass", "persistency = \"none\""]),
+    // combinations without meaning
+    (
+        &["contact.strike.law=predictor", "time.scheme.kind=bathe"],
+        &["scheme `bathe` has no predictor to project", "several stages"],
+    ),
+    (
+        &["contact.strike.law=predictor", "contact.strike.enforcement=penalty"],
+        &["a penalty has no predictor to project"],
+    ),
+    (&["contact.strike.law=predictor", "contact.strike.persistency=project"], &["this projection has no meaning"]),
+    (
+        &["contact.strike.stiffness=3.0"],
+        &["this stiffness has no meaning", "only enforcement = \"penalty\" has springs"],
+    ),
+    // schemes with a contact law of their own
+    (&["contact.strike.restitution=0.5"], &["chung-hulbert has no restitution, and e = 0.5 was given", "moreau-jean"]),
+    (&["contact.strike.law=velocity"], &["law = \"velocity\" holds velocities", "the unknowns of chung-hulbert"]),
+    (&["time.scheme={ kind = \"moreau-jean\", theta = 0.4 }"], &["`theta` must be a number in [0.5, 1]"]),
+    (
+        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.law=position"],
+        &["law = \"position\" holds positions", "the unknowns of moreau-jean are velocities and impulses"],
+    ),
+    (
+        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.persistency=project"],
+        &["persistency = \"project\" has no meaning here", "leave it out"],
+    ),
+    (
+        &["time.scheme={ kind = \"central-difference\" }"],
+        &["central-difference needs a lumped mass, and that of body `cylinder` is consistent", "mass = \"lumped\""],
+    ),
+    (
+        &["time.scheme={ kind = \"paoli-schatzman\" }", "material.rubber.density=0", "contact.strike.persistency=none"],
+        &["body `cylinder` has no mass, and paoli-schatzman divides by it"],
+    ),
+    (
+        &[
+            "time.scheme={ kind = \"moreau-jean\", theta = 1.0 }",
+            "support=[{ on = [\"prism.bottom\"], move = { y = \"0.1*t\" } }]",
+        ],
+        &["moreau-jean has no supports that move", "chung-hulbert"],
+    ),
+    (
+        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.enforcement=penalty"],
+        &["enforcement = \"penalty\" has no meaning here"],
+    ),
+    (
+        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "body.prism.mass=redistributed"],
+        &["body `prism` has nodes without mass, and moreau-jean divides by it"],
+    ),
+    // later versions
+    (&["plane=axisymmetric"], &["this version does not have `plane = \"axisymmetric\"` yet"]),
+    (&["contact.strike.method=mortar"], &["does not have `method = \"mortar\"` yet"]),
+    (&["contact.strike.enforcement=augmented"], &["use one of: multiplier, penalty"]),
+    (&["time.step={ initial = 1e-3 }"], &["`step` must be a number > 0, not a table", "A later version"]),
+    (&["body.prism.mesh={ file = \"a.msh\", surface = \"prism\" }"], &["the mesh \"a.msh\" cannot be read"]),
+    // shapes
+    (
+        &["body.prism.mesh={ shape = \"ring\", inner = 1.0, outer = 1.0, center = [0, 0], size = 1 }"],
+        &["`outer` = 1 is not"],
+    ),
+    (&["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 1]], size = 1 }"], &["at least 3 points"]),
+    (&["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 1], [2]], size = 1 }"], &["`points` must be"]),
+    (
+        &["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 1], [1, 0], [0, 1]], size = 1 }"],
+        &["side1 and side3 of the polygon cross", "list its corners in order"],
+    ),
+    (
+        &["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 0], [1, 1]], size = 1e-9 }"],
+        &["the mesh of `prism` is too big"],
+    ),
+    (
+        &["body.cylinder.mesh.refine=[{ near = [0.0, 0.0], size = 0.1 }]"],
+        &["unknown key `refine`", "is a key of mesh of shape \"polygon\""],
+    ),
+    (&["body.cylinder.place={ turn = 30 }"], &["unknown key `turn` in place", "rotate, about, shift"]),
+    // keys of other tables
+    (&["time.tolerance=1e-9"], &["unknown key `tolerance` in [time]", "is a key of [newton]"]),
+    // memory
+    (&["body.prism.mesh.cells=[10000000000, 1]"], &["too big for the memory: 1.200e11 nodes in 2.000e10 cells"]),
+    (&["body.prism.mesh.cells=[9223372036854775807, 9223372036854775807]"], &["too big for the memory"]),
+    (&["body.cylinder.mesh.size=1e-300"], &["the mesh of `cylinder` is too big"]),
+    // overrides themselves
+    (&["time.step"], &["there is no `=`"]),
+    (&["=3"], &["this is not a key"]),
+    (&["title.sub=3"], &["`title` has no key `sub`", "`title` is the text"]),
+    (&["time.scheme={ kind = "], &["--set:1:", "this is not TOML"]),
+    (&["tim.step=1e-3"], &["unknown key `tim`", "did you mean"]),
+];
+
+#[test]
+fn wrong_impacts() {
+    for (sets, parts) in IMPACTS {
+        let told = shown(IMPACT, sets);
+        for part in *parts {
+            assert!(told.contains(part), "{sets:?}: {part:?} not in\n{told}");
+        }
+        assert!(told.lines().all(|line| !line.ends_with(": ")), "{told}");
+    }
+}
+
+#[test]
+fn wrong_bars() {
+    let cases: &[(&str, &str, &[&str])] = &[
+        ("fix = [\"x\"]", "fix = [\"x\", \"y\"]", &["there is no direction y"]),
+        ("\"sigma_xx\"]", "\"sigma_yy\"]", &["there is no quantity sigma_yy"]),
+        ("[\"ux\", ", "[\"sigma_xx\", ", &["sigma_xx is recorded twice"]),
+        ("normal = [2]", "normal = [0]", &["the normal is zero"]),
+        ("shape = \"interval\", min = 0,", "shape = \"disc\", min = 0,", &["the shape \"disc\" is of dimension 2"]),
+        ("poisson = 0.3", "poisson = 0.5", &["`poisson` must be a number in (-1, 0.5), not 0.5"]),
+        ("[[support]]", "[support]", &["write its header in double brackets: [[support]]"]),
+        (
+            "secondary = \"left.left\"",
+            "secondary = \"left.top\"",
+            &["body `left` has no side `top`", "left.left, left.right"],
+        ),
+        ("primary = { plane = { point = [-1.0], normal = [2] } }", "primary = \"right.left\"\n#", &[]),
+    ];
+    for (from, to, parts) in cases {
+        let text = BARS.replacen(from, to, 1);
+        assert_ne!(&text, BARS);
+        let told = resolved(&text, &[]).map_or_else(|_| shown(&text, &[]), |_| String::new());
+        for part in *parts {
+            assert!(told.contains(part), "{to}: {part:?} not in\n{told}");
+        }
+    }
+}
+
+#[test]
+fn pairs_are_contacts_once() {
+    let twice = "\n[[contact]]\nname = \"again\"\nsecondary = \"prism.top\"\nprimary = \"cylinder.arc\"\n";
+    let told = shown(&format!("{IMPACT}{twice}"), &[]);
+    assert!(told.contains("these two sides are a contact already"), "{told}");
+}
+
+#[test]
+fn all_problems_in_one_pass() {
+    let told = shown(
+        &IMPACT.replace("density", "densty").replace("prism.top\"", "prism.topp\"").replace("end = 0.75", "end = -1"),
+        &["time.scheme.rho_inf=2"],
+    );
+    for part in ["densty", "topp", "`end` must be", "`rho_inf` must be"] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    // In the order of the file, overrides last.
+    let lines: Vec<_> = told.lines().filter(|l| l.starts_with("a/case") || l.starts_with("--set")).collect();
+    assert_eq!(lines.len(), 4);
+    assert!(lines[3].starts_with("--set"));
+}
+
+#[test]
+fn texts_that_are_no_case() {
+    let told = |text: &str| shown(text, &[]);
+    assert_eq!(
+        told(
+            "title = \"a
+"
+        )
+        .lines()
+        .next(),
+        Some("a/case.toml:1:11: this is not TOML")
+    );
+    let open = told(&IMPACT.replace("half model\"", "half model"));
+    assert!(open.starts_with("a/case.toml:4:49: this is not TOML\n  title = \"Cylinder"), "{open}");
+    assert!(told("").contains("the case is empty"));
+    assert!(told("# nothing\n").contains("the case is empty"));
+    assert!(told("title = 1\ntitle = 2\n").contains("duplicate key"));
+    assert!(told(&format!("a = {}", "[".repeat(100_000))).contains("this is not TOML"));
+    let study = told("case = \"impact.toml\"\n[[arm]]\nname = \"a\"\n");
+    assert!(study.starts_with("a/case.toml:1:1: this is a study, not a case"), "{study}");
+    assert!(told("a = 1\n\u{0}").contains("this is not TOML"));
+}
+
+/// Tables of loads are told of where the case names them, with their own file and line.
+#[test]
+fn tables_of_loads() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("case.toml");
+    let load = "\n[[load]]\non = [\"prism.top\"]\npressure = 1\ntable = \"a.csv\"\n";
+    std::fs::write(&path, format!("{IMPACT}{load}")).unwrap();
+    let line = IMPACT.lines().count() + 5;
+    let told = |table: &str| {
+        std::fs::write(folder.path().join("a.csv"), table).unwrap();
+        let document = Document::open(&path, &[]).unwrap();
+        document.diagnose_all(&read(&document).unwrap_err()).to_string()
+    };
+    for (table, messages) in [
+        ("t,force\n0,1\n9,1\n", ["the table \"a.csv\" cannot be used", "a.csv:1: there is no column `value`"]),
+        ("t,value\n0,1\n0.5,1\n", ["the table \"a.csv\" does not cover the run", "its last t = 0.5"]),
+        ("t,value\n0.1,1\n9,1\n", ["the table \"a.csv\" does not cover the run", "its first line is t = 0.1"]),
+    ] {
+        let told = told(table);
+        assert!(told.contains(&format!("case.toml:{line}:9: ")), "{told}");
+        assert!(messages.iter().all(|m| told.contains(m)), "{told}");
+    }
+}
+
+#[test]
+fn files_that_are_no_case() {
+    let place = std::env::temp_dir().join(format!("carom-case-{}", std::process::id()));
+    std::fs::create_dir_all(&place).unwrap();
+    let told = |name: &str, bytes: Option<&[u8]>| {
+        let path = place.join(name);
+        if let Some(bytes) = bytes {
+            std::fs::write(&path, bytes).unwrap();
+        }
+        match Document::open(&path, &[]) {
+            Err(CaseError::Wrong(found)) => found[0].to_string(),
+            other => panic!("{other:?}"),
+        }
+    };
+    assert!(told("none.toml", None).contains("there is no such file"));
+    assert!(told("", None).contains("this is a directory"));
+    assert!(told("empty.toml", Some(b"")).contains("the case is empty"));
+    assert!(told("binary.toml", Some(b"\x7fELF\xff\x00")).contains("byte 5 is not UTF-8"));
+    assert!(told("huge.toml", Some(&vec![b'#'; 10_000_001])).contains("too large to be a case"));
+    std::fs::remove_dir_all(&place).unwrap();
+}

@@ -1,0 +1,86 @@
+//! Springs that conserve energy: the discrete gradient of U(g) = k/2 min(g, 0)² along a gap that is itself carried from step
+//! to step (F. Armero, E. Petőcz, Comput. Methods Appl. Mech. Engrg. 158 (1998) 269–300).
+//!
+//! ```text
+//! g₁ = g₀ + ∇g(y_m)·Δy,   λ = (U(g₁) − U(g₀)) / (g₁ − g₀)   (U'(g₀) where they are equal),   f = λ ∇g(y_m),   y_m = (y₀ + y₁)/2
+//! ```
+//!
+//! so that f·Δy = U(g₁) − U(g₀) exactly, and force and moment balance at y_m as those of any Σ λ ∇g do. Where g is linear in y, g₁ is the gap; else it
+//! departs from it by terms of third order in Δy, and begins anew with each contact.
+
+use super::{Answer, Interface, Point};
+
+/// Energy-conserving springs with a stiffness for each secondary node.
+#[derive(Clone, Debug)]
+pub struct ConservingPenalty {
+    stiffness: Vec<f64>,
+}
+
+impl ConservingPenalty {
+    /// `stiffness`: force per gap, > 0, of each secondary node.
+    pub fn new(stiffness: Vec<f64>) -> Self {
+        Self { stiffness }
+    }
+}
+
+impl Interface for ConservingPenalty {
+    fn is_constraint(&self) -> bool {
+        false
+    }
+
+    fn acts_between(&self) -> bool {
+        true
+    }
+
+    fn respond(&self, at: &Point) -> Answer {
+        if !(at.gap.is_finite() && at.start.is_finite()) {
+            return Answer::default();
+        }
+        let k = self.stiffness[at.node];
+        let (lambda, slope) = discrete_gradient(k, at.start, at.gap - at.start);
+        let energy = 0.5 * k * at.gap.min(0.0).powi(2);
+        if slope > 0.0 {
+            Answer { active: true, lambda, open: 0.0, compliance: slope.recip(), energy }
+        } else {
+            Answer { energy, ..Answer::default() }
+        }
+    }
+
+    fn stiffness(&self, node: usize) -> Option<f64> {
+        Some(self.stiffness[node])
+    }
+}
+
+/// λ = ΔU/Δg of U = k/2 min(g, 0)² from `start` over `moved`, and ∂λ/∂g₁.
+fn discrete_gradient(k: f64, start: f64, moved: f64) -> (f64, f64) {
+    let end = start + moved;
+    match (start < 0.0, end < 0.0) {
+        (true, true) => (k * (start + 0.5 * moved), 0.5 * k),
+        (true, false) => (-0.5 * k * start * start / moved, 0.5 * k * (start / moved).powi(2)),
+        (false, true) => (0.5 * k * end * end / moved, k * end / moved * (1.0 - 0.5 * end / moved)),
+        (false, false) => (0.0, 0.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn work_is_the_change_of_energy_and_the_stiffness_a_difference() {
+        let energy = |g: f64| 0.5 * 7.0 * g.min(0.0).powi(2);
+        for start in [-0.3, -0.01, 0.0, 0.2] {
+            for end in [-0.4, -0.05, 0.1] {
+                let (lambda, stiffness) = discrete_gradient(7.0, start, end - start);
+                assert!((lambda * (end - start) - (energy(end) - energy(start))).abs() < 1e-15);
+                let h = 1e-6;
+                let difference = (discrete_gradient(7.0, start, end + h - start).0
+                    - discrete_gradient(7.0, start, end - h - start).0)
+                    / (2.0 * h);
+                assert!((difference - stiffness).abs() < 1e-7, "{start} {end}: {difference} {stiffness}");
+                assert!(lambda <= 0.0 && stiffness >= 0.0);
+            }
+        }
+        assert_eq!(discrete_gradient(7.0, -0.1, 0.0).0, 7.0 * -0.1);
+    }
+}

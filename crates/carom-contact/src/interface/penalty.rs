@@ -1,0 +1,34 @@
+//! Contact by springs of the potential U(g) = k/2 min(g, 0)²: λ = U'(g).
+
+use super::{Answer, Interface, Point};
+
+/// Springs with a stiffness for each secondary node.
+#[derive(Clone, Debug)]
+pub struct Penalty {
+    stiffness: Vec<f64>,
+}
+
+impl Penalty {
+    /// `stiffness`: force per gap, > 0, of each secondary node.
+    pub fn new(stiffness: Vec<f64>) -> Self {
+        Self { stiffness }
+    }
+}
+
+impl Interface for Penalty {
+    fn is_constraint(&self) -> bool {
+        false
+    }
+
+    fn respond(&self, at: &Point) -> Answer {
+        let k = self.stiffness[at.node];
+        if at.gap >= 0.0 {
+            return Answer::default();
+        }
+        Answer { active: true, lambda: k * at.gap, open: 0.0, compliance: k.recip(), energy: 0.5 * k * at.gap * at.gap }
+    }
+
+    fn stiffness(&self, node: usize) -> Option<f64> {
+        Some(self.stiffness[node])
+    }
+}

@@ -1,0 +1,290 @@
+//! Secondary nodes against a primary side of facets: curved ones of any order in the plane, a point at the end of a bar.
+//!
+//! Gap at the closest point ξ of the pair's facet, with t = y_S', J = |t|, n = t turned right / J, κ = n·y_S'', a = J² − gκ (theory.md §1):
+//!
+//! ```text
+//! g = (y_N − y_S(ξ))·n        ∇g = N_n = (n; −φᵅ n)
+//! ∇²g = −(N_t T_nᵀ + T_n N_tᵀ)/a − κ/(a J²) N_t N_tᵀ − (g/a) T_n T_nᵀ,    N_t = (t; −φᵅ t),  T_n = (0; φ'ᵅ n)
+//! ```
+//!
+//! Of a point n = ±1, the direction out of its body, and ∇²g = 0. ξ is solved again in every call, up to |ξ| = 1.2 beyond an end; the pair is handed to
+//! the neighbour only between solves, and never back within a step.
+
+use carom_algebra::Mat;
+use carom_solid::FacetShape;
+
+use super::projection::FacetPoint;
+use super::surface::Surface;
+use super::trajectory::crossing;
+use super::{Kinematics, watch_every_node};
+use crate::pair::{ContactError, Pair, PairEvent, Pairing};
+use crate::places::Places;
+use crate::rows::Rows;
+
+/// How far beyond its end a facet is extrapolated.
+const REACH: f64 = 1.2;
+/// How far the closest point may wander while Newton has not converged.
+const WANDER: f64 = 3.0;
+/// Beyond this a pair is handed over while Newton is on its way, and beyond that also back.
+const FOLLOWED: f64 = 1.02;
+const FOLLOWED_BACK: f64 = 1.1;
+/// Cosine of the kink between neighbouring facets above which a node past both ends has left the side (a corner's vertex cone).
+const CORNER_COSINE: f64 = 0.87;
+/// A node this much behind a facet (times the facet's length) at the start of a step came from elsewhere, not through the facet.
+const BEHIND: f64 = 1e-6;
+
+/// Which gap decides that a node has reached the primary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detection {
+    /// The gap at the closest point; trajectories only give candidates.
+    ClosestPoint,
+    /// The gap at the point where the trajectories cross, eq. (8) as printed.
+    Trajectory,
+}
+
+/// Secondary nodes against a primary side of facets.
+#[derive(Clone, Debug)]
+pub struct NodeToFacet {
+    secondary: Vec<usize>,
+    primary: Surface,
+    detection: Detection,
+}
+
+impl NodeToFacet {
+    /// Secondary nodes and primary surface in global node numbers; a node of the primary itself is left out of the secondary.
+    pub fn new(secondary: Vec<usize>, primary: Surface, detection: Detection) -> Self {
+        Self { secondary, primary, detection }
+    }
+
+    fn places<'a>(&self, y: &'a [f64]) -> Places<'a> {
+        Places::new(y, self.primary.shape().dimension())
+    }
+
+    fn gap(&self, node: usize, facet: usize, xi: f64, y: Places) -> f64 {
+        let c = self.primary.facet(facet).at(y, xi);
+        (y.at(node) - c.position).dot(&c.normal)
+    }
+
+    /// Facet and ξ where a node may touch: the first crossing of trajectories, else the closest facet at `now` that the node was not behind before.
+    fn candidate(&self, node: usize, before: Places, now: Places) -> Option<(usize, f64, bool)> {
+        let near = self.primary.near(node, before, now);
+        let mut first: Option<(f64, usize, f64)> = None;
+        let mut closest: Option<(f64, usize, f64)> = None;
+        for facet in near {
+            let side = self.primary.facet(facet);
+            if let Some(c) = crossing(side, before, now, node)
+                && first.is_none_or(|(theta, ..)| c.theta < theta)
+            {
+                first = Some((c.theta, facet, c.xi));
+            }
+            let Some(xi) = side.closest_point(now, now.at(node), REACH) else { continue };
+            let beyond = (xi.abs() - 1.0).max(0.0);
+            let distance = self.gap(node, facet, xi, now).abs() + beyond * self.primary.length(facet, now);
+            if closest.is_none_or(|(d, ..)| distance < d) {
+                closest = Some((distance, facet, xi));
+            }
+        }
+        if let Some((_, facet, xi)) = first {
+            return Some((facet, xi, true));
+        }
+        let (_, facet, xi) = closest?;
+        let start = self.primary.facet(facet).closest_point(before, before.at(node), REACH);
+        let came_from_behind =
+            start.is_some_and(|s| self.gap(node, facet, s, before) < -BEHIND * self.primary.length(facet, before));
+        (!came_from_behind).then_some((facet, xi, false))
+    }
+
+    /// Where a pair past the end of its facet goes.
+    fn next_facet(&self, pair: &Pair, left: Option<usize>, y: Places) -> Next {
+        if pair.xi.abs() <= 1.0 + 1e-9 {
+            return Next::Stay;
+        }
+        let node = self.secondary[pair.node];
+        let forward = pair.xi > 0.0;
+        let Some(neighbour) = self.primary.neighbour(pair.facet, forward) else {
+            return if pair.xi.abs() <= REACH { Next::Stay } else { Next::Leave };
+        };
+        if left == Some(neighbour) {
+            return if pair.xi.abs() <= REACH { Next::Stay } else { Next::Leave };
+        }
+        if let Some(xi) = self.primary.facet(neighbour).closest_point(y, y.at(node), REACH) {
+            let inside = if forward { xi >= -1.0 } else { xi <= 1.0 };
+            if inside {
+                return Next::HandOver(neighbour, xi);
+            }
+        }
+        // Past both ends: the vertex cone of a convex kink. A blunt one is bridged by extrapolation, at a corner the node is free.
+        let end = if forward { 1.0 } else { -1.0 };
+        let here = self.primary.facet(pair.facet).at(y, end).tangent;
+        let there = self.primary.facet(neighbour).at(y, -end).tangent;
+        let blunt = here.dot(&there) >= CORNER_COSINE * here.norm() * there.norm();
+        if blunt && pair.xi.abs() <= REACH { Next::Stay } else { Next::Leave }
+    }
+}
+
+enum Next {
+    Stay,
+    HandOver(usize, f64),
+    Leave,
+}
+
+impl Kinematics for NodeToFacet {
+    fn secondary(&self) -> &[usize] {
+        &self.secondary
+    }
+
+    fn facet_nodes(&self, facet: usize) -> &[usize] {
+        self.primary.facet(facet).nodes
+    }
+
+    fn stencil(&self) -> usize {
+        1 + self.primary.shape().nodes()
+    }
+
+    fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
+        let (node, y) = (self.secondary[node], self.places(y));
+        (0..self.primary.facets())
+            .filter_map(|f| {
+                let xi = self.primary.facet(f).closest_point(y, y.at(node), 1.0 + 1e-9)?;
+                Some(self.gap(node, f, xi, y))
+            })
+            .min_by(|a, b| a.abs().total_cmp(&b.abs()))
+    }
+
+    fn search(&self, before: &[f64], now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
+        if self.primary.shape() == FacetShape::Point {
+            // A point has no neighbours to search among, and cannot be slid off.
+            watch_every_node(self.secondary.len(), &mut pairing.pairs);
+            return false;
+        }
+        let (before, now) = (self.places(before), self.places(now));
+        let Pairing { pairs, left } = pairing;
+        let mut changed = false;
+        pairs.retain_mut(|pair| {
+            let node = self.secondary[pair.node];
+            // Neighbours in turn until the closest point lies on the facet; bounded by the facets there are.
+            for _ in 0..=self.primary.facets() {
+                match self.next_facet(pair, left.get(&pair.node).copied(), now) {
+                    Next::Stay => return true,
+                    Next::HandOver(facet, xi) => {
+                        if pair.active {
+                            events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
+                        }
+                        // In a concave joint an open pair may be in front of the one facet and behind the other.
+                        changed |= pair.active || self.gap(node, facet, xi, now) < 0.0;
+                        left.insert(pair.node, pair.facet);
+                        (pair.facet, pair.xi) = (facet, xi);
+                    }
+                    Next::Leave => {
+                        if pair.active {
+                            events.push(PairEvent::SlidOff { node, facet: pair.facet });
+                            changed = true;
+                        }
+                        left.remove(&pair.node);
+                        return false;
+                    }
+                }
+            }
+            true
+        });
+        if self.primary.any_near(&self.secondary, before, now) {
+            let known = pairs.len();
+            let mut next = 0;
+            for (k, &node) in self.secondary.iter().enumerate() {
+                if next < known && pairs[next].node == k {
+                    next += 1;
+                    continue;
+                }
+                let Some((facet, xi, crossed)) = self.candidate(node, before, now) else { continue };
+                let pair = Pair::open(k, facet, xi);
+                let gap = self.gap(node, facet, xi, now);
+                match self.detection {
+                    Detection::ClosestPoint => {
+                        // A candidate that is already behind must be looked at again by the solver.
+                        changed |= gap < 0.0;
+                        pairs.push(pair);
+                    }
+                    // Eq. (8) decides at the crossing. A node that was already in by round-off crosses nothing: its closest point decides.
+                    Detection::Trajectory if gap < 0.0 || (crossed && gap == 0.0) => {
+                        changed = true;
+                        pairs.push(Pair { active: true, ..pair });
+                    }
+                    Detection::Trajectory => {}
+                }
+            }
+            pairs.sort_by_key(|p| p.node);
+        }
+        changed
+    }
+
+    fn follow(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
+        let now = self.places(now);
+        let Pairing { pairs, left } = pairing;
+        let mut changed = false;
+        for pair in pairs.iter_mut().filter(|pair| pair.active) {
+            let came_from = left.get(&pair.node).copied();
+            if pair.xi.abs() <= if came_from.is_some() { FOLLOWED_BACK } else { FOLLOWED } {
+                continue;
+            }
+            let (from, mut before) = (pair.facet, None);
+            for _ in 0..self.primary.facets() {
+                let Next::HandOver(facet, xi) = self.next_facet(pair, before, now) else { break };
+                before = Some(pair.facet);
+                (pair.facet, pair.xi) = (facet, xi);
+            }
+            if pair.facet != from {
+                left.extend(before.map(|facet| (pair.node, facet)));
+                events.push(PairEvent::HandOver { node: self.secondary[pair.node], from, to: pair.facet });
+                changed = true;
+            }
+        }
+        changed
+    }
+
+    fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        let (node, y) = (self.secondary[pair.node], self.places(y));
+        let facet = self.primary.facet(pair.facet);
+        let from = y.at(node);
+        let lost = ContactError::Lost { node, facet: pair.facet, xi: pair.xi };
+        pair.xi =
+            facet.closest_from(y, from, pair.xi, WANDER).or_else(|| facet.closest_point(y, from, REACH)).ok_or(lost)?;
+        let c = facet.at(y, pair.xi);
+        let gap = (from - c.position).dot(&c.normal);
+        let a = c.measure * c.measure - gap * c.normal.dot(&c.second);
+        if a <= 0.0 || !a.is_finite() {
+            return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a });
+        }
+        let values = facet.shape.at(pair.xi).values;
+        let of_facet = facet.nodes.iter().zip(values).map(|(&n, value)| (n, (c.normal * -value).0));
+        rows.push(gap, std::iter::once((node, c.normal.0)).chain(of_facet));
+        Ok(())
+    }
+
+    fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
+        let (node, y) = (self.secondary[pair.node], self.places(y));
+        let facet = self.primary.facet(pair.facet);
+        let (count, d) = (1 + facet.nodes.len(), facet.shape.dimension());
+        let FacetPoint { position, tangent: t, second, normal: n, measure: j } = facet.at(y, pair.xi);
+        let gap = (y.at(node) - position).dot(&n);
+        let kappa = n.dot(&second);
+        let a = j * j - gap * kappa;
+        let shape = facet.shape.at(pair.xi);
+        // Every vector of the stencil is a scalar per node times n or t.
+        let phi = |p: usize| if p == 0 { 1.0 } else { -shape.values[p - 1] };
+        let slope = |p: usize| if p == 0 { 0.0 } else { shape.first[p - 1] };
+        let (nn, tt, tn, nt) = (n.outer(&n), t.outer(&t), t.outer(&n), n.outer(&t));
+        for p in 0..count {
+            for q in 0..count {
+                let mut block: Mat<2> = tn * (-phi(p) * slope(q) / a);
+                block += nt * (-slope(p) * phi(q) / a);
+                block += tt * (-kappa / (a * j * j) * phi(p) * phi(q));
+                block += nn * (-gap / a * slope(p) * slope(q));
+                for i in 0..d {
+                    for k in 0..d {
+                        curvature[(p * d + i) * count * d + q * d + k] = block.0[i][k];
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! Closest point of a curved facet: ξ with (y_N − y_S(ξ))·y_S'(ξ) = 0, a minimum of the distance (theory.md §1).
+//!
+//! The derivative of −(y_N − y_S)·t is a = J² − (y_N − y_S)·y_S''; a > 0 marks a minimum.
+
+use carom_algebra::Vector;
+use carom_solid::FacetShape;
+
+use crate::places::Places;
+
+/// A facet: its shape, its nodes, and the direction of its normal where it is a point.
+#[derive(Clone, Copy)]
+pub(crate) struct Facet<'a> {
+    pub(crate) shape: FacetShape,
+    pub(crate) nodes: &'a [usize],
+    pub(crate) orientation: f64,
+}
+
+/// Position, y_S', y_S'' and unit normal of a facet at ξ.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FacetPoint {
+    pub(crate) position: Vector<2>,
+    pub(crate) tangent: Vector<2>,
+    pub(crate) second: Vector<2>,
+    pub(crate) normal: Vector<2>,
+    /// Length of y_S'; 1 of a point.
+    pub(crate) measure: f64,
+}
+
+impl Facet<'_> {
+    /// The facet at ξ.
+    pub(crate) fn at(&self, y: Places, xi: f64) -> FacetPoint {
+        let shape = self.shape.at(xi);
+        let (mut position, mut tangent, mut second) = (Vector::ZERO, Vector::ZERO, Vector::ZERO);
+        for (k, &n) in self.nodes.iter().enumerate() {
+            let x = y.at(n);
+            position += x * shape.values[k];
+            tangent += x * shape.first[k];
+            second += x * shape.second[k];
+        }
+        let normal = Vector(self.shape.normal(tangent.0, self.orientation));
+        let measure = normal.norm();
+        FacetPoint { position, tangent, second, normal: normal * measure.recip(), measure }
+    }
+
+    /// Whether it has coordinates at all: a point has none, and is its own closest point.
+    fn is_point(&self) -> bool {
+        self.shape == FacetShape::Point
+    }
+
+    /// Slope of half the squared distance and its derivative a.
+    fn distance_slope(&self, y: Places, from: Vector<2>, xi: f64) -> (f64, f64) {
+        let c = self.at(y, xi);
+        let d = from - c.position;
+        (-d.dot(&c.tangent), c.tangent.dot(&c.tangent) - d.dot(&c.second))
+    }
+
+    /// Newton from a good guess; `None` where it does not settle on a minimum within |ξ| ≤ `reach`.
+    pub(crate) fn closest_from(&self, y: Places, from: Vector<2>, start: f64, reach: f64) -> Option<f64> {
+        if self.is_point() {
+            return Some(0.0);
+        }
+        let mut xi = start;
+        for _ in 0..40 {
+            let (slope, a) = self.distance_slope(y, from, xi);
+            if a <= 0.0 || !a.is_finite() {
+                return None;
+            }
+            let step = (-slope / a).clamp(-0.5, 0.5);
+            xi += step;
+            if xi.abs() > reach {
+                return None;
+            }
+            // Below the second bound, round-off, a step changes nothing any more.
+            if step.abs() <= 1e-15 * (1.0 + xi.abs()) || step.abs() <= 4e-15 {
+                return Some(xi);
+            }
+        }
+        None
+    }
+
+    /// Closest stationary point within |ξ| ≤ `reach`, by sampling and refinement; `None` where the distance only falls towards an end.
+    pub(crate) fn closest_point(&self, y: Places, from: Vector<2>, reach: f64) -> Option<f64> {
+        const SAMPLES: usize = 12;
+        if self.is_point() {
+            return Some(0.0);
+        }
+        let at = |k: usize| reach * (2.0 * k as f64 / SAMPLES as f64 - 1.0);
+        let mut best: Option<(f64, f64)> = None;
+        let mut last = self.distance_slope(y, from, at(0)).0;
+        for k in 1..=SAMPLES {
+            let slope = self.distance_slope(y, from, at(k)).0;
+            if last <= 0.0 && slope > 0.0 {
+                let xi = self.bisected(y, from, at(k - 1), at(k));
+                let distance = (from - self.at(y, xi).position).norm();
+                if best.is_none_or(|(d, _)| distance < d) {
+                    best = Some((distance, xi));
+                }
+            }
+            last = slope;
+        }
+        best.map(|(_, xi)| xi)
+    }
+
+    /// Root of the slope in [low, high], where it changes from − to +: Newton guarded by bisection.
+    fn bisected(&self, y: Places, from: Vector<2>, mut low: f64, mut high: f64) -> f64 {
+        let mut xi = 0.5 * (low + high);
+        for _ in 0..60 {
+            let (slope, a) = self.distance_slope(y, from, xi);
+            if slope <= 0.0 {
+                low = xi;
+            } else {
+                high = xi;
+            }
+            let newton = xi - slope / a;
+            let next = if a > 0.0 && newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            if (next - xi).abs() <= 1e-15 {
+                return next;
+            }
+            xi = next;
+        }
+        xi
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_the_nearest_of_two_valleys() {
+        // A cubic through (−1, 1) (1, 1) with interior nodes pulled down unevenly: compare with a dense scan.
+        let y = [-1.0, 1.0, 1.0, 1.0, -0.4, -0.3, 0.4, -0.6];
+        let y = Places::new(&y, 2);
+        let facet = Facet { shape: FacetShape::L4, nodes: &[0, 1, 2, 3], orientation: 1.0 };
+        for k in 0..20 {
+            let from = Vector([-0.9 + 0.09 * f64::from(k), 1.2]);
+            let scan = (-1000..=1000)
+                .map(|i| f64::from(i) * 1.2e-3)
+                .map(|xi| ((from - facet.at(y, xi).position).norm(), xi))
+                .fold((f64::INFINITY, 0.0), |a, b| if b.0 < a.0 { b } else { a });
+            if scan.1.abs() < 1.19 {
+                let xi = facet.closest_point(y, from, 1.2).unwrap();
+                assert!((xi - scan.1).abs() < 2e-3, "{xi} {scan:?}");
+                assert!((facet.closest_from(y, from, xi + 1e-3, 1.3).unwrap() - xi).abs() < 1e-13);
+            }
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! Positions of all nodes as contact reads them: padded with zeros to the plane, so that the end of a bar and a
+//! curved side are one code.
+
+use carom_algebra::Vector;
+
+/// Positions of the nodes of one configuration.
+#[derive(Clone, Copy)]
+pub(crate) struct Places<'a> {
+    y: &'a [f64],
+    dimension: usize,
+}
+
+impl<'a> Places<'a> {
+    /// Positions flat over nodes, in one dimension or in the plane.
+    pub(crate) fn new(y: &'a [f64], dimension: usize) -> Self {
+        debug_assert!(dimension <= 2, "facets in space are not there yet");
+        Self { y, dimension }
+    }
+
+    /// Position of a node.
+    #[inline]
+    pub(crate) fn at(&self, node: usize) -> Vector<2> {
+        match self.dimension {
+            1 => Vector([self.y[node], 0.0]),
+            _ => Vector([self.y[2 * node], self.y[2 * node + 1]]),
+        }
+    }
+}

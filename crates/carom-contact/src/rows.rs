@@ -1,0 +1,152 @@
+//! Gaps with their gradients: one row per constraint over the nodes it depends on, in compressed rows.
+//!
+//! A gap g(y) is a frame-indifferent scalar, g < 0 penetrates. The force of a traction λ ≤ 0 on it is λ ∇g:
+//! balance of force and moment follows from that alone.
+
+/// Rows of constraints, all of one dimension.
+#[derive(Clone, Debug)]
+pub struct Rows {
+    dimension: usize,
+    gaps: Vec<f64>,
+    /// Where the nodes of each row start, and where the last ones end.
+    starts: Vec<usize>,
+    nodes: Vec<usize>,
+    /// ∂g/∂y of each of these nodes.
+    gradients: Vec<f64>,
+}
+
+/// One row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row<'a> {
+    /// Gap g; infinite where there is no unique closest point, which is far away.
+    pub gap: f64,
+    /// Global numbers of the nodes it depends on; the secondary node comes first.
+    pub nodes: &'a [usize],
+    /// ∂g/∂y of each node, node-major.
+    pub gradient: &'a [f64],
+}
+
+impl Rows {
+    /// No rows yet, over positions of a dimension.
+    pub fn new(dimension: usize) -> Self {
+        Self { dimension, gaps: Vec::new(), starts: vec![0], nodes: Vec::new(), gradients: Vec::new() }
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.gaps.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.gaps.is_empty()
+    }
+
+    /// Forgets all rows and keeps the memory.
+    pub fn clear(&mut self) {
+        self.gaps.clear();
+        self.starts.truncate(1);
+        self.nodes.clear();
+        self.gradients.clear();
+    }
+
+    /// Adds a row from its nodes with their ∂g/∂y, of which as many components count as there are dimensions.
+    pub fn push<const P: usize>(&mut self, gap: f64, nodes: impl IntoIterator<Item = (usize, [f64; P])>) {
+        self.gaps.push(gap);
+        for (node, gradient) in nodes {
+            self.nodes.push(node);
+            self.gradients.extend_from_slice(&gradient[..self.dimension]);
+        }
+        self.starts.push(self.nodes.len());
+    }
+
+    /// Adds a row that is far away: it depends on nothing.
+    pub fn push_open(&mut self) {
+        self.push::<0>(f64::INFINITY, []);
+    }
+
+    /// Takes the last row away; its gap is returned, infinite where there was none.
+    pub fn pop(&mut self) -> f64 {
+        let Some(gap) = self.gaps.pop() else { return f64::INFINITY };
+        self.starts.pop();
+        let end = self.starts.last().copied().unwrap_or(0);
+        self.nodes.truncate(end);
+        self.gradients.truncate(end * self.dimension);
+        gap
+    }
+
+    /// Adds a copy of a row of the same dimension.
+    pub fn push_row(&mut self, row: Row) {
+        self.gaps.push(row.gap);
+        self.nodes.extend_from_slice(row.nodes);
+        self.gradients.extend_from_slice(row.gradient);
+        self.starts.push(self.nodes.len());
+    }
+
+    /// A row.
+    pub fn row(&self, row: usize) -> Row<'_> {
+        let range = self.starts[row]..self.starts[row + 1];
+        let gradients = range.start * self.dimension..range.end * self.dimension;
+        Row { gap: self.gaps[row], nodes: &self.nodes[range], gradient: &self.gradients[gradients] }
+    }
+
+    /// All rows in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Row<'_>> {
+        (0..self.len()).map(|row| self.row(row))
+    }
+
+    /// The gap of a row, for change: springs count their own.
+    pub fn gap_mut(&mut self, row: usize) -> &mut f64 {
+        &mut self.gaps[row]
+    }
+}
+
+impl Row<'_> {
+    /// Dimension of the positions.
+    pub fn dimension(&self) -> usize {
+        if self.nodes.is_empty() { 0 } else { self.gradient.len() / self.nodes.len() }
+    }
+
+    /// Global dofs with their ∂g/∂y.
+    pub fn entries(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let d = self.dimension();
+        let dofs = self.nodes.iter().flat_map(move |node| (0..d).map(move |i| node * d + i));
+        dofs.zip(self.gradient.iter().copied())
+    }
+
+    /// ∇g·x, x flat over all dofs.
+    pub fn along(&self, x: &[f64]) -> f64 {
+        self.entries().map(|(dof, slope)| slope * x[dof]).sum()
+    }
+
+    /// force += factor ∇g, flat over all dofs.
+    pub fn add_to(&self, factor: f64, force: &mut [f64]) {
+        for (dof, slope) in self.entries() {
+            force[dof] += factor * slope;
+        }
+    }
+
+    /// ∂g/∂y of the secondary node, padded with zeros to space: the unit normal out of the primary.
+    pub fn normal(&self) -> [f64; 3] {
+        let d = self.dimension();
+        std::array::from_fn(|i| if i < d { self.gradient[i] } else { 0.0 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_what_was_pushed() {
+        let mut rows = Rows::new(2);
+        rows.push(-0.5, [(3, [0.0, 1.0, 9.0]), (1, [0.0, -1.0, 9.0])]);
+        rows.push_open();
+        assert_eq!(rows.row(0), Row { gap: -0.5, nodes: &[3, 1], gradient: &[0.0, 1.0, 0.0, -1.0] });
+        assert_eq!(rows.row(0).along(&[0.0, 0.0, 5.0, 2.0, 0.0, 0.0, 7.0, 10.0]), 8.0);
+        assert_eq!((rows.len(), rows.row(1).gap, rows.row(1).along(&[])), (2, f64::INFINITY, 0.0));
+        let copy = { rows.row(0).nodes.to_vec() };
+        rows.clear();
+        assert_eq!((copy, rows.is_empty()), (vec![3, 1], true));
+    }
+}

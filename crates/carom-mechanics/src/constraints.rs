@@ -1,0 +1,180 @@
+//! The rows of the linear system that pressing contacts give, with what the system needs of them.
+//!
+//! Not every pressing pair is a row: a redundant one would make the system singular, and its residual would not tell. A row counts where its gradient
+//! on free dofs, less what the rows before it say already, leaves something: a node on a symmetry axis keeps both its support and its contact, a corner
+//! node in two contacts at one facet keeps one, whichever contacts and nodes they belong to (Gaussian elimination of the sparse rows).
+
+use std::collections::BTreeMap;
+
+use carom_contact::{Row, Rows};
+
+use crate::balance::contact_weights;
+use crate::equations::{Equations, Evaluation};
+use crate::model::Model;
+
+/// What elimination leaves of a row (gradients are of order one) that says nothing new about free dofs.
+const DEPENDENT: f64 = 1e-8;
+
+/// Rows of a linear system.
+#[derive(Clone, Debug)]
+pub(crate) struct Constraints {
+    /// Contact and pair of each.
+    pub places: Vec<(usize, usize)>,
+    pub rows: Rows,
+    /// Weight of its contact force in the balance.
+    pub weights: Vec<f64>,
+    /// What a unit of multiplier gives of gap.
+    pub compliances: Vec<f64>,
+    /// What is left to close.
+    pub open: Vec<f64>,
+    /// λ∇²g over the nodes of each row, row-major; empty where it was not asked for.
+    pub curvatures: Vec<Vec<f64>>,
+}
+
+impl Constraints {
+    /// No rows.
+    pub(crate) fn none(dimension: usize) -> Self {
+        Self {
+            places: Vec::new(),
+            rows: Rows::new(dimension),
+            weights: Vec::new(),
+            compliances: Vec::new(),
+            open: Vec::new(),
+            curvatures: Vec::new(),
+        }
+    }
+
+    /// Rows as constraints of weight 1, without second derivatives: where velocities or accelerations are solved for.
+    pub(crate) fn plain<'a>(dimension: usize, rows: impl IntoIterator<Item = ((usize, usize), Row<'a>)>) -> Self {
+        let mut plain = Self::none(dimension);
+        for (place, row) in rows {
+            plain.places.push(place);
+            plain.rows.push_row(row);
+            plain.weights.push(1.0);
+            plain.compliances.push(0.0);
+            plain.open.push(0.0);
+        }
+        plain
+    }
+
+    /// The rows of an evaluation, with second derivatives.
+    pub(crate) fn of(equations: &Equations, evaluation: &Evaluation) -> Self {
+        let model = equations.model;
+        let mut constraints = Self::none(model.dimension);
+        for place in independent_rows(model, evaluation.pressing(), &evaluation.rows) {
+            let (k, p) = place;
+            let contact = &model.contacts[k];
+            let (answer, pair) = (&evaluation.answers[k][p], &evaluation.at.pairings[k].pairs[p]);
+            let between = contact.interface.acts_between();
+            let (positions, share) = if between { (&evaluation.place, 0.5) } else { (&evaluation.y, 1.0) };
+            let row = evaluation.rows[k].row(p);
+            let mut curvature = vec![0.0; row.gradient.len().pow(2)];
+            contact.kinematics.curvature_into(pair, positions, &mut curvature);
+            curvature.iter_mut().for_each(|c| *c *= share * answer.lambda);
+            constraints.places.push(place);
+            constraints.rows.push_row(row);
+            constraints.weights.push(contact_weights(&equations.stage, contact.at_the_end).0);
+            constraints.compliances.push(answer.compliance);
+            constraints.open.push(answer.open);
+            constraints.curvatures.push(curvature);
+        }
+        constraints
+    }
+
+    /// Number of rows.
+    pub(crate) fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Whether there are none.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// The nodes all rows depend on, ascending.
+    pub(crate) fn nodes(&self) -> Vec<usize> {
+        let mut nodes: Vec<usize> = self.rows.iter().flat_map(|row| row.nodes.iter().copied()).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// Calls `visit(row, dof, slope)` for the entries w·∇g of all rows at unknowns.
+    pub(crate) fn each_entry(&self, model: &Model, mut visit: impl FnMut(usize, usize, f64)) {
+        for (r, row) in self.rows.iter().enumerate() {
+            for (dof, slope) in row.entries() {
+                if let Some(unknown) = model.unknown(dof) {
+                    visit(r, unknown, self.weights[r] * slope);
+                }
+            }
+        }
+    }
+
+    /// Calls `visit(a, b, value)` for the entries w·λ∇²g of all rows at unknowns a ≥ b.
+    pub(crate) fn each_curvature(&self, model: &Model, mut visit: impl FnMut(usize, usize, f64)) {
+        for (r, (row, curvature)) in self.rows.iter().zip(&self.curvatures).enumerate() {
+            let count = row.gradient.len();
+            for (i, (dof, _)) in row.entries().enumerate() {
+                let Some(a) = model.unknown(dof) else { continue };
+                for (j, (other, _)) in row.entries().enumerate() {
+                    if let Some(b) = model.unknown(other)
+                        && a >= b
+                    {
+                        visit(a, b, self.weights[r] * curvature[i * count + j]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Evaluation {
+    /// Contact and pair of all that press.
+    pub(crate) fn pressing(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let pairs = self.at.pairings.iter().enumerate();
+        pairs.flat_map(|(k, pairing)| {
+            let active = pairing.pairs.iter().enumerate().filter(|(_, pair)| pair.active);
+            active.map(move |(p, _)| (k, p))
+        })
+    }
+}
+
+/// Those of the places whose rows say something new about the free dofs.
+pub(crate) fn independent_rows(
+    model: &Model,
+    places: impl Iterator<Item = (usize, usize)>,
+    rows: &[Rows],
+) -> Vec<(usize, usize)> {
+    let mut kept: Vec<Vec<(usize, f64)>> = Vec::new();
+    // Which kept row was eliminated by which dof.
+    let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
+    let independent = |&(k, p): &(usize, usize)| {
+        let mut row: Vec<(usize, f64)> = rows[k].row(p).entries().filter(|(dof, _)| !model.fixed[*dof]).collect();
+        let mut from = 0;
+        // A kept row holds pivots of later ones only: in ascending order each is met once.
+        while let Some((r, factor)) = row
+            .iter()
+            .filter_map(|(dof, value)| Some((*pivots.get(dof)?, *value)))
+            .filter(|(r, value)| *r >= from && *value != 0.0)
+            .min_by_key(|(r, _)| *r)
+        {
+            for &(dof, value) in &kept[r] {
+                match row.iter_mut().find(|(d, _)| *d == dof) {
+                    Some((_, x)) => *x -= factor * value,
+                    None => row.push((dof, -factor * value)),
+                }
+            }
+            from = r + 1;
+        }
+        let largest =
+            row.iter().fold((0, 0.0_f64), |most, &(dof, x)| if x.abs() > most.1.abs() { (dof, x) } else { most });
+        if largest.1.abs() <= DEPENDENT {
+            return false;
+        }
+        row.iter_mut().for_each(|(_, x)| *x /= largest.1);
+        pivots.insert(largest.0, kept.len());
+        kept.push(row);
+        true
+    };
+    places.filter(independent).collect()
+}

@@ -1,0 +1,297 @@
+//! A stage as a system of equations: the balance of forces and the conditions of the contacts, evaluated at an iterate.
+//!
+//! ```text
+//! r(d, λ) = 0   (balance.rs),   c(d, λ) = 0 for each pressing pair   (carom_contact::Interface)
+//! ```
+
+use carom_contact::{Answer, Pairing, Point, Rows};
+use carom_time::{Internal, Stage};
+
+use crate::balance::{Forces, contact_weights, known_into, mean_acceleration, residual_into};
+use crate::model::{LoadsAt, Model, Prescribed};
+use crate::rejected::Rejected;
+use crate::state::State;
+use crate::system::System;
+use crate::workspace::{Timings, timed};
+
+/// The unknowns of a stage.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Iterate {
+    /// d = y − y_s.
+    pub increment: Vec<f64>,
+    /// Pairs of each contact, multipliers included.
+    pub pairings: Vec<Pairing>,
+}
+
+impl Iterate {
+    /// Where a step begins: no increment, the pairs of the state.
+    pub(crate) fn at_start(state: &State) -> Self {
+        let pairings = state.pairs.iter().cloned().map(Pairing::new).collect();
+        Self { increment: vec![0.0; state.y.len()], pairings }
+    }
+}
+
+/// What an iterate gives.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Evaluation {
+    /// The iterate; contact points are moved to where its positions have them, springs press or do not.
+    pub at: Iterate,
+    /// y = y_s + d.
+    pub y: Vec<f64>,
+    /// Positions that internal forces and loads are taken at; of a discrete gradient, the middle of the step.
+    pub place: Vec<f64>,
+    /// Forces over all dofs.
+    pub forces: Forces,
+    /// a(d).
+    pub acceleration: Vec<f64>,
+    /// r over all dofs: at held ones, the force of their support.
+    pub residual: Vec<f64>,
+    /// A row for each pair of each contact.
+    pub rows: Vec<Rows>,
+    /// The interface's answer to each of them.
+    pub answers: Vec<Vec<Answer>>,
+    /// Strain energy of the bodies at `y`, or where `average` says.
+    pub strain: f64,
+    /// Energy of the springs of penalties.
+    pub springs: f64,
+    /// Size of the residual, and what it is measured against.
+    pub measure: Measure,
+}
+
+/// Size of a residual and what it is measured against.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Measure {
+    /// ‖r‖ over the free dofs.
+    pub residual: f64,
+    /// Sum of the norms of its terms.
+    pub forces: f64,
+    /// Largest |g| of the pressing constraints.
+    pub gap: f64,
+}
+
+/// Evaluations that are not needed any more: their memory is used again.
+#[derive(Debug, Default)]
+pub(crate) struct Spare(Vec<Evaluation>);
+
+impl Spare {
+    fn take(&mut self) -> Evaluation {
+        self.0.pop().unwrap_or_default()
+    }
+
+    /// Gives the memory of an evaluation back.
+    pub(crate) fn put(&mut self, evaluation: Evaluation) {
+        self.0.push(evaluation);
+    }
+
+    /// A copy of an iterate in memory that was used before.
+    pub(crate) fn copy(&mut self, of: &Iterate) -> Iterate {
+        let mut iterate = self.0.last_mut().map(|spare| std::mem::take(&mut spare.at)).unwrap_or_default();
+        iterate.increment.clone_from(&of.increment);
+        iterate.pairings.resize_with(of.pairings.len(), Pairing::default);
+        iterate.pairings.iter_mut().zip(&of.pairings).for_each(|(to, from)| to.copy_from(from));
+        iterate
+    }
+}
+
+/// A stage that is to be solved: what its equations are made of.
+#[derive(Debug)]
+pub(crate) struct Equations<'a> {
+    pub model: &'a Model,
+    /// The state at the step's start.
+    pub state: &'a State,
+    pub stage: Stage,
+    /// Loads at the time internal forces are taken at.
+    pub loads: LoadsAt,
+    /// Moved dofs at the stage's end.
+    pub motions: Vec<Prescribed>,
+    /// What is known of the balance from the step's start.
+    pub known: Vec<f64>,
+}
+
+impl std::fmt::Debug for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Model").field("dofs", &self.dofs()).finish_non_exhaustive()
+    }
+}
+
+impl<'a> Equations<'a> {
+    /// The equations of a stage that ends at the time `to`.
+    ///
+    /// # Errors
+    /// A load or a motion has no value.
+    pub(crate) fn new(model: &'a Model, state: &'a State, stage: Stage, to: f64) -> Result<Self, Rejected> {
+        let average = stage.average;
+        let time = if average == 0.0 { to } else { (1.0 - average) * to + average * state.time };
+        let mut equations =
+            Self { model, state, stage, loads: LoadsAt::default(), motions: Vec::new(), known: Vec::new() };
+        if !model.loads.is_empty() {
+            model.loads.at(&model.parts, model.dofs(), time, &mut equations.loads)?;
+        }
+        model.motions.at(to, &mut equations.motions)?;
+        known_into(model, &equations.stage, state, &mut equations.known);
+        Ok(equations)
+    }
+
+    /// Whether internal forces are a discrete gradient over the step.
+    pub(crate) fn between(&self) -> bool {
+        self.stage.internal == Internal::DiscreteGradient
+    }
+
+    /// Factor of the mass matrix in the tangent.
+    pub(crate) fn mass_factor(&self) -> f64 {
+        self.stage.weights.mass * self.stage.acceleration.slope
+    }
+
+    /// Factor of the internal tangent.
+    pub(crate) fn stiffness_factor(&self) -> f64 {
+        match self.stage.internal {
+            Internal::Gradient => self.stage.weights.internal * (1.0 - self.stage.average),
+            // Its tangent is that by the end of the step already.
+            Internal::DiscreteGradient => self.stage.weights.internal,
+        }
+    }
+
+    /// Factor of the loads' tangent.
+    pub(crate) fn follower_factor(&self) -> f64 {
+        self.stage.weights.external * (1.0 - self.stage.average)
+    }
+
+    /// What moved dofs still have to go, with their dofs.
+    pub(crate) fn remaining(&self, at: &Iterate) -> impl Iterator<Item = (usize, f64)> {
+        self.motions.iter().map(move |moved| {
+            let target = self.model.reference[moved.dof] + moved.motion[0];
+            (moved.dof, (target - self.state.y[moved.dof]) - at.increment[moved.dof])
+        })
+    }
+
+    /// Puts moved dofs where they are to be, to the last digit.
+    pub(crate) fn arrive(&self, increment: &mut [f64]) {
+        for moved in &self.motions {
+            increment[moved.dof] = self.model.reference[moved.dof] + moved.motion[0] - self.state.y[moved.dof];
+        }
+    }
+
+    /// Forces, gaps and residual at an iterate.
+    ///
+    /// # Errors
+    /// A cell is inverted, or a pressing pair has no gap.
+    pub(crate) fn evaluate(
+        &self,
+        at: Iterate,
+        spare: &mut Spare,
+        timings: &mut Timings,
+    ) -> Result<Evaluation, Rejected> {
+        let mut evaluation = spare.take();
+        evaluation.at = at;
+        match self.fill(&mut evaluation, timings) {
+            Ok(()) => Ok(evaluation),
+            Err(rejected) => {
+                spare.put(evaluation);
+                Err(rejected)
+            }
+        }
+    }
+
+    fn fill(&self, evaluation: &mut Evaluation, timings: &mut Timings) -> Result<(), Rejected> {
+        let Self { model, state, stage, .. } = self;
+        let Evaluation { at, y, place, forces, acceleration, residual, .. } = evaluation;
+        let dofs = model.dofs();
+        for vector in [&mut *y, place, acceleration, residual, &mut forces.inertia, &mut forces.internal] {
+            vector.resize(dofs, 0.0);
+        }
+        forces.loads.resize(dofs, 0.0);
+        let share = if self.between() { 0.5 } else { 1.0 - stage.average };
+        for i in 0..dofs {
+            y[i] = state.y[i] + at.increment[i];
+            place[i] = state.y[i] + share * at.increment[i];
+        }
+        evaluation.strain = timed(&mut timings.assembly, || {
+            if self.between() {
+                model.internal_between(&state.y, y, &mut forces.internal)
+            } else {
+                model.internal_force(place, &mut forces.internal)
+            }
+        })
+        .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+        if !model.loads.is_empty() {
+            model.loads.force_into(&self.loads, place, &mut forces.loads);
+        }
+        stage.acceleration.value_into(&at.increment, acceleration);
+        if !stage.is_static() {
+            for moved in &self.motions {
+                // What makes the balance, whose averages are those of the scheme's a, take this mean.
+                let before = state.a[moved.dof];
+                let mean = mean_acceleration(stage, moved.motion[2], before);
+                acceleration[moved.dof] = (mean - stage.before.mass * before) / stage.weights.mass;
+            }
+        }
+        model.mass.multiply_into(acceleration, &mut forces.inertia);
+        timed(&mut timings.contact, || self.touch(evaluation))?;
+        let Evaluation { forces, residual, measure, .. } = evaluation;
+        measure.forces = residual_into(model, stage, forces, &self.known, residual);
+        measure.residual = model.free.iter().map(|&i| residual[i] * residual[i]).sum::<f64>().sqrt();
+        Ok(())
+    }
+
+    /// Rows of all pairs, what their interfaces answer, and the contact forces.
+    fn touch(&self, evaluation: &mut Evaluation) -> Result<(), Rejected> {
+        let Evaluation { at, y, place, forces, rows, answers, springs, measure, .. } = evaluation;
+        forces.contact.clear();
+        forces.contact.resize(self.model.dofs(), 0.0);
+        rows.resize_with(self.model.contacts.len(), || Rows::new(self.model.dimension));
+        answers.resize_with(self.model.contacts.len(), Vec::new);
+        (*springs, measure.gap) = (0.0, 0.0);
+        for (k, (contact, pairing)) in self.model.contacts.iter().zip(&mut at.pairings).enumerate() {
+            let weight = contact_weights(&self.stage, contact.at_the_end).0;
+            let (rows, answers) = (&mut rows[k], &mut answers[k]);
+            let between = contact.interface.acts_between();
+            rows.clear();
+            answers.clear();
+            for (p, pair) in pairing.pairs.iter_mut().enumerate() {
+                let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
+                if between && pair.start.is_none() {
+                    // The gap a pair is found with; then it is carried.
+                    pair.start = match contact.kinematics.measure(&mut pair.clone(), &self.state.y, rows) {
+                        Ok(()) => Some(rows.pop()),
+                        Err(error) if pair.active => return Err(failed(error)),
+                        Err(_) => None,
+                    };
+                }
+                match contact.kinematics.measure(pair, if between { place } else { y }, rows) {
+                    Ok(()) => {}
+                    Err(error) if pair.active => return Err(failed(error)),
+                    // An open pair whose closest point is not unique is far away.
+                    Err(_) => rows.push_open(),
+                }
+                let start = pair.start.unwrap_or(f64::INFINITY);
+                if between {
+                    *rows.gap_mut(p) = start + rows.row(p).along(&at.increment);
+                }
+                let row = rows.row(p);
+                let point = Point { node: pair.node, gap: row.gap, start, lambda: pair.lambda, active: pair.active };
+                let answer = contact.interface.respond(&point);
+                (pair.active, pair.lambda) = (answer.active, answer.lambda);
+                if answer.active {
+                    row.add_to(weight * answer.lambda, &mut forces.contact);
+                    measure.gap = measure.gap.max(answer.open.abs());
+                }
+                *springs += answer.energy;
+                answers.push(answer);
+            }
+        }
+        Ok(())
+    }
+
+    /// What the last digits of the positions alone make of the residual.
+    pub(crate) fn round_off(&self, system: &System) -> f64 {
+        let diagonal = system.diagonal(self.mass_factor(), self.stiffness_factor());
+        16.0 * f64::EPSILON * self.model.scale * diagonal.map(|d| d * d).sum::<f64>().sqrt()
+    }
+
+    /// Mean diagonal of the tangent: makes a gap comparable with a multiplier.
+    pub(crate) fn mean_stiffness(&self, system: &System) -> f64 {
+        let sum: f64 = system.diagonal(self.mass_factor(), self.stiffness_factor()).sum();
+        // Before a first tangent without inertia there is nothing to compare with.
+        if sum > 0.0 { sum / self.model.free.len() as f64 } else { 1.0 }
+    }
+}

@@ -1,0 +1,149 @@
+//! Natural frequencies of a model on its initial tangent: ω² of K x = ω² M x, the lowest that deform it and the highest.
+//!
+//! ```text
+//! lowest    x ← (K + σM)⁻¹ M x, vector after vector, each kept M-orthogonal to those before (inverse iteration with deflation); σ = 1e-6 ω²_max
+//! highest   x ← M⁻¹ K x (power iteration)
+//! ```
+//!
+//! Rigid motions have ω² below 1e-9 of the highest and are left out. Rayleigh's quotient xᵀKx/xᵀMx gives ω² to twice the digits of x. Where a node has no
+//! mass the highest is infinite; σ then refers to the mean eigenvalue trace(K)/trace(M). Contact is open (Bathe, "Finite element procedures", §11.2).
+//!
+//! The spring of a penalty on its node alone, the other side at rest:
+//!
+//! ```text
+//! ω² = k mᵢ⁻¹,   mᵢ⁻¹ = eᵢᵀ M⁻¹ eᵢ      acceleration of the node under a unit force at it; the stiffest of all nodes
+//! ```
+
+use crate::constraints::Constraints;
+use crate::model::{Model, dot};
+use crate::system::System;
+
+/// Iterations per vector at most, and the relative change of the quotient at which it is taken.
+const ITERATIONS: usize = 400;
+const SETTLED: f64 = 1e-8;
+/// Vectors looked for at most, rigid ones included.
+const VECTORS: usize = 12;
+/// ω² over the highest below which a motion is rigid.
+const RIGID: f64 = 1e-9;
+
+/// Frequencies ω of a model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frequencies {
+    /// The lowest that deform the bodies, ascending; at most three.
+    pub lowest: Vec<f64>,
+    /// The highest; none where a node has no mass.
+    pub highest: Option<f64>,
+}
+
+/// Frequencies of a model; none where its tangent or its mass cannot be factored.
+pub fn frequencies(model: &Model) -> Option<Frequencies> {
+    let mut system = System::new(model, 1);
+    let mut force = vec![0.0; model.dofs()];
+    system.internal_tangent(model, None, &model.reference, &mut force, None).ok()?;
+    let n = model.free.len();
+    let massless = model.free.iter().any(|dof| model.massless[*dof]);
+    let start = |seed: f64| -> Vec<f64> { (0..n).map(|i| ((12.9898 + seed) * (i as f64 + 1.0)).sin()).collect() };
+    let highest = if massless { None } else { Some(power(model, &mut system, start(0.0))?) };
+    let scale = highest.unwrap_or_else(|| {
+        let stiffness: f64 = system.diagonal(0.0, 1.0).sum();
+        stiffness / system.diagonal(1.0, 0.0).sum::<f64>()
+    });
+    system.factor(model, 1e-6 * scale, 1.0, 0.0, &Constraints::none(model.dimension)).ok()?;
+    let mut found: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+    let mut lowest = Vec::new();
+    for k in 0..VECTORS.min(n) {
+        let mut x = start(k as f64 + 1.0);
+        let mut square = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let mut y = solved(model, &mut system, &mass_product(model, &x))?;
+            for (v, mv) in &found {
+                let share = dot(&y, mv);
+                y.iter_mut().zip(v).for_each(|(y, v)| *y -= share * v);
+            }
+            let quotient = normalise(model, &system, &mut y);
+            x = y;
+            let settled = (quotient - square).abs() <= SETTLED * f64::max(quotient.abs(), RIGID * scale);
+            square = quotient;
+            if settled {
+                break;
+            }
+        }
+        if square > RIGID * scale {
+            lowest.push(square.sqrt());
+        }
+        if lowest.len() == 3 {
+            break;
+        }
+        let mass = mass_product(model, &x);
+        found.push((x, mass));
+    }
+    lowest.sort_by(f64::total_cmp);
+    Some(Frequencies { lowest, highest: highest.map(f64::sqrt) })
+}
+
+/// Frequency of the stiffest contact spring on its node; none without springs, or where a node has no mass.
+pub fn spring(model: &Model) -> Option<f64> {
+    if model.contacts.iter().all(|c| c.interface.is_constraint()) || model.free.iter().any(|dof| model.massless[*dof]) {
+        return None;
+    }
+    let mut system = System::new(model, 1);
+    let mut force = vec![0.0; model.dofs()];
+    system.internal_tangent(model, None, &model.reference, &mut force, None).ok()?;
+    system.factor(model, 1.0, 0.0, 0.0, &Constraints::none(model.dimension)).ok()?;
+    let mut highest: Option<f64> = None;
+    let springs = model.contacts.iter().flat_map(|contact| {
+        let nodes = contact.kinematics.secondary().iter().enumerate();
+        nodes.filter_map(|(place, node)| Some((*node, contact.interface.stiffness(place)?)))
+    });
+    for (node, stiffness) in springs {
+        for (i, _) in model.free.iter().enumerate().filter(|(_, dof)| **dof / model.dimension == node) {
+            let mut unit = vec![0.0; model.free.len()];
+            unit[i] = 1.0;
+            let square = stiffness * solved(model, &mut system, &unit)?[i];
+            highest = Some(highest.map_or(square, |h| h.max(square)));
+        }
+    }
+    highest.map(f64::sqrt)
+}
+
+fn power(model: &Model, system: &mut System, mut x: Vec<f64>) -> Option<f64> {
+    system.factor(model, 1.0, 0.0, 0.0, &Constraints::none(model.dimension)).ok()?;
+    let mut square = 0.0;
+    for _ in 0..ITERATIONS {
+        let quotient = normalise(model, system, &mut x);
+        if (quotient - square).abs() <= 1e-6 * quotient {
+            return Some(quotient);
+        }
+        square = quotient;
+        let mut force = vec![0.0; x.len()];
+        system.stiffness_product(&x, &mut force);
+        x = solved(model, system, &force)?;
+    }
+    Some(square)
+}
+
+/// The last factored matrix solved for a right-hand side on the free dofs.
+fn solved(model: &Model, system: &mut System, right: &[f64]) -> Option<Vec<f64>> {
+    let (mut forces, mut answer) = (vec![0.0; model.dofs()], vec![0.0; model.dofs()]);
+    model.free.iter().zip(right).for_each(|(dof, f)| forces[*dof] = *f);
+    system.solve(model, &forces, &[], &mut answer, &mut Vec::new()).ok()?;
+    Some(model.free.iter().map(|dof| answer[*dof]).collect())
+}
+
+/// Makes xᵀMx = 1; Rayleigh's quotient.
+fn normalise(model: &Model, system: &System, x: &mut [f64]) -> f64 {
+    let weight = dot(x, &mass_product(model, x)).sqrt();
+    x.iter_mut().for_each(|x| *x /= weight);
+    let mut force = vec![0.0; x.len()];
+    system.stiffness_product(x, &mut force);
+    dot(x, &force)
+}
+
+/// M x on the free dofs.
+fn mass_product(model: &Model, x: &[f64]) -> Vec<f64> {
+    let mut all = vec![0.0; model.dofs()];
+    model.free.iter().zip(x).for_each(|(dof, x)| all[*dof] = *x);
+    let mut product = vec![0.0; all.len()];
+    model.mass.multiply_into(&all, &mut product);
+    model.free.iter().map(|dof| product[*dof]).collect()
+}

@@ -1,0 +1,232 @@
+//! Where the energy of a step went (design.md §5): exact for eq. (15), because it uses the same averaged forces.
+//!
+//! ```text
+//! F̄ = (1−α_f) F_{s+1} + α_f F_s,   Δy = y_{s+1} − y_s                    F̄ of other kernels: the mean their velocity update makes, `Stage::mean`
+//! external_work += Δy·F̄_ext (beyond the potential) + Δy_moved·R̄ + Δy/Δt·M J        contact_work += −Δy·F̄_cont
+//! ```
+//!
+//! R̄ is the mean residual of the balance at moved dofs, the force of their supports. J = v_{s+1} − v_s − Δt ā at moved dofs is what their velocities
+//! change beyond their mean acceleration ā: where a motion's velocity jumps, the impulse M J is the support's too, and its work is that of the mean
+//! velocity. Load steps without inertia take the mean of both ends, F̄ = (F_{s+1} + F_s)/2: exact where forces are linear in the displacements.
+//!
+//! The increment of the dissipation of the α family then equals (Δy·F̄_int − ΔU) − (γ+α_m−1) Δy·MΔa + Δt² (β−γ/2) Δa·M(a_s + γΔa) to round-off
+//! (Krenk 2006).
+
+use carom_contact::{Pair, Row, Rows};
+use carom_time::{Stage, Weights};
+
+use crate::balance::mean_acceleration;
+use crate::equations::{Equations, Evaluation};
+use crate::model::{Model, dot};
+use crate::state::{Means, Previous, State};
+
+/// Adds what a solved stage gives to the means over the step (cleared before the first stage). `previous`: the step before of a two-step scheme.
+pub(crate) fn add_stage(
+    equations: &Equations,
+    solved: &Evaluation,
+    previous: Option<&Previous>,
+    dt: f64,
+    means: &mut Means,
+) {
+    let Equations { model, state, stage, .. } = equations;
+    let [old, start, now] = stage.mean;
+    let before = previous.map(|previous| (old, &previous.means));
+    let contact = Shares { now: now / stage.weights.contact, start, massless: stage.weights.external.recip() };
+    contact.add(model, stage, &solved.forces.contact, &state.f_contact, &mut means.contact);
+    for (k, contact) in model.contacts.iter().enumerate() {
+        let (now, start) = if contact.at_the_end { (1.0, 0.0) } else { (now, start) };
+        let force = secondary_force(&solved.at.pairings[k].pairs, solved.rows[k].iter());
+        for i in 0..3 {
+            means.impulse[i] += dt * (now * force[i] + start * state.contact_forces[k][i]);
+        }
+    }
+    if !model.loads.is_empty() {
+        let loads = match averaging(stage) {
+            Averaging::BothEnds => Shares { now: 0.5, start: 0.5, massless: 0.5 },
+            Averaging::Ends => Shares { now, start, massless: 1.0 },
+            Averaging::Within => Shares { now: stage.weights.external, start: stage.before.external, massless: 1.0 },
+        };
+        loads.add(model, stage, &solved.forces.loads, &state.f_external, &mut means.loads);
+    }
+    if let Some((old, before)) = before {
+        add_old(model, old, before, means);
+    }
+    if !equations.motions.is_empty() {
+        add_supports(equations, solved, before, means);
+    }
+}
+
+/// Work of the loads over a step of one stage whose balance is an average itself.
+pub(crate) fn work_of_loads(equations: &Equations, solved: &Evaluation) -> f64 {
+    let Equations { model, state, stage, .. } = equations;
+    if model.loads.is_empty() {
+        return 0.0;
+    }
+    let (now, before) = (stage.weights.external, stage.before.external);
+    let forces = solved.forces.loads.iter().zip(&state.f_external);
+    let mean = forces.map(|(load, old)| now * load + before * old);
+    solved.at.increment.iter().zip(mean).map(|(moved, force)| moved * force).sum()
+}
+
+/// Where the mean of a stage's forces is taken.
+enum Averaging {
+    /// Without inertia, the mean of both ends.
+    BothEnds,
+    /// The balance is that of the stage's end: [`Stage::mean`] weighs the ends.
+    Ends,
+    /// The balance is an average itself.
+    Within,
+}
+
+fn averaging(stage: &Stage) -> Averaging {
+    if stage.is_static() {
+        Averaging::BothEnds
+    } else if stage.before == Weights::default() && stage.average == 0.0 {
+        Averaging::Ends
+    } else {
+        Averaging::Within
+    }
+}
+
+/// Shares of a force at the stage's end and at the step's start; at dofs without inertia, where there is nothing to average with, of that at the
+/// step's end.
+struct Shares {
+    now: f64,
+    start: f64,
+    massless: f64,
+}
+
+impl Shares {
+    fn add(&self, model: &Model, stage: &Stage, now: &[f64], start: &[f64], mean: &mut [f64]) {
+        for i in 0..mean.len() {
+            if !model.massless[i] || stage.is_static() {
+                mean[i] += self.now * now[i] + self.start * start[i];
+            } else if stage.end == 1.0 {
+                mean[i] = self.massless * now[i];
+            }
+        }
+    }
+}
+
+/// The share of the step before, in the first stage of a two-step scheme.
+fn add_old(model: &Model, old: f64, before: &Means, means: &mut Means) {
+    for i in (0..model.dofs()).filter(|&i| !model.massless[i]) {
+        means.contact[i] += old * before.contact[i];
+        means.loads[i] += old * before.loads[i];
+    }
+    (0..3).for_each(|i| means.impulse[i] += old * before.impulse[i]);
+}
+
+/// Forces and accelerations of the supports that move.
+fn add_supports(equations: &Equations, solved: &Evaluation, before: Option<(f64, &Means)>, means: &mut Means) {
+    let Equations { model, state, stage, .. } = equations;
+    let (now, start) = match averaging(stage) {
+        Averaging::BothEnds => (0.5, 0.5),
+        Averaging::Ends => (stage.mean[2], stage.mean[1]),
+        Averaging::Within => (1.0, 0.0),
+    };
+    // What was left for the supports at the step's start.
+    let mut left = vec![0.0; if start == 0.0 { 0 } else { model.dofs() }];
+    if start != 0.0 {
+        model.mass.multiply_into(&state.a, &mut left);
+        for i in model.motions.dofs() {
+            left[i] += state.f_internal[i] + state.f_contact[i] - model.gravity[i] - state.f_external[i];
+        }
+    }
+    for moved in &equations.motions {
+        let i = moved.dof;
+        if model.massless[i] && !stage.is_static() {
+            means.supports[i] = solved.residual[i] / stage.weights.external;
+            continue;
+        }
+        means.supports[i] += now * solved.residual[i] + left.get(i).map_or(0.0, |left| start * left);
+        means.accelerations[i] += match averaging(stage) {
+            Averaging::BothEnds => 0.0,
+            Averaging::Ends => now * moved.motion[2] + start * state.a[i],
+            Averaging::Within => mean_acceleration(stage, moved.motion[2], state.a[i]),
+        };
+        if let Some((old, before)) = before {
+            means.supports[i] += old * before.supports[i];
+            means.accelerations[i] += old * before.accelerations[i];
+        }
+    }
+}
+
+/// Books a step into `next`, before any projection: `last` is its last stage, `strain` the bodies' energy at its end.
+pub(crate) fn account(equations: &Equations, last: &Evaluation, next: &mut State, strain: f64, dt: f64, means: &Means) {
+    let Equations { model, state, .. } = equations;
+    let increment = &last.at.increment;
+    for (moved, force) in increment.iter().zip(&means.contact) {
+        next.ledger.contact_work -= moved * force;
+    }
+    // What went into springs is not lost: it is counted with the strain energy.
+    next.ledger.contact_work += last.springs - next.ledger.springs;
+    next.ledger.springs = last.springs;
+    if !model.loads.is_empty() {
+        next.ledger.external_work += dot(increment, &means.loads);
+    }
+    if !equations.motions.is_empty() {
+        next.ledger.external_work += work_of_motions(equations, next, increment, dt, means);
+    }
+    next.ledger.open += open_work(state, next, increment);
+    book_contact_forces(model, next);
+    (0..3).for_each(|i| next.ledger.impulse[i] += means.impulse[i]);
+    next.ledger.strain = strain + last.springs;
+    next.ledger.potential = model.potential(&next.y);
+    book_kinetic(model, next);
+}
+
+/// Work of the supports that move.
+fn work_of_motions(equations: &Equations, next: &State, increment: &[f64], dt: f64, means: &Means) -> f64 {
+    let Equations { model, state, stage, .. } = equations;
+    let sum = dot(increment, &means.supports);
+    if stage.is_static() {
+        return sum;
+    }
+    let mut jump = vec![0.0; increment.len()];
+    for i in model.motions.dofs() {
+        jump[i] = next.v[i] - state.v[i] - dt * means.accelerations[i];
+    }
+    let mut impulse = vec![0.0; increment.len()];
+    model.mass.multiply_into(&jump, &mut impulse);
+    sum + dot(increment, &impulse) / dt
+}
+
+/// Force on a secondary side, −Σ λ ∂g/∂y_N, of the pairs that press.
+pub fn secondary_force<'a>(pairs: &[Pair], rows: impl Iterator<Item = Row<'a>>) -> [f64; 3] {
+    let mut force = [0.0; 3];
+    for (pair, row) in pairs.iter().zip(rows).filter(|(pair, _)| pair.active) {
+        let normal = row.normal();
+        (0..3).for_each(|i| force[i] -= pair.lambda * normal[i]);
+    }
+    force
+}
+
+/// Δy·ΔF of the loads: the work of the loads at the step's end less that of those at its start. A scheme's mean lies between the two; that of eq. (15)
+/// misses the trapezoidal work by (½ − α_f) Δy·ΔF, though nothing is created. The guard leaves the sum of it open.
+pub(crate) fn open_work(state: &State, next: &State, increment: &[f64]) -> f64 {
+    let forces = state.f_external.iter().zip(&next.f_external);
+    increment.iter().zip(forces).map(|(moved, (before, now))| moved * (now - before)).sum()
+}
+
+/// Kinetic energy of the velocities, and the largest energy so far.
+pub(crate) fn book_kinetic(model: &Model, state: &mut State) {
+    state.ledger.kinetic = model.kinetic(&state.v);
+    state.ledger.largest = state.ledger.largest.max(state.ledger.kinetic + state.ledger.strain);
+}
+
+/// Force on the secondary side of each contact at the state's positions.
+pub(crate) fn book_contact_forces(model: &Model, state: &mut State) {
+    let mut rows = Rows::new(model.dimension);
+    for (k, contact) in model.contacts.iter().enumerate() {
+        let mut force = [0.0; 3];
+        for pair in state.pairs[k].iter().filter(|p| p.active) {
+            rows.clear();
+            if contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_ok() {
+                let of_pair = secondary_force(std::slice::from_ref(pair), rows.iter());
+                (0..3).for_each(|i| force[i] += of_pair[i]);
+            }
+        }
+        state.contact_forces[k] = force;
+    }
+}

@@ -1,0 +1,36 @@
+//! The mechanics of Carom: a model of bodies, loads and contacts as plain numbers, the balance of forces, and the steppers that
+//! take its state from one time to the next. Knows no case file; the crate `carom` builds models from cases.
+
+mod balance;
+mod cells;
+mod constraints;
+mod contact_update;
+mod equations;
+pub mod frequencies;
+mod held;
+mod kept;
+mod kept_step;
+mod ledger;
+mod mixing;
+pub mod model;
+mod newton;
+mod persistency;
+mod rejected;
+mod settings;
+mod simulation;
+pub mod stability;
+mod start;
+mod state;
+mod stepper;
+mod system;
+mod workspace;
+
+pub use kept::{Kept, Point};
+pub use ledger::secondary_force;
+pub use rejected::Rejected;
+pub use settings::{Settings, Tangent};
+pub use simulation::{Grid, GridReport, LogEvent, Simulation, Stopped};
+pub use start::Before;
+pub use state::{Ahead, Halved, Ledger, Means, Previous, State};
+pub use stepper::{Accepted, Explicit, Implicit, Impulsive, StepReport, Stepper};
+pub use workspace::{Timings, Workspace};

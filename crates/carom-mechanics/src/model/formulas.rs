@@ -1,0 +1,55 @@
+//! Formulas of place and time: evaluated with their arguments, and refused with them where they have no value.
+
+use carom_formula::Formula;
+
+/// A formula without a finite value.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{what} has no finite value at X = {place:?}, t = {time}: {formula} = {value}")]
+pub struct NoValue {
+    /// Whose formula.
+    pub what: String,
+    /// The formula as written.
+    pub formula: String,
+    /// Reference place.
+    pub place: Vec<f64>,
+    /// Time.
+    pub time: f64,
+    /// What came out.
+    pub value: f64,
+}
+
+/// Arguments X, (Y, Z,) t of a formula.
+pub(super) struct Arguments {
+    values: [f64; 4],
+    count: usize,
+}
+
+impl Arguments {
+    pub(super) fn new(place: &[f64], time: f64) -> Self {
+        let mut values = [time; 4];
+        values[..place.len()].copy_from_slice(place);
+        Self { values, count: place.len() + 1 }
+    }
+
+    pub(super) fn as_slice(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+}
+
+/// Value of a formula of place and time.
+///
+/// # Errors
+/// It is not finite.
+pub fn value(formula: &Formula, what: &str, place: &[f64], time: f64) -> Result<f64, NoValue> {
+    let value = formula.value(Arguments::new(place, time).as_slice());
+    finite(value, formula, what, place, time)
+}
+
+/// The value, if it is finite.
+pub(super) fn finite(value: f64, formula: &Formula, what: &str, place: &[f64], time: f64) -> Result<f64, NoValue> {
+    if value.is_finite() {
+        return Ok(value);
+    }
+    let formula = formula.text().to_owned();
+    Err(NoValue { what: what.to_owned(), formula, place: place.to_vec(), time, value })
+}

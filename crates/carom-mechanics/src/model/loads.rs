@@ -1,0 +1,175 @@
+//! Loads as nodal forces f_ext(y, t), gravity apart: dead tractions and body forces, known when the time is, and follower
+//! pressures, which turn with the side (`carom_solid::LoadedSide`). Where the motion is given, the load that makes it one is the only load.
+
+use carom_formula::Formula;
+use carom_solid::LoadedSide;
+
+use super::formulas::{NoValue, value};
+use super::{Manufactured, Part};
+
+/// A factor over time.
+pub type Amplitude = Box<dyn Fn(f64) -> f64 + Send + Sync>;
+
+/// All loads of a model.
+#[derive(Default)]
+pub struct Loads {
+    tractions: Vec<Load<LoadedSide>>,
+    pressures: Vec<Load<LoadedSide>>,
+    body_forces: Vec<Load<usize>>,
+    /// The motion that was given, if one was.
+    pub manufactured: Option<Manufactured>,
+}
+
+/// A load: where it acts, its components as formulas of place and time, its name in messages.
+pub struct Load<On> {
+    /// A side, or the place of a body.
+    pub on: On,
+    /// Components; of a pressure one.
+    pub value: Vec<Formula>,
+    /// Name in messages.
+    pub label: String,
+    /// Factor over time; none is 1.
+    pub amplitude: Option<Amplitude>,
+}
+
+impl<On> Load<On> {
+    fn factor(&self, time: f64) -> f64 {
+        self.amplitude.as_ref().map_or(1.0, |amplitude| amplitude(time))
+    }
+
+    /// The components at a place, times the factor.
+    fn vector_into(&self, place: &[f64], time: f64, factor: f64, out: &mut [f64]) -> Result<(), NoValue> {
+        for (out, formula) in out.iter_mut().zip(&self.value) {
+            *out = factor * value(formula, &self.label, place, time)?;
+        }
+        Ok(())
+    }
+}
+
+/// Loads at one time: what does not depend on the positions.
+#[derive(Clone, Debug, Default)]
+pub struct LoadsAt {
+    /// Nodal forces of the dead loads, flat.
+    dead: Vec<f64>,
+    /// Pressures at the quadrature points of each pressure's side.
+    pressures: Vec<Vec<f64>>,
+}
+
+impl Loads {
+    /// Adds a dead traction per reference area.
+    pub fn add_traction(&mut self, load: Load<LoadedSide>) {
+        self.tractions.push(load);
+    }
+
+    /// Adds a pressure per current area, against the outward normal.
+    pub fn add_pressure(&mut self, load: Load<LoadedSide>) {
+        self.pressures.push(load);
+    }
+
+    /// Adds a dead force per reference volume of a body, named by its place.
+    pub fn add_body_force(&mut self, load: Load<usize>) {
+        self.body_forces.push(load);
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.tractions.is_empty()
+            && self.pressures.is_empty()
+            && self.body_forces.is_empty()
+            && self.manufactured.is_none()
+    }
+
+    /// Whether some depend on the positions.
+    pub fn follow(&self) -> bool {
+        !self.pressures.is_empty()
+    }
+
+    /// Evaluates all formulas and tables at a time; `out` is reused.
+    ///
+    /// # Errors
+    /// The first formula without a finite value.
+    pub fn at(&self, parts: &[Part], dofs: usize, time: f64, out: &mut LoadsAt) -> Result<(), NoValue> {
+        out.dead.clear();
+        out.dead.resize(dofs, 0.0);
+        for load in &self.tractions {
+            let (factor, d) = (load.factor(time), load.value.len());
+            let mut tractions = vec![0.0; load.on.positions().len() * d];
+            for (place, traction) in load.on.positions().zip(tractions.chunks_exact_mut(d)) {
+                load.vector_into(place, time, factor, traction)?;
+            }
+            load.on.add_traction(tractions.chunks_exact(d), &mut out.dead);
+        }
+        for load in &self.body_forces {
+            let factor = load.factor(time);
+            let density = |place: &[f64], out: &mut [f64]| load.vector_into(place, time, factor, out);
+            add_body_force(&parts[load.on], density, &mut out.dead)?;
+        }
+        if let Some(motion) = &self.manufactured {
+            motion.add_load(parts, time, &mut out.dead)?;
+        }
+        out.pressures.resize_with(self.pressures.len(), Vec::new);
+        for (load, pressures) in self.pressures.iter().zip(&mut out.pressures) {
+            let factor = load.factor(time);
+            pressures.clear();
+            for x in load.on.positions() {
+                pressures.push(factor * value(&load.value[0], &load.label, x, time)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// Overwrites `force` with f_ext at positions `y`.
+    pub fn force_into(&self, at: &LoadsAt, y: &[f64], force: &mut [f64]) {
+        force.copy_from_slice(&at.dead);
+        for (load, pressure) in self.pressures.iter().zip(&at.pressures) {
+            load.on.add_pressure(pressure, y, force);
+        }
+    }
+
+    /// Calls `visit(nodes, tangent)` for every facet under pressure, tangent = ∂f_ext/∂y (`(n·D)²`, row-major); without `at`, of zeros.
+    pub(crate) fn each_facet_tangent(
+        &self,
+        dimension: usize,
+        at: Option<&LoadsAt>,
+        mut visit: impl FnMut(&[usize], &[f64]),
+    ) {
+        let mut tangent = Vec::new();
+        for (k, load) in self.pressures.iter().enumerate() {
+            for (facet, nodes) in load.on.facets().iter().enumerate() {
+                tangent.clear();
+                tangent.resize((nodes.len() * dimension).pow(2), 0.0);
+                if let Some(at) = at {
+                    load.on.facet_tangent(facet, &at.pressures[k], &mut tangent);
+                }
+                visit(nodes, &tangent);
+            }
+        }
+    }
+}
+
+/// fᵃ += ∫φᵃ b dΩ₀ with b per reference volume, or why b has no value.
+pub(super) fn add_body_force(
+    part: &Part,
+    density: impl Fn(&[f64], &mut [f64]) -> Result<(), NoValue>,
+    force: &mut [f64],
+) -> Result<(), NoValue> {
+    let mesh = part.body.mesh();
+    let d = mesh.dimension();
+    let (mut local, mut b) = (vec![0.0; mesh.element.dofs()], vec![0.0; d]);
+    let mut refused = Ok(());
+    for cell in 0..mesh.cell_count() {
+        local.fill(0.0);
+        part.body.each_volume_point(cell, &mut |shape, place, volume| {
+            if refused.is_ok() {
+                refused = density(place, &mut b);
+            }
+            for (local, phi) in local.chunks_exact_mut(d).zip(shape) {
+                local.iter_mut().zip(&b).for_each(|(f, b)| *f += phi * volume * b);
+            }
+        });
+        for (dof, f) in part.cell_dofs(cell).zip(&local) {
+            force[dof] += f;
+        }
+    }
+    refused
+}

@@ -1,0 +1,111 @@
+//! Mass matrix M = ∫ρ₀ NᵀN dΩ₀ between nodes; the same for every direction.
+
+use carom_solid::cell_lumped_mass;
+
+use super::Part;
+
+/// Symmetric matrix between nodes, compressed by rows, both triangles.
+#[derive(Clone, Debug, Default)]
+pub struct Mass {
+    starts: Vec<usize>,
+    columns: Vec<u32>,
+    values: Vec<f64>,
+    directions: usize,
+}
+
+impl Mass {
+    /// Assembles the bodies' masses, consistent or lumped: `lumped` has one entry per body.
+    pub fn assemble(dimension: usize, parts: &[Part], lumped: &[bool]) -> Self {
+        let count: usize = parts.iter().map(|p| p.body.mesh().nodes.len()).sum();
+        let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];
+        for (part, lumped) in parts.iter().zip(lumped) {
+            let mesh = part.body.mesh();
+            let n = mesh.element.nodes();
+            let (mut local, mut diagonal) = (vec![0.0; n * n], vec![0.0; n]);
+            for cell in 0..mesh.cell_count() {
+                if *lumped {
+                    cell_lumped_mass(&*part.body, cell, &mut local, &mut diagonal);
+                    local.fill(0.0);
+                    for p in 0..n {
+                        local[p * n + p] = diagonal[p];
+                    }
+                } else {
+                    part.body.cell_mass(cell, &mut local);
+                }
+                let nodes = mesh.cell(cell);
+                for p in 0..n {
+                    for q in 0..n {
+                        if local[p * n + q] != 0.0 {
+                            rows[part.first_node + nodes[p]].push((part.first_node + nodes[q], local[p * n + q]));
+                        }
+                    }
+                }
+            }
+        }
+        let mut mass = Self { starts: vec![0], directions: dimension, ..Self::default() };
+        for row in &mut rows {
+            row.sort_by_key(|e| e.0);
+            for &(column, value) in row.iter() {
+                if mass.columns.len() > mass.starts[mass.starts.len() - 1]
+                    && mass.columns.last() == Some(&(column as u32))
+                {
+                    if let Some(last) = mass.values.last_mut() {
+                        *last += value;
+                    }
+                } else {
+                    mass.columns.push(column as u32);
+                    mass.values.push(value);
+                }
+            }
+            mass.starts.push(mass.columns.len());
+        }
+        mass
+    }
+
+    /// Entries (row, column, value) of a node's row, columns ascending.
+    pub fn row(&self, node: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.starts[node]..self.starts[node + 1];
+        self.columns[range.clone()].iter().map(|&column| column as usize).zip(self.values[range].iter().copied())
+    }
+
+    /// The same for change.
+    pub(super) fn row_mut(&mut self, node: usize) -> impl Iterator<Item = (usize, &mut f64)> + '_ {
+        let range = self.starts[node]..self.starts[node + 1];
+        self.columns[range.clone()].iter().map(|&column| column as usize).zip(&mut self.values[range])
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// out = M x over all dofs.
+    pub fn multiply_into(&self, x: &[f64], out: &mut [f64]) {
+        match self.directions {
+            1 => self.multiply::<1>(x, out),
+            2 => self.multiply::<2>(x, out),
+            3 => self.multiply::<3>(x, out),
+            _ => out.fill(0.0),
+        }
+    }
+
+    fn multiply<const D: usize>(&self, x: &[f64], out: &mut [f64]) {
+        let x = x.as_chunks::<D>().0;
+        for (range, out) in self.starts.windows(2).zip(out.as_chunks_mut::<D>().0) {
+            let range = range[0]..range[1];
+            let mut sum = [0.0; D];
+            for (&column, value) in self.columns[range.clone()].iter().zip(&self.values[range]) {
+                let x = &x[column as usize];
+                for i in 0..D {
+                    sum[i] += value * x[i];
+                }
+            }
+            *out = sum;
+        }
+    }
+
+    /// Whether a node carries no mass at all.
+    pub fn is_massless(&self, node: usize) -> bool {
+        self.row(node).all(|(_, value)| value == 0.0)
+    }
+}

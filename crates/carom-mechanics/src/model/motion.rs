@@ -1,0 +1,67 @@
+//! Supports that move: y = X + u(X, t) with v = u̇ and a = ü by the formula's own derivatives. The scheme's relations between d, v and a are not
+//! used for these dofs, so they cannot ring, and their inertia M a acts on their neighbours.
+
+use carom_formula::Formula;
+
+use super::formulas::{Arguments, NoValue, finite};
+
+/// A dof that moves as a formula says.
+#[derive(Clone, Debug)]
+struct Moved {
+    dof: usize,
+    /// Place in `formulas`.
+    formula: usize,
+    place: Vec<f64>,
+}
+
+/// All prescribed motions of a model.
+#[derive(Default)]
+pub struct Motions {
+    formulas: Vec<(String, Formula)>,
+    moved: Vec<Moved>,
+}
+
+/// A dof's displacement, velocity and acceleration.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Prescribed {
+    /// Global dof.
+    pub dof: usize,
+    /// u, u̇, ü.
+    pub motion: [f64; 3],
+}
+
+impl Motions {
+    /// Displacements of dofs by formulas of place and time: formulas with their names in messages, and each moved dof once, ascending,
+    /// with the place of its formula and its reference position.
+    pub fn new(formulas: Vec<(String, Formula)>, moved: impl IntoIterator<Item = (usize, usize, Vec<f64>)>) -> Self {
+        let moved = moved.into_iter().map(|(dof, formula, place)| Moved { dof, formula, place }).collect();
+        Self { formulas, moved }
+    }
+
+    /// Whether nothing moves.
+    pub fn is_empty(&self) -> bool {
+        self.moved.is_empty()
+    }
+
+    /// Moved dofs, ascending.
+    pub fn dofs(&self) -> impl Iterator<Item = usize> + '_ {
+        self.moved.iter().map(|m| m.dof)
+    }
+
+    /// Displacements, velocities and accelerations at a time; `out` is reused.
+    ///
+    /// # Errors
+    /// The first formula without a finite value or derivative.
+    pub fn at(&self, time: f64, out: &mut Vec<Prescribed>) -> Result<(), NoValue> {
+        out.clear();
+        for moved in &self.moved {
+            let (label, formula) = &self.formulas[moved.formula];
+            let motion = formula.with_derivatives(Arguments::new(&moved.place, time).as_slice(), moved.place.len());
+            for value in motion {
+                finite(value, formula, label, &moved.place, time)?;
+            }
+            out.push(Prescribed { dof: moved.dof, motion });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,113 @@
+//! Points whose quantities become columns: interpolated in their cell; a stress at a node is the mean over its cells.
+//!
+//! A state is accepted when J > 0 at every quadrature point; in a corner of a badly bent cell it may still be ≤ 0, and the law has no stress
+//! there. Such a cell is left out of the mean; where no cell is left the stress is NaN, and the log says when that begins. J itself is always
+//! the mean over all cells, of whatever sign.
+
+use carom_solid::Body;
+
+use super::Model;
+use crate::state::State;
+
+/// What can be recorded at a point; axes count from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Displacement along an axis.
+    Displacement(usize),
+    /// Velocity along an axis.
+    Velocity(usize),
+    /// Acceleration along an axis.
+    Acceleration(usize),
+    /// A component of the Cauchy stress.
+    Stress(usize, usize),
+    /// The von Mises stress of the Cauchy stress.
+    VonMises,
+    /// Volume ratio J.
+    DetF,
+}
+
+/// A resolved probe.
+#[derive(Clone, Debug)]
+pub struct Probe {
+    /// Name in the case.
+    pub name: String,
+    /// Body, by its place.
+    pub part: usize,
+    /// Cells and reference coordinates that meet at the point.
+    pub places: Vec<(usize, Vec<f64>)>,
+    /// What to record.
+    pub record: Vec<Quantity>,
+}
+
+impl Probe {
+    /// The recorded quantities in a state, in order; a stress is NaN where no cell at the point has one.
+    pub fn values(&self, model: &Model, state: &State, out: &mut Vec<f64>) {
+        let part = &model.parts[self.part];
+        let nodal = |field: &[f64], i: usize| {
+            let (cell, xi) = &self.places[0];
+            interpolated(&*part.body, *cell, xi, part.of(field), i)
+        };
+        for quantity in &self.record {
+            out.push(match quantity {
+                Quantity::Displacement(i) => nodal(&state.y, *i) - nodal(&model.reference, *i),
+                Quantity::Velocity(i) => nodal(&state.v, *i),
+                Quantity::Acceleration(i) => nodal(&state.a, *i),
+                stress => self.mean(part.body.as_ref(), part.of(&state.y), *stress),
+            });
+        }
+    }
+
+    /// Whether the stresses it records, if any, exist in a state.
+    pub fn has_stress(&self, model: &Model, state: &State) -> bool {
+        let part = &model.parts[self.part];
+        let y = part.of(&state.y);
+        !self.record.iter().any(|q| is_stress(*q))
+            || self.places.iter().any(|(c, xi)| part.body.point(*c, xi, y).is_ok())
+    }
+
+    fn mean(&self, body: &dyn Body, y: &[f64], quantity: Quantity) -> f64 {
+        let (mut sum, mut count) = (0.0, 0);
+        for (cell, xi) in &self.places {
+            let point = body.point(*cell, xi, y);
+            let value = match (quantity, &point) {
+                (Quantity::DetF, Err(inverted)) => Some(inverted.det_f),
+                (_, Err(_)) => None,
+                (_, Ok(p)) => Some(match quantity {
+                    Quantity::Stress(i, j) => p.cauchy[i][j],
+                    Quantity::VonMises => von_mises(&p.cauchy),
+                    _ => p.det_f,
+                }),
+            };
+            if let Some(value) = value {
+                sum += value;
+                count += 1;
+            }
+        }
+        // 0/0 is NaN.
+        sum / f64::from(count)
+    }
+}
+
+fn is_stress(quantity: Quantity) -> bool {
+    matches!(quantity, Quantity::Stress(..) | Quantity::VonMises)
+}
+
+fn interpolated(body: &dyn Body, cell: usize, xi: &[f64], field: &[f64], i: usize) -> f64 {
+    let (nodes, d) = (body.mesh().cell(cell), body.mesh().dimension());
+    let mut shape = vec![0.0; nodes.len()];
+    body.shape(xi, &mut shape);
+    nodes.iter().zip(&shape).map(|(&n, s)| s * field[n * d + i]).sum()
+}
+
+/// √(3/2 s:s) with s the deviator.
+pub fn von_mises(s: &[[f64; 3]; 3]) -> f64 {
+    let mean = (s[0][0] + s[1][1] + s[2][2]) / 3.0;
+    let mut square = 0.0;
+    for i in 0..3 {
+        for j in 0..3 {
+            let deviator = s[i][j] - if i == j { mean } else { 0.0 };
+            square += deviator * deviator;
+        }
+    }
+    (1.5 * square).sqrt()
+}

@@ -1,0 +1,157 @@
+//! Rigid motions that supports leave to a body: where there is no inertia, only contact can hold them, and what holds nothing has no equilibrium.
+//!
+//! The rigid motions of a body are its translations and rotations about its middle, u = t + ω × (x − c)/size: one in dimension 1, three in the
+//! plane, six in space. Held dofs (supports) and active contacts (their gradients) are rows over these few unknowns; what is orthogonal to all rows
+//! is free.
+
+use carom_contact::Row;
+
+use super::{Model, Part};
+
+/// Rows shorter than this (they are of order one) hold nothing.
+const SHORT: f64 = 1e-8;
+
+/// A rigid motion of a body that no support hinders.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// Place of the body.
+    pub part: usize,
+    translation: [f64; 3],
+    rotation: [f64; 3],
+    centre: [f64; 3],
+    size: f64,
+}
+
+/// A body that nothing holds.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "body \"{body}\" is free to {motion}: supports do not hold it there, and no closed contact does. Hold it with a [[support]], press it with \
+     a support's `move` instead of a force, let it touch at the start, or take a scheme with inertia"
+)]
+pub struct Unheld {
+    /// Its name.
+    pub body: String,
+    /// What it is free to do.
+    pub motion: &'static str,
+}
+
+/// Axes of the translations and of the rotations there are in a dimension.
+fn axes(dimension: usize) -> (&'static [usize], &'static [usize]) {
+    match dimension {
+        1 => (&[0], &[]),
+        2 => (&[0, 1], &[2]),
+        _ => (&[0, 1, 2], &[0, 1, 2]),
+    }
+}
+
+impl Mode {
+    /// All rigid motions of a body.
+    fn all(place: usize, part: &Part) -> Vec<Self> {
+        let mesh = part.body.mesh();
+        let mut centre = [0.0; 3];
+        for i in 0..mesh.dimension() {
+            centre[i] = mesh.nodes.iter().map(|x| x[i]).sum::<f64>() / mesh.nodes.len() as f64;
+        }
+        let still = Self { part: place, translation: [0.0; 3], rotation: [0.0; 3], centre, size: mesh.diameter() };
+        let unit = |axis: usize| std::array::from_fn(|i| f64::from(u8::from(i == axis)));
+        let (along, about) = axes(mesh.dimension());
+        let translations = along.iter().map(|&i| Self { translation: unit(i), ..still.clone() });
+        translations.chain(about.iter().map(|&i| Self { rotation: unit(i), ..still.clone() })).collect()
+    }
+
+    /// Σ shares · modes, of one body.
+    fn combined(modes: &[Self], shares: &[f64]) -> Self {
+        let sum = |of: &dyn Fn(&Self) -> [f64; 3]| {
+            std::array::from_fn(|i| modes.iter().zip(shares).map(|(mode, share)| share * of(mode)[i]).sum())
+        };
+        Self { translation: sum(&|m| m.translation), rotation: sum(&|m| m.rotation), ..modes[0].clone() }
+    }
+
+    /// Displacement of a place along an axis.
+    fn at(&self, place: &[f64], axis: usize) -> f64 {
+        let arm = |i: usize| place.get(i).map_or(0.0, |x| (x - self.centre[i]) / self.size);
+        let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+        self.translation[axis] + self.rotation[j] * arm(k) - self.rotation[k] * arm(j)
+    }
+
+    /// Its name by the largest share.
+    pub fn motion(&self) -> &'static str {
+        const NAMES: [&str; 4] = ["turn", "move along x", "move along y", "move along z"];
+        let turn = self.rotation.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let shares = [turn, self.translation[0].abs(), self.translation[1].abs(), self.translation[2].abs()];
+        let largest = (0..4).fold(0, |most, k| if shares[k] > shares[most] { k } else { most });
+        NAMES[largest]
+    }
+}
+
+/// Rigid motions that held dofs leave to the bodies.
+pub fn free_motions(parts: &[Part], fixed: &[bool]) -> Vec<Mode> {
+    let mut free = Vec::new();
+    for (place, part) in parts.iter().enumerate() {
+        let (mesh, modes) = (part.body.mesh(), Mode::all(place, part));
+        let d = mesh.dimension();
+        let held = part.nodes().flat_map(|n| (0..d).map(move |i| (n, i))).filter(|(n, i)| fixed[n * d + i]);
+        let row = |(node, axis): (usize, usize)| {
+            modes.iter().map(|m| m.at(&mesh.nodes[node - part.first_node], axis)).collect::<Vec<f64>>()
+        };
+        free.extend(null_space(modes.len(), held.map(row)).iter().map(|shares| Mode::combined(&modes, shares)));
+    }
+    free
+}
+
+/// A basis of what is orthogonal to all rows, of `size` entries each.
+fn null_space(size: usize, rows: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    // Orthonormal vectors, by Gram–Schmidt twice: first those that span the rows.
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let mut add = |mut row: Vec<f64>, short: f64| {
+        for _ in 0..2 {
+            for other in &basis {
+                let overlap = dot(&row, other);
+                row.iter_mut().zip(other).for_each(|(r, o)| *r -= overlap * o);
+            }
+        }
+        let length = dot(&row, &row).sqrt();
+        if length > short {
+            row.iter_mut().for_each(|r| *r /= length);
+            basis.push(row);
+        }
+        basis.len()
+    };
+    let mut spanned = 0;
+    for row in rows {
+        spanned = add(row, SHORT);
+        if spanned == size {
+            return Vec::new();
+        }
+    }
+    for k in 0..size {
+        add((0..size).map(|i| f64::from(u8::from(i == k))).collect(), 1e-3);
+    }
+    basis.split_off(spanned)
+}
+
+impl Model {
+    /// Refuses pressing contacts, by their rows at positions `y`, that leave a body free to move as its supports do.
+    ///
+    /// # Errors
+    /// The body and its motion.
+    pub(crate) fn check_held<'a>(&self, y: &[f64], rows: impl Iterator<Item = Row<'a>>) -> Result<(), Unheld> {
+        if self.unheld.is_empty() {
+            return Ok(());
+        }
+        let d = self.dimension;
+        let row = |gap: Row| -> Vec<f64> {
+            let along = |mode: &Mode| {
+                let nodes = self.parts[mode.part].nodes();
+                let own = gap.entries().filter(|(dof, _)| nodes.contains(&(dof / d)));
+                own.map(|(dof, slope)| slope * mode.at(&y[dof / d * d..dof / d * d + d], dof % d)).sum::<f64>()
+            };
+            self.unheld.iter().map(along).collect()
+        };
+        let Some(free) = null_space(self.unheld.len(), rows.map(row)).into_iter().next() else { return Ok(()) };
+        let largest = (0..free.len()).max_by(|a, b| free[*a].abs().total_cmp(&free[*b].abs())).unwrap_or(0);
+        let mode = &self.unheld[largest];
+        Err(Unheld { body: self.parts[mode.part].name.clone(), motion: mode.motion() })
+    }
+}

@@ -1,0 +1,141 @@
+//! Where contact begins: velocities and accelerations made to agree with the constraints that now hold (persistency, g ġ = 0).
+//!
+//! ```text
+//! M Δv + Gᵀp = 0,   G (v + Δv) = 0            then       M a + Gᵀλ = f_ext − f_int,   G a = −v·∇²g·v
+//! ```
+//!
+//! with all active rows as equalities. Projecting v alone leaves the accelerations of the impact behind and cures nothing (theory.md §5.3).
+//! Dofs without mass keep their velocity: they follow what the massive side does.
+
+use carom_contact::{Row, Rows};
+
+use crate::constraints::{Constraints, independent_rows};
+use crate::ledger::{book_contact_forces, book_kinetic};
+use crate::model::Model;
+use crate::rejected::Rejected;
+use crate::state::State;
+use crate::system::System;
+
+/// Projects `state` if one of the new contacts (contact, node) asks for it. The jump of kinetic energy is booked as contact work and returned.
+pub(crate) fn project(
+    model: &Model,
+    state: &mut State,
+    activations: &[(usize, usize)],
+    system: &mut System,
+) -> Result<f64, Rejected> {
+    let asks = |k: usize| model.contacts[k].projects;
+    if !activations.iter().any(|&(k, _)| asks(k)) {
+        return Ok(0.0);
+    }
+    let gaps = measure_all(model, state)?;
+    let mut places = independent_rows(model, pressing(state), &gaps);
+    places.retain(|&(k, _)| asks(k));
+    let rows = Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), gaps[k].row(p))));
+    let inertia = system.factor_mass(model, &rows)?;
+    if inertia.negative < rows.len() {
+        let size = model.free.len() + rows.len();
+        return Err(carom_algebra::LinearError::Singular { size, pivot: inertia.negative, value: 0.0 }.into());
+    }
+    let dofs = model.dofs();
+    let (mut change, mut multipliers) = (vec![0.0; dofs], Vec::new());
+
+    let closing: Vec<f64> = rows.rows.iter().map(|row| -row.along(&state.v)).collect();
+    system.solve(model, &vec![0.0; dofs], &closing, &mut change, &mut multipliers)?;
+    for i in 0..dofs {
+        state.v[i] += if model.massless[i] { 0.0 } else { change[i] };
+    }
+    for (row, impulse) in rows.rows.iter().zip(&multipliers) {
+        let normal = row.normal();
+        (0..3).for_each(|i| state.ledger.impulse[i] -= impulse * normal[i]);
+    }
+
+    let (forces, bending) = drive(model, state, &gaps, &rows);
+    system.solve(model, &forces, &bending, &mut change, &mut multipliers)?;
+    take_accelerations(model, state, &change);
+    for (&(k, p), lambda) in places.iter().zip(&multipliers) {
+        state.pairs[k][p].lambda = *lambda;
+    }
+
+    averaged_contact_into(model, state, &gaps);
+    book_contact_forces(model, state);
+    let before = state.ledger.kinetic;
+    book_kinetic(model, state);
+    let jump = state.ledger.kinetic - before;
+    state.ledger.contact_work += jump;
+    Ok(jump)
+}
+
+/// Contact and pair of all that press in a state.
+pub(crate) fn pressing(state: &State) -> impl Iterator<Item = (usize, usize)> + '_ {
+    let pairs = state.pairs.iter().enumerate();
+    pairs.flat_map(|(k, pairs)| (0..pairs.len()).filter(|&p| pairs[p].active).map(move |p| (k, p)))
+}
+
+/// Right-hand sides of M a + Gᵀλ = f_ext − f_int, G a = −v·∇²g·v for these constraints, less what the accelerations of moving supports, in `state`,
+/// and the forces of all other pressing pairs, springs among them, contribute.
+pub(crate) fn drive(model: &Model, state: &State, gaps: &[Rows], constraints: &Constraints) -> (Vec<f64>, Vec<f64>) {
+    let dofs = model.dofs();
+    let (mut moved, mut carried) = (vec![0.0; dofs], vec![0.0; dofs]);
+    if !model.motions.is_empty() {
+        model.motions.dofs().for_each(|dof| moved[dof] = state.a[dof]);
+        model.mass.multiply_into(&moved, &mut carried);
+    }
+    for (k, p) in pressing(state).filter(|place| !constraints.places.contains(place)) {
+        gaps[k].row(p).add_to(state.pairs[k][p].lambda, &mut carried);
+    }
+    let force = |i: usize| model.gravity[i] + state.f_external[i] - state.f_internal[i] - carried[i];
+    let forces = (0..dofs).map(|i| if model.massless[i] { 0.0 } else { force(i) }).collect();
+    let mut second = Vec::new();
+    let bending = |(&(k, p), row): (&(usize, usize), Row)| {
+        second.resize(row.gradient.len().pow(2), 0.0);
+        model.contacts[k].kinematics.curvature_into(&state.pairs[k][p], &state.y, &mut second);
+        -curvature(row, &second, &state.v) - row.along(&moved)
+    };
+    (forces, constraints.places.iter().zip(constraints.rows.iter()).map(bending).collect())
+}
+
+/// Accelerations of free dofs that have mass; moving supports keep theirs.
+pub(crate) fn take_accelerations(model: &Model, state: &mut State, solved: &[f64]) {
+    for &i in &model.free {
+        state.a[i] = if model.massless[i] { 0.0 } else { solved[i] };
+    }
+}
+
+/// Rows of all pressing pairs at the state; those of open ones are far away.
+pub(crate) fn measure_all(model: &Model, state: &mut State) -> Result<Vec<Rows>, Rejected> {
+    let mut all = Vec::with_capacity(model.contacts.len());
+    for (contact, pairs) in model.contacts.iter().zip(&mut state.pairs) {
+        let mut rows = Rows::new(model.dimension);
+        for pair in pairs {
+            if pair.active {
+                contact
+                    .kinematics
+                    .measure(pair, &state.y, &mut rows)
+                    .map_err(|error| Rejected::Contact { contact: contact.name.clone(), error })?;
+            } else {
+                rows.push_open();
+            }
+        }
+        all.push(rows);
+    }
+    Ok(all)
+}
+
+/// Σ Gᵀλ over the contacts whose force is averaged: what the next step takes its share of.
+pub(crate) fn averaged_contact_into(model: &Model, state: &mut State, rows: &[Rows]) {
+    let State { f_contact, pairs, .. } = state;
+    f_contact.fill(0.0);
+    for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| !contact.at_the_end) {
+        debug_assert_eq!(rows[k].len(), pairs[k].len(), "rows of contact {}", contact.name);
+        for (pair, row) in pairs[k].iter().zip(rows[k].iter()).filter(|(pair, _)| pair.active) {
+            row.add_to(pair.lambda, f_contact);
+        }
+    }
+}
+
+/// v·∇²g·v of a row, whose ∇²g is row-major.
+fn curvature(row: Row, second: &[f64], v: &[f64]) -> f64 {
+    let along: Vec<f64> = row.entries().map(|(dof, _)| v[dof]).collect();
+    let rows = second.chunks_exact(along.len());
+    along.iter().zip(rows).map(|(v, row)| v * row.iter().zip(&along).map(|(c, w)| c * w).sum::<f64>()).sum()
+}

@@ -1,0 +1,259 @@
+//! The loop: steps on the grid of times n·Δt, bisected where one is rejected and brought back to the grid, watched by the energy guard.
+
+use carom_contact::PairEvent;
+use carom_solid::Inverted;
+
+use crate::model::Model;
+use crate::rejected::Rejected;
+use crate::start::{Before, start};
+use crate::state::State;
+use crate::stepper::Stepper;
+use crate::workspace::{Timings, Workspace};
+
+/// Halvings of Δt before the run stops.
+const MOST_HALVINGS: u32 = 12;
+
+/// Why a simulation stopped before its end; the state of the last grid time is kept.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Stopped {
+    /// No step from here, however small, is accepted.
+    #[error("no step from t = {time:.6} is accepted, not even Δt = {dt:.3e} ({halvings} halvings): {rejected}")]
+    NoStep {
+        /// Time of the last accepted state.
+        time: f64,
+        /// Smallest step tried.
+        dt: f64,
+        /// Halvings of the grid's step.
+        halvings: u32,
+        /// Why that one was not accepted.
+        rejected: Rejected,
+    },
+    /// The scheme created energy.
+    #[error(
+        "energy was created at t = {time:.6}: {created:.4e}, more than {share} of the largest kinetic + strain energy so far ({largest:.4e})"
+    )]
+    EnergyGuard {
+        /// Time.
+        time: f64,
+        /// total − total at start − external work.
+        created: f64,
+        /// Allowed share.
+        share: f64,
+        /// Largest kinetic + strain energy so far.
+        largest: f64,
+    },
+}
+
+/// An event worth a line in the log.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LogEvent {
+    /// A step was rejected and will be bisected.
+    Rejected {
+        /// Time at its start.
+        time: f64,
+        /// Its size.
+        dt: f64,
+        /// Why.
+        rejected: Rejected,
+    },
+    /// A secondary node came into contact, or left it.
+    ActiveSet {
+        /// Time at the end of the (sub)step.
+        time: f64,
+        /// Place of the contact.
+        contact: usize,
+        /// Global node.
+        node: usize,
+        /// Came (true) or left.
+        active: bool,
+    },
+    /// A pair changed its facet or slid off the end.
+    Pair {
+        /// Time at the end of the (sub)step.
+        time: f64,
+        /// Place of the contact.
+        contact: usize,
+        /// What happened.
+        event: PairEvent,
+    },
+    /// Velocities were projected where contact began.
+    Projection {
+        /// Time.
+        time: f64,
+        /// Jump of kinetic energy.
+        jump: f64,
+    },
+}
+
+/// What happened between two grid times.
+#[derive(Clone, Debug, Default)]
+pub struct GridReport {
+    /// Newton iterations of the accepted steps.
+    pub newton: u32,
+    /// Rejected steps.
+    pub rejected: u32,
+    /// Nodes that came into contact.
+    pub activations: u32,
+    /// Nodes that left contact.
+    pub releases: u32,
+    /// Events in order.
+    pub events: Vec<LogEvent>,
+}
+
+/// A grid of times and what is done on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// Step Δt.
+    pub dt: f64,
+    /// Steps to the end.
+    pub steps: u64,
+    /// Share of the largest energy so far that may be created before the run stops; none: it is not watched.
+    pub guard: Option<f64>,
+}
+
+/// A model in motion.
+pub struct Simulation {
+    /// What does not change.
+    pub model: Model,
+    /// The state at the last grid time.
+    pub state: State,
+    /// Grid step Δt.
+    pub dt: f64,
+    /// Grid steps to the end.
+    pub steps: u64,
+    stepper: Box<dyn Stepper>,
+    work: Workspace,
+    guard: Option<f64>,
+}
+
+impl Simulation {
+    /// A model at t = 0, with inertia or without, in its initial positions or where another run ended. Cells are computed by this many threads; the result does
+    /// not depend on it.
+    ///
+    /// # Errors
+    /// The start has no forces or no accelerations.
+    pub fn new(
+        model: Model,
+        stepper: Box<dyn Stepper>,
+        grid: Grid,
+        inertia: bool,
+        before: Option<Before>,
+        threads: usize,
+    ) -> Result<Self, Rejected> {
+        let mut simulation = Self::resume(model, stepper, grid, State::default(), threads);
+        let Self { model, work, .. } = &mut simulation;
+        simulation.state = start(model, inertia, before, &mut work.system)?;
+        Ok(simulation)
+    }
+
+    /// A model that goes on from a state of an earlier run of it.
+    pub fn resume(model: Model, stepper: Box<dyn Stepper>, grid: Grid, state: State, threads: usize) -> Self {
+        let work = Workspace::new(&model, threads);
+        let Grid { dt, steps, guard } = grid;
+        Self { model, state, dt, steps, stepper, work, guard }
+    }
+
+    /// Goes on from a state of an earlier run of the same case.
+    #[must_use]
+    pub fn resumed(self, state: State) -> Self {
+        Self { state, ..self }
+    }
+
+    /// Whether the end time is reached.
+    pub fn finished(&self) -> bool {
+        self.state.step >= self.steps
+    }
+
+    /// Wall time by phase so far.
+    pub fn timings(&self) -> Timings {
+        self.work.timings
+    }
+
+    /// Factorisations of the linear system so far.
+    pub fn factorisations(&self) -> u64 {
+        self.work.system.factorisations
+    }
+
+    /// Internal forces over all dofs and their tangent, assembled where the simulation is, as every iteration with a full tangent does; the strain energy
+    /// is returned. For measurements.
+    ///
+    /// # Errors
+    /// The body's name and the cell that is inverted.
+    pub fn assemble(&mut self, force: &mut [f64]) -> Result<f64, (String, Inverted)> {
+        self.work.system.internal_tangent(&self.model, None, &self.state.y, force, None)
+    }
+
+    /// Advances to the next grid time.
+    ///
+    /// # Errors
+    /// Why it cannot; `state` is then still that of the last grid time. The report tells what was tried.
+    pub fn advance(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
+        let start = self.state.step as f64 * self.dt;
+        let mut state = self.state.clone();
+        // Progress through the grid step in units of Δt/2^level.
+        let rejected = report.rejected;
+        let (mut level, mut done) = (self.state.halved.level(), 0_u64);
+        while done < 1 << level {
+            let dt = self.dt / f64::from(1_u32 << level);
+            let time = start + done as f64 * dt;
+            let to = start + (done + 1) as f64 * dt;
+            match self.stepper.step(&self.model, &state, dt, to, &mut self.work) {
+                Ok(accepted) => {
+                    let (next, step) = accepted.into_parts();
+                    state = next;
+                    done += 1;
+                    let now = to;
+                    report.newton += step.newton;
+                    report.activations += step.activations.len() as u32;
+                    report.releases += step.releases.len() as u32;
+                    for (list, active) in [(step.activations, true), (step.releases, false)] {
+                        report.events.extend(list.into_iter().map(|(contact, node)| LogEvent::ActiveSet {
+                            time: now,
+                            contact,
+                            node,
+                            active,
+                        }));
+                    }
+                    let pairs = step.events.into_iter();
+                    report.events.extend(pairs.map(|(contact, event)| LogEvent::Pair { time: now, contact, event }));
+                    if step.projection != 0.0 {
+                        report.events.push(LogEvent::Projection { time: now, jump: step.projection });
+                    }
+                    while level > 0 && done % 2 == 0 {
+                        level -= 1;
+                        done /= 2;
+                    }
+                }
+                Err(rejected) => {
+                    report.rejected += 1;
+                    report.events.push(LogEvent::Rejected { time, dt, rejected: rejected.clone() });
+                    if level == MOST_HALVINGS {
+                        return Err(Stopped::NoStep { time, dt, halvings: level, rejected });
+                    }
+                    level += 1;
+                    done *= 2;
+                }
+            }
+        }
+        state.halved = self.state.halved.after(report.rejected > rejected);
+        state.step += 1;
+        state.time = state.step as f64 * self.dt;
+        self.watch(&state)?;
+        self.state = state;
+        Ok(())
+    }
+
+    /// The energy guard.
+    fn watch(&self, state: &State) -> Result<(), Stopped> {
+        let Some(share) = self.guard else { return Ok(()) };
+        let ledger = &state.ledger;
+        let created = ledger.created();
+        // Round-off of the energies themselves is not creation.
+        let noise =
+            1e-12 * (ledger.kinetic + ledger.strain.abs() + ledger.potential.abs() + ledger.total_at_start.abs());
+        if created > share * ledger.largest + ledger.open.abs() + noise {
+            return Err(Stopped::EnergyGuard { time: state.time, created, share, largest: ledger.largest });
+        }
+        Ok(())
+    }
+}

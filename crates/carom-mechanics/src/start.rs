@@ -1,0 +1,129 @@
+//! The state before the first step, in the reference positions or where another run ended:
+//!
+//! ```text
+//! M a₀ + Gᵀλ₀ = f_ext − f_int,   G a₀ = −v₀·∇²g·v₀        at t = 0
+//! ```
+//!
+//! Contacts that were closed at the end of the other run stay closed; in the reference positions none is (λ₀ = 0). A moved support has its own v₀, a₀
+//! and must begin where the bodies are. Without inertia v₀ and a₀ are zero, and the first load step finds the equilibrium.
+
+use carom_contact::{Pair, Point, Rows};
+
+use crate::constraints::{Constraints, independent_rows};
+use crate::ledger::{book_contact_forces, book_kinetic};
+use crate::model::{LoadsAt, Model};
+use crate::persistency::{averaged_contact_into, drive, measure_all, pressing, take_accelerations};
+use crate::rejected::Rejected;
+use crate::state::State;
+use crate::system::System;
+
+/// Where a run begins, if not in the initial positions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Before {
+    /// Positions.
+    pub y: Vec<f64>,
+    /// Velocities.
+    pub v: Vec<f64>,
+    /// Pairs of each contact.
+    pub pairs: Vec<Vec<Pair>>,
+}
+
+/// A moved support may be this far, relative to L, from where its formula has it at t = 0.
+const NEAR: f64 = 1e-9;
+
+/// The state before the first step, with inertia or without.
+///
+/// # Errors
+/// A cell is inverted, a load or a motion has no value at t = 0, a moved support would jump, or the mass matrix is singular.
+pub(crate) fn start(
+    model: &Model,
+    inertia: bool,
+    before: Option<Before>,
+    system: &mut System,
+) -> Result<State, Rejected> {
+    let dofs = model.dofs();
+    let contacts = model.contacts.len();
+    let Before { y, v, pairs } = before.unwrap_or_else(|| Before {
+        y: model.initial_position.clone(),
+        v: model.initial_velocity.clone(),
+        pairs: vec![Vec::new(); contacts],
+    });
+    let mut state = State {
+        y,
+        v: if inertia { v } else { vec![0.0; dofs] },
+        a: vec![0.0; dofs],
+        f_internal: vec![0.0; dofs],
+        f_external: vec![0.0; dofs],
+        f_contact: vec![0.0; dofs],
+        contact_forces: vec![[0.0; 3]; contacts],
+        pairs,
+        ..State::default()
+    };
+    state.ledger.strain = model
+        .internal_force(&state.y, &mut state.f_internal)
+        .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+    model.loads_into(0.0, &state.y, &mut LoadsAt::default(), &mut state.f_external)?;
+    let mut motions = Vec::new();
+    model.motions.at(0.0, &mut motions)?;
+    for moved in &motions {
+        let distance = (model.reference[moved.dof] + moved.motion[0] - state.y[moved.dof]).abs();
+        if distance > NEAR * model.scale {
+            return Err(Rejected::Jump { node: moved.dof / model.dimension, distance });
+        }
+        if inertia {
+            [state.v[moved.dof], state.a[moved.dof]] = [moved.motion[1], moved.motion[2]];
+        }
+    }
+    let gaps = measure_all(model, &mut state)?;
+    state.ledger.springs = press(model, &mut state, &gaps);
+    state.ledger.strain += state.ledger.springs;
+    if inertia {
+        accelerate(model, &mut state, &gaps, system)?;
+    }
+    averaged_contact_into(model, &mut state, &gaps);
+    book_contact_forces(model, &mut state);
+    book_kinetic(model, &mut state);
+    state.ledger.potential = model.potential(&state.y);
+    state.ledger.total_at_start = state.ledger.total();
+    Ok(state)
+}
+
+/// Springs of penalties take the forces of their gaps; their energy is returned.
+fn press(model: &Model, state: &mut State, gaps: &[Rows]) -> f64 {
+    let mut energy = 0.0;
+    for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| !contact.interface.is_constraint()) {
+        for (pair, row) in state.pairs[k].iter_mut().zip(gaps[k].iter()) {
+            // The gap an energy-conserving spring has counted is of the other run.
+            pair.start = None;
+            let at = Point { node: pair.node, gap: row.gap, start: row.gap, lambda: pair.lambda, active: pair.active };
+            let answer = contact.interface.respond(&at);
+            (pair.active, pair.lambda) = (answer.active, answer.lambda);
+            energy += answer.energy;
+        }
+    }
+    energy
+}
+
+/// Accelerations, and multipliers of what is closed.
+fn accelerate(model: &Model, state: &mut State, gaps: &[Rows], system: &mut System) -> Result<(), Rejected> {
+    // A spring has the force of its gap. A row without mass has no acceleration to ask for: its contact keeps the force it had.
+    let asks = |&(k, p): &(usize, usize)| {
+        let has_mass = |n: &usize| !model.massless[n * model.dimension];
+        model.contacts[k].interface.is_constraint() && gaps[k].row(p).nodes.iter().any(has_mass)
+    };
+    let mut places = independent_rows(model, pressing(state), gaps);
+    places.retain(asks);
+    let rows = Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), gaps[k].row(p))));
+    let inertia = system.factor_mass(model, &rows)?;
+    if inertia.negative > rows.len() {
+        return Err(Rejected::NegativeMass { directions: inertia.negative - rows.len() });
+    }
+    let (forces, bending) = drive(model, state, gaps, &rows);
+    let (mut solved, mut multipliers) = (vec![0.0; model.dofs()], Vec::new());
+    system.solve(model, &forces, &bending, &mut solved, &mut multipliers)?;
+    take_accelerations(model, state, &solved);
+    for (&(k, p), lambda) in places.iter().zip(&multipliers) {
+        state.pairs[k][p].lambda = *lambda;
+    }
+    Ok(())
+}

@@ -1,0 +1,204 @@
+//! Every kernel that is a list of implicit stages: guess, solve, account, and where contact begins project.
+
+use carom_contact::{Pairing, Rows};
+use carom_time::{Before, Kernel, Memory, Stage, Weights};
+
+use super::{Accepted, StepReport, Stepper, difference};
+use crate::contact_update::{GAP_TOLERANCE, search};
+use crate::equations::{Equations, Iterate};
+use crate::ledger;
+use crate::model::{LoadsAt, Model, dot};
+use crate::newton::solve_stage;
+use crate::persistency::{averaged_contact_into, project};
+use crate::rejected::Rejected;
+use crate::settings::Settings;
+use crate::state::{Means, Previous, State};
+use crate::workspace::Workspace;
+
+/// The implicit stepper.
+pub struct Implicit {
+    kernel: Box<dyn Kernel>,
+    settings: Settings,
+}
+
+impl Implicit {
+    /// A stepper of a kernel.
+    pub fn new(kernel: Box<dyn Kernel>, settings: Settings) -> Self {
+        Self { kernel, settings }
+    }
+}
+
+/// Motion at the end of a stage.
+struct Point {
+    y: Vec<f64>,
+    v: Vec<f64>,
+    a: Vec<f64>,
+}
+
+impl Stepper for Implicit {
+    fn step(&self, model: &Model, state: &State, dt: f64, to: f64, work: &mut Workspace) -> Result<Accepted, Rejected> {
+        let previous = state.previous.as_ref().filter(|previous| previous.dt == dt);
+        let mut next = state.clone();
+        let mut report = StepReport::default();
+        let mut finished: Vec<Point> = Vec::new();
+        let mut means = Means::new(model.dofs());
+        let mut guess = Iterate::at_start(state);
+        let shift = self.predictor_shift(model, state, dt, to, work)?;
+        let (mut end, mut last) = (0.0, None);
+        for k in 0..self.kernel.stages() {
+            let mut stage = self.stage(k, dt, state, &finished);
+            if let Some(shift) = &shift {
+                for map in [&mut stage.velocity, &mut stage.acceleration] {
+                    map.at_start.iter_mut().zip(shift).for_each(|(at_start, c)| *at_start -= map.slope * c);
+                }
+            }
+            let time = if stage.end == 1.0 { to } else { state.time + stage.end * dt };
+            let equations = Equations::new(model, state, stage, time)?;
+            let before = finished.last().map_or(&state.y, |point| &point.y);
+            guess.predict(&next.v, &next.a, (equations.stage.end - end) * dt);
+            end = equations.stage.end;
+            let (solved, effort) = solve_stage(&equations, &next.kept, before, &self.settings, guess, work)?;
+            report.newton += effort.iterations;
+            report.events.extend(effort.events);
+            next.kept = effort.kept;
+            ledger::add_stage(&equations, &solved, previous, dt, &mut means);
+            next.a.clone_from(&solved.acceleration);
+            equations.stage.velocity.value_into(&solved.at.increment, &mut next.v);
+            take_motions(&equations, &mut next);
+            guess = work.spare.copy(&solved.at);
+            if k + 1 < self.kernel.stages() {
+                finished.push(Point { y: solved.y.clone(), v: next.v.clone(), a: next.a.clone() });
+                work.spare.put(solved);
+            } else {
+                last = Some((equations, solved));
+            }
+        }
+        let Some((equations, solved)) = last else { return Err(Rejected::NotFinite { what: "a scheme of no stages" }) };
+
+        next.time = to;
+        next.y.clone_from(&solved.y);
+        for (i, massless) in model.massless.iter().enumerate() {
+            if *massless && !equations.stage.is_static() {
+                // Without inertia there is nothing to integrate: the velocity is the mean one, the acceleration zero.
+                (next.v[i], next.a[i]) = (solved.at.increment[i] / dt, 0.0);
+            }
+        }
+        take_motions(&equations, &mut next);
+        next.take_pairs(&solved.at.pairings);
+        next.f_external.clone_from(&solved.forces.loads);
+        next.f_internal.clone_from(&solved.forces.internal);
+        let mut strain = solved.strain;
+        if equations.stage.average != 0.0 {
+            strain = model
+                .internal_force(&next.y, &mut next.f_internal)
+                .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+            model.loads_into(to, &next.y, &mut LoadsAt::default(), &mut next.f_external)?;
+        }
+        averaged_contact_into(model, &mut next, &solved.rows);
+        ledger::account(&equations, &solved, &mut next, strain, dt, &means);
+        if let Some(shift) = &shift {
+            // Positions moved by the predictor's contact, against the forces of the step: M (v − v_s)/Δt is their sum.
+            let change: Vec<f64> = next.v.iter().zip(&state.v).map(|(v, old)| (v - old) / dt).collect();
+            let mut forces = vec![0.0; model.dofs()];
+            model.mass.multiply_into(&change, &mut forces);
+            next.ledger.contact_work -= dot(shift, &forces);
+        }
+        for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.acts_between()) {
+            debug_assert_eq!(next.pairs[k].len(), solved.rows[k].len(), "contact {}", contact.name);
+            // The next step goes on from the gap that was counted.
+            let gaps = solved.rows[k].iter().map(|row| Some(row.gap));
+            next.pairs[k].iter_mut().zip(gaps).for_each(|(pair, gap)| pair.start = gap);
+        }
+
+        report.activations = difference(model, &next, state);
+        report.releases = difference(model, state, &next);
+        if !report.activations.is_empty() {
+            report.projection = project(model, &mut next, &report.activations, &mut work.system)?;
+        }
+        next.previous = (self.kernel.two_step() && report.activations.is_empty()).then(|| Previous {
+            dt,
+            increment: solved.at.increment.clone(),
+            velocity: state.v.clone(),
+            means,
+        });
+        work.spare.put(solved);
+        Accepted::new(next, report)
+    }
+}
+
+impl Implicit {
+    /// The law "predictor" (P. Deuflhard, R. Krause, S. Ertel, Int. J. Numer. Meth. Engng 73 (2008) 1274–1290): in place of y_s + Δt v_s in Newmark's
+    /// formula stands the nearest point, in the mass, without penetration,
+    ///
+    /// ```text
+    /// min ½ ‖q − (y_s + Δt v_s)‖²_M   with   g(q) ≥ 0
+    /// ```
+    ///
+    /// and velocities do not see the difference. It is solved as a stage of its own; q − (y_s + Δt v_s) is returned, none where nothing would penetrate.
+    fn predictor_shift(
+        &self,
+        model: &Model,
+        state: &State,
+        dt: f64,
+        to: f64,
+        work: &mut Workspace,
+    ) -> Result<Option<Vec<f64>>, Rejected> {
+        if !model.contacts.iter().any(|contact| contact.predictor) {
+            return Ok(None);
+        }
+        let mut stage = Stage::default();
+        stage.at_the_end(1.0, [0.0, 0.0, 1.0]);
+        stage.weights = Weights { mass: 1.0, internal: 0.0, external: 0.0, contact: 1.0 };
+        stage.acceleration.slope = 1.0 / (dt * dt);
+        let mut equations = Equations::new(model, state, stage, to)?;
+        let mut guess = Iterate::at_start(state);
+        guess.predict(&state.v, &vec![0.0; model.dofs()], dt);
+        // A support goes where it is moved to, whatever the contact.
+        equations.arrive(&mut guess.increment);
+        let free = guess.increment.clone();
+        equations.stage.acceleration.at_start = free.iter().map(|d| -d / (dt * dt)).collect();
+        equations.stage.velocity.at_start = vec![0.0; model.dofs()];
+        for pair in guess.pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
+            pair.lambda = 0.0;
+        }
+        let y: Vec<f64> = state.y.iter().zip(&free).map(|(y, d)| y + d).collect();
+        if !penetrates(model, &state.y, &y, &mut guess.pairings) {
+            return Ok(None);
+        }
+        let (solved, _) = solve_stage(&equations, &state.kept, &state.y, &self.settings, guess, work)?;
+        let shift = solved.at.increment.iter().zip(&free).map(|(d, free)| d - free).collect();
+        work.spare.put(solved);
+        Ok(Some(shift))
+    }
+
+    /// Stage `k` of a step.
+    fn stage(&self, k: usize, dt: f64, state: &State, finished: &[Point]) -> Stage {
+        let mut states: Vec<(&[f64], &[f64], &[f64])> = vec![(&state.y, &state.v, &state.a)];
+        states.extend(finished.iter().map(|p| (&p.y[..], &p.v[..], &p.a[..])));
+        let previous = state.previous.as_ref().filter(|previous| previous.dt == dt);
+        let before = previous.map(|p| Before { increment: &p.increment, velocity: &p.velocity });
+        let mut stage = Stage::default();
+        self.kernel.stage_into(k, dt, &Memory { states: &states, before }, &mut stage);
+        stage
+    }
+}
+
+/// Velocities and accelerations of the supports that move are their own, not the scheme's.
+fn take_motions(equations: &Equations, next: &mut State) {
+    for moved in equations.motions.iter().filter(|_| !equations.stage.is_static()) {
+        [next.v[moved.dof], next.a[moved.dof]] = [moved.motion[1], moved.motion[2]];
+    }
+}
+
+/// Whether any pair penetrates after motion from `before` to `now`.
+fn penetrates(model: &Model, before: &[f64], now: &[f64], pairings: &mut [Pairing]) -> bool {
+    search(model, before, now, pairings, &mut Vec::new());
+    let mut rows = Rows::new(model.dimension);
+    model.contacts.iter().zip(pairings).any(|(contact, pairing)| {
+        pairing.pairs.iter_mut().any(|pair| {
+            rows.clear();
+            let found = contact.kinematics.measure(pair, now, &mut rows);
+            found.is_ok() && rows.row(0).gap < -GAP_TOLERANCE * model.scale
+        })
+    })
+}

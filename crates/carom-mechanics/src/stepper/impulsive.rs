@@ -1,0 +1,344 @@
+//! Schemes whose contact is an impulse (Moreau and Jean's θ-method, the nonsmooth generalised α): Newton on d with the complementarity of impulses and
+//! velocities inside.
+//!
+//! ```text
+//! w.mass M a(d) + w.internal f_int − w.external f_ext + known − s GᵀP = 0            s, c: carom_time::ImpulseShares
+//! 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0,   v_{n+1} = v(d) + c M⁻¹GᵀP
+//! ```
+//!
+//! G and the gaps that decide who takes part are those at the predicted positions. In each iteration, with K the tangent of the balance at P = 0,
+//!
+//! ```text
+//! d := d − K⁻¹r₀ + s K⁻¹GᵀP,    G v_{n+1} = b + D P,    D = v' s G K⁻¹Gᵀ + c G M⁻¹Gᵀ
+//! ```
+//!
+//! so that P solves a small complementarity problem, exactly, and Newton's method converges as without contact. D is symmetric and positive definite.
+//! Velocities are held, not positions: a node penetrates by up to Δt times its speed when it arrives, and that is recorded as it is.
+
+use carom_algebra::complementarity;
+use carom_time::{Impulse, ImpulseShares, Memory, Stage};
+
+use super::watch::{active, approach, carried, depth, measure_into};
+use super::{Accepted, StepReport, Stepper, difference};
+use crate::balance::residual_into;
+use crate::constraints::{Constraints, independent_rows};
+use crate::contact_update::search;
+use crate::equations::{Equations, Evaluation, Iterate};
+use crate::ledger::{book_kinetic, open_work, work_of_loads};
+use crate::model::{LoadsAt, Model};
+use crate::newton::max_abs;
+use crate::rejected::Rejected;
+use crate::settings::Settings;
+use crate::state::State;
+use crate::workspace::{Workspace, timed};
+
+/// A predicted gap above minus this fraction of L is open: at a tie round-off must not decide.
+const TIE: f64 = 1e-10;
+/// Halvings of a Newton step that inverts a cell.
+const HALVINGS: usize = 8;
+
+/// The stepper of impulses.
+pub struct Impulsive {
+    scheme: Box<dyn Impulse>,
+    settings: Settings,
+}
+
+/// The contacts that take part in a step, and their impulses.
+struct Impulses {
+    /// Rows at the predicted positions.
+    rows: Constraints,
+    /// e of each.
+    restitution: Vec<f64>,
+    /// G v_n.
+    before: Vec<f64>,
+    /// P ≥ 0.
+    values: Vec<f64>,
+    /// M⁻¹Gᵀ, where the scheme needs it.
+    released: Vec<Vec<f64>>,
+}
+
+impl Impulsive {
+    /// A stepper of a scheme.
+    pub fn new(scheme: Box<dyn Impulse>, settings: Settings) -> Self {
+        Self { scheme, settings }
+    }
+}
+
+impl Stepper for Impulsive {
+    fn step(&self, model: &Model, state: &State, dt: f64, to: f64, work: &mut Workspace) -> Result<Accepted, Rejected> {
+        let mut stage = Stage::default();
+        let memory = Memory { states: &[(&state.y, &state.v, &state.a)], before: None };
+        self.scheme.stage_into(0, dt, &memory, &mut stage);
+        let shares = self.scheme.shares(dt);
+        let equations = Equations::new(model, state, stage, to)?;
+
+        let mut report = StepReport::default();
+        let mut pairings = carried(model, state);
+        let mut increment: Vec<f64> = (0..state.v.len()).map(|i| dt * (state.v[i] + 0.5 * dt * state.a[i])).collect();
+        let mut impulses = Impulses::none(model.dimension);
+        let mut solved = None;
+        let predicted: Vec<f64> = if self.scheme.predicts_by_solving() {
+            let free = self.solve(&equations, shares, increment, &mut impulses, &mut report.newton, work)?;
+            increment = free.at.increment.clone();
+            let predicted = free.y.clone();
+            solved = Some(free);
+            predicted
+        } else {
+            state.y.iter().zip(&state.v).map(|(y, v)| y + 0.5 * dt * v).collect()
+        };
+        let mut clock = 0.0;
+        timed(&mut clock, || {
+            search(model, &state.y, &predicted, &mut pairings, &mut report.events);
+            impulses = Impulses::closed(model, state, shares, &predicted, &mut pairings, work)?;
+            Ok::<(), Rejected>(())
+        })?;
+        work.timings.contact += clock;
+        let solved = match solved {
+            Some(free) if impulses.rows.is_empty() => free,
+            _ => self.solve(&equations, shares, increment, &mut impulses, &mut report.newton, work)?,
+        };
+
+        let mut next = state.clone();
+        next.time = to;
+        next.y.clone_from(&solved.y);
+        equations.stage.velocity.value_into(&solved.at.increment, &mut next.v);
+        equations.stage.acceleration.value_into(&solved.at.increment, &mut next.a);
+        impulses.release(&mut next.v, shares.velocity);
+        impulses.release(&mut next.a, -shares.acceleration);
+        next.f_internal.clone_from(&solved.forces.internal);
+        next.f_external.clone_from(&solved.forces.loads);
+        next.ledger.external_work += work_of_loads(&equations, &solved);
+        next.ledger.strain = solved.strain;
+        if equations.stage.average != 0.0 {
+            next.ledger.strain = model
+                .internal_force(&next.y, &mut next.f_internal)
+                .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+            model.loads_into(to, &next.y, &mut LoadsAt::default(), &mut next.f_external)?;
+        }
+        next.ledger.open += open_work(state, &next, &solved.at.increment);
+        for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
+            pair.lambda = 0.0;
+        }
+        impulses.book(dt, &mut next);
+        for (&(k, p), impulse) in impulses.rows.places.iter().zip(&impulses.values) {
+            pairings[k].pairs[p].lambda = -impulse / dt;
+        }
+        // Nodes that came in later in the step than was looked at are watched from now on.
+        measure_into(model, &next.y, &mut pairings, &mut Vec::new())?;
+        search(model, &state.y, &next.y, &mut pairings, &mut report.events);
+        next.take_pairs(&pairings);
+        next.pairs.iter_mut().flatten().for_each(|pair| pair.active = pair.lambda < 0.0);
+        next.ledger.potential = model.potential(&next.y);
+        book_kinetic(model, &mut next);
+        work.spare.put(solved);
+
+        report.activations = difference(model, &next, state);
+        report.releases = difference(model, state, &next);
+        let tie = 2.0 * TIE * model.scale;
+        let fastest = approach(model, &state.v, dt).max(approach(model, &next.v, dt));
+        let bound = depth(model, state) + fastest + tie;
+        let deepest = depth(model, &next);
+        Accepted::within(next, report, deepest, bound)
+    }
+}
+
+impl Impulsive {
+    /// Newton's method on the increment and the impulses; `iterations` are added to.
+    fn solve(
+        &self,
+        equations: &Equations,
+        shares: ImpulseShares,
+        increment: Vec<f64>,
+        impulses: &mut Impulses,
+        iterations: &mut u32,
+        work: &mut Workspace,
+    ) -> Result<Evaluation, Rejected> {
+        let model = equations.model;
+        let dofs = model.dofs();
+        let none = Constraints::none(model.dimension);
+        let mut right = vec![0.0; dofs];
+        let mut correction = vec![0.0; dofs];
+        let mut columns = vec![vec![0.0; dofs]; impulses.rows.len()];
+        let mut target = impulses.values.clone();
+        let mut step = f64::INFINITY;
+        let mut now = evaluate(equations, shares, increment, impulses, work)?;
+        for iteration in 0.. {
+            let (size, forces) = (now.measure.residual, now.measure.forces);
+            if step <= self.settings.tolerance * model.scale
+                && size <= self.settings.tolerance * forces + equations.round_off(&work.system)
+            {
+                return Ok(now);
+            }
+            if iteration >= self.settings.max_iterations {
+                let (step, residual) = (step / model.scale, size / forces.max(f64::MIN_POSITIVE));
+                return Err(Rejected::NoConvergence { iterations: iteration as u32, step, residual });
+            }
+            *iterations += 1;
+            let Workspace { system, timings, right: scratch, .. } = work;
+            timed(&mut timings.assembly, || system.internal_tangent(model, None, &now.place, scratch, None))
+                .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+            if model.loads.follow() {
+                system.loads_tangent(model, &equations.loads);
+            }
+            let (mass, stiffness) = (equations.mass_factor(), equations.stiffness_factor());
+            timed(&mut timings.factor, || system.factor(model, mass, stiffness, equations.follower_factor(), &none))?;
+            // −r₀: the residual without the impulses.
+            for (right, (contact, r)) in right.iter_mut().zip(now.forces.contact.iter().zip(&now.residual)) {
+                *right = contact - r;
+            }
+            timed(&mut timings.solve, || -> Result<(), Rejected> {
+                let multipliers = &mut Vec::new();
+                system.solve(model, &right, &[], &mut correction, multipliers)?;
+                for (row, column) in impulses.rows.rows.iter().zip(&mut columns) {
+                    right.fill(0.0);
+                    row.add_to(1.0, &mut right);
+                    system.solve(model, &right, &[], column, multipliers)?;
+                }
+                Ok(())
+            })?;
+            impulses_into(equations, shares, &now, impulses, &correction, &columns, &mut target)?;
+            for (column, impulse) in columns.iter().zip(&target) {
+                for (x, c) in correction.iter_mut().zip(column) {
+                    *x += shares.force * impulse * c;
+                }
+            }
+            step = max_abs(&correction);
+            let old = impulses.values.clone();
+            let mut length = 1.0;
+            for halving in 0..=HALVINGS {
+                let moved = now.at.increment.iter().zip(&correction).map(|(d, c)| d + length * c).collect();
+                for (value, (old, new)) in impulses.values.iter_mut().zip(old.iter().zip(&target)) {
+                    *value = old + length * (new - old);
+                }
+                match evaluate(equations, shares, moved, impulses, work) {
+                    Ok(next) => {
+                        work.spare.put(std::mem::replace(&mut now, next));
+                        break;
+                    }
+                    Err(rejected) if halving == HALVINGS => return Err(rejected),
+                    Err(_) => length *= 0.5,
+                }
+            }
+        }
+        Ok(now)
+    }
+}
+
+/// P of the linearised step: b and D from the answers to −r₀ and to each row.
+fn impulses_into(
+    equations: &Equations,
+    shares: ImpulseShares,
+    now: &Evaluation,
+    impulses: &Impulses,
+    correction: &[f64],
+    columns: &[Vec<f64>],
+    values: &mut Vec<f64>,
+) -> Result<(), Rejected> {
+    let count = impulses.rows.len();
+    let velocity = &equations.stage.velocity;
+    let end: Vec<f64> = (0..correction.len())
+        .map(|i| velocity.slope * (now.at.increment[i] + correction[i]) + velocity.at_start[i])
+        .collect();
+    let mut matrix = vec![0.0; count * count];
+    let mut right = vec![0.0; count];
+    for (i, row) in impulses.rows.rows.iter().enumerate() {
+        right[i] = row.along(&end) + impulses.restitution[i] * impulses.before[i];
+        for j in 0..=i {
+            let direct = impulses.released.get(j).map_or(0.0, |r| shares.velocity * row.along(r));
+            matrix[i * count + j] = velocity.slope * shares.force * row.along(&columns[j]) + direct;
+        }
+    }
+    Ok(complementarity(&matrix, &right, values)?)
+}
+
+/// Forces and residual at an increment, the impulses as contact forces.
+fn evaluate(
+    equations: &Equations,
+    shares: ImpulseShares,
+    increment: Vec<f64>,
+    impulses: &Impulses,
+    work: &mut Workspace,
+) -> Result<Evaluation, Rejected> {
+    let model = equations.model;
+    let mut now =
+        equations.evaluate(Iterate { increment, pairings: Vec::new() }, &mut work.spare, &mut work.timings)?;
+    for (row, impulse) in impulses.rows.rows.iter().zip(&impulses.values) {
+        row.add_to(-shares.force * impulse, &mut now.forces.contact);
+    }
+    now.measure.forces = residual_into(model, &equations.stage, &now.forces, &equations.known, &mut now.residual);
+    now.measure.residual = model.free.iter().map(|&i| now.residual[i] * now.residual[i]).sum::<f64>().sqrt();
+    Ok(now)
+}
+
+impl Impulses {
+    fn none(dimension: usize) -> Self {
+        Self {
+            rows: Constraints::none(dimension),
+            restitution: Vec::new(),
+            before: Vec::new(),
+            values: Vec::new(),
+            released: Vec::new(),
+        }
+    }
+
+    /// Those of the pairs whose gap is closed at the predicted positions.
+    fn closed(
+        model: &Model,
+        state: &State,
+        shares: ImpulseShares,
+        predicted: &[f64],
+        pairings: &mut [carom_contact::Pairing],
+        work: &mut Workspace,
+    ) -> Result<Self, Rejected> {
+        let mut measured = Vec::new();
+        measure_into(model, predicted, pairings, &mut measured)?;
+        for (pairing, rows) in pairings.iter_mut().zip(&measured) {
+            for (pair, row) in pairing.pairs.iter_mut().zip(rows.iter()) {
+                pair.active = row.gap < -TIE * model.scale;
+            }
+        }
+        let places = independent_rows(model, active(pairings), &measured);
+        let rows = Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), measured[k].row(p))));
+        let mut released = Vec::new();
+        if !rows.is_empty() && (shares.velocity != 0.0 || shares.acceleration != 0.0) {
+            work.system.factor_mass(model, &Constraints::none(model.dimension))?;
+            let mut force = vec![0.0; model.dofs()];
+            for row in rows.rows.iter() {
+                force.fill(0.0);
+                row.add_to(1.0, &mut force);
+                let mut column = vec![0.0; model.dofs()];
+                work.system.solve(model, &force, &[], &mut column, &mut Vec::new())?;
+                released.push(column);
+            }
+        }
+        Ok(Self {
+            restitution: places.iter().map(|&(k, _)| model.contacts[k].restitution).collect(),
+            before: rows.rows.iter().map(|row| row.along(&state.v)).collect(),
+            values: vec![0.0; rows.len()],
+            rows,
+            released,
+        })
+    }
+
+    /// x += factor M⁻¹GᵀP.
+    fn release(&self, x: &mut [f64], factor: f64) {
+        for (column, impulse) in self.released.iter().zip(&self.values) {
+            for (x, c) in x.iter_mut().zip(column) {
+                *x += factor * impulse * c;
+            }
+        }
+    }
+
+    /// Impulses into the ledger and, as the forces P/Δt, into those of the contacts: work ½(Gv⁻ + Gv⁺)·P.
+    fn book(&self, dt: f64, next: &mut State) {
+        next.contact_forces.fill([0.0; 3]);
+        for (r, (row, impulse)) in self.rows.rows.iter().zip(&self.values).enumerate() {
+            let normal = row.normal();
+            for i in 0..3 {
+                next.contact_forces[self.rows.places[r].0][i] += impulse * normal[i] / dt;
+                next.ledger.impulse[i] += impulse * normal[i];
+            }
+            next.ledger.contact_work += 0.5 * impulse * (self.before[r] + row.along(&next.v));
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! From the state at one time to the state at the next.
+
+mod explicit;
+mod implicit;
+mod impulsive;
+mod watch;
+
+pub use explicit::Explicit;
+pub use implicit::Implicit;
+pub use impulsive::Impulsive;
+
+use carom_contact::PairEvent;
+
+use crate::model::Model;
+use crate::rejected::Rejected;
+use crate::state::State;
+use crate::workspace::Workspace;
+
+/// What happened in a step, for the record.
+#[derive(Clone, Debug, Default)]
+pub struct StepReport {
+    /// Newton iterations.
+    pub newton: u32,
+    /// Secondary nodes that came into contact: (contact, global node).
+    pub activations: Vec<(usize, usize)>,
+    /// Secondary nodes that left contact.
+    pub releases: Vec<(usize, usize)>,
+    /// Hand-overs and slides off the end, with the place of their contact.
+    pub events: Vec<(usize, PairEvent)>,
+    /// Jump of kinetic energy where contact began.
+    pub projection: f64,
+}
+
+/// A step that was accepted: finite, converged, not penetrating. Only a stepper makes one.
+#[derive(Debug)]
+pub struct Accepted {
+    state: State,
+    report: StepReport,
+}
+
+impl Accepted {
+    /// Checks the last things a result must hold to.
+    fn new(state: State, report: StepReport) -> Result<Self, Rejected> {
+        for (what, values) in [("a position", &state.y), ("a velocity", &state.v), ("an acceleration", &state.a)] {
+            if values.iter().any(|x| !x.is_finite()) {
+                return Err(Rejected::NotFinite { what });
+            }
+        }
+        if !(state.ledger.total().is_finite() && state.ledger.dissipation().is_finite()) {
+            return Err(Rejected::NotFinite { what: "the energy" });
+        }
+        Ok(Self { state, report })
+    }
+
+    /// As [`Self::new`], for laws that let nodes penetrate: by no more than `bound`.
+    fn within(state: State, report: StepReport, depth: f64, bound: f64) -> Result<Self, Rejected> {
+        if depth > bound { Err(Rejected::Deep { depth, bound }) } else { Self::new(state, report) }
+    }
+
+    /// The state at the end of the step and what happened on the way.
+    pub fn into_parts(self) -> (State, StepReport) {
+        (self.state, self.report)
+    }
+}
+
+/// A time stepper.
+pub trait Stepper: Send + Sync {
+    /// One step of size `dt` from `state` to the time `to`. The grid index of the result is the caller's to set.
+    fn step(&self, model: &Model, state: &State, dt: f64, to: f64, work: &mut Workspace) -> Result<Accepted, Rejected>;
+}
+
+/// Secondary nodes active in `a` and not in `b`: (contact, global node).
+fn difference(model: &Model, a: &State, b: &State) -> Vec<(usize, usize)> {
+    let mut nodes = Vec::new();
+    for (k, contact) in model.contacts.iter().enumerate() {
+        // Pairs ascend by node.
+        let active =
+            |node: usize| b.pairs[k].binary_search_by_key(&node, |p| p.node).is_ok_and(|p| b.pairs[k][p].active);
+        for pair in a.pairs[k].iter().filter(|p| p.active && !active(p.node)) {
+            nodes.push((k, contact.kinematics.secondary()[pair.node]));
+        }
+    }
+    nodes
+}

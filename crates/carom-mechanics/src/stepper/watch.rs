@@ -1,0 +1,78 @@
+//! Pairs of the steppers that treat contact themselves: found along the step, and kept from step to step while they touch or penetrate. The search takes a node
+//! behind a facet at the start of a step for one that came from elsewhere, so a law that lets nodes penetrate must not forget them.
+
+use carom_contact::{Pair, Pairing, Rows};
+
+use crate::model::{Contact, Model};
+use crate::rejected::Rejected;
+use crate::state::State;
+
+/// The pairs a step begins with: those that touched or are behind, released and without multiplier.
+pub(super) fn carried(model: &Model, state: &State) -> Vec<Pairing> {
+    let mut row = Rows::new(model.dimension);
+    let carry = |(contact, pairs): (&Contact, &Vec<Pair>)| {
+        let mut pairs = pairs.clone();
+        pairs.retain_mut(|pair| {
+            let kept = pair.active || gap_at(contact, pair, &state.y, &mut row) < 0.0;
+            (pair.active, pair.lambda) = (false, 0.0);
+            kept
+        });
+        Pairing::new(pairs)
+    };
+    model.contacts.iter().zip(&state.pairs).map(carry).collect()
+}
+
+/// Gap of a pair at positions `y`, its contact point moved there; infinite where there is no unique closest point, which is far away. `row` is overwritten.
+pub(super) fn gap_at(contact: &Contact, pair: &mut Pair, y: &[f64], row: &mut Rows) -> f64 {
+    row.clear();
+    let found = contact.kinematics.measure(pair, y, row);
+    found.map_or(f64::INFINITY, |()| row.row(0).gap)
+}
+
+/// Gaps and gradients of all pairs at `y`, their contact points moved there.
+///
+/// # Errors
+/// An active pair has no unique closest point.
+pub(super) fn measure_into(
+    model: &Model,
+    y: &[f64],
+    pairings: &mut [Pairing],
+    rows: &mut Vec<Rows>,
+) -> Result<(), Rejected> {
+    rows.resize_with(model.contacts.len(), || Rows::new(model.dimension));
+    for ((contact, pairing), rows) in model.contacts.iter().zip(pairings).zip(rows) {
+        rows.clear();
+        for pair in &mut pairing.pairs {
+            match contact.kinematics.measure(pair, y, rows) {
+                Ok(()) => {}
+                Err(error) if pair.active => {
+                    return Err(Rejected::Contact { contact: contact.name.clone(), error });
+                }
+                Err(_) => rows.push_open(),
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Contact and pair of all that are active.
+pub(super) fn active(pairings: &[Pairing]) -> impl Iterator<Item = (usize, usize)> + '_ {
+    let pairs = pairings.iter().enumerate();
+    pairs.flat_map(|(k, pairing)| {
+        let of_contact = pairing.pairs.iter().enumerate().filter(|(_, pair)| pair.active);
+        of_contact.map(move |(p, _)| (k, p))
+    })
+}
+
+/// Depth of the deepest watched node at a state, ≥ 0.
+pub(super) fn depth(model: &Model, state: &State) -> f64 {
+    let mut row = Rows::new(model.dimension);
+    let pairs = model.contacts.iter().zip(&state.pairs).flat_map(|(c, pairs)| pairs.iter().map(move |p| (c, p)));
+    pairs.map(|(contact, pair)| -gap_at(contact, &mut pair.clone(), &state.y, &mut row)).fold(0.0, f64::max)
+}
+
+/// How far a node can come closer to a facet within a step at these velocities.
+pub(super) fn approach(model: &Model, v: &[f64], dt: f64) -> f64 {
+    let square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>();
+    2.0 * dt * v.chunks_exact(model.dimension).map(square).fold(0.0, f64::max).sqrt()
+}

@@ -1,0 +1,64 @@
+//! What a step computes in: scratch that outlives it, and clocks.
+
+use crate::equations::Spare;
+use crate::mixing::Mixing;
+use crate::model::Model;
+use crate::system::System;
+
+/// Buffers that are rebuilt at will: no result travels through them.
+pub struct Workspace {
+    /// Linear system.
+    pub(crate) system: System,
+    /// Memory of evaluations.
+    pub(crate) spare: Spare,
+    /// Wall time by phase.
+    pub timings: Timings,
+    /// ∂f_int/∂y times what moved dofs still have to go.
+    pub(crate) pull: Vec<f64>,
+    /// Right-hand side of a solve.
+    pub(crate) right: Vec<f64>,
+    /// Δy of the last solve.
+    pub(crate) correction: Vec<f64>,
+    /// Δλ of the last solve.
+    pub(crate) multipliers: Vec<f64>,
+    /// What the last iterations with one factor have shown.
+    pub(crate) mixing: Mixing,
+}
+
+impl Workspace {
+    /// Buffers for a model; cells are computed by this many threads.
+    pub fn new(model: &Model, threads: usize) -> Self {
+        let zeros = vec![0.0; model.dofs()];
+        Self {
+            system: System::new(model, threads),
+            spare: Spare::default(),
+            timings: Timings::default(),
+            pull: zeros.clone(),
+            right: zeros.clone(),
+            correction: zeros,
+            multipliers: Vec::new(),
+            mixing: Mixing::default(),
+        }
+    }
+}
+
+/// Wall seconds by phase, for `--profile`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timings {
+    /// Cell forces and tangents.
+    pub assembly: f64,
+    /// Detection, gaps and their derivatives.
+    pub contact: f64,
+    /// Filling, ordering and factoring the linear system.
+    pub factor: f64,
+    /// Solving with the factors.
+    pub solve: f64,
+}
+
+/// Runs `work` and adds the seconds it took to `clock`.
+pub(crate) fn timed<T>(clock: &mut f64, work: impl FnOnce() -> T) -> T {
+    let began = std::time::Instant::now();
+    let done = work();
+    *clock += began.elapsed().as_secs_f64();
+    done
+}

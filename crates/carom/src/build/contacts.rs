@@ -1,0 +1,147 @@
+//! The contacts of a model: kinematics by what the case names, interface by law and enforcement. A new contact method is one line here.
+
+use carom_case::{ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, Persistency, PrimarySpec, Problem};
+use carom_contact::{ConservingPenalty, Detection, Kinematics, NodeToFacet, NodeToPlane, Penalty, Surface, Unilateral};
+use carom_mechanics::model::{Contact, Model, Part};
+
+use super::side;
+
+/// The contacts of a case.
+pub(super) fn contacts(case: &Case, parts: &[Part], massless: &[bool], problems: &mut Vec<Problem>) -> Vec<Contact> {
+    let averages = case.time.scheme.is_alpha();
+    let conserves = case.time.scheme.conserves();
+    let mut contacts = Vec::new();
+    for (k, spec) in case.contacts.iter().enumerate() {
+        let secondary = match side(parts, &spec.secondary, &format!("contact[{k}].secondary")) {
+            Ok(side) => side,
+            Err(problem) => {
+                problems.push(problem);
+                continue;
+            }
+        };
+        let mut primary_part = None;
+        let mut surface = secondary.nodes.clone();
+        let kinematics: Box<dyn Kinematics> = match &spec.primary {
+            PrimarySpec::Plane { point, normal } => Box::new(NodeToPlane::new(secondary.nodes.clone(), point, normal)),
+            PrimarySpec::Side(name) => match side(parts, name, &format!("contact[{k}].primary")) {
+                Ok(primary) if primary.part == secondary.part => {
+                    problems.push(Problem::new(
+                        format!("contact[{k}].primary"),
+                        format!("contact \"{}\" is of body \"{}\" with itself", spec.name, parts[primary.part].name),
+                        "self-contact is not in this version",
+                        "name sides of two bodies",
+                    ));
+                    continue;
+                }
+                Ok(primary) => {
+                    primary_part = Some(primary.part);
+                    surface.extend(&primary.nodes);
+                    let detection = match spec.detection {
+                        carom_case::Detection::ClosestPoint => Detection::ClosestPoint,
+                        carom_case::Detection::Trajectory => Detection::Trajectory,
+                    };
+                    let side = Surface::new(primary.shape, &primary.facets, &primary.orientations);
+                    Box::new(NodeToFacet::new(secondary.nodes.clone(), side, detection))
+                }
+                Err(problem) => {
+                    problems.push(problem);
+                    continue;
+                }
+            },
+        };
+        let light = |part: usize| case.bodies[part].mass.is_redistributed();
+        let projects = spec.law == Some(ContactLaw::Position)
+            && spec.enforcement == Enforcement::Multiplier
+            && !case.time.scheme.is_static()
+            && !light(secondary.part)
+            && !primary_part.is_some_and(light);
+        surface.sort_unstable();
+        surface.dedup();
+        let stiffnesses = || {
+            kinematics.secondary().iter().map(|&node| spec.stiffness * node_stiffness(parts, node)).collect::<Vec<_>>()
+        };
+        let contact = Contact {
+            name: spec.name.clone(),
+            interface: match spec.enforcement {
+                Enforcement::Multiplier => Box::new(Unilateral),
+                Enforcement::Penalty if conserves => Box::new(ConservingPenalty::new(stiffnesses())),
+                Enforcement::Penalty => Box::new(Penalty::new(stiffnesses())),
+            },
+            predictor: spec.law == Some(ContactLaw::Predictor),
+            kinematics,
+            primary_part,
+            secondary_facets: secondary.facets,
+            secondary_shape: secondary.shape,
+            surface,
+            // Other schemes take the contact force at the ends of their stages: there is nothing to average.
+            at_the_end: averages && spec.force == ForceTime::End,
+            // A predictor that respects the contact, a spring, load steps, and nodes without mass that follow the other side leave nothing to project:
+            // projected, a massive side would be given the velocity of the light one.
+            projects: projects && spec.persistency == Persistency::Project,
+            within: spec.active_set == ActiveSetRule::Within,
+            restitution: spec.restitution,
+        };
+        let has_mass = |nodes: &[usize]| nodes.iter().any(|n| !massless[n * case.dimension]);
+        let primary_has_mass = matches!(&spec.primary, PrimarySpec::Side(name)
+            if side(parts, name, "").is_ok_and(|s| has_mass(&s.nodes)));
+        if contact.projects && !has_mass(&secondary.nodes) && !primary_has_mass {
+            problems.push(Problem::new(
+                format!("contact[{k}]"),
+                format!("no node of contact \"{}\" has mass", spec.name),
+                "velocities where contact begins are projected with the mass as weight, and there is none",
+                "persistency = \"none\" for this contact",
+            ));
+        }
+        contacts.push(contact);
+    }
+    contacts
+}
+
+/// Mean over the directions of a node's diagonal of the tangent in the reference position.
+fn node_stiffness(parts: &[Part], node: usize) -> f64 {
+    let Some(part) = parts.iter().find(|part| part.nodes().contains(&node)) else { return 0.0 };
+    let mesh = part.body.mesh();
+    let (n, d) = (mesh.element.dofs(), mesh.dimension());
+    let (mut force, mut tangent, mut sum) = (vec![0.0; n], vec![0.0; n * n], 0.0);
+    for cell in 0..mesh.cell_count() {
+        let Some(place) = mesh.cell(cell).iter().position(|&m| m + part.first_node == node) else { continue };
+        // The reference position is never inverted.
+        if part.body.cell_tangent(cell, mesh.nodes.flat(), &mut force, &mut tangent).is_ok() {
+            sum += (place * d..(place + 1) * d).map(|i| tangent[i * n + i]).sum::<f64>() / d as f64;
+        }
+    }
+    sum
+}
+
+/// Initial overlaps deeper than round-off: a problem per contact with the deepest place.
+///
+/// Closing an overlap in one step throws the bodies apart, so it is refused.
+pub fn overlaps(model: &Model) -> Vec<Problem> {
+    let x = &model.initial_position;
+    let at = |node: usize| &x[node * model.dimension..(node + 1) * model.dimension];
+    let mut problems = Vec::new();
+    for (k, contact) in model.contacts.iter().enumerate() {
+        let mut deepest: Option<(f64, usize)> = None;
+        for (place, &node) in contact.kinematics.secondary().iter().enumerate() {
+            let Some(gap) = contact.kinematics.signed_distance(place, x) else { continue };
+            // Behind a side is not yet inside its body: a plate has a lower side too.
+            let covered = |p: usize| model.parts[p].body.covers(model.parts[p].of(x), at(node));
+            let inside = model.dimension == 1 || contact.primary_part.is_none_or(covered);
+            if gap < -1e-9 * model.scale && inside && deepest.is_none_or(|(g, _)| gap < g) {
+                deepest = Some((gap, node));
+            }
+        }
+        if let Some((gap, node)) = deepest {
+            problems.push(Problem::new(
+                format!("contact[{k}]"),
+                format!("the bodies of contact \"{}\" overlap at the start by {:.6e}", contact.name, -gap),
+                format!(
+                    "the node of the secondary side at {:?} lies inside the primary; closing an overlap in one step would throw the bodies apart",
+                    at(node)
+                ),
+                format!("move a body by at least {:.6e}, or swap secondary and primary if the wrong side was named", -gap),
+            ));
+        }
+    }
+    problems
+}

@@ -1,0 +1,67 @@
+//! The loads of a model; names and formulas have been checked when the case was read.
+
+use carom_case::{Case, FormulaSpec, LoadKind, LoadSpec, Problem, load_variables};
+use carom_formula::Formula;
+use carom_mechanics::model::{Amplitude, Load, Loads, Manufactured, Part};
+use carom_solid::LoadedSide;
+
+use super::side;
+
+/// The loads of a case.
+pub(super) fn loads(case: &Case, parts: &[Part], problems: &mut Vec<Problem>) -> Loads {
+    let mut loads = Loads::default();
+    let parsed = |specs: &[FormulaSpec]| -> Result<Vec<Formula>, String> {
+        let read = |f: &FormulaSpec| f.formula(&load_variables(case.dimension));
+        specs.iter().map(read).collect::<Result<_, _>>().map_err(|error| error.to_string())
+    };
+    if let Some(y) = &case.manufactured {
+        match parsed(y) {
+            Ok(y) => loads.manufactured = Some(Manufactured::new(y)),
+            Err(error) => problems.push(Problem::new("manufactured.y", error, "", "")),
+        }
+    }
+    for (k, spec) in case.loads.iter().enumerate() {
+        let specs = match &spec.kind {
+            LoadKind::Traction { value, .. } | LoadKind::BodyForce { value, .. } => value.as_slice(),
+            LoadKind::Pressure { value, .. } => std::slice::from_ref(value),
+        };
+        let value = match parsed(specs) {
+            Ok(value) => value,
+            Err(error) => {
+                problems.push(Problem::new(format!("load[{k}]"), error, "", ""));
+                continue;
+            }
+        };
+        if let LoadKind::BodyForce { body, .. } = &spec.kind {
+            if let Some(part) = parts.iter().position(|p| p.name == *body) {
+                loads.add_body_force(load(spec, part, value));
+            }
+            continue;
+        }
+        for (j, name) in spec.sides().iter().enumerate() {
+            let found = match side(parts, name, &format!("load[{k}].on[{j}]")) {
+                Ok(side) => &parts[side.part],
+                Err(problem) => {
+                    problems.push(problem);
+                    continue;
+                }
+            };
+            let mesh = found.body.mesh();
+            let facets = name.split_once('.').and_then(|(_, side)| mesh.sides.get(side));
+            let facets = facets.map_or(&[][..], Vec::as_slice);
+            let Some(side) = LoadedSide::new(mesh, facets, found.first_node, case.thickness) else { continue };
+            if matches!(spec.kind, LoadKind::Pressure { .. }) {
+                loads.add_pressure(load(spec, side, value.clone()));
+            } else {
+                loads.add_traction(load(spec, side, value.clone()));
+            }
+        }
+    }
+    loads
+}
+
+/// A load with the name and the amplitude of its table in the case.
+fn load<On>(spec: &LoadSpec, on: On, value: Vec<Formula>) -> Load<On> {
+    let amplitude = spec.table.clone().map(|table| -> Amplitude { Box::new(move |time| table.value(time)) });
+    Load { on, value, label: format!("the load \"{}\"", spec.label()), amplitude }
+}

@@ -1,0 +1,323 @@
+//! From a resolved case to a model. Whatever the case names and the meshes lack is a [`Problem`] with the key it stands under.
+
+mod contacts;
+mod loads;
+mod motions;
+mod refusals;
+
+use carom_case::{Case, FormulaSpec, MassKind, PrimarySpec, Problem};
+use carom_mechanics::model::{Mass, Model, Part, Probe, Quantity, Support, free_motions, redistribute, value};
+use carom_solid::{FacetShape, Law, SolidError};
+
+pub use contacts::overlaps;
+
+/// A side in global node numbers.
+struct Side {
+    part: usize,
+    nodes: Vec<usize>,
+    facets: Vec<Vec<usize>>,
+    orientations: Vec<f64>,
+    shape: FacetShape,
+}
+
+/// Builds the model of a case.
+///
+/// # Errors
+/// All problems found: missing sides, probes outside their body, meshes that cannot be made, contacts that cannot be solved.
+pub fn build(case: &Case) -> Result<Model, Vec<Problem>> {
+    let d = case.dimension;
+    let parts = parts(case)?;
+    let mut problems = Vec::new();
+    let dofs = parts.last().map_or(0, |p| p.nodes().end) * d;
+    let mut reference = Vec::with_capacity(dofs);
+    let (mut initial_position, mut initial_velocity) = (Vec::with_capacity(dofs), Vec::with_capacity(dofs));
+    for (k, (part, spec)) in parts.iter().zip(&case.bodies).enumerate() {
+        let places = part.body.mesh().nodes.flat();
+        reference.extend(places);
+        match &spec.position {
+            Some(formulas) => nodal(part, k, "position", formulas, &mut initial_position, &mut problems),
+            None => initial_position.extend(places),
+        }
+        nodal(part, k, "velocity", &spec.velocity, &mut initial_velocity, &mut problems);
+        // Where a formula has no value the rest is told too: every dof needs a number.
+        initial_position.resize(reference.len(), 0.0);
+        initial_velocity.resize(reference.len(), 0.0);
+    }
+
+    let mut fixed = vec![false; dofs];
+    let mut supports = Vec::new();
+    for (k, spec) in case.supports.iter().enumerate() {
+        let mut held = Vec::new();
+        for (j, name) in spec.on.iter().enumerate() {
+            match side(&parts, name, &format!("support[{k}].on[{j}]")) {
+                Ok(side) => {
+                    let dofs = |axis: usize| side.nodes.iter().map(move |n| n * d + axis).collect::<Vec<_>>();
+                    for dof in spec.fix.iter().flat_map(|i| dofs(*i)) {
+                        fixed[dof] = true;
+                        initial_velocity[dof] = 0.0;
+                        held.push(dof);
+                    }
+                    held.extend(spec.moves.iter().flat_map(|(i, _)| dofs(*i)));
+                }
+                Err(problem) => problems.push(problem),
+            }
+        }
+        held.sort_unstable();
+        held.dedup();
+        if let Some(name) = &spec.name {
+            supports.push(Support { name: name.clone(), dofs: held });
+        }
+    }
+
+    let motions = motions::motions(case, &parts, &fixed, &mut problems);
+    motions.dofs().for_each(|dof| fixed[dof] = true);
+    let loads = loads::loads(case, &parts, &mut problems);
+
+    // Of redistributed masses the nodes of contacts are made light afterwards.
+    let lumped: Vec<bool> = case.bodies.iter().map(|b| b.mass == MassKind::Lumped).collect();
+    let mut mass = Mass::assemble(d, &parts, &lumped);
+    problems.extend(redistributions(case, &parts, &reference, &mut mass));
+    let massless: Vec<bool> = (0..dofs).map(|dof| mass.is_massless(dof / d)).collect();
+    let gravity = gravity(case, &parts, &mass, dofs);
+    let contacts = contacts::contacts(case, &parts, &massless, &mut problems);
+    let probes = probes(case, &parts, &mut problems);
+    let is_static = case.time.scheme.is_static();
+    let unheld = if is_static { free_motions(&parts, &fixed) } else { Vec::new() };
+    problems.extend(refusals::unheld(&parts, &unheld, &contacts));
+    problems.extend(refusals::massless(case, &parts, &massless));
+
+    let free: Vec<usize> = (0..dofs).filter(|&i| !fixed[i]).collect();
+    let mut unknown = vec![usize::MAX; dofs];
+    for (place, &dof) in free.iter().enumerate() {
+        unknown[dof] = place;
+    }
+    let scale = parts.iter().map(|p| p.body.mesh().diameter()).fold(0.0, f64::max);
+    if problems.is_empty() {
+        Ok(Model {
+            dimension: d,
+            parts,
+            reference,
+            initial_position,
+            initial_velocity,
+            fixed,
+            free,
+            unknown,
+            mass,
+            massless,
+            gravity,
+            loads,
+            motions,
+            unheld,
+            contacts,
+            supports,
+            probes,
+            scale,
+        })
+    } else {
+        Err(problems)
+    }
+}
+
+/// What the formulas of a body's `key`, in X and Y, give at its nodes.
+fn nodal(
+    part: &Part,
+    body: usize,
+    key: &str,
+    formulas: &[FormulaSpec],
+    values: &mut Vec<f64>,
+    problems: &mut Vec<Problem>,
+) {
+    let path = format!("body[{body}].{key}");
+    let what = format!("the {key} of body \"{}\"", part.name);
+    let variables = carom_case::keys::variables(carom_case::keys::IN_SPACE, part.body.mesh().dimension());
+    let formulas: Vec<_> = match formulas.iter().map(|f| f.formula(&variables)).collect() {
+        Ok(formulas) => formulas,
+        Err(error) => {
+            let error: carom_formula::FormulaError = error;
+            return problems.push(Problem::new(path, what, error.to_string(), ""));
+        }
+    };
+    for place in &part.body.mesh().nodes {
+        for formula in &formulas {
+            match value(formula, &what, place, 0.0) {
+                Ok(value) => values.push(value),
+                Err(error) => {
+                    let help = "change the formula so that it has a value in the whole body";
+                    let what = format!("the initial {key} has no value");
+                    return problems.push(Problem::new(path, what, error.to_string(), help));
+                }
+            }
+        }
+    }
+}
+
+fn parts(case: &Case) -> Result<Vec<Part>, Vec<Problem>> {
+    let mut parts = Vec::new();
+    let mut problems = Vec::new();
+    let mut first_node = 0;
+    for (k, spec) in case.bodies.iter().enumerate() {
+        let Some(material) = case.materials.iter().find(|m| m.name == spec.material) else { continue };
+        let (lambda, mu) = (material.lambda, material.mu);
+        let law = match material.law {
+            carom_case::Law::NeoHookean => Law::NeoHookean { lambda, mu },
+            carom_case::Law::SaintVenantKirchhoff => Law::SaintVenantKirchhoff { lambda, mu },
+            carom_case::Law::LinearElastic => Law::LinearElastic { lambda, mu },
+        };
+        let body = |mesh: carom_solid::Mesh| match (mesh.dimension(), case.plane) {
+            (2, carom_case::Plane::Stress) => {
+                carom_solid::plane_stress_body(mesh, law, material.density, case.thickness)
+            }
+            _ => carom_solid::body(mesh, law, material.density, case.thickness),
+        };
+        let made = spec.make_mesh(case.dimension).and_then(|mesh| body(mesh).map_err(|e: SolidError| e.to_string()));
+        match made {
+            Ok(body) => {
+                let mesh = body.mesh();
+                let n = mesh.element.nodes();
+                let mut volumes = vec![0.0; n];
+                let mut volume = 0.0;
+                for cell in 0..mesh.cell_count() {
+                    body.cell_volumes(cell, &mut volumes);
+                    volume += volumes.iter().sum::<f64>();
+                }
+                let nodes = mesh.nodes.len();
+                let massless = material.density == 0.0;
+                let total_mass = volume * material.density;
+                parts.push(Part { name: spec.name.clone(), first_node, body, massless, total_mass });
+                first_node += nodes;
+            }
+            Err(why) => problems.push(Problem::new(
+                format!("body[{k}].mesh"),
+                format!("the mesh of body \"{}\" cannot be made", spec.name),
+                why,
+                "change what `mesh` names",
+            )),
+        }
+    }
+    if problems.is_empty() { Ok(parts) } else { Err(problems) }
+}
+
+/// Gravity as nodal forces M g with the mass matrix of the case: lumped or not, a free body falls without deforming.
+fn gravity(case: &Case, parts: &[Part], mass: &Mass, dofs: usize) -> Vec<f64> {
+    let mut acceleration = Vec::with_capacity(dofs);
+    for (part, spec) in parts.iter().zip(&case.bodies) {
+        for _ in part.nodes() {
+            acceleration.extend_from_slice(&spec.gravity);
+        }
+    }
+    let mut force = vec![0.0; dofs];
+    mass.multiply_into(&acceleration, &mut force);
+    force
+}
+
+fn side(parts: &[Part], name: &str, path: &str) -> Result<Side, Problem> {
+    let missing = |why: String, help: String| Problem::new(path, format!("there is no side \"{name}\""), why, help);
+    let bodies = || parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
+    let (body, side) = name
+        .split_once('.')
+        .ok_or_else(|| missing("a side is written body.side".into(), format!("bodies: {}", bodies())))?;
+    let part = parts
+        .iter()
+        .position(|p| p.name == body)
+        .ok_or_else(|| missing(format!("there is no body \"{body}\""), format!("bodies: {}", bodies())))?;
+    let mesh = parts[part].body.mesh();
+    let first = parts[part].first_node;
+    let (Some(facets), Some(nodes)) = (mesh.sides.get(side), mesh.side_nodes(side)) else {
+        let sides = mesh.sides.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
+        return Err(missing(format!("the sides of \"{body}\" are: {sides}"), "use one of them".into()));
+    };
+    let Some(shape) = mesh.element.facet_shape() else {
+        return Err(missing("its cells have no facets".into(), "use another element".into()));
+    };
+    Ok(Side {
+        part,
+        nodes: nodes.iter().map(|n| n + first).collect(),
+        facets: facets.iter().map(|f| f.nodes.iter().map(|n| n + first).collect()).collect(),
+        orientations: facets.iter().map(|f| mesh.orientation(f)).collect(),
+        shape,
+    })
+}
+
+/// Takes the mass off the nodes of contacts, in the bodies that ask for it.
+fn redistributions(case: &Case, parts: &[Part], reference: &[f64], mass: &mut Mass) -> Vec<Problem> {
+    let mut light = vec![false; mass.nodes()];
+    for contact in &case.contacts {
+        let primary = if let PrimarySpec::Side(name) = &contact.primary { Some(name) } else { None };
+        for name in std::iter::once(&contact.secondary).chain(primary) {
+            // Names that are wrong are reported where contacts are made.
+            side(parts, name, "").into_iter().flat_map(|side| side.nodes).for_each(|node| light[node] = true);
+        }
+    }
+    let mut problems = Vec::new();
+    for (k, (part, spec)) in parts.iter().zip(&case.bodies).enumerate().filter(|(_, (_, b))| b.mass.is_redistributed())
+    {
+        let nearest = spec.mass == MassKind::RedistributedNearest;
+        let what = format!("the mass of body \"{}\" cannot be redistributed", part.name);
+        let path = format!("body[{k}].mass");
+        if !part.nodes().any(|node| light[node]) {
+            let why = "none of its sides belongs to a contact";
+            problems.push(Problem::new(path, what, why, "mass = \"consistent\""));
+        } else if let Err(why) = redistribute(mass, part.nodes(), &light, case.dimension, reference, nearest) {
+            problems.push(Problem::new(path, what, why, "a finer mesh, or mass = \"consistent\""));
+        }
+    }
+    problems
+}
+
+fn probes(case: &Case, parts: &[Part], problems: &mut Vec<Problem>) -> Vec<Probe> {
+    let mut probes = Vec::new();
+    for (k, spec) in case.probes.iter().enumerate() {
+        let Some(part) = parts.iter().position(|p| p.name == spec.body) else { continue };
+        let places = parts[part].body.locate(&spec.at);
+        if places.is_empty() {
+            let mesh = parts[part].body.mesh();
+            let distance = |x: &[f64]| x.iter().zip(&spec.at).map(|(x, p)| (x - p).powi(2)).sum::<f64>();
+            let nearest = mesh.nodes.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            problems.push(Problem::new(
+                format!("probe[{k}].at"),
+                format!("probe \"{}\" lies outside body \"{}\"", spec.name, spec.body),
+                format!("no cell of the reference mesh contains {:?}", spec.at),
+                nearest.map_or(String::new(), |x| format!("the nearest node is at {x:?}")),
+            ));
+        }
+        if let Some(j) = spec.record.iter().position(|q| !exists_in(quantity(*q), case.dimension)) {
+            problems.push(Problem::new(
+                format!("probe[{k}].record[{j}]"),
+                format!("probe \"{}\" asks for a quantity that dimension {} does not have", spec.name, case.dimension),
+                "a bar has ux, vx, ax, sigma_xx and det_f",
+                "remove it",
+            ));
+        }
+        let record = spec.record.iter().map(|q| quantity(*q)).collect();
+        probes.push(Probe { name: spec.name.clone(), part, places, record });
+    }
+    probes
+}
+
+/// What a quantity's name in the case stands for.
+pub(crate) fn quantity(name: carom_case::Quantity) -> Quantity {
+    use carom_case::Quantity as Name;
+    match name {
+        Name::Ux => Quantity::Displacement(0),
+        Name::Uy => Quantity::Displacement(1),
+        Name::Vx => Quantity::Velocity(0),
+        Name::Vy => Quantity::Velocity(1),
+        Name::Ax => Quantity::Acceleration(0),
+        Name::Ay => Quantity::Acceleration(1),
+        Name::SigmaXx => Quantity::Stress(0, 0),
+        Name::SigmaYy => Quantity::Stress(1, 1),
+        Name::SigmaXy => Quantity::Stress(0, 1),
+        Name::VonMises => Quantity::VonMises,
+        Name::DetF => Quantity::DetF,
+    }
+}
+
+/// Whether a quantity exists in a dimension: a bar has one axis, and a stress along it.
+fn exists_in(quantity: Quantity, dimension: usize) -> bool {
+    match quantity {
+        Quantity::Displacement(i) | Quantity::Velocity(i) | Quantity::Acceleration(i) => i < dimension,
+        Quantity::Stress(i, j) => i < dimension && j < dimension,
+        Quantity::VonMises => dimension > 1,
+        Quantity::DetF => true,
+    }
+}

@@ -1,0 +1,87 @@
+//! Supports that move: which dofs follow which formula.
+
+use std::collections::BTreeMap;
+
+use carom_case::{Case, FormulaSpec, Problem, load_variables};
+use carom_formula::Formula;
+use carom_mechanics::model::{Motions, Part};
+
+use super::side;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Formulas with their names in messages, and which of them each moved dof follows.
+#[derive(Default)]
+struct Moves {
+    formulas: Vec<(String, Formula)>,
+    by_dof: BTreeMap<usize, usize>,
+}
+
+/// The motions of a case, by dof ascending. A dof that is fixed, or moved by two different formulas, is a problem.
+pub(super) fn motions(case: &Case, parts: &[Part], fixed: &[bool], problems: &mut Vec<Problem>) -> Motions {
+    let (d, mut moves) = (case.dimension, Moves::default());
+    for (k, spec) in case.supports.iter().enumerate() {
+        for (axis, formula) in &spec.moves {
+            let path = format!("support[{k}].move.{}", AXES[*axis]);
+            let read = match formula.formula(&load_variables(d)) {
+                Ok(formula) => formula,
+                Err(error) => {
+                    problems.push(Problem::new(path, error.to_string(), "", ""));
+                    continue;
+                }
+            };
+            let label = spec.name.as_ref().map_or_else(|| spec.on.join(", "), Clone::clone);
+            let place = moves.formulas.len();
+            moves.formulas.push((format!("the motion of support \"{label}\""), read));
+            let sides = spec.on.iter().filter_map(|name| side(parts, name, "").ok());
+            for node in sides.flat_map(|s| s.nodes) {
+                if let Some(with) = moves.conflict(node * d + axis, place, fixed) {
+                    problems.push(Problem::new(
+                        path.clone(),
+                        format!("a node of {label} is moved along {} and also {with}", AXES[*axis]),
+                        format!("the node at {:?} is on two supports", place_of(parts, node)),
+                        "take one of the sides out, or give both the same motion",
+                    ));
+                    break;
+                }
+            }
+        }
+    }
+    if let Some(y) = &case.manufactured {
+        moves.manufactured(y, d, parts, problems);
+    }
+    let Moves { formulas, by_dof } = moves;
+    Motions::new(formulas, by_dof.into_iter().map(|(dof, formula)| (dof, formula, place_of(parts, dof / d))))
+}
+
+impl Moves {
+    /// Lets a dof follow a formula; what else it does, where that is not the same.
+    fn conflict(&mut self, dof: usize, formula: usize, fixed: &[bool]) -> Option<String> {
+        let text = |formula: usize| self.formulas[formula].1.text();
+        let other = self.by_dof.insert(dof, formula).map(text).filter(|other| *other != text(formula));
+        if fixed[dof] { Some("fixed".to_owned()) } else { other.map(|text| format!("moved as {text}")) }
+    }
+
+    /// All nodes of the boundary, moved by y − X.
+    fn manufactured(&mut self, y: &[FormulaSpec], d: usize, parts: &[Part], problems: &mut Vec<Problem>) {
+        for (axis, formula) in y.iter().enumerate() {
+            let text = format!("({formula}) - {}", ["X", "Y", "Z"][axis]);
+            match Formula::parse(&text, &load_variables(d)) {
+                Ok(read) => self.formulas.push((format!("component {} of [manufactured]", axis + 1), read)),
+                Err(error) => return problems.push(Problem::new("manufactured.y", error.to_string(), "", "")),
+            }
+            let place = self.formulas.len() - 1;
+            for part in parts {
+                let on = part.body.mesh().on_boundary();
+                let nodes = part.nodes().zip(on).filter_map(|(node, on)| on.then_some(node));
+                self.by_dof.extend(nodes.map(|node| (node * d + axis, place)));
+            }
+        }
+    }
+}
+
+/// Reference position of a node.
+fn place_of(parts: &[Part], node: usize) -> Vec<f64> {
+    let part = parts.iter().find(|p| p.nodes().contains(&node));
+    part.map_or_else(Vec::new, |p| p.body.mesh().nodes[node - p.first_node].to_vec())
+}

@@ -1,0 +1,59 @@
+//! What a model has no answer to, whatever its numbers: bodies without mass under rules that need it, bodies that nothing holds.
+
+use carom_case::{Case, ContactLaw, ForceTime, PrimarySpec, Problem};
+use carom_mechanics::model::{Contact, Mode, Part};
+
+/// Bodies that supports leave free to move and that no contact can hold: without inertia they have no equilibrium.
+pub(super) fn unheld(parts: &[Part], free: &[Mode], contacts: &[Contact]) -> Vec<Problem> {
+    let mut problems: Vec<Problem> = Vec::new();
+    for (place, part) in parts.iter().enumerate() {
+        let touches = |c: &Contact| {
+            c.primary_part == Some(place) || c.kinematics.secondary().iter().any(|n| part.nodes().contains(n))
+        };
+        if let Some(mode) = free.iter().find(|m| m.part == place).filter(|_| !contacts.iter().any(touches)) {
+            problems.push(Problem::new(
+                format!("body[{place}]"),
+                format!("body \"{}\" is free to {}: it has no equilibrium", part.name, mode.motion()),
+                "the scheme \"static\" has no inertia, and neither a support nor a contact can hold the body",
+                "add a [[support]], or take a scheme with inertia",
+            ));
+        }
+    }
+    problems
+}
+
+/// A body without mass balances at s + 1 alone; rules that act inside the step have no meaning for it.
+pub(super) fn massless(case: &Case, parts: &[Part], massless: &[bool]) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    let light = |part: &Part| part.nodes().any(|node| massless[node * case.dimension]);
+    let Some(part) = parts.iter().find(|p| light(p)) else { return problems };
+    let what = |rule: &str| {
+        let which = if part.massless { "has no mass" } else { "has nodes without mass" };
+        format!("body \"{}\" {which}, and {rule} needs it", part.name)
+    };
+    let why = "its balance holds at the end of the step, not at the averaged state";
+    if case.time.scheme.forces == carom_time::ForceRule::AverageState {
+        let help = "forces = \"average-forces\", or a small density";
+        problems.push(Problem::new("time.scheme.forces", what("forces = \"average-state\""), why, help));
+    }
+    if case.time.scheme.kind == "energy-momentum" {
+        let help = "a scheme that is not midpoint, such as bathe, or a small density";
+        problems.push(Problem::new("time.scheme.kind", what("kind = \"energy-momentum\""), why, help));
+    }
+    let touches =
+        |name: &str| name.split_once('.').is_some_and(|(body, _)| parts.iter().any(|p| light(p) && p.name == body));
+    for (k, contact) in case.contacts.iter().enumerate() {
+        if contact.law == Some(ContactLaw::Predictor) {
+            let why = "the predictor is projected with the mass as weight";
+            let help = "law = \"position\", which needs no cure where contact nodes have no mass";
+            problems.push(Problem::new(format!("contact[{k}].law"), what("law = \"predictor\""), why, help));
+        }
+        let primary = matches!(&contact.primary, PrimarySpec::Side(name) if touches(name));
+        if contact.force == ForceTime::End && (primary || touches(&contact.secondary)) {
+            let why = "the share of the contact force on a massless side is that of its internal forces";
+            let help = "force = \"alpha_f\", or a small density";
+            problems.push(Problem::new(format!("contact[{k}].force"), what("force = \"end\""), why, help));
+        }
+    }
+    problems
+}
