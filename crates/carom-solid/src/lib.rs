@@ -1,6 +1,7 @@
 //! Bodies: meshes, shapes, quadrature, materials and cell forces of the positional finite element method.
 
 mod body;
+mod bounds;
 mod discrete_gradient;
 mod factory;
 pub mod generate;
@@ -14,8 +15,10 @@ pub mod quadrature;
 mod reference;
 pub mod shape;
 mod solid;
+mod tree;
 
 pub use body::{Body, Inverted, PointState};
+pub use bounds::Bounds;
 pub use factory::{Cells, body, plane_stress_body};
 pub use loaded_side::{LoadedSide, MAX_FACET_NODES};
 pub use lumping::cell_lumped_mass;
@@ -23,3 +26,4 @@ pub use material::Law;
 pub use mesh::{Element, Facet, Mesh};
 pub use shape::{LineShape, line_shape};
 pub use solid::{Solid, SolidError};
+pub use tree::{REBUILT, Tree};
