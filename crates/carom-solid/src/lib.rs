@@ -2,6 +2,7 @@
 
 mod body;
 mod bounds;
+mod cover;
 mod discrete_gradient;
 mod factory;
 pub mod generate;
@@ -19,11 +20,12 @@ mod tree;
 
 pub use body::{Body, Inverted, PointState};
 pub use bounds::Bounds;
+pub use cover::Cover;
 pub use factory::{Cells, body, plane_stress_body};
 pub use loaded_side::{LoadedSide, MAX_FACET_NODES};
 pub use lumping::cell_lumped_mass;
 pub use material::Law;
 pub use mesh::{Element, Facet, Mesh};
-pub use shape::{LineShape, line_shape};
+pub use shape::{Hull, LineShape, line_shape};
 pub use solid::{Solid, SolidError};
 pub use tree::{REBUILT, Tree};

@@ -1,7 +1,7 @@
 //! From a resolved case to a model. Whatever the case names and the meshes lack is a [`Problem`] with the key it stands under.
 
 use carom_contact::{ContactMethod, NodeToPlane};
-use carom_solid::Law;
+use carom_solid::{Cover, Law};
 
 use super::dimension::{Dimension, Space};
 use super::formulas::value;
@@ -445,12 +445,15 @@ pub fn overlaps<const D: usize>(model: &Model<D>) -> Vec<Problem> {
     let mut problems = Vec::new();
     for (k, contact) in model.contacts.iter().enumerate() {
         let mut deepest: Option<(f64, usize)> = None;
+        // Behind a side is not yet inside its body: a plate has a lower side too.
+        let primary = contact.primary_part.filter(|_| D > 1).map(|p| &model.parts[p]);
+        let cover = primary.map(|part| Cover::new(&*part.body, &x[part.nodes()]));
         for (place, &node) in contact.method.secondary().iter().enumerate() {
+            if cover.as_ref().is_some_and(|cover| !cover.contains(&x[node])) {
+                continue;
+            }
             let Some(gap) = contact.method.signed_distance(place, x) else { continue };
-            // Behind a side is not yet inside its body: a plate has a lower side too.
-            let covered = |p: usize| model.parts[p].body.covers(&x[model.parts[p].nodes()], &x[node]);
-            let inside = D == 1 || contact.primary_part.is_none_or(covered);
-            if gap < -1e-9 * model.scale && inside && deepest.is_none_or(|(g, _)| gap < g) {
+            if gap < -1e-9 * model.scale && deepest.is_none_or(|(g, _)| gap < g) {
                 deepest = Some((gap, node));
             }
         }
