@@ -17,6 +17,12 @@ impl<'a> Places<'a> {
         Self { y, dimension }
     }
 
+    /// Coordinates of a node, as many as there are dimensions.
+    #[inline]
+    pub(crate) fn coordinates(&self, node: usize) -> &'a [f64] {
+        &self.y[node * self.dimension..(node + 1) * self.dimension]
+    }
+
     /// Position of a node.
     #[inline]
     pub(crate) fn at(&self, node: usize) -> Vector<2> {

@@ -1,5 +1,6 @@
 //! What the rest of Carom sees of a body: forces, tangents, masses and stresses at positions, cell by cell.
 
+use crate::bounds::Bounds;
 use crate::mesh::Mesh;
 
 /// A cell turned inside out (J ≤ 0) at some quadrature point.
@@ -83,8 +84,11 @@ pub trait Body: Send + Sync {
     /// empty outside the body.
     fn locate(&self, point: &[f64]) -> Vec<(usize, Vec<f64>)>;
 
-    /// Whether a point lies in the body, its boundary included, whose nodes are at `y`.
-    fn covers(&self, y: &[f64], point: &[f64]) -> bool;
+    /// Box around a cell whose nodes are at `y`, wide enough for every point that [`Self::invert`] finds in it.
+    fn cell_bounds(&self, cell: usize, y: &[f64]) -> Bounds;
+
+    /// Reference coordinates of a point of a cell, its boundary included, whose nodes are at `y`; `None` if it lies outside.
+    fn invert(&self, cell: usize, y: &[f64], point: &[f64]) -> Option<Vec<f64>>;
 
     /// Density ρ₀.
     fn density(&self) -> f64;

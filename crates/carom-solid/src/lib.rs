@@ -1,6 +1,8 @@
 //! Bodies: meshes, shapes, quadrature, materials and cell forces of the positional finite element method.
 
 mod body;
+mod bounds;
+mod cover;
 mod discrete_gradient;
 mod facet;
 mod factory;
@@ -16,8 +18,11 @@ pub mod quadrature;
 mod reference;
 pub mod shape;
 mod solid;
+mod tree;
 
 pub use body::{Body, Inverted, PointState};
+pub use bounds::Bounds;
+pub use cover::Cover;
 pub use facet::FacetShape;
 pub use factory::{body, plane_stress_body};
 pub use loaded_side::LoadedSide;
@@ -25,5 +30,6 @@ pub use lumping::cell_lumped_mass;
 pub use material::Law;
 pub use mesh::{Element, Facet, Mesh};
 pub use positions::Positions;
-pub use shape::{LineShape, line_shape};
+pub use shape::{Hull, LineShape, line_shape};
 pub use solid::{Solid, SolidError};
+pub use tree::{REBUILT, Tree};

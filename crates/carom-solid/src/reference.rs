@@ -51,25 +51,9 @@ pub(crate) fn map<const D: usize, const N: usize, S: Shape<D, N>>(
 /// A point this far outside a cell, in reference coordinates, still belongs to it: places are typed with six digits.
 const TOLERANCE: f64 = 1e-6;
 
-/// Box around a cell.
-pub(crate) struct Bounds<const D: usize> {
-    low: [f64; D],
-    high: [f64; D],
-}
-
-impl<const D: usize> Bounds<D> {
-    /// Box around nodes, wider by a quarter: a curved edge bulges beyond its nodes.
-    pub(crate) fn around(x: &[Vector<D>]) -> Self {
-        let low: [f64; D] = std::array::from_fn(|i| x.iter().map(|x| x[i]).fold(f64::INFINITY, f64::min));
-        let high: [f64; D] = std::array::from_fn(|i| x.iter().map(|x| x[i]).fold(f64::NEG_INFINITY, f64::max));
-        let margin = 0.25 * (0..D).map(|i| high[i] - low[i]).fold(0.0, f64::max);
-        Self { low: low.map(|c| c - margin), high: high.map(|c| c + margin) }
-    }
-
-    pub(crate) fn contains(&self, point: &[f64; D]) -> bool {
-        (0..D).all(|i| self.low[i] <= point[i] && point[i] <= self.high[i])
-    }
-}
+/// How far such a point may lie outside the hull of the cell's control points, compared with the size of its box. Where barycentric coordinates
+/// are ≥ −ε the Bernstein polynomials of degree k add up to at most (1 + 2dε)ᵏ, in d ≤ 3 dimensions: the point is outside by no more than dkε.
+pub(crate) const MARGIN: f64 = 20.0 * TOLERANCE;
 
 /// Whether the reference map is not affine.
 pub(crate) fn is_curved<const D: usize, const N: usize, S: Shape<D, N>>(x: &[Vector<D>; N]) -> bool {

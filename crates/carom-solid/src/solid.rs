@@ -12,17 +12,20 @@
 
 use std::marker::PhantomData;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use carom_algebra::{Mat, Vector, wide};
 
 use crate::body::{Body, Inverted, PointState};
+use crate::bounds::Bounds;
 use crate::discrete_gradient::{Moduli, between, moduli_of, symmetric_part};
 use crate::material::{Material, NotPositive};
 use crate::mesh::{Element, Mesh};
 use crate::points::{Blocks, LANES, Points, get, set, set_moduli, sum};
 use crate::quadrature::Rule;
-use crate::reference::{self, Bounds, Degenerate, gradient};
-use crate::shape::{Domain, Shape};
+use crate::reference::{self, Degenerate, gradient};
+use crate::shape::{Domain, Hull, Shape};
+use crate::tree::Tree;
 
 /// Why a body cannot be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -66,7 +69,9 @@ pub struct Solid<const D: usize, const N: usize, S, L> {
     curved: Vec<bool>,
     /// Rules for masses of straight and of curved cells.
     mass_rules: [Rule<D>; 2],
-    bounds: Vec<Bounds<D>>,
+    hull: Hull,
+    /// Of the cells' boxes in the reference position, once a point has been asked for.
+    tree: OnceLock<Tree>,
     shape: PhantomData<S>,
 }
 
@@ -91,7 +96,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
             points: pack(force_rules[0].iter().map(|(xi, weight)| (S::gradients(xi), weight))),
             curved: Vec::with_capacity(cells),
             mass_rules,
-            bounds: Vec::with_capacity(cells),
+            hull: Hull::of::<D, N, S>(),
+            tree: OnceLock::new(),
             shape: PhantomData,
         };
         let shared = 0..solid.points.len();
@@ -117,7 +123,6 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
             };
             solid.places.push(place);
             solid.curved.push(curved);
-            solid.bounds.push(Bounds::around(&x));
         }
         Ok(solid)
     }
@@ -423,21 +428,23 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
     }
 
     fn locate(&self, point: &[f64]) -> Vec<(usize, Vec<f64>)> {
-        let point = vector::<D>(point);
-        let near = (0..self.bounds.len()).filter(|&cell| self.bounds[cell].contains(&point.0));
-        near.filter_map(|cell| {
-            let xi = reference::invert::<D, N, S>(&self.reference(cell), &point)?;
-            Some((cell, xi.0.to_vec()))
-        })
-        .collect()
+        let x = self.mesh.nodes.flat();
+        let tree = self.tree.get_or_init(|| Tree::new(self.mesh.cell_count(), |cell| self.cell_bounds(cell, x)));
+        let mut near = Vec::new();
+        tree.find_into(&Bounds::of(point), &mut near);
+        near.into_iter().filter_map(|cell| Some((cell, self.invert(cell, x, point)?))).collect()
     }
 
-    fn covers(&self, y: &[f64], point: &[f64]) -> bool {
-        let (y, point) = (y.as_chunks::<D>().0, vector::<D>(point));
-        (0..self.mesh.cell_count()).any(|cell| {
-            let nodes = self.nodes(cell).map(|node| Vector(y[node]));
-            Bounds::around(&nodes).contains(&point.0) && reference::invert::<D, N, S>(&nodes, &point).is_some()
-        })
+    fn cell_bounds(&self, cell: usize, y: &[f64]) -> Bounds {
+        let (nodes, y) = (self.nodes(cell), y.as_chunks::<D>().0);
+        let bounds = self.hull.bounds(|a| &y[nodes[a]]);
+        bounds.grown(reference::MARGIN * bounds.size())
+    }
+
+    fn invert(&self, cell: usize, y: &[f64], point: &[f64]) -> Option<Vec<f64>> {
+        let y = y.as_chunks::<D>().0;
+        let nodes = self.nodes(cell).map(|node| Vector(y[node]));
+        reference::invert::<D, N, S>(&nodes, &vector(point)).map(|xi| xi.0.to_vec())
     }
 
     fn density(&self) -> f64 {

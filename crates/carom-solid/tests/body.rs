@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use carom_solid::{Body, Element, Law, Mesh, SolidError, body, cell_lumped_mass, generate};
+use carom_solid::{Body, Bounds, Cover, Element, Law, Mesh, SolidError, body, cell_lumped_mass, generate, line_shape};
 
 const LAMBDA: f64 = 2.0;
 const MU: f64 = 1.5;
@@ -254,6 +254,13 @@ fn places_are_found_in_straight_and_curved_cells() {
                 let found = body.locate(x).into_iter().map(|(cell, _)| cell).collect::<Vec<_>>();
                 assert_eq!(found, around, "{element:?}, node {node}");
             }
+            for code in 0..400 {
+                let x = [f64::from(code % 20), f64::from(code / 20)].map(|c| 0.2 * c - 2.03);
+                let one_by_one = (0..mesh.cell_count())
+                    .filter_map(|cell| Some((cell, body.invert(cell, &mesh.nodes, &x)?)))
+                    .collect::<Vec<_>>();
+                assert_eq!(body.locate(&x), one_by_one);
+            }
             assert!(body.locate(&[10.0, 0.0]).is_empty());
             assert!(body.locate(&[1.4, 0.6]).is_empty());
         }
@@ -311,4 +318,45 @@ fn bad_bodies_are_refused_with_cell_and_place() {
     let mut wrong = mesh();
     wrong.element = Element::L3;
     assert!(matches!(error(wrong, 1.0, 1.0), SolidError::Dimension { dimension: 2, .. }));
+}
+
+/// By ray casting: a point lies in a polygon if a ray from it crosses its boundary an odd number of times.
+#[test]
+fn a_cover_is_what_its_boundary_encloses() {
+    for element in TRIANGLES {
+        for mesh in meshes(element) {
+            let body = body(mesh, LAWS[0], 1.0, 1.0).unwrap();
+            let mesh = body.mesh();
+            let y: Vec<_> = mesh.nodes.iter().map(|[a, b]| [a - 0.3 * b + 0.1 * a * a, 0.2 * a + 1.1 * b]).collect();
+            let cover = Cover::new(&*body, &y);
+            let mut boundary = Vec::new();
+            for facet in mesh.sides.values().flatten() {
+                let at = |xi: f64| {
+                    let shape = line_shape(facet.nodes.len(), xi).values;
+                    let sum = |i: usize| facet.nodes.iter().zip(shape).map(|(&n, v)| v * y[n][i]).sum::<f64>();
+                    [sum(0), sum(1)]
+                };
+                boundary.extend((0..40).map(|k| f64::from(k) / 20.0 - 1.0).map(|xi| [at(xi), at(xi + 0.05)]));
+            }
+            let bounds: Bounds = y.iter().collect();
+            let mut inside = 0;
+            for code in 0..900 {
+                let unit = [f64::from(code % 30), f64::from(code / 30)].map(|c| (c + 0.37) / 30.0);
+                let [p, q] = [0, 1].map(|i| bounds.low()[i] + unit[i] * bounds.extents()[i]);
+                let crossed = boundary
+                    .iter()
+                    .filter(|[a, b]| (a[1] > q) != (b[1] > q) && a[0] + (q - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > p);
+                let odd = crossed.count() % 2 == 1;
+                inside += usize::from(odd);
+                let cells = (0..mesh.cell_count()).any(|cell| body.invert(cell, &y, &[p, q]).is_some());
+                assert_eq!(cover.contains(&[p, q]), cells, "the boxes have left out a cell");
+                // Too near to the polygon to be told from the curve.
+                let near = boundary.iter().any(|[a, _]| (a[0] - p).hypot(a[1] - q) < 0.02 * bounds.size());
+                assert!(near || cover.contains(&[p, q]) == odd, "{element:?} at {p}, {q}");
+            }
+            assert!(inside > 200, "{inside}");
+            assert!(y.iter().all(|node| cover.contains(node)));
+            assert!(!cover.contains(&[f64::NAN, 0.0]));
+        }
+    }
 }

@@ -10,11 +10,13 @@
 //! Of a point n = ±1, the direction out of its body, and ∇²g = 0. ξ is solved again in every call, up to |ξ| = 1.2 beyond an end; the pair is handed to
 //! the neighbour only between solves, and never back within a step.
 
+use std::sync::{Mutex, PoisonError};
+
 use carom_algebra::Mat;
 use carom_solid::FacetShape;
 
 use super::projection::FacetPoint;
-use super::surface::Surface;
+use super::surface::{Search, Surface};
 use super::trajectory::crossing;
 use super::{Kinematics, watch_every_node};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
@@ -43,17 +45,19 @@ pub enum Detection {
 }
 
 /// Secondary nodes against a primary side of facets.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct NodeToFacet {
     secondary: Vec<usize>,
     primary: Surface,
     detection: Detection,
+    search: Mutex<Search>,
 }
 
 impl NodeToFacet {
     /// Secondary nodes and primary surface in global node numbers; a node of the primary itself is left out of the secondary.
     pub fn new(secondary: Vec<usize>, primary: Surface, detection: Detection) -> Self {
-        Self { secondary, primary, detection }
+        let search = Mutex::new(Search::new(&primary, REACH));
+        Self { secondary, primary, detection, search }
     }
 
     fn places<'a>(&self, y: &'a [f64]) -> Places<'a> {
@@ -66,11 +70,10 @@ impl NodeToFacet {
     }
 
     /// Facet and ξ where a node may touch: the first crossing of trajectories, else the closest facet at `now` that the node was not behind before.
-    fn candidate(&self, node: usize, before: Places, now: Places) -> Option<(usize, f64, bool)> {
-        let near = self.primary.near(node, before, now);
+    fn candidate(&self, search: &mut Search, node: usize, before: Places, now: Places) -> Option<(usize, f64, bool)> {
         let mut first: Option<(f64, usize, f64)> = None;
         let mut closest: Option<(f64, usize, f64)> = None;
-        for facet in near {
+        for &facet in search.near(node, before, now) {
             let side = self.primary.facet(facet);
             if let Some(c) = crossing(side, before, now, node)
                 && first.is_none_or(|(theta, ..)| c.theta < theta)
@@ -187,7 +190,8 @@ impl Kinematics for NodeToFacet {
             }
             true
         });
-        if self.primary.any_near(&self.secondary, before, now) {
+        let mut search = self.search.lock().unwrap_or_else(PoisonError::into_inner);
+        if search.update(&self.primary, &self.secondary, before, now) {
             let known = pairs.len();
             let mut next = 0;
             for (k, &node) in self.secondary.iter().enumerate() {
@@ -195,7 +199,7 @@ impl Kinematics for NodeToFacet {
                     next += 1;
                     continue;
                 }
-                let Some((facet, xi, crossed)) = self.candidate(node, before, now) else { continue };
+                let Some((facet, xi, crossed)) = self.candidate(&mut search, node, before, now) else { continue };
                 let pair = Pair::open(k, facet, xi);
                 let gap = self.gap(node, facet, xi, now);
                 match self.detection {

@@ -1,9 +1,8 @@
-//! A primary side as a chain of curved facets in global node numbers, with neighbours and a conservative search.
+//! A primary side as a chain of curved facets in global node numbers, with neighbours, and the search for those that a node's path comes near.
 
 use std::collections::HashMap;
 
-use carom_algebra::Vector;
-use carom_solid::FacetShape;
+use carom_solid::{Bounds, FacetShape, Hull, Tree};
 
 use super::projection::Facet;
 use crate::places::Places;
@@ -15,40 +14,6 @@ pub struct Surface {
     nodes: Vec<usize>,
     orientations: Vec<f64>,
     neighbours: Vec<[Option<usize>; 2]>,
-}
-
-/// Axis-parallel box.
-#[derive(Clone, Copy, Debug)]
-struct Bounds {
-    low: [f64; 2],
-    high: [f64; 2],
-}
-
-impl Bounds {
-    const EMPTY: Self = Self { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
-
-    fn add(&mut self, x: &Vector<2>) {
-        for i in 0..2 {
-            self.low[i] = self.low[i].min(x[i]);
-            self.high[i] = self.high[i].max(x[i]);
-        }
-    }
-
-    fn size(&self) -> f64 {
-        (self.high[0] - self.low[0]).max(self.high[1] - self.low[1])
-    }
-
-    fn grown(mut self, by: f64) -> Self {
-        for i in 0..2 {
-            self.low[i] -= by;
-            self.high[i] += by;
-        }
-        self
-    }
-
-    fn meets(&self, other: &Self) -> bool {
-        (0..2).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
-    }
 }
 
 impl Surface {
@@ -97,47 +62,60 @@ impl Surface {
         let nodes = self.facet(facet).nodes;
         (y.at(nodes[1]) - y.at(nodes[0])).norm()
     }
+}
 
-    /// Box around a facet's path; a polynomial leaves the box of its nodes by less than a third of its size.
-    fn swept(&self, facet: usize, before: Places, now: Places) -> Bounds {
-        let mut bounds = Bounds::EMPTY;
-        for &n in self.facet(facet).nodes {
-            bounds.add(&before.at(n));
-            bounds.add(&now.at(n));
-        }
-        bounds.grown(0.35 * bounds.size())
+/// Facets by the boxes of their paths during a step, which hold them and what they are extrapolated to: nothing that comes near is missed.
+/// A cache that never changes a result; O(facets) to bring up to date, O(log facets) to ask.
+#[derive(Debug)]
+pub(crate) struct Search {
+    hull: Hull,
+    tree: Option<Tree>,
+    found: Vec<usize>,
+}
+
+impl Search {
+    /// For a surface whose facets are extrapolated up to |ξ| = `reach`.
+    pub(crate) fn new(surface: &Surface, reach: f64) -> Self {
+        Self { hull: Hull::line(surface.shape.nodes(), reach), tree: None, found: Vec::new() }
     }
 
-    /// Facets whose path comes near a node's path, in ascending order.
-    pub(crate) fn near<'a>(
-        &'a self,
-        node: usize,
-        before: Places<'a>,
-        now: Places<'a>,
-    ) -> impl Iterator<Item = usize> + 'a {
+    /// Takes motion from `before` to `now` up; whether the path of any of these nodes comes near the path of any facet.
+    pub(crate) fn update(&mut self, surface: &Surface, nodes: &[usize], before: Places, now: Places) -> bool {
+        let hull = &self.hull;
+        let swept = |facet: usize| {
+            let nodes = surface.facet(facet).nodes;
+            let [old, new] = [before, now].map(|y| hull.bounds(|a| y.coordinates(nodes[a])));
+            let bounds = old.union(&new);
+            bounds.grown(MARGIN * bounds.size())
+        };
+        match &mut self.tree {
+            Some(tree) => _ = tree.update(swept),
+            None => self.tree = Some(Tree::new(surface.facets(), swept)),
+        }
+        let mut all = Bounds::EMPTY;
+        for &node in nodes {
+            all.add(before.coordinates(node));
+            all.add(now.coordinates(node));
+        }
+        self.tree.as_ref().is_some_and(|tree| tree.bounds().meets(&all.grown(AHEAD * all.size())))
+    }
+
+    /// Facets whose path comes near a node's path, ascending.
+    pub(crate) fn near(&mut self, node: usize, before: Places, now: Places) -> &[usize] {
         let mut path = Bounds::EMPTY;
-        path.add(&before.at(node));
-        path.add(&now.at(node));
-        let path = path.grown(0.1 * path.size());
-        (0..self.facets()).filter(move |&f| self.swept(f, before, now).meets(&path))
-    }
-
-    /// Whether the path of any of the nodes comes near the path of the side as a whole.
-    pub(crate) fn any_near(&self, nodes: &[usize], before: Places, now: Places) -> bool {
-        let mut side = Bounds::EMPTY;
-        for f in 0..self.facets() {
-            let b = self.swept(f, before, now);
-            side.add(&Vector(b.low));
-            side.add(&Vector(b.high));
+        path.add(before.coordinates(node));
+        path.add(now.coordinates(node));
+        if let Some(tree) = &self.tree {
+            tree.find_into(&path.grown(AHEAD * path.size()), &mut self.found);
         }
-        let mut others = Bounds::EMPTY;
-        for &n in nodes {
-            others.add(&before.at(n));
-            others.add(&now.at(n));
-        }
-        side.meets(&others.grown(0.1 * others.size()))
+        &self.found
     }
 }
+
+/// How far around a facet's path a node is watched, as a share of the path's size: before it touches.
+const MARGIN: f64 = 0.35;
+/// The same around a node's path.
+const AHEAD: f64 = 0.1;
 
 #[cfg(test)]
 mod tests {

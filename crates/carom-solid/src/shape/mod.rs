@@ -3,12 +3,14 @@
 //! Node order is Gmsh's and VTK's: corners, then the nodes of each edge in its direction, then the interior. One short file per reference
 //! domain; every shape passes the same test at the foot of this file.
 
+mod hull;
 mod line;
 mod tetrahedron;
 mod triangle;
 
 use carom_algebra::Vector;
 
+pub use hull::Hull;
 pub use line::{Line2, Line3, Line4, LineShape, line_shape};
 pub use tetrahedron::Tet4;
 pub use triangle::{Tri3, Tri6, Tri10};

@@ -3,6 +3,7 @@
 use carom_case::{ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, Persistency, PrimarySpec, Problem};
 use carom_contact::{ConservingPenalty, Detection, Kinematics, NodeToFacet, NodeToPlane, Penalty, Surface, Unilateral};
 use carom_mechanics::model::{Contact, Model, Part};
+use carom_solid::Cover;
 
 use super::side;
 
@@ -122,12 +123,15 @@ pub fn overlaps(model: &Model) -> Vec<Problem> {
     let mut problems = Vec::new();
     for (k, contact) in model.contacts.iter().enumerate() {
         let mut deepest: Option<(f64, usize)> = None;
+        // Behind a side is not yet inside its body: a plate has a lower side too.
+        let primary = contact.primary_part.filter(|_| model.dimension > 1).map(|p| &model.parts[p]);
+        let cover = primary.map(|part| Cover::new(&*part.body, part.of(x)));
         for (place, &node) in contact.kinematics.secondary().iter().enumerate() {
+            if cover.as_ref().is_some_and(|cover| !cover.contains(at(node))) {
+                continue;
+            }
             let Some(gap) = contact.kinematics.signed_distance(place, x) else { continue };
-            // Behind a side is not yet inside its body: a plate has a lower side too.
-            let covered = |p: usize| model.parts[p].body.covers(model.parts[p].of(x), at(node));
-            let inside = model.dimension == 1 || contact.primary_part.is_none_or(covered);
-            if gap < -1e-9 * model.scale && inside && deepest.is_none_or(|(g, _)| gap < g) {
+            if gap < -1e-9 * model.scale && deepest.is_none_or(|(g, _)| gap < g) {
                 deepest = Some((gap, node));
             }
         }

@@ -1,0 +1,183 @@
+//! Axis-parallel boxes in up to three dimensions; axes that a point does not have are 0..0.
+
+/// Axis-parallel box. It is never too small: a coordinate that is not finite makes it boundless along its axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounds {
+    // NaN where the box is empty: comparisons with it are false, and `min` and `max` pass over it.
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Bounds {
+    /// The box without a point.
+    pub const EMPTY: Self = Self { low: [f64::NAN; 3], high: [f64::NAN; 3] };
+
+    /// Box of one point of one to three coordinates.
+    #[must_use]
+    pub fn of(point: &[f64]) -> Self {
+        let mut bounds = Self::EMPTY;
+        bounds.add(point);
+        bounds
+    }
+
+    /// Widens the box to hold a point of one to three coordinates.
+    pub fn add(&mut self, point: &[f64]) {
+        for i in 0..3 {
+            let x = point.get(i).copied().unwrap_or(0.0);
+            let (low, high) = if x.is_finite() { (x, x) } else { (f64::NEG_INFINITY, f64::INFINITY) };
+            self.low[i] = self.low[i].min(low);
+            self.high[i] = self.high[i].max(high);
+        }
+    }
+
+    /// The smallest box around both.
+    #[must_use]
+    #[inline]
+    pub fn union(mut self, other: &Self) -> Self {
+        for i in 0..3 {
+            self.low[i] = self.low[i].min(other.low[i]);
+            self.high[i] = self.high[i].max(other.high[i]);
+        }
+        self
+    }
+
+    /// Wider by `by` ≥ 0 on every side; an empty box stays empty.
+    #[must_use]
+    pub fn grown(mut self, by: f64) -> Self {
+        let by = if by.is_nan() { f64::INFINITY } else { by };
+        for i in 0..3 {
+            self.low[i] -= by;
+            self.high[i] += by;
+        }
+        self
+    }
+
+    /// Whether the boxes have a point in common, be it on their boundaries. An empty box meets nothing.
+    #[must_use]
+    #[inline]
+    pub fn meets(&self, other: &Self) -> bool {
+        (0..3).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
+    }
+
+    /// Whether a point of one to three coordinates lies in the box, its boundary included; one that is not finite lies in no box with bounds.
+    #[must_use]
+    pub fn contains(&self, point: &[f64]) -> bool {
+        (0..3).all(|i| {
+            let x = point.get(i).copied().unwrap_or(0.0);
+            self.low[i] <= x && x <= self.high[i]
+        })
+    }
+
+    /// Distance of a point of one to three coordinates to the box, 0 inside; NaN for an empty box.
+    #[must_use]
+    pub fn distance(&self, point: &[f64]) -> f64 {
+        let mut square = 0.0;
+        for i in 0..3 {
+            let x = point.get(i).copied().unwrap_or(0.0);
+            let outside = if x < self.low[i] {
+                self.low[i] - x
+            } else if x <= self.high[i] {
+                0.0
+            } else {
+                x - self.high[i]
+            };
+            square += outside * outside;
+        }
+        square.sqrt()
+    }
+
+    /// Longest edge; 0 for an empty box.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.extents().into_iter().fold(0.0, f64::max)
+    }
+
+    /// Lengths of the edges; NaN for an empty box.
+    #[must_use]
+    pub fn extents(&self) -> [f64; 3] {
+        std::array::from_fn(|i| self.high[i] - self.low[i])
+    }
+
+    /// Centre; 0 along an axis without bounds and for an empty box.
+    #[must_use]
+    pub fn centre(&self) -> [f64; 3] {
+        // Halved first: the sum of two large coordinates may have no number.
+        let middle = |i: usize| 0.5 * self.low[i] + 0.5 * self.high[i];
+        std::array::from_fn(|i| if middle(i).is_finite() { middle(i) } else { 0.0 })
+    }
+
+    /// Lowest coordinates; NaN for an empty box.
+    #[must_use]
+    pub fn low(&self) -> [f64; 3] {
+        self.low
+    }
+
+    /// Highest coordinates; NaN for an empty box.
+    #[must_use]
+    pub fn high(&self) -> [f64; 3] {
+        self.high
+    }
+}
+
+impl<P: AsRef<[f64]>> FromIterator<P> for Bounds {
+    /// The smallest box around points.
+    fn from_iter<I: IntoIterator<Item = P>>(points: I) -> Self {
+        let mut bounds = Self::EMPTY;
+        points.into_iter().for_each(|point| bounds.add(point.as_ref()));
+        bounds
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_holds_its_points_and_has_their_size() {
+        let plane: Bounds = [[1.0, 5.0], [3.0, 4.0], [2.0, -1.0]].iter().collect();
+        assert_eq!((plane.low(), plane.high()), ([1.0, -1.0, 0.0], [3.0, 5.0, 0.0]));
+        assert_eq!((plane.size(), plane.extents(), plane.centre()), (6.0, [2.0, 6.0, 0.0], [2.0, 2.0, 0.0]));
+        assert!(plane.contains(&[1.0, 5.0]) && plane.contains(&[2.0, 0.0]) && !plane.contains(&[0.999, 0.0]));
+        assert!(plane.grown(0.5).contains(&[0.5, 5.5]) && !plane.grown(0.5).contains(&[0.4, 0.0]));
+        let line = Bounds::of(&[2.0]);
+        assert!(line.contains(&[2.0]) && !line.contains(&[2.1]) && line.size() == 0.0);
+    }
+
+    #[test]
+    fn boxes_meet_where_they_touch() {
+        let a: Bounds = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]].iter().collect();
+        let meets = |low: [f64; 3]| {
+            let b: Bounds = [low, low.map(|x| x + 1.0)].iter().collect();
+            assert_eq!(a.meets(&b), b.meets(&a));
+            a.meets(&b)
+        };
+        assert!(meets([1.0, -1.0, 0.5]) && meets([0.2, 0.2, 0.2]));
+        assert!(!meets([1.1, 0.0, 0.0]) && !meets([0.0, -1.1, 0.0]) && !meets([0.0, 0.0, 1.1]));
+        assert_eq!(a.distance(&[0.5, 0.5, 1.0]), 0.0);
+        assert_eq!(a.distance(&[4.0, 0.5, -4.0]), 5.0);
+    }
+
+    #[test]
+    fn nothing_is_in_an_empty_box() {
+        let a = Bounds::of(&[1.0, 2.0]);
+        for b in [Bounds::EMPTY, Bounds::EMPTY.grown(2.0), Bounds::EMPTY.grown(f64::INFINITY)] {
+            assert!(!b.meets(&a) && !a.meets(&b) && !b.meets(&Bounds::of(&[f64::NAN])) && !b.contains(&[0.0]));
+            assert!(!b.meets(&b) && b.size() == 0.0 && b.distance(&[0.0]).is_nan());
+            assert_eq!(a.union(&b).low(), a.low());
+            assert_eq!(b.union(&a).high(), a.high());
+        }
+    }
+
+    #[test]
+    fn a_coordinate_that_is_no_number_may_be_anywhere() {
+        for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let bad = Bounds::of(&[1.0, x]);
+            assert!(bad.meets(&Bounds::of(&[1.0, 7.0])) && bad.meets(&Bounds::of(&[1.0, -1e300])));
+            assert!(!bad.meets(&Bounds::of(&[2.0, 0.0])));
+            assert_eq!((bad.size(), bad.centre()), (f64::INFINITY, [1.0, 0.0, 0.0]));
+            let grown = bad.grown(0.35 * bad.size()).union(&Bounds::of(&[0.0, 0.0]));
+            assert!(grown.meets(&Bounds::of(&[-1e300, 1e300])));
+        }
+        assert!(Bounds::of(&[0.0]).grown(f64::NAN).contains(&[1e300]));
+    }
+}

@@ -1,0 +1,168 @@
+//! Control points whose convex hull holds a curved line or cell: its map X(ξ) = Σ φᵃ Xᵃ in Bernstein polynomials, which are ≥ 0 and sum to 1.
+//!
+//! The control point of k corners, some of them the same, is the polar form of the map at them (Ramshaw, Comput. Aided Geom. Design 6 (1989)):
+//!
+//! ```text
+//! c(v₁ … vₖ) = 1/k! Σ (−1)ᵏ⁻ˢ sᵏ X(mean of S)    over all S ⊆ {1 … k} of s ≥ 1 corners
+//! ```
+//!
+//! Lines: c = x₀, x₁, and of degree 2: 2x₂ − (x₀ + x₁)/2; of degree 3: (−5x₀ + 2x₁ + 18x₂ − 9x₃)/6, (2x₀ − 5x₁ − 9x₂ + 18x₃)/6.
+
+use carom_algebra::Vector;
+
+use super::{Shape, line_shape};
+use crate::bounds::Bounds;
+
+/// Control points of a line or a simplex as weights of its nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hull {
+    nodes: usize,
+    /// A row for each control point.
+    weights: Vec<f64>,
+}
+
+impl Hull {
+    /// Of a simplex of shape `S`; its corners come first among its nodes.
+    #[must_use]
+    pub fn of<const R: usize, const N: usize, S: Shape<R, N>>() -> Self {
+        let weights = control(S::DEGREE, &S::NODES[..=R], N, |xi, values| values.copy_from_slice(&S::values(xi)));
+        Self { nodes: N, weights }
+    }
+
+    /// Of a line of 1 to 4 nodes on −`reach` ≤ ξ ≤ `reach`: beyond 1 it is extrapolated.
+    ///
+    /// # Panics
+    /// For any other number of nodes.
+    ///
+    /// ```
+    /// let nodes = [[-1.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    /// // The tangents at the ends of the parabola meet at (0, 2).
+    /// let bounds = carom_solid::Hull::line(3, 1.0).bounds(|node| &nodes[node]);
+    /// assert_eq!(bounds.high(), [1.0, 2.0, 0.0]);
+    /// ```
+    #[must_use]
+    pub fn line(nodes: usize, reach: f64) -> Self {
+        let ends = [Vector([-reach]), Vector([reach])];
+        let values = |xi: &Vector<1>, out: &mut [f64]| out.copy_from_slice(&line_shape(nodes, xi[0]).values[..nodes]);
+        Self { nodes, weights: control(nodes - 1, &ends, nodes, values) }
+    }
+
+    /// Box around the control points, and so around the whole line or cell, from the positions of its nodes: to round-off, which the caller adds.
+    #[must_use]
+    pub fn bounds<'a, P: AsRef<[f64]> + ?Sized + 'a>(&self, position: impl Fn(usize) -> &'a P) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        for weights in self.weights.chunks_exact(self.nodes) {
+            let (mut point, mut dimension) = ([0.0; 3], 0);
+            for (a, weight) in weights.iter().enumerate() {
+                let x = position(a).as_ref();
+                dimension = x.len();
+                for i in 0..dimension {
+                    point[i] += weight * x[i];
+                }
+            }
+            bounds.add(&point[..dimension]);
+        }
+        bounds
+    }
+}
+
+/// Rows of weights of the control points of `degree` corners each, from the shape functions `values(ξ, out)` of the nodes.
+fn control<const R: usize>(
+    degree: usize,
+    corners: &[Vector<R>],
+    nodes: usize,
+    values: impl Fn(&Vector<R>, &mut [f64]),
+) -> Vec<f64> {
+    if degree == 0 {
+        return vec![1.0];
+    }
+    let mut rows = Vec::new();
+    let mut shape = vec![0.0; nodes];
+    let factorial: usize = (1..=degree).product();
+    for code in 0..corners.len().pow(degree as u32) {
+        let chosen: Vec<_> = (0..degree).map(|k| code / corners.len().pow(k as u32) % corners.len()).collect();
+        if !chosen.is_sorted() {
+            continue;
+        }
+        let mut row = vec![0.0; nodes];
+        for subset in 1_u32..1 << degree {
+            let size = subset.count_ones() as usize;
+            let mut sum = Vector::ZERO;
+            (0..degree).filter(|k| subset >> k & 1 == 1).for_each(|k| sum += corners[chosen[k]]);
+            values(&(sum * (1.0 / size as f64)), &mut shape);
+            let sign = if (degree - size).is_multiple_of(2) { 1.0 } else { -1.0 };
+            let weight = sign * size.pow(degree as u32) as f64 / factorial as f64;
+            row.iter_mut().zip(&shape).for_each(|(row, shape)| *row += weight * shape);
+        }
+        rows.extend(row);
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::shape::{Domain, Line2, Line3, Line4, Tet4, Tri3, Tri6, Tri10};
+
+    #[test]
+    fn lines_have_the_control_points_of_the_books() {
+        let close = |hull: Hull, rows: &[&[f64]]| {
+            assert_eq!(hull.weights.len(), rows.concat().len());
+            assert!(hull.weights.iter().zip(rows.concat()).all(|(a, b)| (a - b).abs() < 1e-14), "{:?}", hull.weights);
+        };
+        close(Hull::line(1, 1.2), &[&[1.0]]);
+        close(Hull::line(2, 1.0), &[&[1.0, 0.0], &[0.0, 1.0]]);
+        close(Hull::line(2, 1.2), &[&[1.1, -0.1], &[-0.1, 1.1]]);
+        close(Hull::line(3, 1.0), &[&[1.0, 0.0, 0.0], &[-0.5, -0.5, 2.0], &[0.0, 1.0, 0.0]]);
+        let sixth = |row: [f64; 4]| row.map(|x| x / 6.0);
+        let (near, far) = (sixth([-5.0, 2.0, 18.0, -9.0]), sixth([2.0, -5.0, -9.0, 18.0]));
+        close(Hull::line(4, 1.0), &[&[1.0, 0.0, 0.0, 0.0], &near, &far, &[0.0, 1.0, 0.0, 0.0]]);
+    }
+
+    fn holds(bounds: &Bounds, values: &[f64], nodes: &[[f64; 3]]) {
+        let at = |i: usize| values.iter().zip(nodes).map(|(v, x)| v * x[i]).sum::<f64>();
+        assert!(bounds.grown(1e-13).contains(&[at(0), at(1), at(2)]));
+    }
+
+    /// The box holds the cell, and is no larger than that of the nodes where the cell is straight.
+    fn check<const R: usize, const N: usize, S: Shape<R, N>>(nodes: &[[f64; 3]]) {
+        let hull = Hull::of::<R, N, S>();
+        let bounds = hull.bounds(|a| &nodes[a]);
+        let steps = 10_usize;
+        for code in 0..(steps + 1).pow(R as u32) {
+            let unit = |i: usize| (code / (steps + 1).pow(i as u32) % (steps + 1)) as f64 / steps as f64;
+            let xi = Vector(std::array::from_fn(|i| if R == 1 { 2.0 * unit(i) - 1.0 } else { unit(i) }));
+            if S::Domain::excess(&xi) <= 0.0 {
+                holds(&bounds, &S::values(&xi), nodes);
+            }
+        }
+        for weights in hull.weights.chunks_exact(N) {
+            assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-13);
+        }
+        let places: Vec<_> = S::NODES.iter().map(|xi| xi.0.to_vec()).collect();
+        let (tight, box_of_nodes) = (hull.bounds(|a| &places[a]), places.iter().collect::<Bounds>());
+        assert!(box_of_nodes.grown(1e-14).contains(&tight.low()[..R]));
+        assert!(box_of_nodes.grown(1e-14).contains(&tight.high()[..R]));
+    }
+
+    proptest! {
+        #[test]
+        fn a_hull_holds_what_is_curved(nodes in prop::collection::vec([-1.0..1.0, -1.0..1.0, -1.0..1.0], 10), reach in 1.0..1.3) {
+            check::<1, 2, Line2>(&nodes);
+            check::<1, 3, Line3>(&nodes);
+            check::<1, 4, Line4>(&nodes);
+            check::<2, 3, Tri3>(&nodes);
+            check::<2, 6, Tri6>(&nodes);
+            check::<2, 10, Tri10>(&nodes);
+            check::<3, 4, Tet4>(&nodes);
+            for count in 1..=4 {
+                let bounds = Hull::line(count, reach).bounds(|a| &nodes[a]);
+                for k in -100..=100 {
+                    holds(&bounds, &line_shape(count, reach * f64::from(k) / 100.0).values[..count], &nodes);
+                }
+            }
+        }
+    }
+}
