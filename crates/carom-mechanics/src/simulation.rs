@@ -189,7 +189,8 @@ impl Simulation {
     /// Why it cannot; `state` is then still that of the last grid time. The report tells what was tried.
     pub fn advance(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
         let start = self.state.step as f64 * self.dt;
-        let mut state = self.state.clone();
+        // The state after the substeps so far; none before the first.
+        let mut reached: Option<State> = None;
         // Progress through the grid step in units of Δt/2^level.
         let rejected = report.rejected;
         let (mut level, mut done) = (self.state.halved.level(), 0_u64);
@@ -197,10 +198,12 @@ impl Simulation {
             let dt = self.dt / f64::from(1_u32 << level);
             let time = start + done as f64 * dt;
             let to = start + (done + 1) as f64 * dt;
-            match self.stepper.step(&self.model, &state, dt, to, &mut self.work) {
+            match self.stepper.step(&self.model, reached.as_ref().unwrap_or(&self.state), dt, to, &mut self.work) {
                 Ok(accepted) => {
                     let (next, step) = accepted.into_parts();
-                    state = next;
+                    if let Some(before) = reached.replace(next) {
+                        self.work.put(before);
+                    }
                     done += 1;
                     let now = to;
                     report.newton += step.newton;
@@ -235,11 +238,12 @@ impl Simulation {
                 }
             }
         }
+        let Some(mut state) = reached else { return Ok(()) };
         state.halved = self.state.halved.after(report.rejected > rejected);
         state.step += 1;
         state.time = state.step as f64 * self.dt;
         self.watch(&state)?;
-        self.state = state;
+        self.work.put(std::mem::replace(&mut self.state, state));
         Ok(())
     }
 

@@ -139,6 +139,24 @@ pub struct State {
 }
 
 impl State {
+    /// Becomes a copy of another state in the memory it has.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        let Self { step, time, y, v, a, f_internal, f_external, f_contact, contact_forces, pairs, .. } = self;
+        (*step, *time) = (other.step, other.time);
+        let from = [&other.y, &other.v, &other.a, &other.f_internal, &other.f_external, &other.f_contact];
+        for (to, from) in [y, v, a, f_internal, f_external, f_contact].into_iter().zip(from) {
+            to.clone_from(from);
+        }
+        contact_forces.clone_from(&other.contact_forces);
+        pairs.clone_from(&other.pairs);
+        self.ledger = other.ledger.clone();
+        self.previous.clone_from(&other.previous);
+        self.ahead.velocity.clone_from(&other.ahead.velocity);
+        self.ahead.dt = other.ahead.dt;
+        self.kept = other.kept.clone();
+        self.halved = other.halved;
+    }
+
     /// Takes the pairs that a solve ended with.
     pub(crate) fn take_pairs(&mut self, pairings: &[Pairing]) {
         self.pairs.iter_mut().zip(pairings).for_each(|(pairs, pairing)| pairs.clone_from(&pairing.pairs));

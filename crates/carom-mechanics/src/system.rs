@@ -154,16 +154,14 @@ impl System {
         let mut strain = 0.0;
         for part in &model.parts {
             let stiffness = &mut self.stiffness;
-            let mut dofs = Vec::new();
             let add = |cell: usize, f: &[f64], k: &[f64]| {
-                dofs.clear();
-                dofs.extend(part.cell_dofs(cell));
+                let dofs = part.cell_dofs(cell);
                 for (dof, f) in dofs.iter().zip(f) {
-                    force[*dof] += f;
+                    force[*dof as usize] += f;
                 }
                 if let Some((moved, product)) = &mut pull {
                     for (dof, row) in dofs.iter().zip(k.chunks_exact(f.len())) {
-                        product[*dof] += row.iter().zip(&dofs).map(|(k, other)| k * moved[*other]).sum::<f64>();
+                        product[*dof as usize] += row.iter().zip(dofs).map(|(k, other)| k * moved[*other as usize]).sum::<f64>();
                     }
                 }
                 for (row, k) in k.chunks_exact(f.len()).enumerate() {
@@ -441,7 +439,7 @@ fn for_each_cell_pair(model: &Model, mut visit: impl FnMut(Option<(usize, usize)
     for part in &model.parts {
         for cell in 0..part.body.mesh().cell_count() {
             unknowns.clear();
-            unknowns.extend(part.cell_dofs(cell).map(|dof| model.unknown(dof)));
+            unknowns.extend(part.cell_dofs(cell).iter().map(|dof| model.unknown(*dof as usize)));
             for (row, a) in unknowns.iter().enumerate() {
                 for b in &unknowns[..=row] {
                     visit(a.zip(*b).map(|(a, b)| (a.max(b), a.min(b))));

@@ -3,6 +3,8 @@
 use crate::equations::Spare;
 use crate::mixing::Mixing;
 use crate::model::Model;
+use crate::state::State;
+use crate::stepper::Scratch;
 use crate::system::System;
 
 /// Buffers that are rebuilt at will: no result travels through them.
@@ -11,6 +13,10 @@ pub struct Workspace {
     pub(crate) system: System,
     /// Memory of evaluations.
     pub(crate) spare: Spare,
+    /// Memory of states.
+    states: Vec<State>,
+    /// Buffers of the explicit stepper.
+    pub(crate) explicit: Scratch,
     /// Wall time by phase.
     pub timings: Timings,
     /// ∂f_int/∂y times what moved dofs still have to go.
@@ -32,6 +38,8 @@ impl Workspace {
         Self {
             system: System::new(model, threads),
             spare: Spare::default(),
+            states: Vec::new(),
+            explicit: Scratch::default(),
             timings: Timings::default(),
             pull: zeros.clone(),
             right: zeros.clone(),
@@ -39,6 +47,18 @@ impl Workspace {
             multipliers: Vec::new(),
             mixing: Mixing::default(),
         }
+    }
+
+    /// A copy of a state, in memory that was used before.
+    pub(crate) fn copy(&mut self, state: &State) -> State {
+        let mut copy = self.states.pop().unwrap_or_default();
+        copy.copy_from(state);
+        copy
+    }
+
+    /// Gives the memory of a state back.
+    pub(crate) fn put(&mut self, state: State) {
+        self.states.push(state);
     }
 }
 

@@ -167,8 +167,8 @@ pub(super) fn add_body_force(
                 local.iter_mut().zip(&b).for_each(|(f, b)| *f += phi * volume * b);
             }
         });
-        for (dof, f) in part.cell_dofs(cell).zip(&local) {
-            force[dof] += f;
+        for (dof, f) in part.cell_dofs(cell).iter().zip(&local) {
+            force[*dof as usize] += f;
         }
     }
     refused

@@ -30,13 +30,33 @@ pub struct Part {
     pub first_node: usize,
     /// Forces, masses and stresses at positions.
     pub body: Box<dyn Body>,
-    /// Whether its density is zero: its balance holds at s + 1 without inertia.
-    pub massless: bool,
     /// Total mass.
     pub total_mass: f64,
+    /// Global dofs of its cells, cell after cell.
+    dofs: Vec<u32>,
 }
 
 impl Part {
+    /// A body whose nodes are numbered from `first_node` on.
+    pub fn new(name: String, first_node: usize, body: Box<dyn Body>) -> Self {
+        let mesh = body.mesh();
+        let (d, mut volumes) = (mesh.dimension(), vec![0.0; mesh.element.nodes()]);
+        let mut volume = 0.0;
+        for cell in 0..mesh.cell_count() {
+            body.cell_volumes(cell, &mut volumes);
+            volume += volumes.iter().sum::<f64>();
+        }
+        let total_mass = volume * body.density();
+        let dofs = mesh.cells.iter().flat_map(|node| (0..d).map(move |i| ((first_node + node) * d + i) as u32));
+        let dofs = dofs.collect();
+        Self { name, first_node, total_mass, dofs, body }
+    }
+
+    /// Whether its density is zero: its balance holds at s + 1 without inertia.
+    pub fn is_massless(&self) -> bool {
+        self.body.density() == 0.0
+    }
+
     /// Global numbers of its nodes.
     pub fn nodes(&self) -> std::ops::Range<usize> {
         self.first_node..self.first_node + self.body.mesh().nodes.len()
@@ -49,10 +69,9 @@ impl Part {
     }
 
     /// Global dofs of a cell, node-major.
-    pub fn cell_dofs(&self, cell: usize) -> impl Iterator<Item = usize> + '_ {
-        let d = self.body.mesh().dimension();
-        let nodes = self.body.mesh().cell(cell).iter();
-        nodes.flat_map(move |node| (0..d).map(move |i| (self.first_node + node) * d + i))
+    pub fn cell_dofs(&self, cell: usize) -> &[u32] {
+        let n = self.body.mesh().element.dofs();
+        &self.dofs[cell * n..(cell + 1) * n]
     }
 }
 
@@ -173,8 +192,8 @@ impl Model {
             let mut local = vec![0.0; mesh.element.dofs()];
             for cell in 0..mesh.cell_count() {
                 strain += of_cell(part, cell, &mut local).map_err(|inverted| (part.name.clone(), inverted))?;
-                for (dof, f) in part.cell_dofs(cell).zip(&local) {
-                    force[dof] += f;
+                for (dof, f) in part.cell_dofs(cell).iter().zip(&local) {
+                    force[*dof as usize] += f;
                 }
             }
         }

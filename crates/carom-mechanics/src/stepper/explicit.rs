@@ -21,11 +21,11 @@
 use carom_algebra::complementarity;
 use carom_contact::{Pairing, Rows};
 
-use super::watch::{active, approach, carried, depth, gap_at, measure_into};
+use super::watch::{active, approach, carry_into, depth, gap_at, measure_into};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::constraints::independent_rows;
 use crate::contact_update::{GAP_TOLERANCE, search};
-use crate::ledger::{book_contact_forces, book_kinetic};
+use crate::ledger::book_contact_forces;
 use crate::model::{LoadsAt, Model};
 use crate::rejected::Rejected;
 use crate::stability::lumped;
@@ -37,68 +37,99 @@ const ROUNDS: u32 = 60;
 
 /// The explicit stepper.
 pub struct Explicit {
+    /// Mass per dof.
+    mass: Vec<f64>,
     /// 1/m per dof; zero where held.
     inverse_mass: Vec<f64>,
+}
+
+/// Buffers of a step.
+#[derive(Debug, Default)]
+pub(crate) struct Scratch {
+    /// v_{n+½} without contact.
+    free: Vec<f64>,
+    /// Positions that are looked at, and forces of contact.
+    at: Vec<f64>,
+    pairings: Vec<Pairing>,
+    rows: Vec<Rows>,
+    impulses: Vec<f64>,
+    loads: LoadsAt,
 }
 
 impl Explicit {
     /// A stepper for a model with lumped masses.
     pub fn new(model: &Model) -> Self {
-        let inverse = |(mass, held): (f64, &bool)| if *held { 0.0 } else { mass.recip() };
-        Self { inverse_mass: lumped(model).into_iter().zip(&model.fixed).map(inverse).collect() }
+        let mass = lumped(model);
+        let inverse = |(mass, held): (&f64, &bool)| if *held { 0.0 } else { mass.recip() };
+        Self { inverse_mass: mass.iter().zip(&model.fixed).map(inverse).collect(), mass }
+    }
+
+    /// Kinetic energy ½ Σ m v², and the largest energy so far.
+    fn book_kinetic(&self, state: &mut State) {
+        state.ledger.kinetic = 0.5 * self.mass.iter().zip(&state.v).map(|(m, v)| m * v * v).sum::<f64>();
+        state.ledger.largest = state.ledger.largest.max(state.ledger.kinetic + state.ledger.strain);
     }
 }
 
 impl Stepper for Explicit {
     fn step(&self, model: &Model, state: &State, dt: f64, to: f64, work: &mut Workspace) -> Result<Accepted, Rejected> {
         let mut report = StepReport::default();
-        let mut begun;
-        let start = if state.ahead.dt == dt {
-            state
-        } else {
-            begun = state.clone();
-            self.begin(model, &mut begun, dt, work, &mut report)?;
-            &begun
-        };
-        let mut next = start.clone();
+        let mut begun = None;
+        if state.ahead.dt != dt {
+            let mut state = work.copy(state);
+            self.begin(model, &mut state, dt, work, &mut report)?;
+            begun = Some(state);
+        }
+        let start = begun.as_ref().unwrap_or(state);
+        let mut next = work.copy(start);
         for (y, v) in next.y.iter_mut().zip(&start.ahead.velocity) {
             *y += dt * v;
         }
         next.ledger.strain = timed(&mut work.timings.assembly, || model.internal_force(&next.y, &mut next.f_internal))
             .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
-        model.loads_into(to, &next.y, &mut LoadsAt::default(), &mut next.f_external)?;
+        model.loads_into(to, &next.y, &mut work.explicit.loads, &mut next.f_external)?;
         next.time = to;
         self.look_ahead(model, &mut next, &start.ahead.velocity, dt, work, &mut report)?;
-
-        // v_n is a mean of half steps: of M v·v/2 a load has made Δt²/8 f·M⁻¹f before its work is booked.
-        let mut ahead = 0.0;
-        for i in 0..next.y.len() {
-            let (before, now) = (start.f_external[i], next.f_external[i]);
-            ahead += 0.125 * dt * dt * self.inverse_mass[i] * (now * now - before * before);
-            let force = 0.5 * (start.f_contact[i] + next.f_contact[i]);
-            next.ledger.contact_work -= dt * start.ahead.velocity[i] * force;
-            let load = 0.5 * (start.f_external[i] + next.f_external[i]);
-            next.ledger.external_work += dt * start.ahead.velocity[i] * load;
-        }
-        for (before, now) in start.contact_forces.iter().zip(&next.contact_forces) {
-            for i in 0..3 {
-                next.ledger.impulse[i] += 0.5 * dt * (before[i] + now[i]);
-            }
-        }
-        next.ledger.open += ahead;
-        next.ledger.potential = model.potential(&next.y);
-        book_kinetic(model, &mut next);
+        self.book(model, start, &mut next, dt);
 
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
         // Positions were made admissible when they were looked ahead at; a node handed over since may be behind its new facet by a share of what it slid.
         let bound = depth(model, start) + approach(model, &start.ahead.velocity, dt);
         let deepest = depth(model, &next);
+        if let Some(state) = begun {
+            work.put(state);
+        }
         Accepted::within(next, report, deepest, bound)
     }
 }
 
 impl Explicit {
+    /// Works and the impulse of contact over a step, by the trapezoidal rule.
+    fn book(&self, model: &Model, start: &State, next: &mut State, dt: f64) {
+        let ledger = &mut next.ledger;
+        if !model.loads.is_empty() {
+            for (i, (before, now)) in start.f_external.iter().zip(&next.f_external).enumerate() {
+                // v_n is a mean of half steps: of M v·v/2 a load has made Δt²/8 f·M⁻¹f before its work is booked.
+                ledger.open += 0.125 * dt * dt * self.inverse_mass[i] * (now * now - before * before);
+                ledger.external_work += dt * start.ahead.velocity[i] * 0.5 * (before + now);
+            }
+        }
+        let touching = |state: &State| state.pairs.iter().flatten().any(|pair| pair.active);
+        if touching(start) || touching(next) {
+            for (v, (before, now)) in start.ahead.velocity.iter().zip(start.f_contact.iter().zip(&next.f_contact)) {
+                next.ledger.contact_work -= dt * v * 0.5 * (before + now);
+            }
+        }
+        for (before, now) in start.contact_forces.iter().zip(&next.contact_forces) {
+            for i in 0..3 {
+                next.ledger.impulse[i] += 0.5 * dt * (before[i] + now[i]);
+            }
+        }
+        next.ledger.potential = model.potential(&next.y);
+        self.book_kinetic(next);
+    }
+
     /// Makes `state` look ahead by a step of this size, from its positions and velocities alone.
     fn begin(
         &self,
@@ -117,7 +148,7 @@ impl Explicit {
             state.v = velocity;
         }
         // Half of the contact force's step lies before t_n: a jump there.
-        book_kinetic(model, state);
+        self.book_kinetic(state);
         report.projection = state.ledger.kinetic - kinetic;
         state.ledger.contact_work += report.projection;
         for force in &state.contact_forces {
@@ -142,14 +173,13 @@ impl Explicit {
             state.a[i] = self.inverse_mass[i] * (model.gravity[i] + state.f_external[i] - state.f_internal[i]);
         }
         let mut ahead = std::mem::take(&mut state.ahead.velocity);
-        let mut clock = 0.0;
-        let (pairings, rows) = timed(&mut clock, || self.contact(model, state, before, dt, &mut ahead, report))?;
-        work.timings.contact += clock;
+        let Workspace { explicit: scratch, timings, .. } = work;
+        timed(&mut timings.contact, || self.contact(model, state, before, dt, &mut ahead, scratch, report))?;
 
-        state.take_pairs(&pairings);
+        state.take_pairs(&scratch.pairings);
         state.f_contact.fill(0.0);
-        for (k, p) in active(&pairings) {
-            rows[k].row(p).add_to(pairings[k].pairs[p].lambda, &mut state.f_contact);
+        for (k, p) in active(&scratch.pairings) {
+            scratch.rows[k].row(p).add_to(scratch.pairings[k].pairs[p].lambda, &mut state.f_contact);
         }
         for i in 0..state.a.len() {
             state.a[i] -= self.inverse_mass[i] * state.f_contact[i];
@@ -160,7 +190,8 @@ impl Explicit {
         Ok(())
     }
 
-    /// Pairs with the forces that make y_n + Δt v_{n+½} admissible, and that velocity, with the rows whose gradients are those at y_n.
+    /// Pairs with the forces that make y_n + Δt v_{n+½} admissible, and that velocity; the gradients of their rows are those at y_n.
+    #[allow(clippy::too_many_arguments)]
     fn contact(
         &self,
         model: &Model,
@@ -168,41 +199,36 @@ impl Explicit {
         before: &[f64],
         dt: f64,
         ahead: &mut Vec<f64>,
+        scratch: &mut Scratch,
         report: &mut StepReport,
-    ) -> Result<(Vec<Pairing>, Vec<Rows>), Rejected> {
+    ) -> Result<(), Rejected> {
         let tolerance = GAP_TOLERANCE * model.scale;
-        let free: Vec<f64> = before.iter().zip(&state.a).map(|(v, a)| v + dt * a).collect();
-        let mut pairings = carried(model, state);
-        let (mut rows, mut row) = (Vec::new(), Rows::new(model.dimension));
-        let mut at = vec![0.0; free.len()];
-        let mut impulses = Vec::new();
-        ahead.clone_from(&free);
+        let Scratch { free, at, pairings, rows, impulses, .. } = scratch;
+        free.clear();
+        free.extend(before.iter().zip(&state.a).map(|(v, a)| v + dt * a));
+        carry_into(model, state, pairings);
+        let mut row = Rows::new(model.dimension);
+        at.resize(free.len(), 0.0);
+        ahead.clone_from(free);
         for round in 0..=ROUNDS {
-            let place = |e: f64, at: &mut [f64], ahead: &[f64]| {
-                for i in 0..at.len() {
-                    at[i] = state.y[i] + dt * (ahead[i] - e * before[i]) / (1.0 + e);
-                }
-            };
-            place(0.0, &mut at, ahead);
-            let changed = search(model, &state.y, &at, &mut pairings, &mut report.events);
-            measure_into(model, &state.y, &mut pairings, &mut rows)?;
+            place(state, before, dt, 0.0, ahead, at);
+            let changed = search(model, &state.y, at, pairings, &mut report.events);
+            measure_into(model, &state.y, pairings, rows)?;
             // Gaps where the law looks, in the place of those at y_n; a pair that is wrong joins the working set and stays.
             let mut worst = 0.0_f64;
             for (k, contact) in model.contacts.iter().enumerate() {
-                if contact.restitution != 0.0 {
-                    place(contact.restitution, &mut at, ahead);
+                if pairings[k].pairs.is_empty() {
+                    continue;
                 }
+                place(state, before, dt, contact.restitution, ahead, at);
                 for (p, pair) in pairings[k].pairs.iter_mut().enumerate() {
                     let gap = rows[k].gap_mut(p);
                     if gap.is_finite() {
-                        *gap = gap_at(contact, pair, &at, &mut row);
+                        *gap = gap_at(contact, pair, at, &mut row);
                     }
                     let wrong = if pair.lambda < 0.0 { gap.abs() } else { -*gap };
                     worst = worst.max(wrong);
                     pair.active |= wrong > tolerance;
-                }
-                if contact.restitution != 0.0 {
-                    place(0.0, &mut at, ahead);
                 }
             }
             if worst <= tolerance && !changed {
@@ -215,20 +241,20 @@ impl Explicit {
                 continue;
             }
             report.newton += 1;
-            let places = independent_rows(model, active(&pairings), &rows);
-            let (matrix, right) = self.problem(model, &pairings, &rows, &places, dt);
-            complementarity(&matrix, &right, &mut impulses)?;
+            let places = independent_rows(model, active(pairings), rows);
+            let (matrix, right) = self.problem(model, pairings, rows, &places, dt);
+            complementarity(&matrix, &right, impulses)?;
             pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs).for_each(|pair| pair.lambda = 0.0);
             at.fill(0.0);
-            for (&(k, p), force) in places.iter().zip(&impulses) {
+            for (&(k, p), force) in places.iter().zip(impulses.iter()) {
                 pairings[k].pairs[p].lambda = -force;
-                rows[k].row(p).add_to(*force, &mut at);
+                rows[k].row(p).add_to(*force, at);
             }
             for i in 0..free.len() {
                 ahead[i] = free[i] + dt * self.inverse_mass[i] * at[i];
             }
         }
-        for (contact, pairing) in model.contacts.iter().zip(&mut pairings) {
+        for (contact, pairing) in model.contacts.iter().zip(pairings) {
             for pair in &mut pairing.pairs {
                 pair.active = pair.lambda < 0.0;
                 if pair.active {
@@ -237,7 +263,7 @@ impl Explicit {
                 }
             }
         }
-        Ok((pairings, rows))
+        Ok(())
     }
 
     /// G M⁻¹Gᵀ over the rows, and what it has to make of the linearised gaps: (1 + e) g/Δt² − G M⁻¹Gᵀ P.
@@ -269,5 +295,12 @@ impl Explicit {
         });
         let right = right.collect();
         (matrix, right)
+    }
+}
+
+/// ȳ = (y_{n+1} + e y_{n−1})/(1 + e), where a law with restitution e looks.
+fn place(state: &State, before: &[f64], dt: f64, e: f64, ahead: &[f64], at: &mut [f64]) {
+    for i in 0..at.len() {
+        at[i] = state.y[i] + dt * (ahead[i] - e * before[i]) / (1.0 + e);
     }
 }

@@ -38,7 +38,7 @@ struct Point {
 impl Stepper for Implicit {
     fn step(&self, model: &Model, state: &State, dt: f64, to: f64, work: &mut Workspace) -> Result<Accepted, Rejected> {
         let previous = state.previous.as_ref().filter(|previous| previous.dt == dt);
-        let mut next = state.clone();
+        let mut next = work.copy(state);
         let mut report = StepReport::default();
         let mut finished: Vec<Point> = Vec::new();
         let mut means = Means::new(model.dofs());

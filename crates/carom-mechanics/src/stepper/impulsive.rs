@@ -18,7 +18,7 @@
 use carom_algebra::complementarity;
 use carom_time::{Impulse, ImpulseShares, Memory, Stage};
 
-use super::watch::{active, approach, carried, depth, measure_into};
+use super::watch::{active, approach, carry_into, depth, measure_into};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::balance::residual_into;
 use crate::constraints::{Constraints, independent_rows};
@@ -73,7 +73,8 @@ impl Stepper for Impulsive {
         let equations = Equations::new(model, state, stage, to)?;
 
         let mut report = StepReport::default();
-        let mut pairings = carried(model, state);
+        let mut pairings = Vec::new();
+        carry_into(model, state, &mut pairings);
         let mut increment: Vec<f64> = (0..state.v.len()).map(|i| dt * (state.v[i] + 0.5 * dt * state.a[i])).collect();
         let mut impulses = Impulses::none(model.dimension);
         let mut solved = None;
@@ -98,7 +99,7 @@ impl Stepper for Impulsive {
             _ => self.solve(&equations, shares, increment, &mut impulses, &mut report.newton, work)?,
         };
 
-        let mut next = state.clone();
+        let mut next = work.copy(state);
         next.time = to;
         next.y.clone_from(&solved.y);
         equations.stage.velocity.value_into(&solved.at.increment, &mut next.v);

@@ -6,6 +6,7 @@ mod impulsive;
 mod watch;
 
 pub use explicit::Explicit;
+pub(crate) use explicit::Scratch;
 pub use implicit::Implicit;
 pub use impulsive::Impulsive;
 

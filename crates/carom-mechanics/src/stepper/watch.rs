@@ -8,18 +8,18 @@ use crate::rejected::Rejected;
 use crate::state::State;
 
 /// The pairs a step begins with: those that touched or are behind, released and without multiplier.
-pub(super) fn carried(model: &Model, state: &State) -> Vec<Pairing> {
+pub(super) fn carry_into(model: &Model, state: &State, pairings: &mut Vec<Pairing>) {
     let mut row = Rows::new(model.dimension);
-    let carry = |(contact, pairs): (&Contact, &Vec<Pair>)| {
-        let mut pairs = pairs.clone();
-        pairs.retain_mut(|pair| {
+    pairings.resize_with(model.contacts.len(), Pairing::default);
+    for ((contact, pairs), pairing) in model.contacts.iter().zip(&state.pairs).zip(pairings) {
+        pairing.pairs.clone_from(pairs);
+        pairing.pairs.retain_mut(|pair| {
             let kept = pair.active || gap_at(contact, pair, &state.y, &mut row) < 0.0;
             (pair.active, pair.lambda) = (false, 0.0);
             kept
         });
-        Pairing::new(pairs)
-    };
-    model.contacts.iter().zip(&state.pairs).map(carry).collect()
+        *pairing = Pairing::new(std::mem::take(&mut pairing.pairs));
+    }
 }
 
 /// Gap of a pair at positions `y`, its contact point moved there; infinite where there is no unique closest point, which is far away. `row` is overwritten.

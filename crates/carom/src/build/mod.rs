@@ -172,18 +172,8 @@ fn parts(case: &Case) -> Result<Vec<Part>, Vec<Problem>> {
         let made = spec.make_mesh(case.dimension).and_then(|mesh| body(mesh).map_err(|e: SolidError| e.to_string()));
         match made {
             Ok(body) => {
-                let mesh = body.mesh();
-                let n = mesh.element.nodes();
-                let mut volumes = vec![0.0; n];
-                let mut volume = 0.0;
-                for cell in 0..mesh.cell_count() {
-                    body.cell_volumes(cell, &mut volumes);
-                    volume += volumes.iter().sum::<f64>();
-                }
-                let nodes = mesh.nodes.len();
-                let massless = material.density == 0.0;
-                let total_mass = volume * material.density;
-                parts.push(Part { name: spec.name.clone(), first_node, body, massless, total_mass });
+                let nodes = body.mesh().nodes.len();
+                parts.push(Part::new(spec.name.clone(), first_node, body));
                 first_node += nodes;
             }
             Err(why) => problems.push(Problem::new(

@@ -28,7 +28,7 @@ pub(super) fn massless(case: &Case, parts: &[Part], massless: &[bool]) -> Vec<Pr
     let light = |part: &Part| part.nodes().any(|node| massless[node * case.dimension]);
     let Some(part) = parts.iter().find(|p| light(p)) else { return problems };
     let what = |rule: &str| {
-        let which = if part.massless { "has no mass" } else { "has nodes without mass" };
+        let which = if part.is_massless() { "has no mass" } else { "has nodes without mass" };
         format!("body \"{}\" {which}, and {rule} needs it", part.name)
     };
     let why = "its balance holds at the end of the step, not at the averaged state";

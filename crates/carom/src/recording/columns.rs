@@ -134,7 +134,7 @@ pub(super) fn center_weights(model: &Model) -> Vec<f64> {
         for node in part.nodes() {
             weights[node] = model.mass.row(node).map(|(_, m)| m).sum();
         }
-        if part.massless {
+        if part.is_massless() {
             for cell in 0..mesh.cell_count() {
                 part.body.cell_volumes(cell, &mut volumes);
                 for (&node, volume) in mesh.cell(cell).iter().zip(&volumes) {
