@@ -13,12 +13,11 @@ use carom_record::{Block, Cell, FieldSet, Run};
 use serde_json::Value;
 
 use crate::axis::Axis;
-use crate::bands::Point;
 use crate::bodies::{Instant, bezier, edges, places};
 use crate::chart::{open, write_text};
 use crate::labels::{number, with_unit};
 use crate::palette::LINES;
-use crate::pen::{Pen, open_grid};
+use crate::pen::{Pen, Point, open_grid};
 use crate::symbols::{arrow, direction, guides, plus, rollers, wall};
 
 /// Widest picture, and the width of its key.

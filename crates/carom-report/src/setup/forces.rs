@@ -5,8 +5,8 @@ use carom_formula::Formula;
 use serde_json::Value;
 
 use super::{Setup, list, text, vector};
-use crate::bands::Point;
 use crate::labels::number;
+use crate::pen::Point;
 use crate::symbols::{along, arrow, direction, plus};
 
 const COLOR: &str = "#7a2f8f";

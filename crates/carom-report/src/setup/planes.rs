@@ -3,8 +3,7 @@
 use serde_json::Value;
 
 use super::{BAR, PRIMARY, Setup, list, vector};
-use crate::bands::Point;
-use crate::pen::Pen;
+use crate::pen::{Pen, Point};
 use crate::symbols::{direction, plus, wall};
 
 /// A rigid plane of dimension 2 as far as it is drawn.
