@@ -4,7 +4,8 @@
 use carom_formula::Formula;
 use serde_json::Value;
 
-use super::{Setup, list, text, vector};
+use super::drawing::Setup;
+use super::values::{list, text, vector};
 use crate::labels::number;
 use crate::pen::Point;
 use crate::symbols::{along, arrow, direction, plus};

@@ -2,7 +2,8 @@
 
 use serde_json::Value;
 
-use super::{BAR, PRIMARY, Setup, list, vector};
+use super::drawing::{BAR, PRIMARY, Setup};
+use super::values::{list, vector};
 use crate::pen::{Pen, Point};
 use crate::symbols::{direction, plus, wall};
 
