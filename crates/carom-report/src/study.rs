@@ -7,7 +7,8 @@ use carom_record::study::Study;
 use crate::collected::{Column, Origin, Origins, collect, named};
 use crate::labels::with_unit;
 use crate::plot::{Curve, Pane, Plot};
-use crate::{ReportError, ReportSummary, laboratory, publish, setup, study_page};
+use crate::publish::{ReportError, ReportSummary, publish};
+use crate::{laboratory, setup, study_page};
 
 /// Curves of one figure; more arms make more figures.
 const MOST: usize = 8;
