@@ -18,33 +18,17 @@
 //!
 //! A value may be infinite or not a number (`1/t` at 0): whoever evaluates knows the place and the time, and refuses it with them.
 
+mod error;
 mod function;
 mod jet;
 mod parse;
-
-use std::ops::Range;
+mod tree;
 
 use serde::{Serialize, Serializer};
 
-use function::{Function, power};
-use jet::{Jet, Number};
-
-/// What is wrong with a formula, and where.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FormulaError {
-    /// In words, with what to try.
-    pub message: String,
-    /// Bytes of the text it is about; empty where something is missing.
-    pub at: Range<usize>,
-}
-
-impl std::fmt::Display for FormulaError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} (at character {})", self.message, self.at.start + 1)
-    }
-}
-
-impl std::error::Error for FormulaError {}
+pub use error::FormulaError;
+use jet::Jet;
+use tree::Tree;
 
 /// A formula that was read. Two are equal if their texts and variables are.
 #[derive(Clone, Debug)]
@@ -52,35 +36,6 @@ pub struct Formula {
     text: String,
     variables: Vec<String>,
     tree: Tree,
-}
-
-/// A formula's operations.
-#[derive(Clone, Debug, PartialEq)]
-enum Tree {
-    Number(f64),
-    Variable(usize),
-    Negative(Box<Tree>),
-    Binary(Binary, Box<[Tree; 2]>),
-    One(Function, Box<Tree>),
-    Two(Function, Box<[Tree; 2]>),
-    Choice(Box<[Tree; 3]>),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Binary {
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Power,
-    Less,
-    LessOrEqual,
-    Greater,
-    GreaterOrEqual,
-    Equal,
-    NotEqual,
-    And,
-    Or,
 }
 
 impl Formula {
@@ -148,59 +103,6 @@ impl Formula {
         };
         let second = (0..n * n).map(|k| mixed(k / n, k % n)).collect();
         (own.first().map_or_else(|| self.value(values), |o| o[0]), own.iter().map(|o| o[1]).collect(), second)
-    }
-}
-
-impl Tree {
-    fn evaluate<N: Number>(&self, variable: &impl Fn(usize) -> N) -> N {
-        match self {
-            Self::Number(value) => N::constant(*value),
-            Self::Variable(k) => variable(*k),
-            Self::Negative(a) => -a.evaluate(variable),
-            Self::Binary(operator, operands) => operator.of(operands.each_ref().map(|a| a.evaluate(variable))),
-            Self::One(function, a) => function.of(a.evaluate(variable)),
-            Self::Two(function, operands) => {
-                let [a, b] = operands.each_ref().map(|a| a.evaluate(variable));
-                function.of_two(a, b)
-            }
-            Self::Choice(operands) => {
-                let [condition, then, otherwise] = &**operands;
-                if condition.evaluate(variable).value() == 0.0 { otherwise } else { then }.evaluate(variable)
-            }
-        }
-    }
-
-    fn mentions(&self, variable: usize) -> bool {
-        let any = |operands: &[Self]| operands.iter().any(|a| a.mentions(variable));
-        match self {
-            Self::Number(_) => false,
-            Self::Variable(k) => *k == variable,
-            Self::Negative(a) | Self::One(_, a) => a.mentions(variable),
-            Self::Binary(_, operands) | Self::Two(_, operands) => any(&**operands),
-            Self::Choice(operands) => any(&**operands),
-        }
-    }
-}
-
-impl Binary {
-    fn of<N: Number>(self, [a, b]: [N; 2]) -> N {
-        let (x, y) = (a.value(), b.value());
-        let truth = |holds: bool| N::constant(f64::from(u8::from(holds)));
-        match self {
-            Self::Add => a + b,
-            Self::Subtract => a - b,
-            Self::Multiply => a * b,
-            Self::Divide => a / b,
-            Self::Power => power(a, b),
-            Self::Less => truth(x < y),
-            Self::LessOrEqual => truth(x <= y),
-            Self::Greater => truth(x > y),
-            Self::GreaterOrEqual => truth(x >= y),
-            Self::Equal => truth(x == y),
-            Self::NotEqual => truth(x != y),
-            Self::And => truth(x != 0.0 && y != 0.0),
-            Self::Or => truth(x != 0.0 || y != 0.0),
-        }
     }
 }
 

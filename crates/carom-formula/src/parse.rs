@@ -7,8 +7,9 @@ use pest::pratt_parser::{Assoc, Op, PrattParser};
 use pest_derive::Parser;
 use std::sync::LazyLock;
 
+use crate::error::FormulaError;
 use crate::function::{CONSTANTS, Function};
-use crate::{Binary, FormulaError, Tree};
+use crate::tree::{Binary, Tree};
 
 /// Longer texts are refused: no formula is, and reading one recurses.
 const LONGEST: usize = 4096;

@@ -12,11 +12,12 @@ use base64::engine::general_purpose::STANDARD;
 use carom_record::{Block, Cell, FieldEntry, FieldSet, Run};
 use serde_json::json;
 
-use crate::bands::{Bands, Point, color_bands};
+use crate::bands::{Bands, color_bands};
 use crate::bodies::{Instant, color_bar, frame};
 use crate::chart::{Chart, Options, Panel, Series, Track, open};
 use crate::labels::{number, symbol, with_unit};
 use crate::palette::LINES;
+use crate::pen::Point;
 use crate::text::html;
 
 /// Bytes of positions and stresses in the page, at most; beyond, field files are left out evenly.

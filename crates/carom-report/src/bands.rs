@@ -5,9 +5,7 @@
 
 use crate::axis::round_step;
 use crate::palette::diverging;
-use crate::pen::Pen;
-
-pub(crate) type Point = [f64; 2];
+use crate::pen::{Pen, Point};
 
 /// Shape functions of a Lagrange triangle in VTK's node order at barycentric (a, b, c) of its corners.
 pub(crate) fn shape(degree: usize, [a, b, c]: [f64; 3], out: &mut Vec<f64>) {

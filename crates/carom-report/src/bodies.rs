@@ -9,10 +9,10 @@ use std::fmt::Write as _;
 use carom_record::{Block, Cell, FieldSet};
 
 use crate::axis::{Axis, round_step};
-use crate::bands::{Bands, Point, band_polygons, color_bands, shape};
+use crate::bands::{Bands, band_polygons, color_bands, shape};
 use crate::chart::{open, scaled, write_text};
 use crate::labels::with_unit;
-use crate::pen::{Pen, open_grid};
+use crate::pen::{Pen, Point, open_grid};
 
 /// One instant: deformed nodes, the quantity at them, and the cells.
 pub(crate) struct Instant {

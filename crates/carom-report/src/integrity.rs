@@ -5,9 +5,10 @@ use std::fmt::Write as _;
 use carom_record::Status;
 use carom_record::study::Study;
 
-use crate::study::Origins;
+use crate::collected::Origins;
+use crate::design::unmatched;
+use crate::digits::three;
 use crate::text::escape;
-use crate::verdict::{number, unmatched};
 
 /// Digits of a hash that are shown.
 const DIGITS: usize = 12;
@@ -25,7 +26,7 @@ pub(crate) fn show(out: &mut String, study: &Study, origins: &Origins) {
             escape(&row.name),
             origin.rejected,
             origin.told,
-            row.value("penetration").map_or("–".into(), number),
+            row.value("penetration").map_or("–".into(), three),
             short(&origin.input),
             short(&origin.record)
         );

@@ -7,9 +7,9 @@ use carom_record::study::design::Goal;
 use carom_record::study::reference::{FORCE, Reference};
 use carom_record::study::{Study, step};
 
+use crate::collected::{Column, named};
 use crate::labels::with_unit;
 use crate::plot::{Curve, Pane, Plot};
-use crate::study::{Column, named};
 
 /// Small multiples in one figure at most.
 const MULTIPLES: usize = 24;

@@ -2,7 +2,8 @@
 //!
 //! Such data belong into a group that [`open_grid`] opens; widths of strokes there are in units of the grid.
 
-use crate::bands::Point;
+/// A place in pixels, or in the units of what is drawn.
+pub(crate) type Point = [f64; 2];
 
 /// Lines of the grid per pixel.
 pub(crate) const GRID: f64 = 20.0;

@@ -9,9 +9,9 @@ use carom_record::study::ranking::{Ranking, error, standing};
 use carom_record::study::reference::Standing;
 use carom_record::study::{Study, step};
 
-use crate::study_page::number as long;
+use crate::design::OFF_BUDGET;
+use crate::digits::{five, three};
 use crate::text::{escape, html};
-use crate::verdict::{OFF_BUDGET, number};
 
 /// Probes' stresses with a column of their own at most.
 const STRESSES: usize = 3;
@@ -35,7 +35,7 @@ impl Ranked<'_> {
 
     /// A metric as it is.
     fn metric(&self, head: &str, metric: &str) -> Column {
-        self.column(head, |arm| self.study.rows[arm].value(metric).map(number))
+        self.column(head, |arm| self.study.rows[arm].value(metric).map(three))
     }
 
     /// Error of a metric against the reference, where a refinement establishes it and it is not zero.
@@ -43,9 +43,9 @@ impl Ranked<'_> {
         let known = standing(self.study.reference.as_ref(), metric);
         let Standing::Established { value: right, uncertainty } = known else { return self.column(head, |_| None) };
         let relative = if right == 0.0 { f64::INFINITY } else { uncertainty / right.abs() };
-        let head = if relative > 0.0 { format!("{head} ± {}", number(relative)) } else { head.to_owned() };
+        let head = if relative > 0.0 { format!("{head} ± {}", three(relative)) } else { head.to_owned() };
         self.column(&head, |arm| {
-            self.study.rows[arm].value(metric).filter(|_| relative.is_finite()).map(|v| number(error(v, right)))
+            self.study.rows[arm].value(metric).filter(|_| relative.is_finite()).map(|v| three(error(v, right)))
         })
     }
 
@@ -53,18 +53,18 @@ impl Ranked<'_> {
     fn beyond(&self) -> Column {
         let right = standing(self.study.reference.as_ref(), "force_variation").established();
         let right = right.map(|known| known.0).filter(|right| *right > 0.0);
-        self.column("TV beyond", |arm| Some(number(self.study.rows[arm].value("force_variation")? / right? - 1.0)))
+        self.column("TV beyond", |arm| Some(three(self.study.rows[arm].value("force_variation")? / right? - 1.0)))
     }
 
     fn late(&self) -> Column {
-        self.column("Late by", |arm| Some(number(self.study.compared.get(arm)?.as_ref()?.late.as_ref()?.1)))
+        self.column("Late by", |arm| Some(three(self.study.compared.get(arm)?.as_ref()?.late.as_ref()?.1)))
     }
 
     /// Steps and processor time beside the budget.
     fn budgets(&self, design: &Design) -> [Column; 2] {
         let share = |share: f64| {
             let mark = if (share - 1.0).abs() <= OFF_BUDGET { "" } else { " !" };
-            format!("{}{mark}", number(share))
+            format!("{}{mark}", three(share))
         };
         let parts = |arm: usize| &self.study.manifest.arms[arm].part;
         let measured = |arm: usize| {
@@ -112,8 +112,8 @@ pub(crate) fn tables(out: &mut String, study: &Study, ranking: &Ranking) {
     let matched =
         study.manifest.design.as_ref().filter(|_| study.manifest.arms.iter().any(|a| study.manifest.by_cost(a)));
     let mut first = vec![
-        ranked.column("Δt", |arm| step(&study.manifest.arms[arm], "time.step").map(long)),
-        ranked.column("Error", |arm| place(arm).map(|i| number(errors[i]))),
+        ranked.column("Δt", |arm| step(&study.manifest.arms[arm], "time.step").map(five)),
+        ranked.column("Error", |arm| place(arm).map(|i| three(errors[i]))),
         ranked.late(),
         ranked.metric("Steps", "steps"),
         ranked.metric("Newton its", "newton_iterations"),

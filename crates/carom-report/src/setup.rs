@@ -2,66 +2,30 @@
 //!
 //! From the record alone: positions and cells from the first field file, the rest from `manifest.json` (`case`, `sides`).
 
+mod drawing;
 mod forces;
 mod key;
 mod planes;
+mod values;
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-use carom_record::{Block, Cell, FieldSet, Run};
+use carom_record::{Cell, FieldSet, Run};
 use serde_json::Value;
 
 use crate::axis::Axis;
-use crate::bands::Point;
 use crate::bodies::{Instant, bezier, edges, places};
 use crate::chart::{open, write_text};
-use crate::labels::{number, with_unit};
-use crate::palette::LINES;
-use crate::pen::{Pen, open_grid};
+use crate::labels::with_unit;
+use crate::pen::{Pen, Point, open_grid};
 use crate::symbols::{arrow, direction, guides, plus, rollers, wall};
+use drawing::{BAR, PRIMARY, SECONDARY, Setup};
+use values::{list, text, vector};
 
 /// Widest picture, and the width of its key.
 const ROOM: f64 = 470.0;
 const KEY: f64 = 320.0;
-const SECONDARY: &str = LINES[2];
-const PRIMARY: &str = LINES[1];
-const BODIES: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
-/// Height of a bar in the picture.
-const BAR: f64 = 26.0;
-
-/// A side's polyline with outward unit vectors, in pixels.
-type Walk = Vec<(Point, Point)>;
-
-struct Setup<'a> {
-    run: &'a Run,
-    fields: &'a FieldSet,
-    /// Where the points of `fields` are.
-    points: Vec<Point>,
-    flat: bool,
-    scale: f64,
-    origin: Point,
-    /// A point of the body inside an edge, by the numbers of its ends.
-    inside: HashMap<[usize; 2], Point>,
-}
-
-fn list<'a>(value: &'a Value, key: &str) -> &'a [Value] {
-    value.get(key).and_then(Value::as_array).map_or(&[], Vec::as_slice)
-}
-
-fn text<'a>(value: &'a Value, key: &str) -> &'a str {
-    value.get(key).and_then(Value::as_str).unwrap_or_default()
-}
-
-fn vector(value: Option<&Value>) -> Vec<f64> {
-    value.and_then(Value::as_array).map_or(Vec::new(), |v| v.iter().filter_map(Value::as_f64).collect())
-}
-
-/// A vector as people write it.
-fn tuple(v: &[f64]) -> String {
-    let parts: Vec<String> = v.iter().map(|x| number(*x)).collect();
-    if parts.len() == 1 { parts[0].clone() } else { format!("({})", parts.join(", ")) }
-}
 
 /// The figure, from the initial fields; nothing where there are no cells.
 pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
@@ -111,18 +75,6 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
 }
 
 impl Setup<'_> {
-    fn case(&self) -> &Value {
-        &self.run.manifest.case
-    }
-
-    fn to(&self, p: Point) -> Point {
-        [self.origin[0] + p[0] * self.scale, self.origin[1] - p[1] * self.scale]
-    }
-
-    fn node(&self, k: usize) -> Point {
-        self.points.get(k).map_or([f64::NAN; 2], |p| self.to(*p))
-    }
-
     /// Coordinates at the edges of the picture.
     fn axes(&self, out: &mut String, [left, right, top, bottom]: [f64; 4]) {
         let length = self.case().pointer("/units/length").and_then(Value::as_str).unwrap_or_default();
@@ -154,10 +106,6 @@ impl Setup<'_> {
         let turned =
             format!("text-anchor=\"middle\" transform=\"translate({:.1} {middle:.1}) rotate(-90)\"", left - 42.0);
         write_text(out, 0.0, 0.0, &turned, &power("y", &y));
-    }
-
-    fn color(k: usize) -> &'static str {
-        BODIES[k % BODIES.len()]
     }
 
     fn bodies(&mut self, out: &mut String) {
@@ -204,37 +152,6 @@ impl Setup<'_> {
         }
     }
 
-    /// The chains of a side.
-    fn walks(&self, side: &str) -> Vec<Walk> {
-        let chains = self.run.manifest.sides.get(side).map_or(&[][..], Vec::as_slice);
-        let degree = self.degree(side);
-        chains.iter().map(|chain| self.walk(side, chain, degree)).filter(|walk| walk.len() > 1).collect()
-    }
-
-    fn degree(&self, side: &str) -> usize {
-        let body = side.split_once('.').map_or(side, |s| s.0);
-        self.fields.blocks.iter().find(|b| b.body == body).map_or(1, |b| b.degree)
-    }
-
-    fn walk(&self, side: &str, chain: &[usize], degree: usize) -> Walk {
-        if let (true, [k]) = (self.flat, chain) {
-            // An end of a bar, as a vertical line.
-            let [x, y] = self.node(*k);
-            let middle = self.center(side.split_once('.').map_or(side, |s| s.0)).map_or(x, |c| c[0]);
-            let n = [if x < middle { -1.0 } else { 1.0 }, 0.0];
-            return vec![([x, y - 0.5 * BAR], n), ([x, y + 0.5 * BAR], n)];
-        }
-        let outward = |i: usize| {
-            let facet = (i / degree).min((chain.len() - 2) / degree) * degree;
-            let (a, b) = (chain[facet], chain[(facet + degree).min(chain.len() - 1)]);
-            let t = direction(self.node(a), self.node(b));
-            let within = self.inside.get(&[a.min(b), a.max(b)]).map_or([0.0; 2], |p| direction(self.node(a), *p));
-            let n = [-t[1], t[0]];
-            if n[0] * within[0] + n[1] * within[1] > 0.0 { [t[1], -t[0]] } else { n }
-        };
-        if chain.len() < 2 { Vec::new() } else { (0..chain.len()).map(|i| (self.node(chain[i]), outward(i))).collect() }
-    }
-
     fn supports(&self, out: &mut String) {
         for support in list(self.case(), "supports") {
             let fix = Self::directions(support);
@@ -250,15 +167,6 @@ impl Setup<'_> {
                 }
             }
         }
-    }
-
-    fn stroke(out: &mut String, pen: &Pen, color: &str) {
-        let d = pen.data();
-        let _ = writeln!(
-            out,
-            "{}<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"64\" stroke-linecap=\"round\"/>\n</g>",
-            open_grid()
-        );
     }
 
     fn contacts(&self, out: &mut String) {
@@ -277,14 +185,6 @@ impl Setup<'_> {
                 }
             }
         }
-    }
-
-    /// Middle of a body's points.
-    fn center(&self, body: &str) -> Option<Point> {
-        let block: &Block = self.fields.blocks.iter().find(|b| b.body == body)?;
-        let mut sum = [0.0; 2];
-        block.connectivity.iter().for_each(|&k| sum = plus(sum, 1.0, self.node(k)));
-        Some(sum.map(|s| s / block.connectivity.len() as f64))
     }
 
     /// Names of bodies, gravity and initial velocity.
@@ -314,13 +214,6 @@ impl Setup<'_> {
                 at = plus(at, 22.0, if self.flat { [0.0, -1.0] } else { [1.0, 0.0] });
             }
         }
-    }
-
-    /// Where a reference place is, as far as the nearest node tells.
-    fn moved(&self, [x, y]: Point) -> Point {
-        let distance = |p: &[f64; 3]| (p[0] - x).hypot(p[1] - y);
-        let near = self.fields.points.iter().zip(&self.points).min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
-        near.map_or([x, y], |(from, to)| [x + to[0] - from[0], y + to[1] - from[1]])
     }
 
     fn probes(&self, out: &mut String) {

@@ -5,11 +5,11 @@ use std::fmt::Write as _;
 use carom_record::Status;
 use carom_record::study::{Study, Verdict};
 
+use crate::collected::Origins;
+use crate::digits::five;
 use crate::plot::{Plot, style};
-use crate::study::Origins;
 use crate::text::{escape, html};
-use crate::verdict;
-use crate::{convergence, integrity};
+use crate::{convergence, design, integrity, verdict};
 
 /// Arms in one table of metrics; more make more tables.
 const ACROSS: usize = 8;
@@ -68,19 +68,6 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
     out
 }
 
-/// A number in five digits, an exponent when far from one.
-pub(crate) fn number(x: f64) -> String {
-    let text = if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) {
-        format!("{x:.3e}")
-    } else if x.fract() == 0.0 {
-        format!("{x}")
-    } else {
-        let decimals = (4 - x.abs().log10().floor() as i32).clamp(0, 8) as usize;
-        format!("{x:.decimals$}").trim_end_matches('0').trim_end_matches('.').to_owned()
-    };
-    text.replace('-', "−")
-}
-
 /// The case drawn, what is made of what, and what the arms vary.
 fn setup(out: &mut String, study: &Study, picture: Option<&str>) {
     out.push_str("<h2>Setup</h2>\n");
@@ -116,7 +103,7 @@ fn setup(out: &mut String, study: &Study, picture: Option<&str>) {
             varied.iter().map(told).collect::<String>()
         );
     }
-    verdict::design(out, study);
+    design::show(out, study);
 }
 
 fn arms(out: &mut String, study: &Study) {
@@ -172,8 +159,8 @@ fn claims(out: &mut String, verdicts: &[Verdict]) {
             "<tr><td>{}<br><code>{}</code></td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"{class}\">{}</td></tr>",
             escape(&v.claim.text),
             escape(&v.claim.compare),
-            v.left.map_or("–".into(), number),
-            v.right.map_or("–".into(), number),
+            v.left.map_or("–".into(), five),
+            v.right.map_or("–".into(), five),
             v.word()
         );
     }
@@ -206,7 +193,7 @@ fn expectations(out: &mut String, study: &Study) {
             escape(&e.what),
             escape(arm),
             escape(&e.expected),
-            e.got.map_or("–".into(), number),
+            e.got.map_or("–".into(), five),
             escape(e.source.as_deref().unwrap_or_default())
         );
     }
@@ -238,7 +225,7 @@ fn side_by_side(out: &mut String, study: &Study) -> bool {
             let Some(first) = mine.first() else { return "<td></td>".to_owned() };
             let class = if mine.iter().all(|e| e.pass) { "pass" } else { "miss" };
             let expected = mine.iter().map(|e| escape(&e.expected)).collect::<Vec<_>>().join(", ");
-            let got = first.got.map_or("–".into(), number);
+            let got = first.got.map_or("–".into(), five);
             format!(
                 "<td class=\"n\"><span class=\"{class}\">{got}</span><br><span class=\"small\">{expected}</span></td>"
             )
@@ -260,7 +247,7 @@ fn metrics(out: &mut String, study: &Study) {
             (0..rows.len()).fold(String::new(), |row, i| row + &format!("<th class=\"n\">{}</th>", first + i + 1));
         let _ = writeln!(out, "<table class=\"metrics\">\n<thead><tr><th>Metric</th><th>Unit</th>{heads}</tr></thead>");
         for metric in &shown {
-            let cells = rows.iter().map(|r| r.value(&metric.name).map_or("–".into(), number));
+            let cells = rows.iter().map(|r| r.value(&metric.name).map_or("–".into(), five));
             let cells = cells.fold(String::new(), |row, c| row + &format!("<td class=\"n\">{c}</td>"));
             let _ = writeln!(
                 out,

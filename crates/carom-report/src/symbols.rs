@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::bands::Point;
+use crate::pen::Point;
 
 pub(crate) fn plus(p: Point, s: f64, d: Point) -> Point {
     [p[0] + s * d[0], p[1] + s * d[1]]

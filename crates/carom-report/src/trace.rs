@@ -5,7 +5,7 @@
 //! Cartographica 10, 1973); the lowest and the highest of all, the first and the last always stay. What remains is written in tenths of a pixel, each from the
 //! point before as written, so that nothing drifts.
 
-use crate::bands::Point;
+use crate::pen::Point;
 
 /// Width of a column in pixels.
 const COLUMN: f64 = 0.5;

@@ -3,14 +3,14 @@
 use std::fmt::Write as _;
 
 use carom_record::metrics::WORK;
-use carom_record::study::design::{Goal, Kind};
+use carom_record::study::design::Goal;
 use carom_record::study::ranking::{Ranking, error, standing};
 use carom_record::study::reference::Standing;
-use carom_record::study::{Arm, Study, step};
+use carom_record::study::{Study, step};
 
+use crate::digits::{five, three};
 use crate::laboratory::methods;
 use crate::ranked;
-use crate::study_page::number as long;
 use crate::text::{escape, html};
 
 /// Metrics whose error against the reference a user should know before taking a recommendation.
@@ -38,21 +38,6 @@ const COLUMNS: [&str; 9] = [
     "Orders: of the errors against the reference at the two finest levels, before the first contact and after it.",
 ];
 
-/// Costs are matched within this share of the budget.
-pub(crate) const OFF_BUDGET: f64 = 0.1;
-
-/// A number in three digits: the tables have them all.
-pub(crate) fn number(x: f64) -> String {
-    if x == 0.0 || !x.is_finite() {
-        return long(x);
-    }
-    if !(1e-4..1e6).contains(&x.abs()) {
-        return format!("{x:.2e}").replace('-', "−");
-    }
-    let scale = 10f64.powi(2 - x.abs().log10().floor() as i32);
-    long((x * scale).round() / scale)
-}
-
 /// The box at the top; nothing for a study without a goal.
 pub(crate) fn show(out: &mut String, study: &Study) {
     let Some(ranking) = &study.ranking else { return };
@@ -71,7 +56,7 @@ pub(crate) fn show(out: &mut String, study: &Study) {
     };
     let arm = &study.manifest.arms[verdict.arm];
     let name = arm.part.method.as_ref().unwrap_or(&arm.name);
-    let at = step(arm, "time.step").map_or_else(String::new, |h| format!(", Δt = {}", long(h)));
+    let at = step(arm, "time.step").map_or_else(String::new, |h| format!(", Δt = {}", five(h)));
     let _ =
         writeln!(out, "<section class=\"verdict\"><h2>Recommended: {}{at}</h2>\n<p>{goal}.</p>\n<dl>", escape(name));
     let sets = arm.sets.iter().filter(|set| !set.trim_start().starts_with("time.step"));
@@ -102,10 +87,10 @@ fn costs(study: &Study, arm: usize) -> String {
     let same =
         methods(study).into_iter().flat_map(|(_, arms)| arms).filter(|i| study.manifest.arms[*i].part.level == level);
     let least = same.filter_map(cost).fold(f64::INFINITY, f64::min);
-    let of = |name: &str| study.rows[arm].value(name).map_or("–".into(), number);
+    let of = |name: &str| study.rows[arm].value(name).map_or("–".into(), three);
     let against = cost(arm)
         .filter(|c| least > 0.0 && c.is_finite())
-        .map_or_else(String::new, |c| format!(", {} times the least of its level", number(c / least)));
+        .map_or_else(String::new, |c| format!(", {} times the least of its level", three(c / least)));
     format!(
         "{} s of processor time{against}; {} steps, {} Newton iterations, {} factorisations, {} rejected steps",
         of("cpu_time"),
@@ -135,10 +120,10 @@ fn distorts(study: &Study, arm: usize) -> Vec<String> {
         let Some(mine) = study.rows[arm].value(metric) else { continue };
         let least = same.iter().filter_map(|i| of(*i)).fold(f64::INFINITY, f64::min);
         let shown = if right == 0.0 { mine } else { error(mine, right) };
-        lines.push(format!("{words}: {} (least of its level {})", number(shown), number(least)));
+        lines.push(format!("{words}: {} (least of its level {})", three(shown), three(least)));
     }
     if let Some((column, late)) = study.compared.get(arm).and_then(Option::as_ref).and_then(|c| c.late.clone()) {
-        lines.push(format!("{column} is {} by {}", if late < 0.0 { "early" } else { "late" }, number(late.abs())));
+        lines.push(format!("{column} is {} by {}", if late < 0.0 { "early" } else { "late" }, three(late.abs())));
     }
     lines
 }
@@ -152,7 +137,7 @@ pub(crate) fn rankings(out: &mut String, study: &Study) {
             out,
             "<p>By {}; uncertainty of the errors {}.</p>",
             html(&measure.words),
-            number(measure.uncertainty)
+            three(measure.uncertainty)
         );
         ranked_table(out, study, ranking);
     }
@@ -180,8 +165,8 @@ pub(crate) fn rankings(out: &mut String, study: &Study) {
             "<tr><td><code>{}</code></td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>",
             escape(&metric.name),
             html(&metric.unit),
-            number(value),
-            number(uncertainty)
+            three(value),
+            three(uncertainty)
         );
     }
     out.push_str("</table></details>\n<details open><summary>Not established by a refinement: never ranked on</summary>\n<table>\n");
@@ -207,7 +192,7 @@ fn other_goals(out: &mut String, study: &Study) {
                     let alike = escape(&verdict.alike.join(" · "));
                     let _ = write!(name, "<br><span class=\"small\">not told apart: {alike}</span>");
                 }
-                let at = step(arm, "time.step").map_or("–".into(), long);
+                let at = step(arm, "time.step").map_or("–".into(), five);
                 format!(
                     "<td>{name}</td><td class=\"n\">{at}</td><td>{}</td><td>{}</td>",
                     verdict.confidence.word(),
@@ -225,74 +210,6 @@ fn other_goals(out: &mut String, study: &Study) {
         let _ = writeln!(out, "<tr><td>{}</td>{cells}</tr>", ranking.goal.word());
     }
     out.push_str("</table>\n");
-}
-
-/// What made the arms comparable; nothing for a study that ranks nothing.
-pub(crate) fn design(out: &mut String, study: &Study) {
-    if study.ranking.is_none() && study.manifest.design.is_none() {
-        return;
-    }
-    match study.manifest.design.as_ref().map(|d| (d.kind, &d.cost_of)) {
-        None => {
-            out.push_str("<p>The arms are as written: neither their steps nor their costs were made equal.</p>\n");
-        }
-        Some((Kind::MatchedStep, _)) => {
-            let _ =
-                writeln!(out, "<p>Matched step: at a level every method has the same step ({}).</p>", levels(study));
-            let by_cost = study.manifest.methods().into_iter().filter(|method| {
-                let mut arms = study.manifest.arms.iter();
-                arms.any(|arm| arm.part.method.as_deref() == Some(method) && study.manifest.by_cost(arm))
-            });
-            let by_cost: Vec<String> = by_cost.map(escape).collect();
-            if let Some(design) = study.manifest.design.as_ref().filter(|_| !by_cost.is_empty()) {
-                let _ = writeln!(
-                    out,
-                    "<p>By cost, not by step: {}. Each has the step at which its counted cost is that of <b>{}</b> at the level.</p>",
-                    by_cost.join("; "),
-                    escape(&design.cost_of)
-                );
-                out.push_str(&unmatched(study));
-            }
-        }
-        Some((Kind::MatchedCost, of)) => {
-            let _ = writeln!(
-                out,
-                "<p>Matched cost: at a level every method has the step at which it costs what <b>{}</b> does at its own ({}). Cost is counted (Newton iterations and factorisations, or \
-                 steps) and weighted by processor seconds that a pilot run measured (<code>pilots/</code>); the column of processor time is what the arms themselves took.</p>",
-                escape(of),
-                levels(study)
-            );
-            out.push_str(&unmatched(study));
-        }
-    }
-}
-
-/// The steps of the levels, in words.
-fn levels(study: &Study) -> String {
-    let steps = study.manifest.design.iter().flat_map(|d| &d.steps);
-    let steps: Vec<String> = steps.enumerate().map(|(i, h)| format!("level {} Δt = {}", i + 1, long(*h))).collect();
-    steps.join(", ")
-}
-
-/// Whether costs were matched within the tenth that is claimed, and of which arms not.
-pub(crate) fn unmatched(study: &Study) -> String {
-    let off = |arm: &&Arm| arm.part.cost.is_none_or(|share| (share - 1.0).abs() > OFF_BUDGET);
-    let matched: Vec<&Arm> = study.manifest.arms.iter().filter(|a| study.manifest.by_cost(a)).collect();
-    let missed: Vec<&Arm> = matched.iter().copied().filter(off).collect();
-    if missed.is_empty() {
-        return "<p>The counted cost of every arm whose cost is matched is within 10 % of its budget.</p>\n".to_owned();
-    }
-    let told = |arm: &&Arm| {
-        let share = arm.part.cost.map_or("none".to_owned(), number);
-        format!("{} ({share} of the budget)", escape(&arm.name))
-    };
-    format!(
-        "<p><span class=\"miss\">{} of {} arms are not within 10 % of their budget</span>, because no number of steps was found at which they cost it, or they \
-         did not run to their end: {}. Errors of these arms are not at equal cost.</p>\n",
-        missed.len(),
-        matched.len(),
-        missed.iter().map(told).collect::<Vec<_>>().join("; ")
-    )
 }
 
 fn ranked_table(out: &mut String, study: &Study, ranking: &Ranking) {

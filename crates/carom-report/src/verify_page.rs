@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use carom_record::verification::{Row, SetUp, Verification};
 
-use crate::ReportError;
 use crate::labels::number;
+use crate::publish::ReportError;
 use crate::text::escape;
 
 /// What the page of a run does not need.

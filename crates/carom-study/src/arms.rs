@@ -95,6 +95,11 @@ fn short(step: f64) -> String {
     format!("{}e{exponent}", digits.trim_end_matches('0').trim_end_matches('.'))
 }
 
+/// Whether the reference is to be computed: it is asked for, and no arm has its name.
+pub(crate) fn computes_reference(file: &StudyFile, drafts: &[Draft]) -> bool {
+    file.reference.as_deref() == Some(FINE_NAME) && drafts.iter().all(|d| d.name != FINE_NAME)
+}
+
 /// The three runs of the computed reference, the coarsest first: at most `step` over `refine`, twice and four times that, whole steps up to `end`.
 pub(crate) fn fine(file: &StudyFile, step: f64, end: f64) -> Vec<Draft> {
     let steps = 4.0 * (end / step * f64::from(file.refine.unwrap_or(REFINE)) / 4.0).ceil();

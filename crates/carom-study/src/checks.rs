@@ -13,7 +13,7 @@ use carom_record::study::checks::{Checks, fingerprint};
 use carom_record::study::{Arm, StudyManifest};
 use carom_record::{Manifest, RecordError, Status};
 
-use crate::run::StudyError;
+use crate::error::StudyError;
 
 /// Threads of the repetition: the arms have one.
 const THREADS: usize = 2;

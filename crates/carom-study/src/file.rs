@@ -68,13 +68,6 @@ pub(crate) struct ArmEntry {
     pub(crate) by_cost: bool,
 }
 
-impl StudyFile {
-    /// Whether the reference is to be computed: it is asked for, and no arm has its name.
-    pub(crate) fn computes_reference(&self, drafts: &[crate::arms::Draft]) -> bool {
-        self.reference.as_deref() == Some(FINE_NAME) && drafts.iter().all(|d| d.name != FINE_NAME)
-    }
-}
-
 /// Reads the keys of a study file.
 pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFile {
     let mut file = StudyFile::default();

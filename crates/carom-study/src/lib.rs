@@ -6,8 +6,11 @@
 
 mod arms;
 mod checks;
+mod compute;
+mod error;
 mod expects;
 mod file;
+mod jobs;
 mod matched;
 mod plan;
 mod run;
@@ -16,8 +19,10 @@ mod suite;
 mod theory;
 mod verify;
 
+pub use error::StudyError;
+pub use jobs::{Ended, Event};
 pub use plan::{Plan, PlannedArm};
-pub use run::{Ended, Event, Outcome, StudyError, go_on, start};
+pub use run::{Outcome, go_on, start};
 pub use schema::schema;
 pub use suite::{Item, Kind, Suite};
 pub use verify::{Named, VerifyOptions};

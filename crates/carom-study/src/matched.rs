@@ -25,7 +25,9 @@ use carom_record::study::{Arm, StudyManifest};
 use carom_record::{Manifest, RecordError, Status};
 use serde::{Deserialize, Serialize};
 
-use crate::run::{Ended, Event, StudyError, side_by_side};
+use crate::compute::compute;
+use crate::error::StudyError;
+use crate::jobs::{Ended, Event, side_by_side};
 
 /// Share of the budget by which a cost may differ to be accepted; what is claimed is twice that.
 const CLOSE: f64 = 0.05;
@@ -177,7 +179,7 @@ pub(crate) fn settle(
     let waiting = anchors.iter().copied().filter(not_ended).collect();
     let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
         let begun = directory.join(&manifest.arms[i].directory).join("manifest.json").is_file();
-        crate::run::compute(manifest, directory, i, begun, progress, stop)
+        compute(manifest, directory, i, begun, progress, stop)
     };
     side_by_side::<StudyError>(waiting, jobs, &one, observe, stop)?;
     if anchors.iter().any(not_ended) {

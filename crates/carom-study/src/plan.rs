@@ -57,7 +57,7 @@ impl Plan {
         }
         let mut found: Vec<Diagnostic> = Vec::new();
         let mut planned: Vec<(Draft, Vec<String>, Case, &Base)> = Vec::new();
-        let computed = file.computes_reference(&drafts);
+        let computed = arms::computes_reference(&file, &drafts);
         let mut waiting: VecDeque<Draft> = drafts.into();
         let mut methods = waiting.len();
         while let Some(draft) = waiting.pop_front() {

@@ -12,7 +12,8 @@ use carom_record::study::{Study, StudyManifest};
 use carom_record::verification::{Row, SetUp, Verification};
 use carom_record::{Expect, Expectation, Machine, RecordError, Run, Source, Status, judge, now};
 
-use crate::run::{Ended, Event, StudyError, side_by_side};
+use crate::error::StudyError;
+use crate::jobs::{Ended, Event, side_by_side};
 use crate::suite::{Item, Kind, Suite};
 
 /// How a suite is run.

@@ -3,8 +3,10 @@ use std::f64::consts::TAU;
 
 use serde::Serialize;
 
+use crate::catalogue::info;
 use crate::map;
-use crate::names::{Elsewhere, Name, elsewhere, info, names};
+use crate::name::{Name, short};
+use crate::names::{Elsewhere, elsewhere, names};
 use crate::oscillator::Oscillator;
 use crate::scheme::{ForceRule, Scheme};
 use crate::stage::{Kernel, Stage};
@@ -261,7 +263,7 @@ pub(crate) fn held(scheme: &Scheme) -> Held {
             "its acceleration and contact force ring as {}({})ⁿ v₀/Δt after impact at v₀, below 1 % of v₀/Δt after {steps} steps; steps count, \
              not time: a finer Δt makes it shorter and higher",
             ["", "n ", "n² "][power],
-            crate::names::short(-radius)
+            short(-radius)
         );
         (Some(steps), text)
     } else if (scheme.beta - 0.25).abs() < NOTHING && (scheme.gamma - 0.5).abs() < NOTHING {
@@ -318,8 +320,8 @@ impl Scheme {
             let needed = 0.5 - alpha_m + alpha_f;
             told.push(format!(
                 "first order: second order needs γ = ½ − α_m + α_f = {}, not {}",
-                crate::names::short(needed),
-                crate::names::short(gamma)
+                short(needed),
+                short(gamma)
             ));
         }
         if *self == (Self { forces: self.forces, ..Self::hu() }) {

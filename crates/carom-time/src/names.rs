@@ -1,44 +1,9 @@
-//! The names a scheme goes by: in a case file, and in other codes. Facts about other codes are what their sources and manuals say, by parameter.
-use std::collections::BTreeMap;
-
+//! The names a scheme goes by, found from its parameters: in a case file, and in other codes. Facts about other codes are what their sources and manuals
+//! say, by parameter.
 use serde::Serialize;
 
-use crate::error::SchemeError;
-use crate::integrator::Integrator;
-use crate::kind::{KindInfo, scheme};
-use crate::scheme::{ForceRule, Scheme};
-use crate::schemes::KINDS;
-
-/// A way to ask for a scheme.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Name {
-    /// As in [`KINDS`].
-    pub kind: &'static str,
-    /// Parameters by key.
-    pub parameters: BTreeMap<&'static str, f64>,
-}
-
-impl Name {
-    /// What it stands for. `forces` is for the α family.
-    ///
-    /// # Errors
-    /// As [`scheme`].
-    pub fn integrator(&self, forces: ForceRule) -> Result<Integrator, SchemeError> {
-        let given = self.parameters.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();
-        scheme(self.kind, &given, forces)
-    }
-}
-
-impl std::fmt::Display for Name {
-    /// As in a case file.
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        write!(f, "{{ kind = \"{}\"", self.kind)?;
-        for (key, value) in &self.parameters {
-            write!(f, ", {key} = {}", short(*value))?;
-        }
-        write!(f, " }}")
-    }
-}
+use crate::name::Name;
+use crate::scheme::Scheme;
 
 /// How another code names the scheme, or departs from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -74,10 +39,6 @@ pub(crate) fn names(of: &Scheme) -> Vec<Name> {
         (made.forces == of.forces).then_some(name)
     });
     made.collect()
-}
-
-pub(crate) fn info(kind: &str) -> Option<&'static KindInfo> {
-    KINDS.iter().find(|info| info.name == kind)
 }
 
 /// What is known of other codes about a scheme with these names.
@@ -121,11 +82,6 @@ pub(crate) fn elsewhere(of: &Scheme, names: &[Name]) -> Vec<Elsewhere> {
         (steep, "Gridap", "clamps γ to 1 with a warning: another method"),
     ];
     facts.into_iter().filter(|fact| fact.0).map(|(_, code, note)| Elsewhere { code, note }).collect()
-}
-
-/// A number for reading: twelve significant digits, no trailing noise.
-pub(crate) fn short(x: f64) -> String {
-    format!("{x:.11e}").parse::<f64>().unwrap_or(x).to_string()
 }
 
 #[cfg(test)]

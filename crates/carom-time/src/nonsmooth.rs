@@ -3,9 +3,9 @@
 //! An impulse scheme holds 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0 where the gap is predicted to be closed. It is a [`crate::Stage`] with the unknown
 //! d = y_{n+1} − y_n, without contact forces, and an impulse beside it with the three shares of [`ImpulseShares`].
 
+use crate::explicit::{self, Explicit};
 use crate::map;
 use crate::scheme::Scheme;
-use crate::schemes::central_difference as central;
 use crate::stage::Kernel;
 
 /// A scheme with a contact law of its own.
@@ -15,19 +15,6 @@ pub enum Nonsmooth {
     Explicit(Explicit),
     /// Implicit, with impulses.
     Impulse(Box<dyn Impulse>),
-}
-
-/// Central differences, and what their contact keeps out.
-#[derive(Clone, Copy, Debug)]
-pub struct Explicit {
-    /// One sentence.
-    pub summary: &'static str,
-    /// Order of convergence on smooth motion.
-    pub order: u8,
-    /// Whether the restitution of a contact means something.
-    pub restitution: bool,
-    /// What contact does.
-    pub contact: &'static [&'static str],
 }
 
 /// A scheme whose contact is an impulse. Its stage gives contact no weight of its own.
@@ -79,7 +66,7 @@ impl Nonsmooth {
 
     /// Largest Ω = ωΔt at which no mode grows; none: any.
     pub fn stable_omega_dt(&self) -> Option<f64> {
-        matches!(self, Self::Explicit(_)).then_some(central::STABLE)
+        matches!(self, Self::Explicit(_)).then_some(explicit::STABLE)
     }
 
     /// Spectral radius on linear motion as Ω → ∞; none where the scheme is not stable there.
@@ -96,7 +83,7 @@ impl Nonsmooth {
     /// Spectral radius of the whole map of smooth motion at Ω, the root of a carried acceleration included.
     pub fn spectral_radius(&self, omega_dt: f64) -> f64 {
         match self {
-            Self::Explicit(_) => central::spectral_radius(omega_dt),
+            Self::Explicit(_) => explicit::spectral_radius(omega_dt),
             Self::Impulse(scheme) => scheme
                 .alpha()
                 .map_or_else(|| map::spectral_radius(&**scheme, omega_dt), |alpha| alpha.spectral_radius(omega_dt)),
@@ -105,7 +92,7 @@ impl Nonsmooth {
 
     /// Modulus and angle of the oscillating pair at Ω.
     pub fn oscillation(&self, omega_dt: f64) -> Option<(f64, f64)> {
-        let Self::Impulse(scheme) = self else { return central::oscillation(omega_dt) };
+        let Self::Impulse(scheme) = self else { return explicit::oscillation(omega_dt) };
         let pair = match scheme.alpha() {
             Some(alpha) => alpha.principal(omega_dt),
             None => map::principal(&**scheme, omega_dt),

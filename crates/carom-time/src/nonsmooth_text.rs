@@ -4,8 +4,9 @@ use std::fmt::{Display, Formatter, Result};
 
 use serde::Serialize;
 
+use crate::catalogue::info;
 use crate::explain::Accuracy;
-use crate::names::{Name, info, short};
+use crate::name::{Name, short};
 use crate::nonsmooth::Nonsmooth;
 
 /// All of it.

@@ -4,8 +4,8 @@ use std::fmt::{Display, Formatter, Result};
 use serde::Serialize;
 
 use crate::explain::{Accuracy, Explanation};
-use crate::integrator::Explained;
-use crate::names::short;
+use crate::explained::Explained;
+use crate::name::short;
 use crate::nonsmooth_text::NonsmoothExplanation;
 use crate::scheme::{ForceRule, Scheme};
 use crate::schemes::KINDS;

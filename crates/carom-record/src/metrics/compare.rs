@@ -5,7 +5,7 @@
 //! phase shift        the τ that minimises Σ (c_i − r(t_i − τ))², by Gauss and Newton; positive: late
 //! ```
 
-use super::{at, extreme};
+use super::samples::{at, extreme};
 
 /// Root mean square deviation over the range of the reference.
 pub fn deviation(times: &[f64], values: &[f64], reference: (&[f64], &[f64])) -> Option<f64> {

@@ -8,7 +8,8 @@
 //!
 //! N rows of the episode, taken as equally spaced in time. A force that is constant while contact lasts has no power above; nor has a smooth pulse.
 
-use super::{Facts, total_variation};
+use super::facts::Facts;
+use super::samples::total_variation;
 
 /// Cycles per episode up to which a frequency counts as low.
 const CYCLES: usize = 16;

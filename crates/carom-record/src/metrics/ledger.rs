@@ -7,7 +7,8 @@
 //!
 //! All are divided by the largest kinetic + strain energy of any row.
 
-use super::{Episode, Facts};
+use super::episode::Episode;
+use super::facts::Facts;
 use crate::History;
 
 /// ΔE of every row, and the largest kinetic + strain energy.

@@ -10,7 +10,7 @@
 //! half right or left of an axis of symmetry, and c is that node's place. Multipliers come as λ/weight, the mean pressure near a node. Of several
 //! contacts the one that carries most is meant.
 
-use super::extreme;
+use super::samples::extreme;
 use crate::{ContactRow, Run};
 
 /// Peak and half-width of the ellipse closest to pressures at places.

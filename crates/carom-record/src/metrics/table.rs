@@ -1,78 +1,14 @@
 //! The table of named metrics: name, formula, unit, source and meaning of each beside the function that computes it. Reports, studies, the book and
 //! expectations know a metric by its entry here and by nothing else.
 
-use super::{
-    Episode, Facts, apex, column_roughness, extreme, force, ledger, oscillation, peak_mean, pressure, restitution,
-    roughness, turning_time, vector,
-};
+use super::column::{column_roughness, in_contact, peak_of_means};
+use super::definition::{Definition, Unit};
+use super::episode::first_episode;
+use super::facts::{Facts, vector};
+use super::samples::{extreme, peak_mean, roughness, total_variation};
+use super::striker::{apex, restitution, turning_time};
+use super::{force, ledger, oscillation, pressure};
 use crate::{History, Run};
-
-/// What a metric is.
-#[derive(Clone, Copy, Debug)]
-pub struct Definition {
-    /// Name, as expectations and studies call it.
-    pub name: &'static str,
-    /// Formula in columns of the history.
-    pub formula: &'static str,
-    /// Unit.
-    pub unit: Unit,
-    /// Where the idea comes from.
-    pub source: &'static str,
-    /// One line of words.
-    pub meaning: &'static str,
-}
-
-/// Unit of a metric, in those of the case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum Unit {
-    None,
-    Time,
-    PerTime,
-    Force,
-    Impulse,
-    Length,
-    Stress,
-    Second,
-    /// That of the column.
-    Column,
-}
-
-impl Unit {
-    /// Its label in the units of a record.
-    pub fn label(self, history: &History) -> String {
-        let time = history.unit("time");
-        match self {
-            Self::None | Self::Column => String::new(),
-            Self::Time => time.to_owned(),
-            Self::PerTime if time.is_empty() => String::new(),
-            Self::PerTime => format!("1/{time}"),
-            Self::Force => history.unit("contact_force_x").to_owned(),
-            Self::Impulse => history.unit("contact_impulse_x").to_owned(),
-            Self::Length => history.unit("penetration").to_owned(),
-            Self::Stress => {
-                let stress = |name: &str| name.contains(".sigma_") || name.ends_with(".von_mises");
-                history.columns.iter().find(|c| stress(&c.name)).map_or_else(String::new, |c| c.unit.clone())
-            }
-            Self::Second => "s".to_owned(),
-        }
-    }
-
-    /// Its kind, in words.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::None => "–",
-            Self::Time => "time",
-            Self::PerTime => "1/time",
-            Self::Force => "force",
-            Self::Impulse => "impulse",
-            Self::Length => "length",
-            Self::Stress => "stress",
-            Self::Second => "s",
-            Self::Column => "the column's",
-        }
-    }
-}
 
 const fn d(
     name: &'static str,
@@ -230,9 +166,9 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             OWN,
             "highest rise of the striker's centre over its start, after the first episode",
         ),
-        |f| rise(f).map(|a| a.1),
+        |f| apex(f).map(|a| a.1),
     ),
-    (d("apex_time", Unit::Time, "time of that vertex", OWN, "time of the apex"), |f| rise(f).map(|a| a.0)),
+    (d("apex_time", Unit::Time, "time of that vertex", OWN, "time of the apex"), |f| apex(f).map(|a| a.0)),
     (
         d(
             "energy_lost",
@@ -308,32 +244,6 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
     ),
 ];
 
-fn rise(facts: &Facts) -> Option<(f64, f64)> {
-    apex(facts.history, facts.first()?)
-}
-
-/// Largest size of a column averaged over 1/16 of the first episode, by the trapezoidal rule between rows.
-fn peak_of_means(history: &History, column: &str) -> Option<f64> {
-    let (times, values) = (history.times(), history.column(column)?);
-    let mut integral = Vec::with_capacity(values.len());
-    let mut sum = 0.0;
-    for (i, value) in values.iter().enumerate() {
-        if let Some(before) = i.checked_sub(1) {
-            sum += 0.5 * (values[before] + value) * (times[i] - times[before]);
-        }
-        integral.push(sum);
-    }
-    let Episode { start, end } = super::first_episode(history)?;
-    peak_mean(times, &[&integral], (times[end?] - times[start]) / 16.0)
-}
-
-/// Rows with contact of the first episode.
-fn in_contact<'a>(history: &'a History, column: &str) -> Option<&'a [f64]> {
-    let Episode { start, end } = super::first_episode(history)?;
-    let values = history.column(column)?;
-    values.get(start..end.unwrap_or(values.len()))
-}
-
 /// Metrics of a probe's column `C`, called `C:min` and so on.
 pub const COLUMNS: [(Definition, fn(&History, &str) -> Option<f64>); 6] = [
     (d("min", Unit::Column, "min c", OWN, "smallest recorded value of the column"), |h, c| {
@@ -360,7 +270,7 @@ pub const COLUMNS: [(Definition, fn(&History, &str) -> Option<f64>); 6] = [
             "total variation: Harten 1983",
             "total variation of the column in the first contact episode",
         ),
-        |h, c| Some(super::total_variation(h.column(c)?.get(super::first_episode(h)?.span(h))?)),
+        |h, c| Some(total_variation(h.column(c)?.get(first_episode(h)?.span(h))?)),
     ),
     (
         d(
@@ -370,7 +280,7 @@ pub const COLUMNS: [(Definition, fn(&History, &str) -> Option<f64>); 6] = [
             OWN,
             "largest size of the column averaged over 1/16 of the first contact episode",
         ),
-        |h, c| peak_of_means(h, c),
+        peak_of_means,
     ),
     (
         d(
@@ -483,23 +393,4 @@ pub const WORK: [(Definition, fn(&Run) -> Option<f64>); 6] = [
 
 fn count(run: &Run, name: &str) -> Option<f64> {
     run.manifest.counters.get(name).map(|&n| n as f64)
-}
-
-/// Definition and value of a metric of a column; none where there is no such metric.
-pub fn of_column(history: &History, column: &str, what: &str) -> Option<(&'static Definition, Option<f64>)> {
-    let (definition, value) = COLUMNS.iter().chain(&FREE).find(|(d, _)| d.name == what)?;
-    Some((definition, value(history, column)))
-}
-
-/// All definitions as a table of the book, in Markdown.
-pub fn book_table() -> String {
-    let history = HISTORY.iter().map(|x| (String::new(), &x.0));
-    let columns = COLUMNS.iter().chain(&FREE).map(|x| ("COLUMN:".to_owned(), &x.0));
-    let all = history.chain(columns).chain(PRESSURE.iter().chain(&WORK).map(|x| (String::new(), &x.0)));
-    let escape = |text: &str| text.replace('|', "\\|");
-    let row = |(before, d): (String, &Definition)| {
-        format!("| `{before}{}` | {} | {} | {} | {} |\n", d.name, d.meaning, escape(d.formula), d.unit.word(), d.source)
-    };
-    let head = "| Metric | Definition | Formula | Unit | Source |\n| --- | --- | --- | --- | --- |\n";
-    all.fold(head.to_owned(), |text, one| text + &row(one))
 }

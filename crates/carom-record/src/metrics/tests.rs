@@ -1,8 +1,8 @@
 //! A record whose metrics are known by hand: free fall, a parabolic force pulse of the contact, free flight.
 
 use super::*;
-use crate::Column;
 use crate::question::{Question, Window};
+use crate::{Column, History};
 
 fn evaluate(history: &History, what: &str) -> Result<f64, String> {
     Question::parse(what)?.answer(history, Window::default())

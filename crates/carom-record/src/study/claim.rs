@@ -4,10 +4,20 @@
 //! claim := question ( < | <= | > | >= ) question        as in [`crate::question`], every quantity with `of "ARM"`
 //! ```
 
-use super::Claim;
+use serde::{Deserialize, Serialize};
+
 use super::arms::ArmRecords;
 use crate::expression::{Token, tokens};
 use crate::question::{Question, Window};
+
+/// A statement and the comparison that decides it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Claim {
+    /// In words.
+    pub text: String,
+    /// `METRIC of "ARM" > METRIC of "ARM"`: see [`Comparison`].
+    pub compare: String,
+}
 
 /// A claim with its numbers.
 #[derive(Clone, Debug, PartialEq)]

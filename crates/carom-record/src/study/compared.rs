@@ -1,5 +1,7 @@
 //! An arm held against the reference: columns by their deviation, as a whole and in the smooth phases before and after the first contact; how late it is.
 
+use super::arm::step;
+use super::manifest::StudyManifest;
 use super::reference::{FORCE, Kept, Reference, Standing};
 use crate::metrics::{self, phase_shift};
 use crate::order::from_errors;
@@ -115,6 +117,25 @@ pub fn phase_orders(
         smooth: order(|d| d.before),
         across: order(|d| d.after),
     })
+}
+
+/// Orders of every method of a design in the columns that tell where things are.
+pub(super) fn orders_by_phase(
+    manifest: &StudyManifest,
+    compared: &[Option<Compared>],
+    reference: &Reference,
+) -> Vec<PhaseOrders> {
+    let mut found = Vec::new();
+    for method in manifest.methods() {
+        let arms = manifest.arms.iter().zip(compared).filter(|(a, _)| a.part.method.as_deref() == Some(method));
+        let mut known: Vec<(f64, &Compared)> =
+            arms.filter_map(|(a, c)| Some((step(a, "time.step")?, c.as_ref()?))).collect();
+        known.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for column in reference.columns().into_iter().filter(|c| is_trajectory(c)) {
+            found.extend(phase_orders(method, column, &known, reference));
+        }
+    }
+    found
 }
 
 /// The columns of a reference that tell where things are and are established.

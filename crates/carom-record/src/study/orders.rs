@@ -7,8 +7,9 @@
 
 use std::collections::BTreeMap;
 
+use super::arm::step;
 use super::arms::ArmRecords;
-use super::{Arm, StudyManifest};
+use super::manifest::StudyManifest;
 use crate::order::{from_differences, from_errors};
 use crate::question::{self, Quantity, Question, Series};
 use crate::{Deviation, Expect, Expectation, Expression, Norm, OrderOf};
@@ -22,20 +23,6 @@ pub struct Refinement {
     pub arms: Vec<usize>,
     /// Their steps: the value of the key, or 1/value where the key counts cells.
     pub steps: Vec<f64>,
-}
-
-/// The step of an arm: what it sets the key to, or what its case has; 1/n for a number of cells.
-pub fn step(arm: &Arm, key: &str) -> Option<f64> {
-    let set = arm.sets.iter().find_map(|set| set.strip_prefix(key)?.trim_start().strip_prefix('='));
-    let value = match set {
-        Some(text) => {
-            let first = text.trim().trim_start_matches('[').split([',', ']']).next()?;
-            first.trim().replace('_', "").parse().ok()?
-        }
-        None => key.split('.').try_fold(&arm.case, |node, part| node.get(part))?.as_f64()?,
-    };
-    let counts = key.ends_with("cells");
-    (value > 0.0 && f64::is_finite(value)).then(|| if counts { 1.0 / value } else { value })
 }
 
 /// Whether a name contains a text, not beginning or ending inside a word or number: `hu` is not in `chung-hulbert`, nor `0.1` in `0.15`.
@@ -236,6 +223,8 @@ pub fn numeric_keys(manifest: &StudyManifest, least: usize) -> BTreeMap<String, 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::Arm;
+    use crate::study::design::Part;
 
     fn arm(sets: &[&str]) -> Arm {
         Arm {
@@ -243,7 +232,7 @@ mod tests {
             directory: String::new(),
             sets: sets.iter().map(ToString::to_string).collect(),
             steps: 1,
-            part: super::super::design::Part::default(),
+            part: Part::default(),
             case_path: None,
             case: serde_json::json!({ "time": { "step": 0.5 } }),
         }

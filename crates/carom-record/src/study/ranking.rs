@@ -5,28 +5,19 @@
 //! levels; two arms of a level whose errors differ by no more than the uncertainty of the reference, or by 5 %, are not told apart. Of the methods that are not
 //! told apart from the best the cheapest is recommended; processor times within a tenth of the least are equal, and the smaller error decides between them.
 
-use super::compared::{Compared, established, is_stress, is_trajectory};
+use super::compared::Compared;
 use super::design::{Goal, Kind};
-use super::reference::{IDEAL, Reference, Standing};
-use super::{Row, StudyManifest};
+use super::digits::short;
+use super::manifest::StudyManifest;
+use super::measure::{Judge, candidates};
+pub use super::measure::{Measure, error, standing};
+use super::reference::Reference;
+use super::row::Row;
 
 /// Errors closer than this are not told apart.
 const ALIKE: f64 = 0.05;
 /// Processor times closer than this are equal: a measurement is not repeated to less.
 const EQUAL_COST: f64 = 0.1;
-
-/// What ranks.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Measure {
-    /// Name of the metric, or of what was made of columns.
-    pub name: String,
-    /// In words.
-    pub words: String,
-    /// How far the errors may be off.
-    pub uncertainty: f64,
-    /// Measures that stood before it, and why they do not rank.
-    pub passed_over: Vec<(String, String)>,
-}
 
 /// An arm in its level.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,110 +80,6 @@ pub struct Ranking {
     pub verdict: Option<Verdict>,
 }
 
-/// What a goal may rank by, in order.
-enum Candidate {
-    Metric(&'static str),
-    Columns(&'static str, fn(&str) -> bool),
-    /// A metric of columns.
-    OfColumns(&'static str, fn(&str) -> bool),
-}
-
-fn candidates(goal: Goal) -> Vec<Candidate> {
-    match goal {
-        Goal::Energy => vec![Candidate::Metric("energy_drift")],
-        Goal::Force => ["force_variation", "force_high_frequency", "peak_mean_force", "impulse_y", "impulse_x"]
-            .map(Candidate::Metric)
-            .into(),
-        Goal::Stress => vec![
-            Candidate::OfColumns("variation", is_stress),
-            Candidate::OfColumns("peak_mean", is_stress),
-            Candidate::Columns("stresses", is_stress),
-        ],
-        Goal::Trajectory | Goal::Cost => vec![Candidate::Columns("displacements", is_trajectory)],
-    }
-}
-
-/// What a metric is compared with.
-pub fn standing(reference: Option<&Reference>, metric: &str) -> Standing {
-    if IDEAL.contains(&metric) {
-        return Standing::Established { value: 0.0, uncertainty: 0.0 };
-    }
-    reference.map_or_else(|| Standing::Not("the study has no reference".to_owned()), |r| r.metric(metric))
-}
-
-/// |m − r|, relative where r is not 0.
-pub fn error(value: f64, right: f64) -> f64 {
-    if right == 0.0 { value.abs() } else { ((value - right) / right).abs() }
-}
-
-struct Judge<'a> {
-    rows: &'a [Row],
-    compared: &'a [Option<Compared>],
-    reference: Option<&'a Reference>,
-}
-
-impl Judge<'_> {
-    /// The measure a candidate gives with the errors of all arms, or why not.
-    fn measured(&self, candidate: &Candidate) -> Result<(Measure, Vec<Option<f64>>), (String, String)> {
-        let measure = |name: &str, words: String, uncertainty: f64| Measure {
-            name: name.into(),
-            words,
-            uncertainty,
-            passed_over: Vec::new(),
-        };
-        match candidate {
-            Candidate::Metric(name) => match standing(self.reference, name) {
-                Standing::Not(why) => Err(((*name).to_owned(), why)),
-                Standing::Established { value, uncertainty } => {
-                    let errors = self.rows.iter().map(|row| row.value(name).map(|x| error(x, value))).collect();
-                    let words =
-                        if value == 0.0 { format!("{name}, which should be 0") } else { format!("error of {name}") };
-                    Ok((
-                        measure(name, words, if value == 0.0 { uncertainty } else { (uncertainty / value).abs() }),
-                        errors,
-                    ))
-                }
-            },
-            Candidate::Columns(name, kind) => {
-                let Some(reference) = self.reference else {
-                    return Err(((*name).to_owned(), "the study has no reference".to_owned()));
-                };
-                let columns = established(reference, *kind);
-                if columns.is_empty() {
-                    return Err(((*name).to_owned(), "the reference establishes no such column".to_owned()));
-                }
-                let squares = columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
-                let uncertainty = (squares.sum::<f64>() / columns.len() as f64).sqrt();
-                let errors = self.compared.iter().map(|c| c.as_ref().and_then(|c| c.mean(&columns))).collect();
-                let words = format!("deviation of {} from the reference, over their range", columns.join(", "));
-                Ok((measure(&format!("deviation of {name}"), words, uncertainty), errors))
-            }
-            Candidate::OfColumns(what, kind) => {
-                let none = |why: &str| Err((format!("{what} of stresses"), why.to_owned()));
-                let Some(reference) = self.reference else { return none("the study has no reference") };
-                let names = reference.columns().into_iter().filter(|c| kind(c)).map(|c| format!("{c}:{what}"));
-                let known: Vec<(String, f64, f64)> = names
-                    .filter_map(|n| {
-                        let (value, off) = reference.metric(&n).established().filter(|(v, _)| *v > 0.0)?;
-                        Some((n, value, off / value))
-                    })
-                    .collect();
-                if known.is_empty() {
-                    return none("the refinement of the reference does not establish it for any stress");
-                }
-                let mean = |row: &Row| {
-                    let each: Option<Vec<f64>> =
-                        known.iter().map(|(n, right, _)| row.value(n).map(|x| error(x, *right))).collect();
-                    each.map(|e| e.iter().sum::<f64>() / e.len() as f64)
-                };
-                let uncertainty = known.iter().map(|k| k.2).fold(0.0, f64::max);
-                let words = format!("error of {}", known.iter().map(|k| k.0.as_str()).collect::<Vec<_>>().join(", "));
-                Ok((measure(&format!("{what} of stresses"), words, uncertainty), self.rows.iter().map(mean).collect()))
-            }
-        }
-    }
-}
-
 impl Ranking {
     /// Ranks the arms of a study.
     pub(super) fn of(
@@ -242,18 +129,6 @@ impl Ranking {
         let verdict = verdict(goal, manifest, &measure, &levels, rows);
         Self { goal, measure: Ok(measure), levels, verdict }
     }
-}
-
-/// A number in three digits.
-pub(super) fn short(x: f64) -> String {
-    if x == 0.0 {
-        return "0".to_owned();
-    }
-    if !(1e-3..1e4).contains(&x.abs()) {
-        return format!("{x:.2e}");
-    }
-    let scale = 10f64.powi(2 - x.abs().log10().floor() as i32);
-    format!("{}", (x * scale).round() / scale)
 }
 
 fn alike(a: f64, b: f64, uncertainty: f64) -> bool {
@@ -442,10 +317,5 @@ mod tests {
         assert_eq!(cheapest(&[Some(9.9), Some(1.05), Some(1.0)]), 1);
         assert_eq!(cheapest(&[Some(1.2), None, Some(1.0)]), 2);
         assert_eq!((cheapest(&[None, None]), cheapest(&[Some(3.0)])), (0, 0));
-    }
-
-    #[test]
-    fn errors_are_relative_but_for_zero() {
-        assert_eq!((error(-0.5, 0.0), error(3.0, -2.0), error(2.0, 2.0)), (0.5, 2.5, 0.0));
     }
 }

@@ -11,12 +11,15 @@
 //! A column is established likewise, with the deviation of f(2h) from f(h) as its uncertainty. What is not established is never ranked on.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use carom_formula::Formula;
 
-use super::ranking::short;
+use super::arm::{Arm, step};
+use super::digits::short;
+use super::manifest::StudyManifest;
 use crate::metrics::{self, Metric};
-use crate::{Column, History, Run};
+use crate::{Column, History, RecordError, Run, Status};
 
 /// The share by which the difference of runs must fall with the step.
 pub const FALL: f64 = 0.7;
@@ -228,6 +231,52 @@ impl Reference {
             other.and_then(|(times, values)| metrics::at(times, values, *t)).map_or(0.0, |x| (x - v).abs())
         };
         times.iter().zip(values).map(off).collect()
+    }
+}
+
+impl StudyManifest {
+    /// Numbers of the arms the reference is made of, the finest last: the three of a computed one; else the arm of that name, behind arms that differ
+    /// from it in a longer step alone.
+    fn reference_arms(&self) -> Vec<usize> {
+        let Some(named) = self.arms.iter().position(|a| self.reference.as_ref() == Some(&a.name)) else {
+            return Vec::new();
+        };
+        let others = |a: &Arm| {
+            let sets = a.sets.iter().filter(|s| !s.trim_start().starts_with("time.step")).cloned().collect::<Vec<_>>();
+            (sets, a.case_path.clone(), a.part.fine)
+        };
+        let size = |i: &usize| step(&self.arms[*i], "time.step").unwrap_or_default();
+        let alike = |i: &usize| others(&self.arms[*i]) == others(&self.arms[named]) && size(i) >= size(&named);
+        let mut found: Vec<usize> = (0..self.arms.len()).filter(alike).collect();
+        found.sort_by(|a, b| size(b).total_cmp(&size(a)));
+        found.split_off(found.len().saturating_sub(3))
+    }
+
+    /// What arms are compared with.
+    ///
+    /// # Errors
+    /// What the machine refused, or where a record is damaged.
+    pub(super) fn reference(&self, directory: &Path) -> Result<Option<Reference>, RecordError> {
+        if self.reference.as_deref() == Some("exact") {
+            let Some(case) = self.arms.first().map(|a| &a.case) else { return Ok(None) };
+            let formulas = case.get("exact").and_then(|e| serde_json::from_value(e.clone()).ok()).unwrap_or_default();
+            let end = case.pointer("/time/end").and_then(serde_json::Value::as_f64).unwrap_or_default();
+            return Ok(Reference::of_formulas(&formulas, end, 8000));
+        }
+        let mut runs = Vec::new();
+        let arms = self.reference_arms();
+        for i in &arms {
+            if self.state(directory, &self.arms[*i])?.0 == Some(Status::Finished) {
+                let run = Run::open(&directory.join(&self.arms[*i].directory))?;
+                runs.push(Kept::of(&run, &metrics::of_run(&run)));
+            }
+        }
+        let Some(last) = arms.last().filter(|_| runs.len() == arms.len()) else { return Ok(None) };
+        let count = match runs.len() {
+            1 => "one run: its error is not known".to_owned(),
+            n => format!("the finest of {n} runs whose steps double"),
+        };
+        Ok(Some(Reference::of_runs(format!("\"{}\", {count}", self.arms[*last].name), runs)))
     }
 }
 

@@ -1,6 +1,7 @@
 //! `study.csv`, `study_tidy.csv` and `claims.csv`. A value that is not there is an empty cell; numbers read back to the same bits.
 
-use super::ranking::standing;
+use super::arm::step;
+use super::measure::standing;
 use super::reference::Standing;
 use super::{Study, Verdict};
 use crate::metrics::{Metric, WORK};
@@ -74,7 +75,7 @@ impl Study {
         let lines = ranking.levels.iter().enumerate().flat_map(|(level, ranked)| {
             ranked.iter().map(move |r| {
                 let arm = &self.manifest.arms[r.arm];
-                let (step, cpu) = (super::step(arm, "time.step"), self.rows[r.arm].value("cpu_time"));
+                let (step, cpu) = (step(arm, "time.step"), self.rows[r.arm].value("cpu_time"));
                 let method = arm.part.method.clone().unwrap_or_default();
                 vec![
                     level.to_string(),

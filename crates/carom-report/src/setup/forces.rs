@@ -4,9 +4,10 @@
 use carom_formula::Formula;
 use serde_json::Value;
 
-use super::{Setup, list, text, vector};
-use crate::bands::Point;
+use super::drawing::Setup;
+use super::values::{list, text, vector};
 use crate::labels::number;
+use crate::pen::Point;
 use crate::symbols::{along, arrow, direction, plus};
 
 const COLOR: &str = "#7a2f8f";

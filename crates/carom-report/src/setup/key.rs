@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use super::{PRIMARY, SECONDARY, Setup, list, text, tuple, vector};
+use super::drawing::{PRIMARY, SECONDARY, Setup};
+use super::values::{list, text, tuple, vector};
 use crate::chart::write_text;
 use crate::labels::number;
 use crate::symbols::{plus, rollers, wall};

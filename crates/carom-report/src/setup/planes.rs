@@ -2,9 +2,9 @@
 
 use serde_json::Value;
 
-use super::{BAR, PRIMARY, Setup, list, vector};
-use crate::bands::Point;
-use crate::pen::Pen;
+use super::drawing::{BAR, PRIMARY, Setup};
+use super::values::{list, vector};
+use crate::pen::{Pen, Point};
 use crate::symbols::{direction, plus, wall};
 
 /// A rigid plane of dimension 2 as far as it is drawn.

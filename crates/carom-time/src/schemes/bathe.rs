@@ -8,9 +8,9 @@
 //!
 //! with M a₁ + f₁ = 0 and M a₂ + f₂ = 0: two solves a step, contact held at both ends with its own multiplier. γ is (2 − √(2 + 2ρ∞))/(1 − ρ∞) without the
 //! 0/0 at ρ∞ = 1. At ρ∞ = 0 it is TR-BDF2 (Bank and others 1985) with γ = 2 − √2, which makes both stage matrices equal. Order 2.
-use super::RHO_INF;
 use crate::error::SchemeError;
 use crate::kind::{Build, KindInfo, Member};
+use crate::parameter::RHO_INF;
 use crate::scheme::in_unit_interval;
 use crate::stage::{Kernel, Memory, Stage};
 

@@ -4,9 +4,9 @@
 //! α_m = (2ρ∞ − 1)/(ρ∞ + 1),   α_f = ρ∞/(ρ∞ + 1),                                                 (16)
 //! γ = ½ − α_m + α_f,          β = (1 − α_m + α_f)²/4                                             (17)
 //! ```
-use super::RHO_INF;
 use crate::error::SchemeError;
 use crate::kind::{Build, KindInfo, Member};
+use crate::parameter::RHO_INF;
 use crate::scheme::{Scheme, in_unit_interval};
 
 pub(super) const KIND: KindInfo = KindInfo {

@@ -1,9 +1,9 @@
 //! Four raw parameters of eq. (15), index s + 1 − α: an α is the share of the old term (Chung and Hulbert 1993). Order 2 for γ = ½ − α_m + α_f.
 use std::ops::Bound::{Excluded, Unbounded};
 
-use super::{BETA, GAMMA};
 use crate::error::SchemeError;
-use crate::kind::{Build, KindInfo, Member, Parameter};
+use crate::kind::{Build, KindInfo, Member};
+use crate::parameter::{BETA, GAMMA, Parameter};
 use crate::scheme::{ForceRule, Scheme};
 
 const SHARE: Parameter = Parameter {

@@ -8,7 +8,8 @@
 use std::ops::Bound::{Excluded, Included};
 
 use crate::error::SchemeError;
-use crate::kind::{Build, KindInfo, Member, Parameter};
+use crate::kind::{Build, KindInfo, Member};
+use crate::parameter::Parameter;
 use crate::scheme::{Scheme, finite};
 
 pub(super) const KIND: KindInfo = KindInfo {

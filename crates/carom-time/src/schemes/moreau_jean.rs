@@ -8,8 +8,9 @@
 use std::ops::Bound::Included;
 
 use crate::error::SchemeError;
-use crate::kind::{Build, KindInfo, Member, Parameter};
+use crate::kind::{Build, KindInfo, Member};
 use crate::nonsmooth::{Impulse, ImpulseShares};
+use crate::parameter::Parameter;
 use crate::stage::{Kernel, Memory, Stage};
 
 pub(super) const KIND: KindInfo = KindInfo {

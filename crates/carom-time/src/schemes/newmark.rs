@@ -3,9 +3,9 @@
 //! ```text
 //! γ = (3 − ρ∞)/(2(1 + ρ∞)),   β = (γ + ½)²/4
 //! ```
-use super::{BETA, GAMMA, RHO_INF};
 use crate::error::SchemeError;
-use crate::kind::{Build, KindInfo, Member, Parameter};
+use crate::kind::{Build, KindInfo, Member};
+use crate::parameter::{BETA, GAMMA, Parameter, RHO_INF};
 use crate::scheme::{Scheme, in_unit_interval};
 
 pub(super) const KIND: KindInfo = KindInfo {

@@ -5,9 +5,9 @@
 //! ```
 //!
 //! Eliminating w and a_{n+1} leaves P in the balance and in both maps. Order 2 between impacts, any ρ∞.
-use super::RHO_INF;
 use crate::kind::{Build, KindInfo, Member};
 use crate::nonsmooth::{Impulse, ImpulseShares};
+use crate::parameter::RHO_INF;
 use crate::scheme::Scheme;
 use crate::stage::{Kernel, Memory, Stage};
 

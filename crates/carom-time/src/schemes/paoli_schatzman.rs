@@ -6,8 +6,8 @@
 //!
 //! Order 2 and stable up to Ω = 2 between impacts, as [`super::central_difference`], which it is for e = 0.
 use super::central_difference::LUMPED;
+use crate::explicit::Explicit;
 use crate::kind::{Build, KindInfo, Member};
-use crate::nonsmooth::Explicit;
 
 pub(super) const KIND: KindInfo = KindInfo {
     name: "paoli-schatzman",

@@ -3,9 +3,9 @@
 //! ```text
 //! α_m = (ρ∞ − 1)/(ρ∞ + 1) ≤ 0,   γ = ½ − α_m,   β = (1 − α_m)²/4
 //! ```
-use super::RHO_INF;
 use crate::error::SchemeError;
 use crate::kind::{Build, KindInfo, Member};
+use crate::parameter::RHO_INF;
 use crate::scheme::{Scheme, in_unit_interval};
 
 pub(super) const KIND: KindInfo = KindInfo {

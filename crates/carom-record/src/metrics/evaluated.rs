@@ -1,0 +1,70 @@
+//! Metrics of a record: of its history, of one of its columns, and everything a study tabulates of a run.
+
+use super::definition::{Definition, Metric, Unit};
+use super::episode::{default_bridge, episodes};
+use super::facts::Facts;
+use super::ledger::energy_lost_at;
+use super::table::{COLUMNS, FREE, HISTORY, PRESSURE, WORK};
+use crate::{History, Run};
+
+/// Every named metric, in the order of [`HISTORY`], and the energy lost at each impact.
+pub fn all(history: &History) -> Vec<Metric> {
+    let facts = Facts::of(history);
+    let metric = |(definition, value): &(Definition, fn(&Facts) -> Option<f64>)| Metric {
+        name: definition.name.into(),
+        value: value(&facts),
+        unit: definition.unit.label(history),
+        definition: definition.meaning,
+    };
+    HISTORY.iter().map(metric).collect()
+}
+
+/// Definition and value of a metric of a column; none where there is no such metric.
+pub fn of_column(history: &History, column: &str, what: &str) -> Option<(&'static Definition, Option<f64>)> {
+    let (definition, value) = COLUMNS.iter().chain(&FREE).find(|(d, _)| d.name == what)?;
+    Some((definition, value(history, column)))
+}
+
+/// Names of the columns of the probes, in the order of the history.
+pub fn probe_columns(run: &Run) -> Vec<&str> {
+    let probes = run.manifest.case.get("probes").and_then(|p| p.as_array());
+    let names: Vec<&str> = probes.into_iter().flatten().filter_map(|p| p.get("name")?.as_str()).collect();
+    let columns = run.history.columns.iter().map(|c| c.name.as_str());
+    columns.filter(|c| c.rsplit_once('.').is_some_and(|(probe, _)| names.contains(&probe))).collect()
+}
+
+/// Impacts whose energy a study tabulates one by one.
+const IMPACTS: usize = 9;
+
+/// Everything a study tabulates: [`all`], the energy lost at each of the first impacts where there are several, the pressure at the end of a static run,
+/// then the columns of the probes, then the work.
+pub fn of_run(run: &Run) -> Vec<Metric> {
+    let history = &run.history;
+    let mut metrics = all(history);
+    let impacts = episodes(history, default_bridge(history)).len().min(IMPACTS);
+    for n in 1..=if impacts > 1 { impacts } else { 0 } {
+        let definition = "energy lost over the N-th episode of contact / largest kinetic + strain energy";
+        let value = energy_lost_at(history, n);
+        metrics.push(Metric { name: format!("energy_lost:{n}").into(), value, unit: String::new(), definition });
+    }
+    for (definition, value) in PRESSURE.iter().filter_map(|(d, value)| Some((d, value(run)?))) {
+        let (name, unit) = (definition.name.into(), definition.unit.label(history));
+        metrics.push(Metric { name, value: Some(value), unit, definition: definition.meaning });
+    }
+    for column in probe_columns(run) {
+        for (Definition { name, unit, meaning, .. }, value) in &COLUMNS {
+            let unit = if *unit == Unit::Column { history.unit(column).to_owned() } else { String::new() };
+            let name = format!("{column}:{name}").into();
+            metrics.push(Metric { name, value: value(history, column), unit, definition: meaning });
+        }
+        for (definition, value) in FREE.iter().filter_map(|(d, value)| Some((d, value(history, column)?))) {
+            let (name, unit) = (format!("{column}:{}", definition.name).into(), definition.unit.label(history));
+            metrics.push(Metric { name, value: Some(value), unit, definition: definition.meaning });
+        }
+    }
+    for (definition, value) in &WORK {
+        let (unit, value) = (definition.unit.label(history), value(run));
+        metrics.push(Metric { name: definition.name.into(), value, unit, definition: definition.meaning });
+    }
+    metrics
+}

@@ -1,0 +1,64 @@
+//! The striker, the body whose centre moves fastest before the first contact, and how it comes off.
+//!
+//! ```text
+//! restitution    −(v⁺·n)/(v⁻·n) of its centre; n along the impulse of the first episode
+//! apex           vertex of the parabola through the highest row of its centre and the neighbours
+//! ```
+
+use super::episode::{Episode, first_episode};
+use super::facts::{Facts, norms, vector};
+use super::samples::extreme;
+use crate::History;
+
+/// Name of the body whose centre is fastest in the row before the first contact (the first row, if there is none).
+pub fn striker(history: &History) -> Option<&str> {
+    let row = first_episode(history).map_or(0, |e| e.start.saturating_sub(1));
+    let bodies = history.columns.iter().filter_map(|c| c.name.strip_suffix(".velocity_x"));
+    let speeds = bodies.filter_map(|b| Some((b, *norms(&vector(history, &format!("{b}.velocity"))).get(row)?)));
+    speeds.reduce(|best, next| if next.1 > best.1 { next } else { best }).map(|(body, _)| body)
+}
+
+/// −(v⁺·n)/(v⁻·n) of the striker's centre; n along the impulse of the first episode.
+pub(super) fn restitution(history: &History, episode: Episode) -> Option<f64> {
+    let (before, after) = (episode.start.checked_sub(1)?, episode.end?);
+    let impulse = vector(history, "contact_impulse");
+    let velocity = vector(history, &format!("{}.velocity", striker(history)?));
+    let along = |row: usize| velocity.iter().zip(&impulse).map(|(v, p)| v[row] * (p[after] - p[before])).sum::<f64>();
+    let value = -along(after) / along(before);
+    value.is_finite().then_some(value)
+}
+
+/// Time and rise of the apex: the vertex of the parabola through the highest row and its neighbours.
+pub(super) fn apex(facts: &Facts) -> Option<(f64, f64)> {
+    let history = facts.history;
+    let center = *vector(history, &format!("{}.center", striker(history)?)).last()?;
+    let after = facts.first()?.end?;
+    let (i, top) = extreme(&center[after..], f64::gt).map(|(i, x)| (i + after, x))?;
+    let (t, y) = (history.times(), center);
+    // Still rising when the record ends: the apex was not reached.
+    if i + 1 == y.len() {
+        return None;
+    }
+    if i == after {
+        return Some((t[i], top - y[0]));
+    }
+    let slope = |a: usize, b: usize| (y[b] - y[a]) / (t[b] - t[a]);
+    let (left, right) = (slope(i - 1, i), slope(i, i + 1));
+    let curvature = (right - left) / (0.5 * (t[i + 1] - t[i - 1]));
+    let there = left + 0.5 * curvature * (t[i] - t[i - 1]);
+    if curvature == 0.0 {
+        return Some((t[i], top - y[0]));
+    }
+    Some((t[i] - there / curvature, top - 0.5 * there * there / curvature - y[0]))
+}
+
+/// Time at which the velocity of the striker's centre along the impulse of the first episode changes its sign, linear between rows.
+pub(super) fn turning_time(facts: &Facts) -> Option<f64> {
+    let (history, rows) = (facts.history, facts.rows.clone()?);
+    let impulse = [facts.impulse(0), facts.impulse(1)];
+    let velocity = vector(history, &format!("{}.velocity", striker(history)?));
+    let along = |row: usize| velocity.iter().zip(impulse).map(|(v, p)| v[row] * p.unwrap_or_default()).sum::<f64>();
+    let before = (rows.start..rows.end - 1).find(|&i| along(i) < 0.0 && along(i + 1) >= 0.0)?;
+    let (a, b) = (along(before), along(before + 1));
+    Some(facts.time(before) + (facts.time(before + 1) - facts.time(before)) * a / (a - b))
+}

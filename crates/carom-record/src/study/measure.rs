@@ -1,0 +1,135 @@
+//! What a goal ranks by: its candidates in order, the first established of which ranks, and the errors of all arms by it.
+
+use super::compared::{Compared, established, is_stress, is_trajectory};
+use super::design::Goal;
+use super::reference::{IDEAL, Reference, Standing};
+use super::row::Row;
+
+/// What ranks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measure {
+    /// Name of the metric, or of what was made of columns.
+    pub name: String,
+    /// In words.
+    pub words: String,
+    /// How far the errors may be off.
+    pub uncertainty: f64,
+    /// Measures that stood before it, and why they do not rank.
+    pub passed_over: Vec<(String, String)>,
+}
+
+/// What a goal may rank by, in order.
+pub(super) enum Candidate {
+    Metric(&'static str),
+    Columns(&'static str, fn(&str) -> bool),
+    /// A metric of columns.
+    OfColumns(&'static str, fn(&str) -> bool),
+}
+
+/// Those of a goal.
+pub(super) fn candidates(goal: Goal) -> Vec<Candidate> {
+    match goal {
+        Goal::Energy => vec![Candidate::Metric("energy_drift")],
+        Goal::Force => ["force_variation", "force_high_frequency", "peak_mean_force", "impulse_y", "impulse_x"]
+            .map(Candidate::Metric)
+            .into(),
+        Goal::Stress => vec![
+            Candidate::OfColumns("variation", is_stress),
+            Candidate::OfColumns("peak_mean", is_stress),
+            Candidate::Columns("stresses", is_stress),
+        ],
+        Goal::Trajectory | Goal::Cost => vec![Candidate::Columns("displacements", is_trajectory)],
+    }
+}
+
+/// What a metric is compared with.
+pub fn standing(reference: Option<&Reference>, metric: &str) -> Standing {
+    if IDEAL.contains(&metric) {
+        return Standing::Established { value: 0.0, uncertainty: 0.0 };
+    }
+    reference.map_or_else(|| Standing::Not("the study has no reference".to_owned()), |r| r.metric(metric))
+}
+
+/// |m − r|, relative where r is not 0.
+pub fn error(value: f64, right: f64) -> f64 {
+    if right == 0.0 { value.abs() } else { ((value - right) / right).abs() }
+}
+
+/// What a measure is taken from.
+pub(super) struct Judge<'a> {
+    pub(super) rows: &'a [Row],
+    pub(super) compared: &'a [Option<Compared>],
+    pub(super) reference: Option<&'a Reference>,
+}
+
+impl Judge<'_> {
+    /// The measure a candidate gives with the errors of all arms, or why not.
+    pub(super) fn measured(&self, candidate: &Candidate) -> Result<(Measure, Vec<Option<f64>>), (String, String)> {
+        let measure = |name: &str, words: String, uncertainty: f64| Measure {
+            name: name.into(),
+            words,
+            uncertainty,
+            passed_over: Vec::new(),
+        };
+        match candidate {
+            Candidate::Metric(name) => match standing(self.reference, name) {
+                Standing::Not(why) => Err(((*name).to_owned(), why)),
+                Standing::Established { value, uncertainty } => {
+                    let errors = self.rows.iter().map(|row| row.value(name).map(|x| error(x, value))).collect();
+                    let words =
+                        if value == 0.0 { format!("{name}, which should be 0") } else { format!("error of {name}") };
+                    Ok((
+                        measure(name, words, if value == 0.0 { uncertainty } else { (uncertainty / value).abs() }),
+                        errors,
+                    ))
+                }
+            },
+            Candidate::Columns(name, kind) => {
+                let Some(reference) = self.reference else {
+                    return Err(((*name).to_owned(), "the study has no reference".to_owned()));
+                };
+                let columns = established(reference, *kind);
+                if columns.is_empty() {
+                    return Err(((*name).to_owned(), "the reference establishes no such column".to_owned()));
+                }
+                let squares = columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
+                let uncertainty = (squares.sum::<f64>() / columns.len() as f64).sqrt();
+                let errors = self.compared.iter().map(|c| c.as_ref().and_then(|c| c.mean(&columns))).collect();
+                let words = format!("deviation of {} from the reference, over their range", columns.join(", "));
+                Ok((measure(&format!("deviation of {name}"), words, uncertainty), errors))
+            }
+            Candidate::OfColumns(what, kind) => {
+                let none = |why: &str| Err((format!("{what} of stresses"), why.to_owned()));
+                let Some(reference) = self.reference else { return none("the study has no reference") };
+                let names = reference.columns().into_iter().filter(|c| kind(c)).map(|c| format!("{c}:{what}"));
+                let known: Vec<(String, f64, f64)> = names
+                    .filter_map(|n| {
+                        let (value, off) = reference.metric(&n).established().filter(|(v, _)| *v > 0.0)?;
+                        Some((n, value, off / value))
+                    })
+                    .collect();
+                if known.is_empty() {
+                    return none("the refinement of the reference does not establish it for any stress");
+                }
+                let mean = |row: &Row| {
+                    let each: Option<Vec<f64>> =
+                        known.iter().map(|(n, right, _)| row.value(n).map(|x| error(x, *right))).collect();
+                    each.map(|e| e.iter().sum::<f64>() / e.len() as f64)
+                };
+                let uncertainty = known.iter().map(|k| k.2).fold(0.0, f64::max);
+                let words = format!("error of {}", known.iter().map(|k| k.0.as_str()).collect::<Vec<_>>().join(", "));
+                Ok((measure(&format!("{what} of stresses"), words, uncertainty), self.rows.iter().map(mean).collect()))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_relative_but_for_zero() {
+        assert_eq!((error(-0.5, 0.0), error(3.0, -2.0), error(2.0, 2.0)), (0.5, 2.5, 0.0));
+    }
+}

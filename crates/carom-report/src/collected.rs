@@ -1,0 +1,122 @@
+//! What the page of a study keeps of the records of its arms: columns, thinned, and how each record came about.
+
+use carom_record::Run;
+use carom_record::metrics::{contact_force, probe_columns};
+use carom_record::study::checks::fingerprint;
+use carom_record::study::reference::FORCE;
+
+use crate::labels::{symbol, words};
+
+/// Columns shown besides those of the probes: name, label, caption.
+const OTHERS: [(&str, &str, &str); 4] = [
+    (FORCE, "|F|", "size of the contact force"),
+    ("contact_impulse_x", "P_{x}", "contact impulse along x"),
+    ("contact_impulse_y", "P_{y}", "contact impulse along y"),
+    ("dissipation", "dissipation", "energy dissipated so far; negative: created"),
+];
+
+/// A column of all arms, thinned.
+pub(crate) struct Column {
+    pub(crate) name: String,
+    pub(crate) unit: String,
+    pub(crate) curves: Vec<(usize, Vec<f64>, Vec<f64>)>,
+}
+
+/// What the record of an arm says of how it came about.
+pub(crate) struct Origin {
+    /// Number of the arm.
+    pub(crate) arm: usize,
+    /// Hash of its input.
+    pub(crate) input: String,
+    /// Fingerprint of its tables.
+    pub(crate) record: String,
+    /// Rejected steps.
+    pub(crate) rejected: u64,
+    /// Events that are no change of contact.
+    pub(crate) told: usize,
+}
+
+impl Origin {
+    /// From the record of an arm.
+    pub(crate) fn of(arm: usize, run: &Run) -> Self {
+        let told = run.log.iter().filter(|e| ["fallback", "cycle", "no-stress"].contains(&e.kind.as_str())).count();
+        let rejected = run.manifest.counters.get("rejected").copied().unwrap_or_default();
+        let (input, record) = (run.manifest.input_hash.clone(), fingerprint(&run.directory).unwrap_or_default());
+        Self { arm, input, record, rejected, told }
+    }
+}
+
+/// Those of all arms.
+#[derive(Default)]
+pub(crate) struct Origins {
+    pub(crate) arms: Vec<Origin>,
+}
+
+/// Adds the columns of an arm.
+pub(crate) fn collect(columns: &mut Vec<Column>, arm: usize, run: &Run) {
+    let force = contact_force(&run.history);
+    if force.iter().any(|f| *f > 0.0) {
+        let (x, y) = thinned(run.times(), &force);
+        let unit = run.history.unit("contact_force_x");
+        put(columns, FORCE, unit, (arm, x, y));
+    }
+    let nonzero = |name: &&str| run.column(name).is_some_and(|c| c.iter().any(|x| *x != 0.0));
+    let others = OTHERS[1..].iter().map(|other| other.0).filter(nonzero);
+    for name in probe_columns(run).into_iter().chain(others) {
+        let Some(values) = run.column(name) else { continue };
+        let (x, y) = thinned(run.times(), values);
+        put(columns, name, run.history.unit(name), (arm, x, y));
+    }
+}
+
+fn put(columns: &mut Vec<Column>, name: &str, unit: &str, curve: (usize, Vec<f64>, Vec<f64>)) {
+    match columns.iter_mut().find(|c| c.name == name) {
+        Some(column) => column.curves.push(curve),
+        None => columns.push(Column { name: name.to_owned(), unit: unit.to_owned(), curves: vec![curve] }),
+    }
+}
+
+/// A curve thinned to the first, lowest, highest and last point of each of 1600 spans of time, more than a figure has pixels.
+fn thinned(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    const SPANS: usize = 1600;
+    if times.len() <= 4 * SPANS {
+        return (times.to_vec(), values.to_vec());
+    }
+    let keep = (0..SPANS).flat_map(|k| {
+        let rows = k * times.len() / SPANS..(k + 1) * times.len() / SPANS;
+        let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
+        let mut keep =
+            [Some(rows.start), rows.clone().min_by(by_value), rows.clone().max_by(by_value), Some(rows.end - 1)];
+        keep.sort_unstable();
+        keep.into_iter().flatten()
+    });
+    let mut keep: Vec<usize> = keep.collect();
+    keep.dedup();
+    (keep.iter().map(|&i| times[i]).collect(), keep.iter().map(|&i| values[i]).collect())
+}
+
+/// Symbol and words of a column.
+pub(crate) fn named(column: &str) -> (String, String) {
+    match (OTHERS.iter().find(|o| o.0 == column), column.rsplit_once('.')) {
+        (Some((_, label, caption)), _) => ((*label).to_string(), (*caption).to_string()),
+        (None, Some((probe, quantity))) => {
+            (symbol(quantity), format!("{} {} at {probe}", words(quantity), symbol(quantity)))
+        }
+        _ => (column.to_owned(), column.to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_extremes() {
+        let times: Vec<f64> = (0..100_000).map(f64::from).collect();
+        let mut values = vec![0.0; times.len()];
+        (values[31_234], values[67_890]) = (9.0, -5.0);
+        let (x, y) = thinned(&times, &values);
+        assert!(x.len() <= 6400 && x.is_sorted() && x[0] == 0.0 && x.last() == Some(&99_999.0));
+        assert!(y.contains(&9.0) && y.contains(&-5.0));
+    }
+}

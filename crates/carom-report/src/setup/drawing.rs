@@ -1,0 +1,109 @@
+//! The case as a drawing: where its nodes, sides and bodies are on the page.
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+
+use carom_record::{Block, FieldSet, Run};
+use serde_json::Value;
+
+use crate::palette::LINES;
+use crate::pen::{Pen, Point, open_grid};
+use crate::symbols::{direction, plus};
+
+/// Colours of the two sides of a contact.
+pub(super) const SECONDARY: &str = LINES[2];
+pub(super) const PRIMARY: &str = LINES[1];
+/// Height of a bar in the picture.
+pub(super) const BAR: f64 = 26.0;
+/// Fills of bodies, in turn.
+pub(super) const BODIES: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
+
+/// A side's polyline with outward unit vectors, in pixels.
+pub(super) type Walk = Vec<(Point, Point)>;
+
+/// The case, and where it stands on the page.
+pub(super) struct Setup<'a> {
+    pub(super) run: &'a Run,
+    pub(super) fields: &'a FieldSet,
+    /// Where the points of `fields` are.
+    pub(super) points: Vec<Point>,
+    pub(super) flat: bool,
+    pub(super) scale: f64,
+    pub(super) origin: Point,
+    /// A point of the body inside an edge, by the numbers of its ends.
+    pub(super) inside: HashMap<[usize; 2], Point>,
+}
+
+impl Setup<'_> {
+    pub(super) fn case(&self) -> &Value {
+        &self.run.manifest.case
+    }
+
+    pub(super) fn to(&self, p: Point) -> Point {
+        [self.origin[0] + p[0] * self.scale, self.origin[1] - p[1] * self.scale]
+    }
+
+    pub(super) fn node(&self, k: usize) -> Point {
+        self.points.get(k).map_or([f64::NAN; 2], |p| self.to(*p))
+    }
+
+    pub(super) fn color(k: usize) -> &'static str {
+        BODIES[k % BODIES.len()]
+    }
+
+    /// Middle of a body's points.
+    pub(super) fn center(&self, body: &str) -> Option<Point> {
+        let block: &Block = self.fields.blocks.iter().find(|b| b.body == body)?;
+        let mut sum = [0.0; 2];
+        block.connectivity.iter().for_each(|&k| sum = plus(sum, 1.0, self.node(k)));
+        Some(sum.map(|s| s / block.connectivity.len() as f64))
+    }
+
+    /// Where a reference place is, as far as the nearest node tells.
+    pub(super) fn moved(&self, [x, y]: Point) -> Point {
+        let distance = |p: &[f64; 3]| (p[0] - x).hypot(p[1] - y);
+        let near = self.fields.points.iter().zip(&self.points).min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
+        near.map_or([x, y], |(from, to)| [x + to[0] - from[0], y + to[1] - from[1]])
+    }
+
+    /// Degree of the cells a side belongs to.
+    pub(super) fn degree(&self, side: &str) -> usize {
+        let body = side.split_once('.').map_or(side, |s| s.0);
+        self.fields.blocks.iter().find(|b| b.body == body).map_or(1, |b| b.degree)
+    }
+
+    /// The chains of a side.
+    pub(super) fn walks(&self, side: &str) -> Vec<Walk> {
+        let chains = self.run.manifest.sides.get(side).map_or(&[][..], Vec::as_slice);
+        let degree = self.degree(side);
+        chains.iter().map(|chain| self.walk(side, chain, degree)).filter(|walk| walk.len() > 1).collect()
+    }
+
+    fn walk(&self, side: &str, chain: &[usize], degree: usize) -> Walk {
+        if let (true, [k]) = (self.flat, chain) {
+            // An end of a bar, as a vertical line.
+            let [x, y] = self.node(*k);
+            let middle = self.center(side.split_once('.').map_or(side, |s| s.0)).map_or(x, |c| c[0]);
+            let n = [if x < middle { -1.0 } else { 1.0 }, 0.0];
+            return vec![([x, y - 0.5 * BAR], n), ([x, y + 0.5 * BAR], n)];
+        }
+        let outward = |i: usize| {
+            let facet = (i / degree).min((chain.len() - 2) / degree) * degree;
+            let (a, b) = (chain[facet], chain[(facet + degree).min(chain.len() - 1)]);
+            let t = direction(self.node(a), self.node(b));
+            let within = self.inside.get(&[a.min(b), a.max(b)]).map_or([0.0; 2], |p| direction(self.node(a), *p));
+            let n = [-t[1], t[0]];
+            if n[0] * within[0] + n[1] * within[1] > 0.0 { [t[1], -t[0]] } else { n }
+        };
+        if chain.len() < 2 { Vec::new() } else { (0..chain.len()).map(|i| (self.node(chain[i]), outward(i))).collect() }
+    }
+
+    pub(super) fn stroke(out: &mut String, pen: &Pen, color: &str) {
+        let d = pen.data();
+        let _ = writeln!(
+            out,
+            "{}<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"64\" stroke-linecap=\"round\"/>\n</g>",
+            open_grid()
+        );
+    }
+}

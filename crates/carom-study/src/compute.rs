@@ -1,0 +1,34 @@
+//! One arm of a study computed in its directory, from its start or from where it was left.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use carom::case::Case;
+use carom::recording::{self, Options, Progress};
+use carom_record::study::StudyManifest;
+
+use crate::error::StudyError;
+use crate::jobs::Ended;
+
+/// One arm from where it is to its end.
+pub(crate) fn compute(
+    manifest: &StudyManifest,
+    directory: &Path,
+    i: usize,
+    begun: bool,
+    observe: &mut dyn FnMut(&Progress),
+    stop: &AtomicBool,
+) -> Result<Ended, StudyError> {
+    let arm = &manifest.arms[i];
+    let path = directory.join(&arm.directory);
+    let options = Options { threads: 1 };
+    let done = if begun {
+        recording::resume(&path, options, observe, stop)
+    } else {
+        let case: Case = serde_json::from_value(arm.case.clone())
+            .map_err(|e| StudyError::Incompatible { arm: arm.name.clone(), what: e.to_string() })?;
+        let source = manifest.source_of(arm);
+        recording::run(&case, source, &path, options, observe, stop)
+    };
+    done.map(Ended::of).map_err(|source| StudyError::Arm { arm: arm.name.clone(), source })
+}

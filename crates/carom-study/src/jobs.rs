@@ -1,0 +1,84 @@
+//! Runs side by side, as many at a time as there are jobs, and what is told of them meanwhile.
+
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError, mpsc};
+
+use carom::recording::{self, End, Progress};
+use carom_record::Status;
+
+/// What happens to an arm, told by its number.
+#[derive(Clone, Debug)]
+pub enum Event {
+    /// It was finished, or had failed, before.
+    Kept(usize),
+    /// It begins, or goes on.
+    Began(usize),
+    /// After an accepted step.
+    Progress(usize, Progress),
+    /// It ended.
+    Ended(usize, Ended),
+}
+
+/// How an arm ended.
+#[derive(Clone, Debug)]
+pub struct Ended {
+    /// Finished, failed or stopped.
+    pub status: Status,
+    /// Why it did not finish.
+    pub reason: Option<String>,
+    /// Wall seconds of this process.
+    pub wall: f64,
+}
+
+impl Ended {
+    pub(crate) fn of(outcome: recording::Outcome) -> Self {
+        let (status, reason) = match outcome.end {
+            End::Finished => (Status::Finished, None),
+            End::Interrupted => (Status::Stopped, None),
+            End::Stopped(stopped) => (Status::Failed, Some(stopped.to_string())),
+        };
+        Self { status, reason, wall: outcome.wall }
+    }
+}
+
+/// Computes numbered runs, as many at a time as there are jobs, begun in the order given; stops at the first error.
+pub(crate) fn side_by_side<E: Send>(
+    order: VecDeque<usize>,
+    jobs: usize,
+    one: &(dyn Fn(usize, &mut dyn FnMut(&Progress)) -> Result<Ended, E> + Sync),
+    observe: &mut dyn FnMut(&Event),
+    stop: &AtomicBool,
+) -> Result<(), E> {
+    let queue = Mutex::new(order);
+    let failure = Mutex::new(None);
+    let halted = AtomicBool::new(false);
+    let work = |send: &mpsc::Sender<Event>| {
+        while !stop.load(Ordering::Relaxed) && !halted.load(Ordering::Relaxed) {
+            let Some(i) = locked(&queue).pop_front() else { return };
+            // A listener that has gone must not stop the runs.
+            let _ = send.send(Event::Began(i));
+            match one(i, &mut |p| drop(send.send(Event::Progress(i, *p)))) {
+                Ok(ended) => drop(send.send(Event::Ended(i, ended))),
+                Err(error) => {
+                    halted.store(true, Ordering::Relaxed);
+                    locked(&failure).get_or_insert(error);
+                }
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        let (send, events) = mpsc::channel();
+        for _ in 0..jobs.max(1) {
+            let (send, work) = (send.clone(), &work);
+            scope.spawn(move || work(&send));
+        }
+        drop(send);
+        events.iter().for_each(|event| observe(&event));
+    });
+    failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

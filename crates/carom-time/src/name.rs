@@ -1,0 +1,30 @@
+//! A way to ask for a scheme, as in a case file.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+/// A way to ask for a scheme.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Name {
+    /// As in [`crate::KINDS`].
+    pub kind: &'static str,
+    /// Parameters by key.
+    pub parameters: BTreeMap<&'static str, f64>,
+}
+
+impl std::fmt::Display for Name {
+    /// As in a case file.
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "{{ kind = \"{}\"", self.kind)?;
+        for (key, value) in &self.parameters {
+            write!(f, ", {key} = {}", short(*value))?;
+        }
+        write!(f, " }}")
+    }
+}
+
+/// A number for reading: twelve significant digits, no trailing noise.
+pub(crate) fn short(x: f64) -> String {
+    format!("{x:.11e}").parse::<f64>().unwrap_or(x).to_string()
+}

@@ -1,0 +1,32 @@
+//! Parameters of schemes: what a case file may say of one, and those that several kinds share.
+
+use std::ops::Bound::{self, Excluded, Included, Unbounded};
+
+/// A parameter: a finite number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// As written in a case file.
+    pub key: &'static str,
+    /// Ends of the values it takes.
+    pub range: (Bound<f64>, Bound<f64>),
+    /// What it means, a sentence.
+    pub meaning: &'static str,
+    /// A value, as TOML.
+    pub example: &'static str,
+}
+
+/// ρ∞, the parameter of most.
+pub(crate) const RHO_INF: Parameter = Parameter {
+    key: "rho_inf",
+    range: (Included(0.0), Included(1.0)),
+    meaning: "Spectral radius at infinite frequency: 0 damps it within steps, 1 not at all.",
+    example: "0.8",
+};
+
+/// Newmark's β.
+pub(crate) const BETA: Parameter =
+    Parameter { key: "beta", range: (Excluded(0.0), Unbounded), meaning: "Newmark's β.", example: "0.25" };
+
+/// Newmark's γ.
+pub(crate) const GAMMA: Parameter =
+    Parameter { key: "gamma", range: (Excluded(0.0), Unbounded), meaning: "Newmark's γ.", example: "0.5" };
