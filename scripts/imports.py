@@ -20,7 +20,8 @@ from pathlib import Path
 ORDER = [
     ["carom-algebra", "carom-formula", "carom-time"],
     ["carom-solid", "carom-record"],
-    ["carom-contact"],
+    ["carom-contact", "carom-case"],
+    ["carom-mechanics"],
     ["carom", "carom-report"],
     ["carom-study"],
     ["carom-cli"],

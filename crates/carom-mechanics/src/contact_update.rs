@@ -93,7 +93,7 @@ impl ActiveSets {
         // A spring presses or does not by its gap alone.
         let constraints = model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.is_constraint());
         for (k, contact) in constraints {
-            let stiffness = equations.mean_stiffness(system);
+            let stiffness = system.mean_stiffness(equations);
             let pairs = &mut evaluation.at.pairings[k].pairs;
             let contender = |(pair, row): (&carom_contact::Pair, carom_contact::Row)| Contender {
                 active: pair.active,

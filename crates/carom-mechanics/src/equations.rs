@@ -11,8 +11,7 @@ use crate::balance::{Forces, contact_weights, known_into, mean_acceleration, res
 use crate::model::{LoadsAt, Model, Prescribed};
 use crate::rejected::Rejected;
 use crate::state::State;
-use crate::system::System;
-use crate::workspace::{Timings, timed};
+use crate::timings::{Timings, timed};
 
 /// The unknowns of a stage.
 #[derive(Clone, Debug, Default)]
@@ -280,18 +279,5 @@ impl<'a> Equations<'a> {
             }
         }
         Ok(())
-    }
-
-    /// What the last digits of the positions alone make of the residual.
-    pub(crate) fn round_off(&self, system: &System) -> f64 {
-        let diagonal = system.diagonal(self.mass_factor(), self.stiffness_factor());
-        16.0 * f64::EPSILON * self.model.scale * diagonal.map(|d| d * d).sum::<f64>().sqrt()
-    }
-
-    /// Mean diagonal of the tangent: makes a gap comparable with a multiplier.
-    pub(crate) fn mean_stiffness(&self, system: &System) -> f64 {
-        let sum: f64 = system.diagonal(self.mass_factor(), self.stiffness_factor()).sum();
-        // Before a first tangent without inertia there is nothing to compare with.
-        if sum > 0.0 { sum / self.model.free.len() as f64 } else { 1.0 }
     }
 }

@@ -15,7 +15,8 @@
 //! ```
 
 use crate::constraints::Constraints;
-use crate::model::{Model, dot};
+use crate::model::Model;
+use crate::sums::dot;
 use crate::system::System;
 
 /// Iterations per vector at most, and the relative change of the quotient at which it is taken.

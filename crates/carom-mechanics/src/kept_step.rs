@@ -14,7 +14,8 @@ use crate::kept::{Keeper, Point};
 use crate::rejected::Rejected;
 use crate::settings::Tangent;
 use crate::system::HoldError;
-use crate::workspace::{Workspace, timed};
+use crate::timings::timed;
+use crate::workspace::Workspace;
 
 /// Whether a tangent of another time serves: not where the iteration itself moves supports, loads turn with the body, nothing but the tangent holds a
 /// body, forces are a discrete gradient or springs, or a predictor is projected between the steps.

@@ -22,7 +22,9 @@ pub mod stability;
 mod start;
 mod state;
 mod stepper;
+mod sums;
 mod system;
+mod timings;
 mod workspace;
 
 pub use kept::{Kept, Point};
@@ -33,4 +35,6 @@ pub use simulation::{Grid, GridReport, LogEvent, Simulation, Stopped};
 pub use start::Before;
 pub use state::{Ahead, Halved, Ledger, Means, Previous, State};
 pub use stepper::{Accepted, Explicit, Implicit, Impulsive, StepReport, Stepper};
-pub use workspace::{Timings, Workspace};
+pub use sums::dot;
+pub use timings::Timings;
+pub use workspace::Workspace;

@@ -10,7 +10,7 @@
 
 use std::collections::VecDeque;
 
-use crate::model::dot;
+use crate::sums::dot;
 
 /// Numbers of a block.
 const BLOCK: usize = 2048;

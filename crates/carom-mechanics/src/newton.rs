@@ -10,9 +10,12 @@ use crate::contact_update::{ActiveSets, Events, GAP_TOLERANCE, check_stuck, foll
 use crate::equations::{Equations, Evaluation, Iterate, Measure};
 use crate::kept::{Keeper, Kept};
 use crate::kept_step::{begin, keeps, kept_step};
+use crate::model::check_held;
 use crate::rejected::Rejected;
+use crate::sums::max_abs;
 use crate::settings::{Settings, Tangent};
-use crate::workspace::{Workspace, timed};
+use crate::timings::timed;
+use crate::workspace::Workspace;
 
 /// Below this step, relative to L, facets are handed over before the iteration with a kept tangent has converged.
 const CLOSE: f64 = 1e-5;
@@ -87,7 +90,7 @@ pub(crate) fn solve_stage(
         let (next, digits) = if keeper.full { (step, 1.0) } else { (step * shrinking.min(1.0), KEPT_DIGITS) };
         let settled = next <= settings.tolerance * model.scale
             && now.measure.residual
-                <= digits * settings.tolerance * now.measure.forces + equations.round_off(&work.system)
+                <= digits * settings.tolerance * now.measure.forces + work.system.round_off(equations)
             && now.measure.gap <= GAP_TOLERANCE * model.scale;
         let mut changed = sets.change(equations, &mut now, &work.system, settled)?;
         if keep && !settled && follows < FOLLOWS && follow(model, &mut now, &mut effort.events) {
@@ -186,7 +189,7 @@ pub(crate) fn full_step(
 ) -> Result<(), Rejected> {
     let Equations { model, state, stage, .. } = equations;
     if stage.is_static() {
-        model.check_held(&now.place, rows.rows.iter())?;
+        check_held(&model.parts, &model.unheld, &now.place, rows.rows.iter())?;
     }
     // What moved supports still have to go pulls at their neighbours.
     let Workspace { system, timings, right, pull, correction, multipliers, .. } = work;
@@ -269,8 +272,4 @@ fn take(
         at.pairings[k].pairs[p].lambda += length * multiplier;
     }
     equations.evaluate(at, &mut work.spare, &mut work.timings)
-}
-
-pub(crate) fn max_abs(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |m: f64, v| if v.is_finite() { m.max(v.abs()) } else { f64::INFINITY })
 }

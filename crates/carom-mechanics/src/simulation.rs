@@ -8,7 +8,8 @@ use crate::rejected::Rejected;
 use crate::start::{Before, start};
 use crate::state::State;
 use crate::stepper::Stepper;
-use crate::workspace::{Timings, Workspace};
+use crate::timings::Timings;
+use crate::workspace::Workspace;
 
 /// Halvings of Δt before the run stops.
 const MOST_HALVINGS: u32 = 12;

@@ -7,7 +7,8 @@
 
 use carom_solid::cell_lumped_mass;
 
-use crate::model::{Model, dot};
+use crate::model::Model;
+use crate::sums::dot;
 use crate::system::System;
 
 /// Share of 2/ω_max that is accepted as a step.

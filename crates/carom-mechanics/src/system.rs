@@ -19,6 +19,7 @@ use carom_solid::Inverted;
 
 use crate::cells::Cells;
 use crate::constraints::Constraints;
+use crate::equations::Equations;
 use crate::held::Held;
 use crate::kept::Point;
 use crate::model::{LoadsAt, Model};
@@ -185,6 +186,19 @@ impl System {
     pub(crate) fn diagonal(&self, mass_factor: f64, stiffness_factor: f64) -> impl Iterator<Item = f64> + '_ {
         let [mass, stiffness] = &self.diagonals;
         mass.iter().zip(stiffness).map(move |(m, k)| mass_factor * m + stiffness_factor * k)
+    }
+
+    /// What the last digits of the positions alone make of the residual.
+    pub(crate) fn round_off(&self, equations: &Equations) -> f64 {
+        let diagonal = self.diagonal(equations.mass_factor(), equations.stiffness_factor());
+        16.0 * f64::EPSILON * equations.model.scale * diagonal.map(|d| d * d).sum::<f64>().sqrt()
+    }
+
+    /// Mean diagonal of the tangent: makes a gap comparable with a multiplier.
+    pub(crate) fn mean_stiffness(&self, equations: &Equations) -> f64 {
+        let sum: f64 = self.diagonal(equations.mass_factor(), equations.stiffness_factor()).sum();
+        // Before a first tangent without inertia there is nothing to compare with.
+        if sum > 0.0 { sum / self.base.size() as f64 } else { 1.0 }
     }
 
     /// out += K x over the free dofs, with the last tangent.

@@ -1,4 +1,4 @@
-//! What a step computes in: scratch that outlives it, and clocks.
+//! What a step computes in: buffers that outlive it.
 
 use crate::equations::Spare;
 use crate::mixing::Mixing;
@@ -6,6 +6,7 @@ use crate::model::Model;
 use crate::state::State;
 use crate::stepper::Scratch;
 use crate::system::System;
+use crate::timings::Timings;
 
 /// Buffers that are rebuilt at will: no result travels through them.
 pub struct Workspace {
@@ -60,25 +61,4 @@ impl Workspace {
     pub(crate) fn put(&mut self, state: State) {
         self.states.push(state);
     }
-}
-
-/// Wall seconds by phase, for `--profile`.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Timings {
-    /// Cell forces and tangents.
-    pub assembly: f64,
-    /// Detection, gaps and their derivatives.
-    pub contact: f64,
-    /// Filling, ordering and factoring the linear system.
-    pub factor: f64,
-    /// Solving with the factors.
-    pub solve: f64,
-}
-
-/// Runs `work` and adds the seconds it took to `clock`.
-pub(crate) fn timed<T>(clock: &mut f64, work: impl FnOnce() -> T) -> T {
-    let began = std::time::Instant::now();
-    let done = work();
-    *clock += began.elapsed().as_secs_f64();
-    done
 }

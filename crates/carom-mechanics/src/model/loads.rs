@@ -5,7 +5,8 @@ use carom_formula::Formula;
 use carom_solid::LoadedSide;
 
 use super::formulas::{NoValue, value};
-use super::{Manufactured, Part};
+use super::manufactured::Manufactured;
+use super::part::Part;
 
 /// A factor over time.
 pub type Amplitude = Box<dyn Fn(f64) -> f64 + Send + Sync>;
@@ -102,7 +103,7 @@ impl Loads {
         for load in &self.body_forces {
             let factor = load.factor(time);
             let density = |place: &[f64], out: &mut [f64]| load.vector_into(place, time, factor, out);
-            add_body_force(&parts[load.on], density, &mut out.dead)?;
+            parts[load.on].add_body_force(density, &mut out.dead)?;
         }
         if let Some(motion) = &self.manufactured {
             motion.add_load(parts, time, &mut out.dead)?;
@@ -145,31 +146,4 @@ impl Loads {
             }
         }
     }
-}
-
-/// fᵃ += ∫φᵃ b dΩ₀ with b per reference volume, or why b has no value.
-pub(super) fn add_body_force(
-    part: &Part,
-    density: impl Fn(&[f64], &mut [f64]) -> Result<(), NoValue>,
-    force: &mut [f64],
-) -> Result<(), NoValue> {
-    let mesh = part.body.mesh();
-    let d = mesh.dimension();
-    let (mut local, mut b) = (vec![0.0; mesh.element.dofs()], vec![0.0; d]);
-    let mut refused = Ok(());
-    for cell in 0..mesh.cell_count() {
-        local.fill(0.0);
-        part.body.each_volume_point(cell, &mut |shape, place, volume| {
-            if refused.is_ok() {
-                refused = density(place, &mut b);
-            }
-            for (local, phi) in local.chunks_exact_mut(d).zip(shape) {
-                local.iter_mut().zip(&b).for_each(|(f, b)| *f += phi * volume * b);
-            }
-        });
-        for (dof, f) in part.cell_dofs(cell).iter().zip(&local) {
-            force[*dof as usize] += f;
-        }
-    }
-    refused
 }

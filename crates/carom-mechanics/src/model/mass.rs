@@ -2,7 +2,7 @@
 
 use carom_solid::cell_lumped_mass;
 
-use super::Part;
+use super::part::Part;
 
 /// Symmetric matrix between nodes, compressed by rows, both triangles.
 #[derive(Clone, Debug, Default)]

@@ -6,8 +6,7 @@
 
 use carom_solid::Body;
 
-use super::Model;
-use crate::state::State;
+use super::part::Part;
 
 /// What can be recorded at a point; axes count from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,27 +39,27 @@ pub struct Probe {
 }
 
 impl Probe {
-    /// The recorded quantities in a state, in order; a stress is NaN where no cell at the point has one.
-    pub fn values(&self, model: &Model, state: &State, out: &mut Vec<f64>) {
-        let part = &model.parts[self.part];
+    /// The recorded quantities at positions, velocities and accelerations of all nodes, in order; a stress is NaN where no cell at the point has one.
+    pub fn values(&self, parts: &[Part], reference: &[f64], motion: [&[f64]; 3], out: &mut Vec<f64>) {
+        let (part, [y, v, a]) = (&parts[self.part], motion);
         let nodal = |field: &[f64], i: usize| {
             let (cell, xi) = &self.places[0];
             interpolated(&*part.body, *cell, xi, part.of(field), i)
         };
         for quantity in &self.record {
             out.push(match quantity {
-                Quantity::Displacement(i) => nodal(&state.y, *i) - nodal(&model.reference, *i),
-                Quantity::Velocity(i) => nodal(&state.v, *i),
-                Quantity::Acceleration(i) => nodal(&state.a, *i),
-                stress => self.mean(part.body.as_ref(), part.of(&state.y), *stress),
+                Quantity::Displacement(i) => nodal(y, *i) - nodal(reference, *i),
+                Quantity::Velocity(i) => nodal(v, *i),
+                Quantity::Acceleration(i) => nodal(a, *i),
+                stress => self.mean(part.body.as_ref(), part.of(y), *stress),
             });
         }
     }
 
-    /// Whether the stresses it records, if any, exist in a state.
-    pub fn has_stress(&self, model: &Model, state: &State) -> bool {
-        let part = &model.parts[self.part];
-        let y = part.of(&state.y);
+    /// Whether the stresses it records, if any, exist at positions.
+    pub fn has_stress(&self, parts: &[Part], y: &[f64]) -> bool {
+        let part = &parts[self.part];
+        let y = part.of(y);
         !self.record.iter().any(|q| is_stress(*q))
             || self.places.iter().any(|(c, xi)| part.body.point(*c, xi, y).is_ok())
     }

@@ -11,7 +11,7 @@
 //! or, nearest, every entry that was zeroed goes to the heavy node it belongs to, an entry between light nodes to their heavy neighbours: mass is kept, the
 //! centre is not.
 
-use super::Mass;
+use super::mass::Mass;
 
 /// Takes the mass of the light nodes of `nodes`, a body's, and gives it to the others.
 ///

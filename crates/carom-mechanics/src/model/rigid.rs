@@ -6,7 +6,7 @@
 
 use carom_contact::Row;
 
-use super::{Model, Part};
+use super::part::Part;
 
 /// Rows shorter than this (they are of order one) hold nothing.
 const SHORT: f64 = 1e-8;
@@ -131,27 +131,30 @@ fn null_space(size: usize, rows: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>
     basis.split_off(spanned)
 }
 
-impl Model {
-    /// Refuses pressing contacts, by their rows at positions `y`, that leave a body free to move as its supports do.
-    ///
-    /// # Errors
-    /// The body and its motion.
-    pub(crate) fn check_held<'a>(&self, y: &[f64], rows: impl Iterator<Item = Row<'a>>) -> Result<(), Unheld> {
-        if self.unheld.is_empty() {
-            return Ok(());
-        }
-        let d = self.dimension;
-        let row = |gap: Row| -> Vec<f64> {
-            let along = |mode: &Mode| {
-                let nodes = self.parts[mode.part].nodes();
-                let own = gap.entries().filter(|(dof, _)| nodes.contains(&(dof / d)));
-                own.map(|(dof, slope)| slope * mode.at(&y[dof / d * d..dof / d * d + d], dof % d)).sum::<f64>()
-            };
-            self.unheld.iter().map(along).collect()
-        };
-        let Some(free) = null_space(self.unheld.len(), rows.map(row)).into_iter().next() else { return Ok(()) };
-        let largest = (0..free.len()).max_by(|a, b| free[*a].abs().total_cmp(&free[*b].abs())).unwrap_or(0);
-        let mode = &self.unheld[largest];
-        Err(Unheld { body: self.parts[mode.part].name.clone(), motion: mode.motion() })
+/// Refuses pressing contacts, by their rows at positions `y`, that leave a body free to move as its supports do.
+///
+/// # Errors
+/// The body and its motion.
+pub(crate) fn check_held<'a>(
+    parts: &[Part],
+    free: &[Mode],
+    y: &[f64],
+    rows: impl Iterator<Item = Row<'a>>,
+) -> Result<(), Unheld> {
+    if free.is_empty() {
+        return Ok(());
     }
+    let row = |gap: Row| -> Vec<f64> {
+        let d = gap.dimension();
+        let along = |mode: &Mode| {
+            let nodes = parts[mode.part].nodes();
+            let own = gap.entries().filter(|(dof, _)| nodes.contains(&(dof / d)));
+            own.map(|(dof, slope)| slope * mode.at(&y[dof / d * d..dof / d * d + d], dof % d)).sum::<f64>()
+        };
+        free.iter().map(along).collect()
+    };
+    let Some(left) = null_space(free.len(), rows.map(row)).into_iter().next() else { return Ok(()) };
+    let largest = (0..left.len()).max_by(|a, b| left[*a].abs().total_cmp(&left[*b].abs())).unwrap_or(0);
+    let mode = &free[largest];
+    Err(Unheld { body: parts[mode.part].name.clone(), motion: mode.motion() })
 }

@@ -22,6 +22,7 @@ use carom_algebra::complementarity;
 use carom_contact::{Pairing, Rows};
 
 use super::watch::{active, approach, carry_into, depth, gap_at, measure_into};
+use super::scratch::Scratch;
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::constraints::independent_rows;
 use crate::contact_update::{GAP_TOLERANCE, search};
@@ -30,7 +31,8 @@ use crate::model::{LoadsAt, Model};
 use crate::rejected::Rejected;
 use crate::stability::lumped;
 use crate::state::State;
-use crate::workspace::{Workspace, timed};
+use crate::timings::timed;
+use crate::workspace::Workspace;
 
 /// Linearisations of the gaps in a step before it is rejected; two to five are usual.
 const ROUNDS: u32 = 60;
@@ -41,19 +43,6 @@ pub struct Explicit {
     mass: Vec<f64>,
     /// 1/m per dof; zero where held.
     inverse_mass: Vec<f64>,
-}
-
-/// Buffers of a step.
-#[derive(Debug, Default)]
-pub(crate) struct Scratch {
-    /// v_{n+½} without contact.
-    free: Vec<f64>,
-    /// Positions that are looked at, and forces of contact.
-    at: Vec<f64>,
-    pairings: Vec<Pairing>,
-    rows: Vec<Rows>,
-    impulses: Vec<f64>,
-    loads: LoadsAt,
 }
 
 impl Explicit {

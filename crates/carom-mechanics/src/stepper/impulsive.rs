@@ -26,11 +26,12 @@ use crate::contact_update::search;
 use crate::equations::{Equations, Evaluation, Iterate};
 use crate::ledger::{book_kinetic, open_work, work_of_loads};
 use crate::model::{LoadsAt, Model};
-use crate::newton::max_abs;
+use crate::sums::max_abs;
 use crate::rejected::Rejected;
 use crate::settings::Settings;
 use crate::state::State;
-use crate::workspace::{Workspace, timed};
+use crate::timings::timed;
+use crate::workspace::Workspace;
 
 /// A predicted gap above minus this fraction of L is open: at a tie round-off must not decide.
 const TIE: f64 = 1e-10;
@@ -166,7 +167,7 @@ impl Impulsive {
         for iteration in 0.. {
             let (size, forces) = (now.measure.residual, now.measure.forces);
             if step <= self.settings.tolerance * model.scale
-                && size <= self.settings.tolerance * forces + equations.round_off(&work.system)
+                && size <= self.settings.tolerance * forces + work.system.round_off(equations)
             {
                 return Ok(now);
             }

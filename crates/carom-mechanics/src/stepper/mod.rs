@@ -3,12 +3,13 @@
 mod explicit;
 mod implicit;
 mod impulsive;
+mod scratch;
 mod watch;
 
 pub use explicit::Explicit;
-pub(crate) use explicit::Scratch;
 pub use implicit::Implicit;
 pub use impulsive::Impulsive;
+pub(crate) use scratch::Scratch;
 
 use carom_contact::PairEvent;
 

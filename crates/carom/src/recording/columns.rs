@@ -189,7 +189,7 @@ pub(super) fn row(model: &Model, state: &State, dt: f64, report: &GridReport, we
         }
     }
     for probe in &model.probes {
-        probe.values(model, state, row);
+        probe.values(&model.parts, &model.reference, [&state.y, &state.v, &state.a], row);
     }
     if let Some(motion) = &model.loads.manufactured {
         row.extend(motion.errors(&model.parts, &state.y, state.time));

@@ -407,7 +407,7 @@ impl<'a> Session<'a> {
 
 fn stressed(simulation: &Simulation) -> Vec<bool> {
     let Simulation { model, state, .. } = simulation;
-    model.probes.iter().map(|probe| probe.has_stress(model, state)).collect()
+    model.probes.iter().map(|probe| probe.has_stress(&model.parts, &state.y)).collect()
 }
 
 fn bytes(state: &State) -> Result<Vec<u8>, RunError> {

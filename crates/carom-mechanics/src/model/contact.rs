@@ -1,0 +1,32 @@
+//! A contact of two sides, or of a side and a rigid plane.
+
+use carom_contact::{Interface, Kinematics};
+use carom_solid::FacetShape;
+
+/// A contact: where its surfaces are to each other, what its gaps are answered with, and what schemes are to do about it.
+pub struct Contact {
+    /// Name in the case.
+    pub name: String,
+    /// Gaps at positions.
+    pub kinematics: Box<dyn Kinematics>,
+    /// Law and enforcement.
+    pub interface: Box<dyn Interface>,
+    /// Body of the primary side; `None` for a rigid primary.
+    pub primary_part: Option<usize>,
+    /// Facets of the secondary side in global nodes: for consistent weights.
+    pub secondary_facets: Vec<Vec<usize>>,
+    /// Their shape.
+    pub secondary_shape: FacetShape,
+    /// Whether the predictor y + Δt v is kept out of the primary too.
+    pub predictor: bool,
+    /// Nodes of both sides, ascending.
+    pub surface: Vec<usize>,
+    /// Whether its force is all taken at the end of the step, not averaged with the scheme's weights.
+    pub at_the_end: bool,
+    /// Whether velocities and accelerations are projected where it begins.
+    pub projects: bool,
+    /// Whether the active set may change before Newton's method has converged.
+    pub within: bool,
+    /// Newton's e; 0 unless the scheme treats contact itself.
+    pub restitution: f64,
+}

@@ -1,0 +1,88 @@
+//! A body among the others: its nodes and dofs in the numbering of the model.
+
+use carom_solid::Body;
+
+use super::formulas::NoValue;
+
+/// A body and its place among the global nodes.
+pub struct Part {
+    /// Name in the case.
+    pub name: String,
+    /// Global number of its first node.
+    pub first_node: usize,
+    /// Forces, masses and stresses at positions.
+    pub body: Box<dyn Body>,
+    /// Total mass.
+    pub total_mass: f64,
+    /// Global dofs of its cells, cell after cell.
+    dofs: Vec<u32>,
+}
+
+impl Part {
+    /// A body whose nodes are numbered from `first_node` on.
+    pub fn new(name: String, first_node: usize, body: Box<dyn Body>) -> Self {
+        let mesh = body.mesh();
+        let (d, mut volumes) = (mesh.dimension(), vec![0.0; mesh.element.nodes()]);
+        let mut volume = 0.0;
+        for cell in 0..mesh.cell_count() {
+            body.cell_volumes(cell, &mut volumes);
+            volume += volumes.iter().sum::<f64>();
+        }
+        let total_mass = volume * body.density();
+        let dofs = mesh.cells.iter().flat_map(|node| (0..d).map(move |i| ((first_node + node) * d + i) as u32));
+        let dofs = dofs.collect();
+        Self { name, first_node, total_mass, dofs, body }
+    }
+
+    /// Whether its density is zero: its balance holds at s + 1 without inertia.
+    pub fn is_massless(&self) -> bool {
+        self.body.density() == 0.0
+    }
+
+    /// Global numbers of its nodes.
+    pub fn nodes(&self) -> std::ops::Range<usize> {
+        self.first_node..self.first_node + self.body.mesh().nodes.len()
+    }
+
+    /// Its share of a vector over all nodes.
+    pub fn of<'a>(&self, all: &'a [f64]) -> &'a [f64] {
+        let (nodes, d) = (self.nodes(), self.body.mesh().dimension());
+        &all[nodes.start * d..nodes.end * d]
+    }
+
+    /// Global dofs of a cell, node-major.
+    pub fn cell_dofs(&self, cell: usize) -> &[u32] {
+        let n = self.body.mesh().element.dofs();
+        &self.dofs[cell * n..(cell + 1) * n]
+    }
+
+    /// fᵃ += ∫φᵃ b dΩ₀ with b per reference volume, flat over all nodes.
+    ///
+    /// # Errors
+    /// The first place where b has no value.
+    pub(super) fn add_body_force(
+        &self,
+        density: impl Fn(&[f64], &mut [f64]) -> Result<(), NoValue>,
+        force: &mut [f64],
+    ) -> Result<(), NoValue> {
+        let mesh = self.body.mesh();
+        let d = mesh.dimension();
+        let (mut local, mut b) = (vec![0.0; mesh.element.dofs()], vec![0.0; d]);
+        let mut refused = Ok(());
+        for cell in 0..mesh.cell_count() {
+            local.fill(0.0);
+            self.body.each_volume_point(cell, &mut |shape, place, volume| {
+                if refused.is_ok() {
+                    refused = density(place, &mut b);
+                }
+                for (local, phi) in local.chunks_exact_mut(d).zip(shape) {
+                    local.iter_mut().zip(&b).for_each(|(f, b)| *f += phi * volume * b);
+                }
+            });
+            for (dof, f) in self.cell_dofs(cell).iter().zip(&local) {
+                force[*dof as usize] += f;
+            }
+        }
+        refused
+    }
+}

@@ -1,0 +1,146 @@
+//! Everything a step needs to know that does not change, as plain numbers. Every vector over nodes is flat, `dimension` components a node.
+
+use carom_solid::Inverted;
+
+use super::contact::Contact;
+use super::formulas::NoValue;
+use super::loads::{Loads, LoadsAt};
+use super::mass::Mass;
+use super::motion::Motions;
+use super::part::Part;
+use super::probe::Probe;
+use super::rigid::Mode;
+use crate::sums::dot;
+
+/// A named support: the dofs whose reaction is recorded.
+pub struct Support {
+    /// Name in the case.
+    pub name: String,
+    /// Global dofs it holds.
+    pub dofs: Vec<usize>,
+}
+
+/// Everything a step needs to know that does not change.
+pub struct Model {
+    /// Components of a position: 1 or 2.
+    pub dimension: usize,
+    /// Bodies, nodes numbered through in this order.
+    pub parts: Vec<Part>,
+    /// Reference positions X, flat.
+    pub reference: Vec<f64>,
+    /// Positions at t = 0, flat.
+    pub initial_position: Vec<f64>,
+    /// Initial velocities, flat; zero where fixed.
+    pub initial_velocity: Vec<f64>,
+    /// Whether a dof is held, fixed or moved.
+    pub fixed: Vec<bool>,
+    /// Dofs that are not held, ascending.
+    pub free: Vec<usize>,
+    /// Place of a dof among the free ones; `usize::MAX` where held.
+    pub unknown: Vec<usize>,
+    /// Mass matrix.
+    pub mass: Mass,
+    /// Whether a dof has no mass.
+    pub massless: Vec<bool>,
+    /// Gravity as nodal forces; constant, with potential −f·y.
+    pub gravity: Vec<f64>,
+    /// Loads on sides and in bodies.
+    pub loads: Loads,
+    /// Supports that move.
+    pub motions: Motions,
+    /// Rigid motions that supports leave to bodies; only looked for where there is no inertia.
+    pub unheld: Vec<Mode>,
+    /// Contacts.
+    pub contacts: Vec<Contact>,
+    /// Named supports.
+    pub supports: Vec<Support>,
+    /// Probes.
+    pub probes: Vec<Probe>,
+    /// Length L that tolerances refer to: the largest body's diameter.
+    pub scale: f64,
+}
+
+impl Model {
+    /// Number of dofs, held ones included.
+    pub fn dofs(&self) -> usize {
+        self.reference.len()
+    }
+
+    /// The place of a dof among the unknowns, if it is one.
+    pub(crate) fn unknown(&self, dof: usize) -> Option<usize> {
+        Some(self.unknown[dof]).filter(|&place| place != usize::MAX)
+    }
+
+    /// Internal forces ∂U/∂y at positions `y`, overwriting `force`; the strain energy U is returned.
+    ///
+    /// # Errors
+    /// The body's name and the cell that is inverted.
+    pub fn internal_force(&self, y: &[f64], force: &mut [f64]) -> Result<f64, (String, Inverted)> {
+        self.add_cells(force, |part, cell, local| part.body.cell_force(cell, part.of(y), local))
+    }
+
+    /// Discrete gradient of the strain energy between positions, overwriting `force`; U(now) is returned.
+    ///
+    /// # Errors
+    /// The body's name and the cell that is inverted.
+    pub fn internal_between(&self, before: &[f64], now: &[f64], force: &mut [f64]) -> Result<f64, (String, Inverted)> {
+        self.add_cells(force, |part, cell, local| {
+            part.body.cell_between(cell, part.of(before), part.of(now), local, None)
+        })
+    }
+
+    fn add_cells(
+        &self,
+        force: &mut [f64],
+        of_cell: impl Fn(&Part, usize, &mut [f64]) -> Result<f64, Inverted>,
+    ) -> Result<f64, (String, Inverted)> {
+        force.fill(0.0);
+        let mut strain = 0.0;
+        for part in &self.parts {
+            let mesh = part.body.mesh();
+            let mut local = vec![0.0; mesh.element.dofs()];
+            for cell in 0..mesh.cell_count() {
+                strain += of_cell(part, cell, &mut local).map_err(|inverted| (part.name.clone(), inverted))?;
+                for (dof, f) in part.cell_dofs(cell).iter().zip(&local) {
+                    force[*dof as usize] += f;
+                }
+            }
+        }
+        Ok(strain)
+    }
+
+    /// Loads at a time and positions `y`, overwriting `force`; gravity is not among them.
+    ///
+    /// # Errors
+    /// A formula without a finite value.
+    pub fn loads_into(&self, time: f64, y: &[f64], at: &mut LoadsAt, force: &mut [f64]) -> Result<(), NoValue> {
+        if !self.loads.is_empty() {
+            self.loads.at(&self.parts, self.dofs(), time, at)?;
+            self.loads.force_into(at, y, force);
+        }
+        Ok(())
+    }
+
+    /// Kinetic energy ½ vᵀM v.
+    pub fn kinetic(&self, v: &[f64]) -> f64 {
+        let mut momentum = vec![0.0; v.len()];
+        self.mass.multiply_into(v, &mut momentum);
+        0.5 * dot(v, &momentum)
+    }
+
+    /// Potential of gravity, −f·(y − X): zero in the reference position.
+    pub fn potential(&self, y: &[f64]) -> f64 {
+        -(0..y.len()).map(|i| self.gravity[i] * (y[i] - self.reference[i])).sum::<f64>()
+    }
+
+    /// Smallest J over all quadrature points.
+    pub fn min_det_f(&self, y: &[f64]) -> f64 {
+        let mut least = f64::INFINITY;
+        for part in &self.parts {
+            for cell in 0..part.body.mesh().cell_count() {
+                least = least.min(part.body.cell_min_det_f(cell, part.of(y)));
+            }
+        }
+        least
+    }
+}

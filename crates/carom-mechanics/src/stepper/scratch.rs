@@ -1,0 +1,18 @@
+//! Buffers of the explicit stepper.
+
+use carom_contact::{Pairing, Rows};
+
+use crate::model::LoadsAt;
+
+/// Buffers of a step.
+#[derive(Debug, Default)]
+pub(crate) struct Scratch {
+    /// v_{n+½} without contact.
+    pub free: Vec<f64>,
+    /// Positions that are looked at, and forces of contact.
+    pub at: Vec<f64>,
+    pub pairings: Vec<Pairing>,
+    pub rows: Vec<Rows>,
+    pub impulses: Vec<f64>,
+    pub loads: LoadsAt,
+}
