@@ -110,6 +110,17 @@ impl Constraints {
         }
     }
 
+    /// Calls `visit(a, b, value)` for the entries w/C·∇g ∇gᵀ of the springs at unknowns a ≥ b.
+    pub(crate) fn each_spring(&self, model: &Model, mut visit: impl FnMut(usize, usize, f64)) {
+        for (r, row) in self.rows.iter().enumerate().filter(|(r, _)| self.compliances[*r] != 0.0) {
+            let stiffness = self.weights[r] / self.compliances[r];
+            let slopes = || row.entries().filter_map(|(dof, slope)| Some((model.unknown(dof)?, slope)));
+            for (a, slope) in slopes() {
+                slopes().filter(|(b, _)| a >= *b).for_each(|(b, other)| visit(a, b, stiffness * slope * other));
+            }
+        }
+    }
+
     /// Calls `visit(a, b, value)` for the entries w·λ∇²g of all rows at unknowns a ≥ b.
     pub(crate) fn each_curvature(&self, model: &Model, mut visit: impl FnMut(usize, usize, f64)) {
         for (r, (row, curvature)) in self.rows.iter().zip(&self.curvatures).enumerate() {

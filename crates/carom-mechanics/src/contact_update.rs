@@ -1,17 +1,24 @@
 //! Who touches whom in an iterate: pairs found and handed over, the active set of each contact, pairs that nothing can hold.
 
-use carom_contact::{ActiveSet, Contender, PairEvent, Pairing};
+use carom_contact::{ActiveSet, Contender, Pair, PairEvent, Pairing, Row};
 
 use crate::constraints::Constraints;
 use crate::equations::{Equations, Evaluation, Iterate};
-use crate::model::Model;
+use crate::model::{Contact, Model};
 use crate::rejected::Rejected;
 use crate::system::System;
+use crate::timings::timed;
+use crate::workspace::Workspace;
 
 /// Penetration, as a fraction of L, that counts as touching.
 pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
 /// Gap, as a fraction of L, of nodes that touch before the first load step.
 const TOUCHING: f64 = 1e-9;
+
+/// Below this correction, relative to L, facets are handed over before the iteration has converged.
+const CLOSE: f64 = 1e-5;
+/// How often in a solve pairs are handed over as they slide, before corrections are as small as that.
+const FOLLOWS: u32 = 12;
 
 /// Events of pairs, with the place of their contact.
 pub(crate) type Events = Vec<(usize, PairEvent)>;
@@ -21,27 +28,6 @@ pub(crate) fn search(model: &Model, before: &[f64], now: &[f64], pairings: &mut 
     let (mut changed, mut events) = (false, Vec::new());
     for (k, (contact, pairing)) in model.contacts.iter().zip(pairings).enumerate() {
         changed |= contact.kinematics.search(before, now, pairing, &mut events);
-        found.extend(events.drain(..).map(|event| (k, event)));
-    }
-    changed
-}
-
-/// The same for an evaluated iterate: where nothing asks for another solve its pairs stay as they are. Open ones may have come and gone, and the rows at
-/// hand, of which the forces are made, belong to the pairs in their old order.
-pub(crate) fn search_again(model: &Model, before: &[f64], evaluation: &mut Evaluation, found: &mut Events) -> bool {
-    let pairings = evaluation.at.pairings.clone();
-    let changed = search(model, before, &evaluation.y, &mut evaluation.at.pairings, found);
-    if !changed {
-        evaluation.at.pairings = pairings;
-    }
-    changed
-}
-
-/// Hands over pairs that slid well past the end of their facet; whether there was one.
-pub(crate) fn follow(model: &Model, evaluation: &mut Evaluation, found: &mut Events) -> bool {
-    let (mut changed, mut events) = (false, Vec::new());
-    for (k, (contact, pairing)) in model.contacts.iter().zip(&mut evaluation.at.pairings).enumerate() {
-        changed |= contact.kinematics.follow(&evaluation.y, pairing, &mut events);
         found.extend(events.drain(..).map(|event| (k, event)));
     }
     changed
@@ -65,24 +51,64 @@ pub(crate) fn hold_on(model: &Model, evaluation: &mut Evaluation) -> bool {
     changed
 }
 
-/// The active sets of a stage's contacts.
-pub(crate) struct ActiveSets(Vec<ActiveSet>);
+/// How the contacts of a stage change while it is solved.
+pub(crate) struct ContactUpdate {
+    sets: Vec<ActiveSet>,
+    /// Times that pairs may still be handed over early.
+    follows: u32,
+    /// Whether iterations leave so much over that hand-overs are looked for early.
+    early: bool,
+}
 
-impl ActiveSets {
-    pub(crate) fn new(model: &Model) -> Self {
-        Self(model.contacts.iter().map(|c| ActiveSet::new(GAP_TOLERANCE * model.scale, c.within)).collect())
+impl ContactUpdate {
+    /// `early`: linear problems are not solved to the end.
+    pub(crate) fn new(model: &Model, early: bool) -> Self {
+        let set = |contact: &Contact| ActiveSet::new(GAP_TOLERANCE * model.scale, contact.within);
+        Self { sets: model.contacts.iter().map(set).collect(), follows: if early { FOLLOWS } else { 0 }, early }
     }
 
     /// Forgets the visited sets: the pairs themselves have changed.
     pub(crate) fn restart(&mut self) {
-        self.0.iter_mut().for_each(ActiveSet::restart);
+        self.sets.iter_mut().for_each(ActiveSet::restart);
     }
 
-    /// Lets each contact's active set change; a released pair loses its multiplier. Whether one did.
+    /// Brings active sets and pairs up to date with an iterate; whether one changed. `settled`: all that is left is this question; `step`: the last correction.
     ///
     /// # Errors
     /// A set keeps returning to one visited before.
-    pub(crate) fn change(
+    #[allow(clippy::too_many_arguments)]
+    pub(crate) fn update(
+        &mut self,
+        equations: &Equations,
+        before: &[f64],
+        now: &mut Evaluation,
+        events: &mut Events,
+        settled: bool,
+        step: f64,
+        work: &mut Workspace,
+    ) -> Result<bool, Rejected> {
+        let model = equations.model;
+        let mut changed = self.change_sets(equations, now, &work.system, settled)?;
+        let mut handed_over = false;
+        if !settled && self.follows > 0 && follow(model, now, events) {
+            self.follows -= 1;
+            handed_over = true;
+        }
+        changed |= handed_over;
+        // Where a node will slide to is known long before the last digits are.
+        let nearly = self.early && step <= CLOSE * model.scale;
+        if !changed && (settled || nearly) {
+            handed_over = timed(&mut work.timings.contact, || search_again(model, before, now, events));
+            changed = handed_over;
+        }
+        if handed_over {
+            self.restart();
+        }
+        Ok(changed)
+    }
+
+    /// Lets each contact's active set change; a released pair loses its multiplier. Whether one did.
+    fn change_sets(
         &mut self,
         equations: &Equations,
         evaluation: &mut Evaluation,
@@ -95,14 +121,14 @@ impl ActiveSets {
         for (k, contact) in constraints {
             let stiffness = system.mean_stiffness(equations);
             let pairs = &mut evaluation.at.pairings[k].pairs;
-            let contender = |(pair, row): (&carom_contact::Pair, carom_contact::Row)| Contender {
+            let contender = |(pair, row): (&Pair, Row)| Contender {
                 active: pair.active,
                 gap: row.gap,
                 lambda: pair.lambda,
                 stiffness,
             };
             let contenders: Vec<Contender> = pairs.iter().zip(evaluation.rows[k].iter()).map(contender).collect();
-            let changes = self.0[k].changes(&contenders, settled).map_err(|cycle| Rejected::Cycle {
+            let changes = self.sets[k].changes(&contenders, settled).map_err(|cycle| Rejected::Cycle {
                 contact: contact.name.clone(),
                 nodes: cycle.pairs.iter().map(|&p| contact.kinematics.secondary()[pairs[p].node]).collect(),
             })?;
@@ -112,6 +138,27 @@ impl ActiveSets {
         }
         Ok(changed)
     }
+}
+
+/// The same for an evaluated iterate: where nothing asks for another solve its pairs stay as they are. Open ones may have come and gone, and the rows at
+/// hand, of which the forces are made, belong to the pairs in their old order.
+fn search_again(model: &Model, before: &[f64], evaluation: &mut Evaluation, found: &mut Events) -> bool {
+    let pairings = evaluation.at.pairings.clone();
+    let changed = search(model, before, &evaluation.y, &mut evaluation.at.pairings, found);
+    if !changed {
+        evaluation.at.pairings = pairings;
+    }
+    changed
+}
+
+/// Hands over pairs that slid well past the end of their facet; whether there was one.
+fn follow(model: &Model, evaluation: &mut Evaluation, found: &mut Events) -> bool {
+    let (mut changed, mut events) = (false, Vec::new());
+    for (k, (contact, pairing)) in model.contacts.iter().zip(&mut evaluation.at.pairings).enumerate() {
+        changed |= contact.kinematics.follow(&evaluation.y, pairing, &mut events);
+        found.extend(events.drain(..).map(|event| (k, event)));
+    }
+    changed
 }
 
 /// Names a pressing constraint that no row holds: supports leave it no way out.

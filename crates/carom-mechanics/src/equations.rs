@@ -150,6 +150,11 @@ impl<'a> Equations<'a> {
         }
     }
 
+    /// Factor of the internal tangent at one position: of a discrete gradient, the end has half of that at the middle.
+    pub(crate) fn factor_stiffness(&self) -> f64 {
+        if self.between() { 0.5 * self.stiffness_factor() } else { self.stiffness_factor() }
+    }
+
     /// Factor of the loads' tangent.
     pub(crate) fn follower_factor(&self) -> f64 {
         self.stage.weights.external * (1.0 - self.stage.average)
@@ -277,6 +282,35 @@ impl<'a> Equations<'a> {
                 *springs += answer.energy;
                 answers.push(answer);
             }
+        }
+        Ok(())
+    }
+
+    /// ∂r/∂y · `change` of bodies and loads at an iterate, contact apart; exact and not symmetrised.
+    ///
+    /// # Errors
+    /// A cell is inverted.
+    pub(crate) fn product_into(
+        &self,
+        now: &Evaluation,
+        change: &[f64],
+        product: &mut [f64],
+        timings: &mut Timings,
+    ) -> Result<(), Rejected> {
+        let Self { model, state, .. } = self;
+        let (before, at) = if self.between() { (Some(&state.y[..]), &now.y) } else { (None, &now.place) };
+        timed(&mut timings.assembly, || model.internal_product(before, at, change, product))
+            .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+        let (mass, stiffness, d) = (self.mass_factor(), self.stiffness_factor(), model.dimension);
+        model.mass.add_product(change, mass, stiffness, product);
+        if model.loads.follow() {
+            let factor = self.follower_factor();
+            model.loads.each_facet_tangent(d, Some(&self.loads), |nodes, tangent| {
+                let dofs: Vec<usize> = nodes.iter().flat_map(|n| (0..d).map(move |i| n * d + i)).collect();
+                for (dof, row) in dofs.iter().zip(tangent.chunks_exact(dofs.len())) {
+                    product[*dof] -= factor * row.iter().zip(&dofs).map(|(k, other)| k * change[*other]).sum::<f64>();
+                }
+            });
         }
         Ok(())
     }

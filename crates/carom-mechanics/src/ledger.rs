@@ -18,8 +18,8 @@ use carom_time::{Stage, Weights};
 use crate::balance::mean_acceleration;
 use crate::equations::{Equations, Evaluation};
 use crate::model::Model;
-use crate::sums::dot;
 use crate::state::{Means, Previous, State};
+use crate::sums::dot;
 
 /// Adds what a solved stage gives to the means over the step (cleared before the first stage). `previous`: the step before of a two-step scheme.
 pub(crate) fn add_stage(

@@ -3,7 +3,7 @@
 use carom_contact::{Pair, Pairing};
 use serde::{Deserialize, Serialize};
 
-use crate::kept::Kept;
+use crate::renewal::Kept;
 
 /// Energies and works, design.md §5: cumulative from the start of the run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -175,11 +175,6 @@ pub struct Halved {
 impl Halved {
     /// Most grid steps that begin with half the step before the whole one is tried again.
     const MOST: u32 = 63;
-
-    /// Whether the last grid step was bisected, or begun with half the step.
-    pub(crate) fn is_on(self) -> bool {
-        self.next > 0
-    }
 
     /// How often the next grid step is halved from the start.
     pub(crate) fn level(self) -> u32 {

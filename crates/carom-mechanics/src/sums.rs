@@ -6,6 +6,6 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Largest absolute value; infinite where a number is none.
-pub fn max_abs(x: &[f64]) -> f64 {
+pub(crate) fn max_abs(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |m: f64, v| if v.is_finite() { m.max(v.abs()) } else { f64::INFINITY })
 }

@@ -20,20 +20,12 @@ use carom_solid::Inverted;
 use crate::cells::Cells;
 use crate::constraints::Constraints;
 use crate::equations::Equations;
-use crate::held::Held;
-use crate::kept::Point;
+use crate::kept_factor::KeptFactor;
 use crate::model::{LoadsAt, Model};
+use crate::renewal::Point;
 
 /// Slot of an entry that is not stored: that of a held dof, or of a facet's upper triangle.
 const SKIP: u32 = u32::MAX;
-
-/// Why a factor is not to be had at a point.
-pub(crate) enum HoldError {
-    /// A cell is inverted.
-    Inverted((String, Inverted)),
-    /// The matrix is not positive definite.
-    Indefinite,
-}
 
 /// The system and its solver.
 pub(crate) struct System {
@@ -57,7 +49,8 @@ pub(crate) struct System {
     solver: FaerSolver,
     rhs: Vec<f64>,
     solution: Vec<f64>,
-    held: Held,
+    /// The kept factor, and that of the mass.
+    pub(crate) kept: KeptFactor,
     /// Whether the last factor is the kept tangent's or a condensed mass matrix.
     condensed: bool,
     /// Factorisations so far.
@@ -111,7 +104,7 @@ impl System {
             solver: FaerSolver::default(),
             rhs: Vec::new(),
             solution: Vec::new(),
-            held: Held::default(),
+            kept: KeptFactor::default(),
             condensed: false,
             factorisations: 0,
             base,
@@ -162,7 +155,8 @@ impl System {
                 }
                 if let Some((moved, product)) = &mut pull {
                     for (dof, row) in dofs.iter().zip(k.chunks_exact(f.len())) {
-                        product[*dof as usize] += row.iter().zip(dofs).map(|(k, other)| k * moved[*other as usize]).sum::<f64>();
+                        product[*dof as usize] +=
+                            row.iter().zip(dofs).map(|(k, other)| k * moved[*other as usize]).sum::<f64>();
                     }
                 }
                 for (row, k) in k.chunks_exact(f.len()).enumerate() {
@@ -206,49 +200,30 @@ impl System {
         self.base.multiply_add(&self.stiffness, x, out);
     }
 
-    /// Makes the factor of a point, unless it is there already; `double`: with all its digits.
+    /// Makes the kept factor that of a point, unless it is already; `double`: with all its digits. Whether the matrix is positive definite.
     ///
     /// # Errors
-    /// A cell is inverted there, or the matrix is not positive definite.
+    /// A cell is inverted there.
     pub(crate) fn hold(
         &mut self,
         model: &Model,
         point: &Arc<Point>,
         double: bool,
         force: &mut [f64],
-    ) -> Result<(), HoldError> {
-        if self.holds(point) {
-            return Ok(());
+    ) -> Result<bool, (String, Inverted)> {
+        if self.kept.is_of(point) {
+            return Ok(true);
         }
-        self.internal_tangent(model, None, &point.at, force, None).map_err(HoldError::Inverted)?;
+        self.internal_tangent(model, None, &point.at, force, None)?;
         self.factorisations += 1;
         let parts = (self.mass.as_slice(), self.stiffness.as_slice());
-        self.held.factor(model, &self.base, point, double, parts).map_err(|_| HoldError::Indefinite)?;
-        // The memory of a full tangent is as large again.
-        (self.solver, self.merged, self.from_base) = (FaerSolver::default(), Pattern::default(), Vec::new());
-        self.analysed = false;
-        Ok(())
-    }
-
-    /// Whether the kept factor is that of a point.
-    pub(crate) fn holds(&self, point: &Arc<Point>) -> bool {
-        self.held.point.as_ref() == Some(point)
-    }
-
-    /// Forgets the kept factor, memory and all.
-    pub(crate) fn release(&mut self) {
-        self.held.release();
-    }
-
-    /// Whether the kept factor can take these rows.
-    pub(crate) fn covers(&self, rows: &Constraints) -> bool {
-        self.held.covers(rows)
-    }
-
-    /// Takes the rows up for solves with the kept factor.
-    pub(crate) fn constrain(&mut self, model: &Model, rows: &Constraints) -> Result<(), LinearError> {
-        self.condensed = true;
-        self.held.prepare(model, rows)
+        let made = self.kept.factor(model, &self.base, point, double, parts).is_ok();
+        if made {
+            // The memory of a full tangent is as large again.
+            (self.solver, self.merged, self.from_base) = (FaerSolver::default(), Pattern::default(), Vec::new());
+            self.analysed = false;
+        }
+        Ok(made)
     }
 
     /// Factors the system of the last tangents with these rows.
@@ -292,7 +267,7 @@ impl System {
         self.factorisations += 1;
         self.condensed = !model.massless.contains(&true);
         if self.condensed {
-            self.held.factor_mass(model, &self.base, &self.mass, rows)?;
+            self.kept.factor_mass(model, &self.base, &self.mass, rows)?;
             return Ok(Inertia { positive: self.base.size(), negative: rows.len(), zero: 0 });
         }
         self.analyse(model, rows)?;
@@ -329,7 +304,7 @@ impl System {
         multipliers: &mut Vec<f64>,
     ) -> Result<(), LinearError> {
         if self.condensed {
-            return self.held.solve(model, forces, gaps, increment, multipliers);
+            return self.kept.solve(model, forces, gaps, increment, multipliers);
         }
         let n = self.base.size();
         self.rhs.clear();

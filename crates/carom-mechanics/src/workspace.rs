@@ -1,7 +1,7 @@
 //! What a step computes in: buffers that outlive it.
 
 use crate::equations::Spare;
-use crate::mixing::Mixing;
+use crate::linear_problem::LinearProblem;
 use crate::model::Model;
 use crate::state::State;
 use crate::stepper::Scratch;
@@ -24,12 +24,8 @@ pub struct Workspace {
     pub(crate) pull: Vec<f64>,
     /// Right-hand side of a solve.
     pub(crate) right: Vec<f64>,
-    /// Δy of the last solve.
-    pub(crate) correction: Vec<f64>,
-    /// Δλ of the last solve.
-    pub(crate) multipliers: Vec<f64>,
-    /// What the last iterations with one factor have shown.
-    pub(crate) mixing: Mixing,
+    /// The linear problem of an iteration, and what earlier ones have shown.
+    pub(crate) linear: LinearProblem,
 }
 
 impl Workspace {
@@ -43,10 +39,8 @@ impl Workspace {
             explicit: Scratch::default(),
             timings: Timings::default(),
             pull: zeros.clone(),
-            right: zeros.clone(),
-            correction: zeros,
-            multipliers: Vec::new(),
-            mixing: Mixing::default(),
+            right: zeros,
+            linear: LinearProblem::default(),
         }
     }
 

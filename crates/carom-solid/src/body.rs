@@ -48,6 +48,17 @@ pub trait Body: Send + Sync {
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, Inverted>;
 
+    /// Overwrites `product` (`N·D`) with ∂f/∂y · `change`, f that of [`Self::cell_force`] or, with `before`, of [`Self::cell_between`]; nothing of it is
+    /// symmetrised.
+    fn cell_product(
+        &self,
+        cell: usize,
+        before: Option<&[f64]>,
+        y: &[f64],
+        change: &[f64],
+        product: &mut [f64],
+    ) -> Result<(), Inverted>;
+
     /// Consistent mass of a cell between its nodes (`N²`, row-major): ∫ρ₀ φᵃφᵇ dΩ₀.
     fn cell_mass(&self, cell: usize, mass: &mut [f64]);
 

@@ -102,7 +102,7 @@ fn scaled<const D: usize>(moduli: Moduli<D>, factor: f64) -> Moduli<D> {
 
 /// ∂P/∂F : dF.
 #[inline(always)]
-fn contracted<const D: usize>(moduli: &Moduli<D>, df: &Mat<D>) -> Mat<D> {
+pub(crate) fn contracted<const D: usize>(moduli: &Moduli<D>, df: &Mat<D>) -> Mat<D> {
     let mut dp = Mat::ZERO;
     for (j, row) in moduli.iter().enumerate() {
         for (l, block) in row.iter().enumerate() {

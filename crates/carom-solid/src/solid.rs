@@ -18,10 +18,10 @@ use carom_algebra::{Mat, Vector, wide};
 
 use crate::body::{Body, Inverted, PointState};
 use crate::bounds::Bounds;
-use crate::discrete_gradient::{Moduli, between, moduli_of, symmetric_part};
+use crate::discrete_gradient::{Moduli, between, contracted, moduli_of, symmetric_part};
 use crate::material::{Material, NotPositive};
 use crate::mesh::{Element, Mesh};
-use crate::points::{Blocks, LANES, Points, get, set, set_moduli, sum};
+use crate::points::{Blocks, LANES, Mats, Points, get, set, set_moduli, sum};
 use crate::quadrature::Rule;
 use crate::reference::{self, Degenerate, gradient};
 use crate::shape::{Domain, Hull, Shape};
@@ -249,6 +249,51 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
     }
 }
 
+impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N, S, L> {
+    /// Forces of the changes of stress `at(h, dh, count)` at points side by side, made of the gradients of fields and of a change of the last.
+    #[inline(always)]
+    fn differentiate<const M: usize>(
+        &self,
+        cell: usize,
+        fields: [&[f64]; M],
+        change: &[f64],
+        at: impl Fn(&[Mats<D>; M], &Mats<D>, usize) -> Result<Mats<D>, NotPositive>,
+        product: &mut [f64],
+    ) -> Result<(), Inverted> {
+        let mut u = [[Vector::ZERO; N]; M];
+        for m in 0..M {
+            u[m] = self.displacements(cell, fields[m]);
+        }
+        let (nodes, change) = (self.nodes(cell), change.as_chunks::<D>().0);
+        let mut du = [Vector::ZERO; N];
+        for a in 0..N {
+            du[a] = Vector(change[nodes[a]]);
+        }
+        let mut f = [[[0.0; LANES]; D]; N];
+        let Place { points, inverse, volume } = &self.places[cell];
+        for points in &self.points[points.clone()] {
+            let mut gradients = [[[[0.0; LANES]; D]; D]; M];
+            for m in 0..M {
+                gradients[m] = points.gradient(&u[m], inverse);
+            }
+            let mut stresses = at(&gradients, &points.gradient(&du, inverse), points.count)
+                .map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
+            for i in 0..D {
+                for j in 0..D {
+                    for l in 0..LANES {
+                        stresses[i][j][l] *= volume * points.weights[l];
+                    }
+                }
+            }
+            points.add_force(&stresses, inverse, &mut f);
+        }
+        for (product, f) in product.iter_mut().zip(f.as_flattened()) {
+            *product = sum(f);
+        }
+        Ok(())
+    }
+}
+
 /// Points side by side, from their gradients and weights.
 fn pack<const D: usize, const N: usize>(points: impl Iterator<Item = ([Vector<D>; N], f64)>) -> Vec<Points<D, N>> {
     points.collect::<Vec<_>>().chunks(LANES).map(Points::new).collect()
@@ -327,6 +372,45 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
             || match tangent {
                 Some(tangent) => self.integrate_between(cell, [before, now], force, Some(tangent)),
                 None => self.integrate_between(cell, [before, now], force, None),
+            },
+        )
+    }
+
+    fn cell_product(
+        &self,
+        cell: usize,
+        before: Option<&[f64]>,
+        y: &[f64],
+        change: &[f64],
+        product: &mut [f64],
+    ) -> Result<(), Inverted> {
+        wide(
+            #[inline(always)]
+            || match before {
+                None => self.differentiate(
+                    cell,
+                    [y],
+                    change,
+                    #[inline(always)]
+                    |[h], dh, count| self.law.changes(h, dh, count),
+                    product,
+                ),
+                Some(before) => self.differentiate(
+                    cell,
+                    [before, y],
+                    change,
+                    #[inline(always)]
+                    |[start, end], dh, count| {
+                        let mut changes = [[[0.0; LANES]; D]; D];
+                        for l in 0..count {
+                            let (_, _, moduli) = between(&self.law, [&get(start, l), &get(end, l)], true)?;
+                            let change = moduli.map_or(Mat::ZERO, |moduli| contracted(&moduli, &get(dh, l)));
+                            set(&mut changes, l, &change, 1.0);
+                        }
+                        Ok(changes)
+                    },
+                    product,
+                ),
             },
         )
     }

@@ -84,7 +84,9 @@ impl Manufactured {
     /// # Errors
     /// The first place where the load has no value.
     pub(super) fn add_load(&self, parts: &[Part], time: f64, force: &mut [f64]) -> Result<(), NoValue> {
-        parts.iter().try_for_each(|part| part.add_body_force(|place, load| self.load_into(part, place, time, load), force))
+        parts
+            .iter()
+            .try_for_each(|part| part.add_body_force(|place, load| self.load_into(part, place, time, load), force))
     }
 
     /// Errors of positions in L² and of their gradients at a time.

@@ -81,15 +81,20 @@ impl Mass {
 
     /// out = M x over all dofs.
     pub fn multiply_into(&self, x: &[f64], out: &mut [f64]) {
+        self.add_product(x, 1.0, 0.0, out);
+    }
+
+    /// out = `factor` M x + `share` out over all dofs; a share of 0 overwrites whatever is there.
+    pub fn add_product(&self, x: &[f64], factor: f64, share: f64, out: &mut [f64]) {
         match self.directions {
-            1 => self.multiply::<1>(x, out),
-            2 => self.multiply::<2>(x, out),
-            3 => self.multiply::<3>(x, out),
+            1 => self.multiply::<1>(x, factor, share, out),
+            2 => self.multiply::<2>(x, factor, share, out),
+            3 => self.multiply::<3>(x, factor, share, out),
             _ => out.fill(0.0),
         }
     }
 
-    fn multiply<const D: usize>(&self, x: &[f64], out: &mut [f64]) {
+    fn multiply<const D: usize>(&self, x: &[f64], factor: f64, share: f64, out: &mut [f64]) {
         let x = x.as_chunks::<D>().0;
         for (range, out) in self.starts.windows(2).zip(out.as_chunks_mut::<D>().0) {
             let range = range[0]..range[1];
@@ -100,7 +105,9 @@ impl Mass {
                     sum[i] += value * x[i];
                 }
             }
-            *out = sum;
+            for i in 0..D {
+                out[i] = if share == 0.0 { factor * sum[i] } else { factor * sum[i] + share * out[i] };
+            }
         }
     }
 

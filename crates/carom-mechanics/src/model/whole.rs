@@ -89,6 +89,23 @@ impl Model {
         })
     }
 
+    /// ∂f_int/∂y · `change` at `y`, overwriting `product`; with `before`, of the discrete gradient from there.
+    ///
+    /// # Errors
+    /// The body's name and the cell that is inverted.
+    pub fn internal_product(
+        &self,
+        before: Option<&[f64]>,
+        y: &[f64],
+        change: &[f64],
+        product: &mut [f64],
+    ) -> Result<(), (String, Inverted)> {
+        let of_cell = |part: &Part, cell: usize, local: &mut [f64]| {
+            part.body.cell_product(cell, before.map(|y| part.of(y)), part.of(y), part.of(change), local).map(|()| 0.0)
+        };
+        self.add_cells(product, of_cell).map(|_| ())
+    }
+
     fn add_cells(
         &self,
         force: &mut [f64],

@@ -21,13 +21,13 @@
 use carom_algebra::complementarity;
 use carom_contact::{Pairing, Rows};
 
-use super::watch::{active, approach, carry_into, depth, gap_at, measure_into};
 use super::scratch::Scratch;
+use super::watch::{active, approach, carry_into, depth, gap_at, measure_into};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::constraints::independent_rows;
 use crate::contact_update::{GAP_TOLERANCE, search};
 use crate::ledger::book_contact_forces;
-use crate::model::{LoadsAt, Model};
+use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::stability::lumped;
 use crate::state::State;

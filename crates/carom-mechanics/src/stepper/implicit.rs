@@ -8,12 +8,12 @@ use crate::contact_update::{GAP_TOLERANCE, search};
 use crate::equations::{Equations, Iterate};
 use crate::ledger;
 use crate::model::{LoadsAt, Model};
-use crate::sums::dot;
 use crate::newton::solve_stage;
 use crate::persistency::{averaged_contact_into, project};
 use crate::rejected::Rejected;
 use crate::settings::Settings;
 use crate::state::{Means, Previous, State};
+use crate::sums::dot;
 use crate::workspace::Workspace;
 
 /// The implicit stepper.

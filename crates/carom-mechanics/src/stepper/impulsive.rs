@@ -26,10 +26,10 @@ use crate::contact_update::search;
 use crate::equations::{Equations, Evaluation, Iterate};
 use crate::ledger::{book_kinetic, open_work, work_of_loads};
 use crate::model::{LoadsAt, Model};
-use crate::sums::max_abs;
 use crate::rejected::Rejected;
 use crate::settings::Settings;
 use crate::state::State;
+use crate::sums::max_abs;
 use crate::timings::timed;
 use crate::workspace::Workspace;
 

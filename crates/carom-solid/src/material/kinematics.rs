@@ -35,6 +35,23 @@ pub(crate) fn ln_1p(x: f64) -> [f64; 2] {
     [2.0 * s + r, x * s - r]
 }
 
+/// ln(1 + x) of four numbers at once.
+#[inline(always)]
+pub(crate) fn ln_1p_lanes(x: &[f64; 4]) -> [f64; 4] {
+    if x.iter().any(|x| x.abs() > 0.1) {
+        return x.map(f64::ln_1p);
+    }
+    let mut ln = [0.0; 4];
+    for l in 0..4 {
+        let s = x[l] / (2.0 + x[l]);
+        let t = s * s;
+        let series =
+            1.0 / 3.0 + t * (1.0 / 5.0 + t * (1.0 / 7.0 + t * (1.0 / 9.0 + t * (1.0 / 11.0 + t * (1.0 / 13.0)))));
+        ln[l] = 2.0 * s + 2.0 * s * t * series;
+    }
+    ln
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -14,6 +14,8 @@ mod saint_venant_kirchhoff;
 
 use carom_algebra::{Mat, Vector};
 
+use crate::points::{get, set};
+
 pub use kinematics::{excess_cofactor, excess_det};
 pub use linear_elastic::LinearElastic;
 pub use neo_hookean::NeoHookean;
@@ -48,6 +50,43 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
 
     /// The block Kᵢⱼ = Σ ∂Pᵢᴶ/∂Fⱼᴸ aᴶ bᴸ, bilinear in the reference gradients a and b.
     fn tangent(&self, point: &Self::Point, a: &Vector<D>, b: &Vector<D>) -> Mat<D>;
+
+    /// ∂P/∂F : dF.
+    #[inline(always)]
+    fn change(&self, point: &Self::Point, df: &Mat<D>) -> Mat<D> {
+        let mut dp = Mat::ZERO;
+        for j in 0..D {
+            let mut unit = Vector::ZERO;
+            unit[j] = 1.0;
+            for l in 0..D {
+                let mut other = Vector::ZERO;
+                other[l] = 1.0;
+                let block = self.tangent(point, &unit, &other);
+                for i in 0..D {
+                    for k in 0..D {
+                        dp.0[i][j] += block.0[i][k] * df.0[k][l];
+                    }
+                }
+            }
+        }
+        dp
+    }
+
+    /// ∂P/∂F : dF at the first `count` of four points side by side: `h`, `dh` and the result are `[i][j][point]`.
+    #[inline(always)]
+    fn changes(
+        &self,
+        h: &[[[f64; 4]; D]; D],
+        dh: &[[[f64; 4]; D]; D],
+        count: usize,
+    ) -> Result<[[[f64; 4]; D]; D], NotPositive> {
+        let mut changes = [[[0.0; 4]; D]; D];
+        for l in 0..count {
+            let point = self.at(&get(h, l))?;
+            set(&mut changes, l, &self.change(&point, &get(dh, l)), 1.0);
+        }
+        Ok(changes)
+    }
 
     /// Cauchy stress within the space of the body.
     fn cauchy(&self, point: &Self::Point) -> Mat<D>;

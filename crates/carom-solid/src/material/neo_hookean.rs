@@ -8,8 +8,9 @@
 
 use carom_algebra::{Mat, Vector};
 
-use super::kinematics::{excess_cofactor, excess_det, ln_1p};
+use super::kinematics::{excess_cofactor, excess_det, ln_1p, ln_1p_lanes};
 use super::{Material, NotPositive};
+use crate::points::{get, set};
 
 /// Compressible neo-Hookean law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,6 +80,62 @@ impl<const D: usize> Material<D> for NeoHookean {
         Mat::identity() * (self.mu * a.dot(b))
             + b_tilde.outer(&a_tilde) * (self.mu - self.lambda * p.ln_j)
             + a_tilde.outer(&b_tilde) * self.lambda
+    }
+
+    /// μ dF + Λ (F⁻ᵀ:dF) F⁻ᵀ + (μ − Λ ln J) F⁻ᵀ dFᵀ F⁻ᵀ.
+    #[inline(always)]
+    fn change(&self, p: &Point<D>, df: &Mat<D>) -> Mat<D> {
+        let g = p.inverse_transposed;
+        *df * self.mu
+            + g * (self.lambda * g.double_dot(df))
+            + (g * df.transposed() * g) * (self.mu - self.lambda * p.ln_j)
+    }
+
+    #[inline(always)]
+    fn changes(
+        &self,
+        h: &[[[f64; 4]; D]; D],
+        dh: &[[[f64; 4]; D]; D],
+        count: usize,
+    ) -> Result<[[[f64; 4]; D]; D], NotPositive> {
+        let mut changes = [[[0.0; 4]; D]; D];
+        if D != 2 {
+            for l in 0..count {
+                let point = self.at(&get(h, l))?;
+                set(&mut changes, l, &self.change(&point, &get(dh, l)), 1.0);
+            }
+            return Ok(changes);
+        }
+        let mut excess = [0.0; 4];
+        for l in 0..4 {
+            excess[l] = h[0][0][l] + h[1][1][l] + (h[0][0][l] * h[1][1][l] - h[0][1][l] * h[1][0][l]);
+        }
+        if let Some(x) = excess.iter().find(|x| **x <= -1.0 || x.is_nan()) {
+            return Err(NotPositive(1.0 + x));
+        }
+        let logarithm = ln_1p_lanes(&excess);
+        for l in 0..4 {
+            let inverse = 1.0 / (1.0 + excess[l]);
+            let g = [
+                [(1.0 + h[1][1][l]) * inverse, -h[1][0][l] * inverse],
+                [-h[0][1][l] * inverse, (1.0 + h[0][0][l]) * inverse],
+            ];
+            let d = [[dh[0][0][l], dh[0][1][l]], [dh[1][0][l], dh[1][1][l]]];
+            let trace = self.lambda * (g[0][0] * d[0][0] + g[0][1] * d[0][1] + g[1][0] * d[1][0] + g[1][1] * d[1][1]);
+            let rest = self.mu - self.lambda * logarithm[l];
+            // dFᵀ F⁻ᵀ.
+            let m = [
+                [d[0][0] * g[0][0] + d[1][0] * g[1][0], d[0][0] * g[0][1] + d[1][0] * g[1][1]],
+                [d[0][1] * g[0][0] + d[1][1] * g[1][0], d[0][1] * g[0][1] + d[1][1] * g[1][1]],
+            ];
+            for i in 0..2 {
+                for j in 0..2 {
+                    let turned = g[i][0] * m[0][j] + g[i][1] * m[1][j];
+                    changes[i][j][l] = self.mu * d[i][j] + trace * g[i][j] + rest * turned;
+                }
+            }
+        }
+        Ok(changes)
     }
 
     fn cauchy(&self, p: &Point<D>) -> Mat<D> {

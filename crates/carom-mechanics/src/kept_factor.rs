@@ -13,26 +13,29 @@ use std::sync::Arc;
 use carom_algebra::{Condensed, Elimination, LinearError, Pattern, Precision, Saddle};
 
 use crate::constraints::Constraints;
-use crate::kept::Point;
 use crate::model::Model;
+use crate::renewal::Point;
 
 /// Factors of the kept tangent and of the mass matrix, and the scratch of their solves.
 #[derive(Default)]
-pub(crate) struct Held {
+pub(crate) struct KeptFactor {
     /// What the tangent's factor was made of.
-    pub(crate) point: Option<Arc<Point>>,
+    point: Option<Arc<Point>>,
     tangent: Option<Condensed>,
     mass: Option<Condensed>,
     of_mass: bool,
     /// Boundaries and structures, the one used last first: tangent and mass have the same as a rule, and a rejected step goes back to the one before.
     latest: VecDeque<(Vec<usize>, Arc<Elimination>)>,
     saddle: Saddle,
+    /// The row of the dense system that each constraint is; none of springs.
+    places: Vec<Option<usize>>,
+    answers: Vec<f64>,
     right: Vec<f64>,
     x: Vec<f64>,
     solution: Vec<f64>,
 }
 
-impl Held {
+impl KeptFactor {
     /// Factors `mass` M + `stiffness` K for a point; M and K are given in the slots of the pattern.
     ///
     /// # Errors
@@ -88,6 +91,11 @@ impl Held {
         (self.point, self.tangent, self.mass) = (None, None, None);
     }
 
+    /// Whether it is the factor of a point.
+    pub(crate) fn is_of(&self, point: &Arc<Point>) -> bool {
+        self.point.as_ref() == Some(point)
+    }
+
     /// Whether the kept factor can take these rows.
     pub(crate) fn covers(&self, rows: &Constraints) -> bool {
         self.point.as_ref().is_some_and(|point| covers(&point.boundary, rows))
@@ -122,32 +130,38 @@ impl Held {
         self.constrain(model, rows, true).or_else(|_| self.constrain(model, rows, false))
     }
 
-    /// The dense system on the boundary.
+    /// The dense system on the boundary. A spring is no row of it: it adds its stiffness.
     fn constrain(&mut self, model: &Model, rows: &Constraints, curved: bool) -> Result<(), LinearError> {
         let Some(condensed) = (if self.of_mass { &self.mass } else { &self.tangent }) else {
             return Err(no_factor(model));
         };
         let (saddle, elimination) = (&mut self.saddle, condensed.elimination());
-        saddle.begin(condensed.schur(), elimination.kept(), rows.len());
+        self.places.clear();
+        for compliance in &rows.compliances {
+            let before = self.places.iter().flatten().count();
+            self.places.push((*compliance == 0.0).then_some(before));
+        }
+        saddle.begin(condensed.schur(), elimination.kept(), self.places.iter().flatten().count());
+        let place = |unknown: usize| elimination.kept_place(unknown);
         rows.each_entry(model, |r, unknown, slope| {
-            if let Some(a) = elimination.kept_place(unknown) {
-                saddle.add_row(r, a, slope);
+            if let (Some(row), Some(a)) = (self.places[r], place(unknown)) {
+                saddle.add_row(row, a, slope);
             }
         });
+        let mut add = |a: usize, b: usize, value: f64| {
+            if let (Some(a), Some(b)) = (place(a), place(b)) {
+                saddle.add(a.max(b), a.min(b), value);
+            }
+        };
+        rows.each_spring(model, &mut add);
         if curved {
-            rows.each_curvature(model, |a, b, value| {
-                if let (Some(a), Some(b)) = (elimination.kept_place(a), elimination.kept_place(b)) {
-                    saddle.add(a.max(b), a.min(b), value);
-                }
-            });
-        }
-        if curved {
+            rows.each_curvature(model, &mut add);
             saddle.augment(STIFFENING);
         }
         saddle.factor()
     }
 
-    /// Solves with what was prepared last: `forces` over all dofs, `gaps` one per row; answers alike (held dofs get zero).
+    /// Solves with what was prepared last: `forces` over all dofs, `gaps` one per row; answers alike (held dofs and springs get zero).
     pub(crate) fn solve(
         &mut self,
         model: &Model,
@@ -161,9 +175,11 @@ impl Held {
         self.right.clear();
         self.right.extend(model.free.iter().map(|&dof| forces[dof]));
         condensed.eliminate_into(&self.right, &mut self.x);
+        self.answers.clear();
+        self.answers.extend(self.places.iter().zip(gaps).filter_map(|(place, gap)| place.map(|_| *gap)));
+        self.saddle.solve(condensed.kept_part(&mut self.x), &mut self.answers);
         multipliers.clear();
-        multipliers.extend_from_slice(gaps);
-        self.saddle.solve(condensed.kept_part(&mut self.x), multipliers);
+        multipliers.extend(self.places.iter().map(|place| place.map_or(0.0, |row| self.answers[row])));
         self.solution.clear();
         self.solution.resize(self.right.len(), 0.0);
         condensed.substitute_into(&mut self.x, &mut self.solution);
