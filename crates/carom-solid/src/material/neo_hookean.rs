@@ -8,8 +8,8 @@
 
 use carom_algebra::{Mat, Vector};
 
+use super::hyperelastic::{Material, NotPositive};
 use super::kinematics::{excess_cofactor, excess_det, ln_1p};
-use super::{Material, NotPositive};
 
 /// Compressible neo-Hookean law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
