@@ -5,6 +5,7 @@ mod check;
 mod columns;
 mod conform;
 mod document;
+mod draft;
 mod expect;
 pub mod keys;
 mod load;

@@ -5,10 +5,9 @@ use std::path::Path;
 
 use carom_solid::{Element, generate};
 
-use super::check::rounded;
 use super::keys::{self, Kind};
 use super::mesh_file;
-use super::problem::Problem;
+use super::problem::{Problem, rounded};
 use super::tree::{Node, Table};
 use super::view::View;
 use super::{MeshSpec, Preset, RefineSpec};
