@@ -51,7 +51,7 @@ impl Document {
     pub fn parse(name: &str, text: &str, sets: &[String]) -> Result<Self, CaseError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let wrong = |diagnostic| CaseError::Wrong(vec![diagnostic]);
-        let parsed = toml_edit::Document::parse(text).map_err(|e| wrong(syntax(name, text, 0, &e)))?;
+        let parsed = toml_edit::Document::parse(text).map_err(|e| wrong(Diagnostic::of_syntax(name, text, &e)))?;
         if parsed.as_table().is_empty() && sets.is_empty() {
             let (what, why) =
                 ("the case is empty", "a case names at least its dimension, a material, a body and [time]");
@@ -161,15 +161,6 @@ fn part_of_text(source: &str, value: &Range<usize>, bytes: &Range<usize>) -> Ran
     }
     let start = value.start + if raw.starts_with(['"', '\'']) { 1 } else { raw.len() - raw.trim_start().len() };
     start + bytes.start..start + bytes.end
-}
-
-/// A diagnostic for text that is not TOML.
-pub(super) fn syntax(name: &str, text: &str, shift: usize, error: &toml_edit::TomlError) -> Diagnostic {
-    let span = error.span().unwrap_or(0..0);
-    let span = span.start.saturating_sub(shift)..span.end.saturating_sub(shift);
-    let cause = error.message().trim().replace('\n', "; ");
-    let help = "see https://toml.io for how TOML is written: text in quotes, lists in [ ], tables in { } on one line";
-    Diagnostic::at(name, text, span, ["this is not TOML".to_owned(), cause, help.to_owned()])
 }
 
 enum Segment {

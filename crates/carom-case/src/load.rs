@@ -1,153 +1,13 @@
-//! Loads, formulas and a start from another run, as a case holds them, and how they are read.
+//! How loads, motions of supports and velocities of bodies are read.
 
-use std::path::{Path, PathBuf};
-
-use carom_formula::{Formula, FormulaError};
-use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 use super::keys::{self, IN_SPACE_AND_TIME};
+use super::load_table;
 use super::problem::Problem;
 use super::tree::Node;
-use super::view::View;
-
-/// A number, or a formula as written.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum FormulaSpec {
-    /// The same everywhere and always.
-    Number(f64),
-    /// A formula.
-    Text(String),
-}
-
-impl FormulaSpec {
-    /// The formula in these variables.
-    ///
-    /// # Errors
-    /// A text that is none.
-    pub fn formula(&self, variables: &[&str]) -> Result<Formula, FormulaError> {
-        match self {
-            Self::Number(value) => Ok(Formula::constant(*value)),
-            Self::Text(text) => Formula::parse(text, variables),
-        }
-    }
-
-    pub(super) fn of(node: &Node) -> Option<Self> {
-        node.number().map(Self::Number).or_else(|| node.text().map(|text| Self::Text(text.to_owned())))
-    }
-
-    /// Whether it is the number zero.
-    pub fn is_zero(&self) -> bool {
-        matches!(self, Self::Number(x) if *x == 0.0)
-    }
-}
-
-/// As written.
-impl std::fmt::Display for FormulaSpec {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Number(value) => write!(f, "{value}"),
-            Self::Text(text) => f.write_str(text),
-        }
-    }
-}
-
-/// Forces on sides or in a body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LoadSpec {
-    /// Name in messages.
-    pub name: Option<String>,
-    /// What acts where.
-    pub kind: LoadKind,
-    /// Factor over time.
-    pub table: Option<TableSpec>,
-}
-
-/// What acts where.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum LoadKind {
-    /// Dead force per reference area.
-    Traction {
-        /// Sides, `body.side`.
-        on: Vec<String>,
-        /// Components, formulas in X, Y, t.
-        value: Vec<FormulaSpec>,
-    },
-    /// Follower force per current area, against the outward normal.
-    Pressure {
-        /// Sides, `body.side`.
-        on: Vec<String>,
-        /// Formula in X, Y, t.
-        value: FormulaSpec,
-    },
-    /// Dead force per reference volume.
-    BodyForce {
-        /// Body.
-        body: String,
-        /// Components, formulas in X, Y, t.
-        value: Vec<FormulaSpec>,
-    },
-}
-
-impl LoadSpec {
-    /// Sides it acts on; none for a body force.
-    pub fn sides(&self) -> &[String] {
-        match &self.kind {
-            LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. } => on,
-            LoadKind::BodyForce { .. } => &[],
-        }
-    }
-
-    /// How messages call it.
-    pub fn label(&self) -> String {
-        match (&self.name, &self.kind) {
-            (Some(name), _) => name.clone(),
-            (None, LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. }) => format!("on {}", on.join(", ")),
-            (None, LoadKind::BodyForce { body, .. }) => format!("in {body}"),
-        }
-    }
-}
-
-/// A factor over time, linear between its lines; kept whole, so that a run goes on without the file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TableSpec {
-    /// The file, as it was named.
-    pub file: String,
-    /// Times, ascending, at least two.
-    pub times: Vec<f64>,
-    /// Factors.
-    pub values: Vec<f64>,
-}
-
-impl TableSpec {
-    /// The factor at a time within the table.
-    pub fn value(&self, time: f64) -> f64 {
-        let after = self.times.partition_point(|t| *t <= time).clamp(1, self.times.len() - 1);
-        let (t, v) = (&self.times[after - 1..=after], &self.values[after - 1..=after]);
-        let share = (time - t[0]) / (t[1] - t[0]);
-        (1.0 - share) * v[0] + share * v[1]
-    }
-}
-
-/// A start from the end of another run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct InitialSpec {
-    /// Absolute path of its directory.
-    pub from: PathBuf,
-    /// Whether its velocities are taken over.
-    pub velocities: Velocities,
-}
-
-/// What becomes of the velocities of the run a case starts from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Velocities {
-    /// They are taken over.
-    Keep,
-    /// All bodies begin at rest.
-    Zero,
-}
+use super::view::{View, formula};
+use super::{FormulaSpec, LoadKind, LoadSpec};
 
 /// Reads a `[[load]]`.
 pub(super) fn read(v: View, folder: &Path, path: &str, problems: &mut Vec<Problem>) -> Option<LoadSpec> {
@@ -175,7 +35,7 @@ pub(super) fn read(v: View, folder: &Path, path: &str, problems: &mut Vec<Proble
         _ => LoadKind::BodyForce { body: v.text("body")?, value: v.formulas("body_force")? },
     };
     let table = match v.text("table") {
-        Some(file) => match super::load_table::read(&folder.join(&file), &file) {
+        Some(file) => match load_table::read(&folder.join(&file), &file) {
             Ok(table) => Some(table),
             Err(why) => {
                 let what = format!("the table \"{file}\" cannot be used");
@@ -193,7 +53,7 @@ pub(super) fn read(v: View, folder: &Path, path: &str, problems: &mut Vec<Proble
 pub(super) fn motion(v: &View) -> Option<Vec<(usize, FormulaSpec)>> {
     let Some(table) = v.table.get("move") else { return Some(Vec::new()) };
     let table = table.table()?;
-    let axis = |(i, name)| table.get(name).map(|node| Some((i, FormulaSpec::of(node)?)));
+    let axis = |(i, name)| table.get(name).map(|node| Some((i, formula(node)?)));
     ["x", "y"].into_iter().enumerate().filter_map(axis).collect()
 }
 

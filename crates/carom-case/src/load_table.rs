@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::load::TableSpec;
+use super::TableSpec;
 
 /// More lines than this are no amplitude: the resolved case holds them all.
 const MOST_LINES: usize = 1_000_000;

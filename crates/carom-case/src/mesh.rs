@@ -1,71 +1,15 @@
-//! Meshes: built-in shapes and files; read, their sides by name, their size estimated before they are made.
+//! How the table of a mesh is read: a built-in shape, or a file.
 
-use std::f64::consts::PI;
 use std::path::Path;
 
 use carom_solid::{Element, generate};
 
-use super::check::rounded;
 use super::keys::{self, Kind};
 use super::mesh_file;
-use super::problem::Problem;
+use super::problem::{Problem, rounded};
 use super::tree::{Node, Table};
 use super::view::View;
 use super::{MeshSpec, Preset, RefineSpec};
-
-impl MeshSpec {
-    /// Names of the shape's sides, in the order in which its boundary is walked.
-    pub fn sides(&self) -> Vec<String> {
-        let words: &[&str] = match self {
-            Self::File { sides, .. } => return sides.clone(),
-            Self::Polygon { points, .. } => return (1..=points.len()).map(|k| format!("side{k}")).collect(),
-            Self::Interval { .. } => &["left", "right"],
-            Self::Rectangle { .. } => &["bottom", "right", "top", "left"],
-            Self::Disc { .. } => &["arc"],
-            Self::HalfDisc { .. } => &["arc", "axis"],
-            Self::Ring { .. } => &["inner", "outer"],
-        };
-        words.iter().map(ToString::to_string).collect()
-    }
-
-    /// Roughly how many cells and nodes the mesh will have, in floating point: nothing overflows.
-    pub fn estimate(&self, element: Element) -> (f64, f64) {
-        let k = element.degree() as f64;
-        let rings = |radius: f64, size: f64| (radius / size).ceil().max(1.0);
-        // Equilateral triangles with the edges h fill an area.
-        let filled = |area: f64, h: f64| area / (0.75_f64.sqrt() / 2.0 * h * h);
-        let nodes = |cells: f64| (cells, 0.5 * k * k * cells * 1.1 + 10.0 * k);
-        match *self {
-            Self::Ring { inner, outer, size, .. } => {
-                let h = size.min(outer - inner);
-                // Twelve to the circle near a small inner one.
-                let growing = 24.0 * (outer / inner).ln().max(1.0);
-                nodes(filled(PI * (outer * outer - inner * inner), h) + growing)
-            }
-            Self::Polygon { ref points, size, ref refine } => {
-                let next = points.iter().cycle().skip(1);
-                let twice: f64 = points.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum();
-                let area = twice.abs() / 2.0;
-                let place = |r: &RefineSpec| filled(area.min(PI * (r.radius + 3.0 * r.size).powi(2)), r.size);
-                nodes(filled(area, size) + refine.iter().map(place).sum::<f64>())
-            }
-            Self::File { nodes, cells, .. } => (cells as f64, nodes as f64),
-            Self::Interval { cells, .. } => (cells as f64, k * cells as f64 + 1.0),
-            Self::Rectangle { cells: [nx, ny], .. } => {
-                let (nx, ny) = (nx as f64, ny as f64);
-                (2.0 * nx * ny, (k * nx + 1.0) * (k * ny + 1.0))
-            }
-            Self::Disc { radius, size, .. } => {
-                let n = rings(radius, size);
-                (6.0 * n * n, 1.0 + 3.0 * k * n * (k * n + 1.0))
-            }
-            Self::HalfDisc { radius, size, .. } => {
-                let n = rings(radius, size);
-                (3.0 * n * n, 1.0 + 1.5 * k * n * (k * n + 1.0) + k * n)
-            }
-        }
-    }
-}
 
 /// Reads the table of a mesh.
 pub(super) fn read(

@@ -1,7 +1,6 @@
 //! `--set key=value`: one value of the case replaced before it is read. Keys are dotted paths; a table of a list is addressed by its
 //! name (`body.cylinder.element=T6`); values are TOML, and a bare word that is no TOML is a text.
 
-use super::document::syntax;
 use super::problem::Diagnostic;
 use super::suggest;
 use super::tree::{self, Node, Origin, Value};
@@ -64,7 +63,7 @@ fn value_of(value: &str, start: usize, set: &str, source: usize) -> Result<Node,
             _ => Err(Box::new(Diagnostic::at("--set", set, span, several()))),
         },
         Err(error) if value.trim_start().starts_with(['{', '[', '"', '\'']) => {
-            let mut found = syntax("--set", &line, 0, &error);
+            let mut found = Diagnostic::of_syntax("--set", &line, &error);
             set.clone_into(&mut found.quoted);
             found.column = (found.column as isize - shift).max(1) as usize;
             Err(Box::new(found))

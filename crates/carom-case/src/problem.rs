@@ -89,6 +89,15 @@ impl Diagnostic {
             help,
         }
     }
+
+    /// A diagnostic for text that is not TOML.
+    pub(super) fn of_syntax(file: &str, text: &str, error: &toml_edit::TomlError) -> Self {
+        let cause = error.message().trim().replace('\n', "; ");
+        let help =
+            "see https://toml.io for how TOML is written: text in quotes, lists in [ ], tables in { } on one line";
+        let message = ["this is not TOML".to_owned(), cause, help.to_owned()];
+        Self::at(file, text, error.span().unwrap_or(0..0), message)
+    }
 }
 
 /// The character boundary at or before a byte offset.
@@ -135,4 +144,9 @@ pub enum CaseError {
 
 fn joined(diagnostics: &[Diagnostic]) -> String {
     diagnostics.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n")
+}
+
+/// A computed number for a message: ten digits at most, so that 0.1 + 0.2 reads 0.3.
+pub(super) fn rounded(x: f64) -> f64 {
+    format!("{x:.9e}").parse().unwrap_or(x)
 }

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::BodySpec;
-use super::check;
-use super::conform;
 use carom_time::SchemeError;
 
+use super::check;
+use super::conform;
 use super::document::{Document, joined};
+use super::draft::Draft;
 use super::expect::{self, Asked, Exact};
 use super::keys::{self, Kind};
 use super::load;
@@ -19,23 +19,9 @@ use super::suggest;
 use super::tree::{Entry, Node, Table};
 use super::view::{View, word};
 use super::{
-    Case, ContactSpec, ExpectSpec, InitialSpec, LoadSpec, MaterialSpec, NewtonSpec, OutputSpec, Persistency, Preset,
-    PrimarySpec, ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
+    BodySpec, Case, ContactSpec, InitialSpec, MaterialSpec, NewtonSpec, OutputSpec, Persistency, Preset, PrimarySpec,
+    ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
 };
-
-/// Tables read so far: `None` where one of them could not be.
-pub(super) struct Draft {
-    pub(super) dimension: Option<usize>,
-    pub(super) materials: Vec<Option<MaterialSpec>>,
-    pub(super) bodies: Vec<Option<BodySpec>>,
-    pub(super) supports: Vec<Option<SupportSpec>>,
-    pub(super) loads: Vec<Option<LoadSpec>>,
-    pub(super) contacts: Vec<Option<ContactSpec>>,
-    pub(super) probes: Vec<Option<ProbeSpec>>,
-    pub(super) exact: BTreeMap<String, String>,
-    pub(super) expects: Vec<Option<ExpectSpec>>,
-    pub(super) time: Option<TimeSpec>,
-}
 
 /// Reads a case; on failure all problems that can be found in one pass.
 pub fn read(document: &Document) -> Result<Case, Vec<Problem>> {

@@ -58,11 +58,11 @@ impl<'a> View<'a> {
     }
 
     pub(super) fn formula(&self, name: &str) -> Option<FormulaSpec> {
-        FormulaSpec::of(&*self.value(name)?)
+        formula(&*self.value(name)?)
     }
 
     pub(super) fn formulas(&self, name: &str) -> Option<Vec<FormulaSpec>> {
-        self.value(name)?.list()?.iter().map(FormulaSpec::of).collect()
+        self.value(name)?.list()?.iter().map(formula).collect()
     }
 
     pub(super) fn has(&self, name: &str) -> bool {
@@ -73,4 +73,9 @@ impl<'a> View<'a> {
 /// The enum variant serialised as this word.
 pub(super) fn word<T: DeserializeOwned>(word: &str) -> Option<T> {
     serde_json::from_value(serde_json::Value::String(word.to_owned())).ok()
+}
+
+/// A number or a text as a formula.
+pub(super) fn formula(node: &Node) -> Option<FormulaSpec> {
+    node.number().map(FormulaSpec::Number).or_else(|| node.text().map(|text| FormulaSpec::Text(text.to_owned())))
 }

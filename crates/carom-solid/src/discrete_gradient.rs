@@ -11,12 +11,10 @@
 use carom_algebra::{Mat, Vector};
 
 use crate::material::{Material, NotPositive};
+use crate::points::Moduli;
 
 /// Below this ΔE:ΔE the correction is left out: it is of third order in ΔE and would be the rounding of W divided by ‖ΔE‖.
 const NO_STRAIN: f64 = 1e-12;
-
-/// ∂P/∂F as blocks: `[J][L].0[i][j]` is ∂P_iJ/∂F_jL.
-pub(crate) type Moduli<const D: usize> = [[Mat<D>; D]; D];
 
 /// W₁, P, and ∂P/∂F₁, which is not symmetric: F_m stands on its left, F₁ on its right.
 #[inline(always)]

@@ -29,6 +29,7 @@ pub use loaded_side::LoadedSide;
 pub use lumping::cell_lumped_mass;
 pub use material::Law;
 pub use mesh::{Element, Facet, Mesh};
+pub use points::LANES;
 pub use positions::Positions;
 pub use shape::{Hull, LineShape, line_shape};
 pub use solid::{Solid, SolidError};

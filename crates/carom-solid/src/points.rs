@@ -4,10 +4,8 @@
 
 use carom_algebra::{Mat, Vector};
 
-use crate::discrete_gradient::Moduli;
-
 /// Points at once: the doubles of a register of 256 bits.
-pub(crate) const LANES: usize = 4;
+pub const LANES: usize = 4;
 
 /// A number at each of the points.
 pub(crate) type Lanes = [f64; LANES];
@@ -17,6 +15,9 @@ pub(crate) type Mats<const D: usize> = [[Lanes; D]; D];
 
 /// The blocks Kᵐⁿ, m ≤ n, of a tangent as `[n][m]`, still a strand for each lane.
 pub(crate) type Blocks<const D: usize, const N: usize> = [[Mats<D>; N]; N];
+
+/// ∂P/∂F at one point as blocks: `[J][L].0[i][j]` is ∂P_iJ/∂F_jL.
+pub(crate) type Moduli<const D: usize> = [[Mat<D>; D]; D];
 
 /// Up to four quadrature points: of one cell, or of all that have the same but for an affine map.
 pub(crate) struct Points<const D: usize, const N: usize> {

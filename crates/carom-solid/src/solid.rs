@@ -18,10 +18,10 @@ use carom_algebra::{Mat, Vector, wide};
 
 use crate::body::{Body, Inverted, PointState};
 use crate::bounds::Bounds;
-use crate::discrete_gradient::{Moduli, between, contracted, moduli_of, symmetric_part};
+use crate::discrete_gradient::{between, contracted, moduli_of, symmetric_part};
 use crate::material::{Material, NotPositive};
 use crate::mesh::{Element, Mesh};
-use crate::points::{Blocks, LANES, Mats, Points, get, set, set_moduli, sum};
+use crate::points::{Blocks, LANES, Mats, Moduli, Points, get, set, set_moduli, sum};
 use crate::quadrature::Rule;
 use crate::reference::{self, Degenerate, gradient};
 use crate::shape::{Domain, Hull, Shape};

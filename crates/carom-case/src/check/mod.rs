@@ -9,9 +9,9 @@ mod time;
 
 use super::columns;
 use super::document::Document;
+use super::draft::Draft;
 use super::keys;
 use super::problem::Problem;
-use super::read::Draft;
 use super::suggest;
 use super::tree::Node;
 use super::{BodySpec, Quantity};
@@ -224,9 +224,4 @@ fn all_sides(body: &BodySpec) -> String {
 fn in_one_dimension(quantity: Quantity) -> bool {
     use Quantity::{Ax, DetF, SigmaXx, Ux, VonMises, Vx};
     matches!(quantity, Ux | Vx | Ax | SigmaXx | VonMises | DetF)
-}
-
-/// A computed number for a message: ten digits at most, so that 0.1 + 0.2 reads 0.3.
-pub(super) fn rounded(x: f64) -> f64 {
-    format!("{x:.9e}").parse().unwrap_or(x)
 }

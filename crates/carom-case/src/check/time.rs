@@ -1,7 +1,8 @@
 //! The grid of times n·Δt: it must end at `end`.
 
 use super::super::TimeSpec;
-use super::{Check, rounded};
+use super::super::problem::rounded;
+use super::Check;
 
 /// More steps than any run will take: 10⁹ of a microsecond each are a quarter of an hour, of a millisecond twelve days.
 const MOST_STEPS: f64 = 1e9;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::MshFile;
 use super::checks::orient;
 use super::error::{Fault, MshError};
+use super::file::MshFile;
 use super::part::Part;
 use crate::mesh::{Element, Facet, Mesh};
 use crate::shape::{Line2, Line3, Line4};

@@ -4,9 +4,9 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::MshFile;
 use super::checks::orient;
 use super::error::{Fault, MshError};
+use super::file::MshFile;
 use super::part::Part;
 use crate::mesh::{Element, Facet, Mesh};
 use crate::shape::{Tri3, Tri6, Tri10};

@@ -1,7 +1,7 @@
 //! The cells of a named group as a mesh of their own: one element, only the nodes they use, in the order of the file.
 
 use super::error::{Fault, MshError};
-use super::{MshFile, Row};
+use super::file::{MshFile, Row};
 use crate::mesh::Element;
 
 /// Cells of a group, before they are checked. Node numbers are the part's own.

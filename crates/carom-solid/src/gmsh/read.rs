@@ -2,10 +2,11 @@
 
 use std::collections::HashMap;
 
-use super::cell_type::CellType;
 use super::error::{Fault, MshError, Place};
+use super::file::{Block, Group, MshFile, Row, place};
+use super::raw::RawBlock;
 use super::source::{Encoding, Source};
-use super::{Block, Group, MshFile, Row, version_2, version_4};
+use super::{version_2, version_4};
 
 /// Sections read so far. Cells name nodes by tag and, in 4.1, groups through entities, until all is there.
 #[derive(Default)]
@@ -15,15 +16,6 @@ pub(super) struct Sections {
     pub(super) entities: Option<HashMap<(i64, i64), Vec<i64>>>,
     pub(super) nodes: Option<Vec<(Row, [f64; 3])>>,
     pub(super) blocks: Option<Vec<RawBlock>>,
-}
-
-/// Cells of one type on one entity (4.1) or in one group (2.2), node tags row after row.
-pub(super) struct RawBlock {
-    pub(super) kind: CellType,
-    pub(super) dimension: i64,
-    pub(super) owner: i64,
-    pub(super) rows: Vec<Row>,
-    pub(super) nodes: Vec<i64>,
 }
 
 /// Reads a .msh file of version 4.1 or 2.2, text or binary of either byte order.
@@ -170,19 +162,4 @@ fn resolved(sections: Sections, text: bool) -> Result<MshFile, MshError> {
         blocks.push(Block { kind: raw.kind, groups, rows: raw.rows, nodes });
     }
     Ok(MshFile { text, groups, nodes: raw_nodes, blocks })
-}
-
-/// Where a cell was written.
-pub(super) fn place(text: bool, row: &Row) -> Place {
-    if text { Place::Line(row.place) } else { Place::Byte(row.place) }
-}
-
-/// Coordinates of a node.
-pub(super) fn position(source: &mut Source, tag: i64) -> Result<[f64; 3], MshError> {
-    let place = source.place();
-    let mut x = [0.0; 3];
-    for x in &mut x {
-        *x = source.double("$Nodes")?;
-    }
-    if x.iter().all(|x| x.is_finite()) { Ok(x) } else { Err(MshError { place, fault: Fault::NotFinite(tag) }) }
 }

@@ -1,9 +1,9 @@
 //! Sections of version 2.2: nodes one by one, each cell with its physical group.
 
-use super::Row;
 use super::cell_type::CellType;
 use super::error::{Fault, MshError};
-use super::read::{RawBlock, position};
+use super::file::Row;
+use super::raw::{RawBlock, position};
 use super::source::{Encoding, Source};
 
 /// Counts are text even in binary files.

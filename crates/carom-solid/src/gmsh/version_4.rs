@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use super::Row;
 use super::cell_type::CellType;
 use super::error::{Fault, MshError};
-use super::read::{RawBlock, position};
+use super::file::Row;
+use super::raw::{RawBlock, position};
 use super::source::Source;
 
 /// Physical groups by dimension and tag of the entity.

@@ -7,7 +7,7 @@
 
 use carom_algebra::{Mat, Vector};
 
-use super::{Material, NotPositive};
+use super::hyperelastic::{Material, NotPositive};
 
 /// Linear elasticity with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]

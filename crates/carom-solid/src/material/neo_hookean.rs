@@ -8,9 +8,9 @@
 
 use carom_algebra::{Mat, Vector};
 
+use super::hyperelastic::{Material, NotPositive};
 use super::kinematics::{excess_cofactor, excess_det, ln_1p, ln_1p_lanes};
-use super::{Material, NotPositive};
-use crate::points::{get, set};
+use crate::points::{LANES, get, set};
 
 /// Compressible neo-Hookean law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,23 +82,15 @@ impl<const D: usize> Material<D> for NeoHookean {
             + a_tilde.outer(&b_tilde) * self.lambda
     }
 
-    /// μ dF + Λ (F⁻ᵀ:dF) F⁻ᵀ + (μ − Λ ln J) F⁻ᵀ dFᵀ F⁻ᵀ.
-    #[inline(always)]
-    fn change(&self, p: &Point<D>, df: &Mat<D>) -> Mat<D> {
-        let g = p.inverse_transposed;
-        *df * self.mu
-            + g * (self.lambda * g.double_dot(df))
-            + (g * df.transposed() * g) * (self.mu - self.lambda * p.ln_j)
-    }
-
+    /// ∂P/∂F : dF = μ dF + Λ (F⁻ᵀ:dF) F⁻ᵀ + (μ − Λ ln J) F⁻ᵀ dFᵀ F⁻ᵀ, in the plane for all points at once.
     #[inline(always)]
     fn changes(
         &self,
-        h: &[[[f64; 4]; D]; D],
-        dh: &[[[f64; 4]; D]; D],
+        h: &[[[f64; LANES]; D]; D],
+        dh: &[[[f64; LANES]; D]; D],
         count: usize,
-    ) -> Result<[[[f64; 4]; D]; D], NotPositive> {
-        let mut changes = [[[0.0; 4]; D]; D];
+    ) -> Result<[[[f64; LANES]; D]; D], NotPositive> {
+        let mut changes = [[[0.0; LANES]; D]; D];
         if D != 2 {
             for l in 0..count {
                 let point = self.at(&get(h, l))?;
@@ -106,15 +98,15 @@ impl<const D: usize> Material<D> for NeoHookean {
             }
             return Ok(changes);
         }
-        let mut excess = [0.0; 4];
-        for l in 0..4 {
+        let mut excess = [0.0; LANES];
+        for l in 0..LANES {
             excess[l] = h[0][0][l] + h[1][1][l] + (h[0][0][l] * h[1][1][l] - h[0][1][l] * h[1][0][l]);
         }
         if let Some(x) = excess.iter().find(|x| **x <= -1.0 || x.is_nan()) {
             return Err(NotPositive(1.0 + x));
         }
         let logarithm = ln_1p_lanes(&excess);
-        for l in 0..4 {
+        for l in 0..LANES {
             let inverse = 1.0 / (1.0 + excess[l]);
             let g = [
                 [(1.0 + h[1][1][l]) * inverse, -h[1][0][l] * inverse],

@@ -6,8 +6,8 @@
 
 use carom_algebra::{Mat, Vector};
 
+use super::hyperelastic::{Material, NotPositive};
 use super::kinematics::excess_det;
-use super::{Material, NotPositive};
 
 /// St. Venant–Kirchhoff law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]

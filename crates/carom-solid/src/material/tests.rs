@@ -1,5 +1,6 @@
 //! Every law in every dimension: energy → stress → tangent by differences, objectivity, the undeformed state, small motions, J ≤ 0.
 
+use carom_algebra::{Mat, Vector};
 use proptest::prelude::*;
 
 use super::*;

@@ -5,7 +5,7 @@ use carom_contact::{ConservingPenalty, Detection, Kinematics, NodeToFacet, NodeT
 use carom_mechanics::model::{Contact, Model, Part};
 use carom_solid::Cover;
 
-use super::side;
+use super::side::side;
 
 /// The contacts of a case.
 pub(super) fn contacts(case: &Case, parts: &[Part], massless: &[bool], problems: &mut Vec<Problem>) -> Vec<Contact> {

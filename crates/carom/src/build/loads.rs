@@ -5,7 +5,7 @@ use carom_formula::Formula;
 use carom_mechanics::model::{Amplitude, Load, Loads, Manufactured, Part};
 use carom_solid::LoadedSide;
 
-use super::side;
+use super::side::side;
 
 /// The loads of a case.
 pub(super) fn loads(case: &Case, parts: &[Part], problems: &mut Vec<Problem>) -> Loads {

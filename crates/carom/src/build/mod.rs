@@ -4,21 +4,15 @@ mod contacts;
 mod loads;
 mod motions;
 mod refusals;
+mod side;
 
 use carom_case::{Case, FormulaSpec, MassKind, PrimarySpec, Problem};
 use carom_mechanics::model::{Mass, Model, Part, Probe, Quantity, Support, free_motions, redistribute, value};
-use carom_solid::{FacetShape, Law, SolidError};
+use carom_solid::{Law, SolidError};
+
+use side::side;
 
 pub use contacts::overlaps;
-
-/// A side in global node numbers.
-struct Side {
-    part: usize,
-    nodes: Vec<usize>,
-    facets: Vec<Vec<usize>>,
-    orientations: Vec<f64>,
-    shape: FacetShape,
-}
 
 /// Builds the model of a case.
 ///
@@ -198,34 +192,6 @@ fn gravity(case: &Case, parts: &[Part], mass: &Mass, dofs: usize) -> Vec<f64> {
     let mut force = vec![0.0; dofs];
     mass.multiply_into(&acceleration, &mut force);
     force
-}
-
-fn side(parts: &[Part], name: &str, path: &str) -> Result<Side, Problem> {
-    let missing = |why: String, help: String| Problem::new(path, format!("there is no side \"{name}\""), why, help);
-    let bodies = || parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
-    let (body, side) = name
-        .split_once('.')
-        .ok_or_else(|| missing("a side is written body.side".into(), format!("bodies: {}", bodies())))?;
-    let part = parts
-        .iter()
-        .position(|p| p.name == body)
-        .ok_or_else(|| missing(format!("there is no body \"{body}\""), format!("bodies: {}", bodies())))?;
-    let mesh = parts[part].body.mesh();
-    let first = parts[part].first_node;
-    let (Some(facets), Some(nodes)) = (mesh.sides.get(side), mesh.side_nodes(side)) else {
-        let sides = mesh.sides.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
-        return Err(missing(format!("the sides of \"{body}\" are: {sides}"), "use one of them".into()));
-    };
-    let Some(shape) = mesh.element.facet_shape() else {
-        return Err(missing("its cells have no facets".into(), "use another element".into()));
-    };
-    Ok(Side {
-        part,
-        nodes: nodes.iter().map(|n| n + first).collect(),
-        facets: facets.iter().map(|f| f.nodes.iter().map(|n| n + first).collect()).collect(),
-        orientations: facets.iter().map(|f| mesh.orientation(f)).collect(),
-        shape,
-    })
 }
 
 /// Takes the mass off the nodes of contacts, in the bodies that ask for it.

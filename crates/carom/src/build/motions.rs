@@ -6,7 +6,7 @@ use carom_case::{Case, FormulaSpec, Problem, load_variables};
 use carom_formula::Formula;
 use carom_mechanics::model::{Motions, Part};
 
-use super::side;
+use super::side::side;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 

@@ -3,9 +3,11 @@
 mod columns;
 mod fields;
 mod log;
+mod outcome;
 mod session;
 mod units;
 mod verdicts;
 
 pub use columns::columns;
-pub use session::{End, Options, Outcome, Progress, RunError, resume, run};
+pub use outcome::{End, Options, Outcome, Progress, RunError};
+pub use session::{resume, run};

@@ -1,94 +1,20 @@
 //! `run` and `resume`: a simulation driven to its end, its records, checkpoints and manifest.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use carom_case::{Case, Problem};
-use carom_mechanics::{GridReport, Simulation, State, Stopped};
-use carom_record::{ContactRow, Event, Manifest, RecordError, RunWriter, Source, Status};
+use carom_case::Case;
+use carom_mechanics::{GridReport, Simulation, State};
+use carom_record::{ContactRow, Event, Manifest, RunWriter, Source, Status};
 use cpu_time::ThreadTime;
 
 use super::columns::{center_weights, columns, row};
 use super::fields::{consistent_weights, field_set, gap_of, sides};
 use super::log::{entry, repairs};
+use super::outcome::{End, Options, Outcome, Progress, RunError};
 use super::verdicts::judge;
 use crate::setup::{resumed, simulation};
-
-/// How to run.
-#[derive(Clone, Copy, Debug)]
-pub struct Options {
-    /// Threads; results do not depend on them.
-    pub threads: usize,
-}
-
-/// Where a simulation is, after an accepted step.
-#[derive(Clone, Copy, Debug)]
-pub struct Progress {
-    /// Step just finished.
-    pub step: u64,
-    /// Steps in all.
-    pub steps: u64,
-    /// Time.
-    pub time: f64,
-    /// Grid step.
-    pub dt: f64,
-    /// Newton iterations of the step.
-    pub newton: u32,
-    /// Active pairs.
-    pub active: usize,
-    /// Created energy over the largest kinetic + strain energy so far.
-    pub energy_drift: f64,
-    /// Wall seconds of this process.
-    pub wall: f64,
-    /// Wall seconds left, extrapolated.
-    pub left: f64,
-}
-
-/// How a run ended.
-#[derive(Clone, Debug, PartialEq)]
-pub enum End {
-    /// At its end time.
-    Finished,
-    /// By the user; resumable.
-    Interrupted,
-    /// The simulation could not go on; its last good state is kept.
-    Stopped(Stopped),
-}
-
-/// A run that ended.
-#[derive(Clone, Debug)]
-pub struct Outcome {
-    /// Where its record is.
-    pub directory: PathBuf,
-    /// How it ended.
-    pub end: End,
-    /// Steps done.
-    pub steps: u64,
-    /// Time reached.
-    pub time: f64,
-    /// Wall seconds of this process.
-    pub wall: f64,
-    /// Said once, e.g. that a damaged checkpoint was passed over.
-    pub remarks: Vec<String>,
-}
-
-/// Why there is no (complete) run.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError {
-    /// The case is wrong in a way only its model shows. Nothing was written.
-    #[error("{}", .0.iter().map(|p| p.what.as_str()).collect::<Vec<_>>().join("; "))]
-    Case(Vec<Problem>),
-    /// The run directory could not be written or read.
-    #[error(transparent)]
-    Record(#[from] RecordError),
-    /// The run directory holds something this version cannot go on from.
-    #[error("{what}")]
-    Incompatible {
-        /// What does not fit.
-        what: String,
-    },
-}
 
 /// What every step needs besides the simulation.
 struct Session<'a> {

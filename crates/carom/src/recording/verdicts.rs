@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use carom_case::ExpectSpec;
 use carom_record::{Manifest, Run, Status};
 
-use super::session::RunError;
-use carom_case::ExpectSpec;
+use super::outcome::RunError;
 
 /// Holds the record against the case's expectations and writes the verdicts into the manifest. A run that stopped is judged only if one of
 /// them asks whether it did.

@@ -1,0 +1,90 @@
+//! Bodies: what they are made of, where they are put, how they begin.
+
+use serde::{Deserialize, Serialize};
+
+use super::formula::FormulaSpec;
+use super::mesh::MeshSpec;
+
+/// A hyperelastic material.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MaterialSpec {
+    /// Name bodies refer to.
+    pub name: String,
+    /// Law.
+    pub law: Law,
+    /// Mass per reference volume, ≥ 0.
+    pub density: f64,
+    /// First Lamé constant Λ.
+    pub lambda: f64,
+    /// Second Lamé constant μ.
+    pub mu: f64,
+}
+
+/// Constitutive law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Law {
+    /// Ψ = μ(tr E − ln J) + Λ/2 (ln J)².
+    NeoHookean,
+    /// Ψ = Λ/2 (tr E)² + μ E : E.
+    SaintVenantKirchhoff,
+    /// Small strain, Ψ = Λ/2 (tr ε)² + μ ε : ε.
+    LinearElastic,
+}
+
+/// A deformable body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BodySpec {
+    /// Name; sides are `name.side`.
+    pub name: String,
+    /// Name of its material.
+    pub material: String,
+    /// Cell type.
+    pub element: carom_solid::Element,
+    /// Where its mesh comes from.
+    pub mesh: MeshSpec,
+    /// Where the mesh is put; as it is made, if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub place: Option<PlaceSpec>,
+    /// Positions at t = 0, formulas in X, Y; the reference positions, if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position: Option<Vec<FormulaSpec>>,
+    /// Acceleration by gravity, one component per dimension.
+    pub gravity: Vec<f64>,
+    /// Initial velocity, formulas in X, Y.
+    pub velocity: Vec<FormulaSpec>,
+    /// Mass matrix.
+    pub mass: MassKind,
+}
+
+/// A rigid motion of a mesh: x ↦ about + R(rotate)(x − about) + shift.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlaceSpec {
+    /// Angle in degrees, counter-clockwise; 0 in dimension 1.
+    pub rotate: f64,
+    /// Point it turns about.
+    pub about: Vec<f64>,
+    /// Distance it is moved by.
+    pub shift: Vec<f64>,
+}
+
+/// How inertia is distributed over the nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MassKind {
+    /// ∫ρ₀ NᵀN.
+    Consistent,
+    /// Diagonal scaling (HRZ).
+    Lumped,
+    /// None on the nodes of contacts; total, centre and second moments kept by the least change of the others.
+    Redistributed,
+    /// None on the nodes of contacts; what they lose goes to the next nodes, and the centre is not kept.
+    RedistributedNearest,
+}
+
+impl MassKind {
+    /// Whether nodes of contacts carry no mass.
+    pub fn is_redistributed(self) -> bool {
+        matches!(self, Self::Redistributed | Self::RedistributedNearest)
+    }
+}

@@ -1,0 +1,42 @@
+//! Numbers that may vary in space and time.
+
+use carom_formula::{Formula, FormulaError};
+use serde::{Deserialize, Serialize};
+
+/// A number, or a formula as written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum FormulaSpec {
+    /// The same everywhere and always.
+    Number(f64),
+    /// A formula.
+    Text(String),
+}
+
+impl FormulaSpec {
+    /// The formula in these variables.
+    ///
+    /// # Errors
+    /// A text that is none.
+    pub fn formula(&self, variables: &[&str]) -> Result<Formula, FormulaError> {
+        match self {
+            Self::Number(value) => Ok(Formula::constant(*value)),
+            Self::Text(text) => Formula::parse(text, variables),
+        }
+    }
+
+    /// Whether it is the number zero.
+    pub fn is_zero(&self) -> bool {
+        matches!(self, Self::Number(x) if *x == 0.0)
+    }
+}
+
+/// As written.
+impl std::fmt::Display for FormulaSpec {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Number(value) => write!(f, "{value}"),
+            Self::Text(text) => f.write_str(text),
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! What acts on bodies from outside: supports that hold or move them, forces on sides and in bodies.
+
+use serde::{Deserialize, Serialize};
+
+use super::formula::FormulaSpec;
+
+/// Sides held or moved in some directions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SupportSpec {
+    /// A named support records its reactions.
+    pub name: Option<String>,
+    /// Sides, `body.side`.
+    pub on: Vec<String>,
+    /// Directions held: 0 is x, 1 is y.
+    pub fix: Vec<usize>,
+    /// Directions moved, with their displacements: formulas in X, Y, t.
+    #[serde(rename = "move", default)]
+    pub moves: Vec<(usize, FormulaSpec)>,
+}
+
+/// Forces on sides or in a body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LoadSpec {
+    /// Name in messages.
+    pub name: Option<String>,
+    /// What acts where.
+    pub kind: LoadKind,
+    /// Factor over time.
+    pub table: Option<TableSpec>,
+}
+
+impl LoadSpec {
+    /// Sides it acts on; none for a body force.
+    pub fn sides(&self) -> &[String] {
+        match &self.kind {
+            LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. } => on,
+            LoadKind::BodyForce { .. } => &[],
+        }
+    }
+
+    /// How messages call it.
+    pub fn label(&self) -> String {
+        match (&self.name, &self.kind) {
+            (Some(name), _) => name.clone(),
+            (None, LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. }) => format!("on {}", on.join(", ")),
+            (None, LoadKind::BodyForce { body, .. }) => format!("in {body}"),
+        }
+    }
+}
+
+/// What acts where.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LoadKind {
+    /// Dead force per reference area.
+    Traction {
+        /// Sides, `body.side`.
+        on: Vec<String>,
+        /// Components, formulas in X, Y, t.
+        value: Vec<FormulaSpec>,
+    },
+    /// Follower force per current area, against the outward normal.
+    Pressure {
+        /// Sides, `body.side`.
+        on: Vec<String>,
+        /// Formula in X, Y, t.
+        value: FormulaSpec,
+    },
+    /// Dead force per reference volume.
+    BodyForce {
+        /// Body.
+        body: String,
+        /// Components, formulas in X, Y, t.
+        value: Vec<FormulaSpec>,
+    },
+}
+
+/// A factor over time, linear between its lines; kept whole, so that a run goes on without the file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TableSpec {
+    /// The file, as it was named.
+    pub file: String,
+    /// Times, ascending, at least two.
+    pub times: Vec<f64>,
+    /// Factors.
+    pub values: Vec<f64>,
+}
+
+impl TableSpec {
+    /// The factor at a time within the table.
+    pub fn value(&self, time: f64) -> f64 {
+        let after = self.times.partition_point(|t| *t <= time).clamp(1, self.times.len() - 1);
+        let (t, v) = (&self.times[after - 1..=after], &self.values[after - 1..=after]);
+        let share = (time - t[0]) / (t[1] - t[0]);
+        (1.0 - share) * v[0] + share * v[1]
+    }
+}

@@ -1,0 +1,151 @@
+//! Meshes: shapes and files, their sides by name, their size estimated before they are made.
+
+use std::f64::consts::PI;
+use std::path::PathBuf;
+
+use carom_solid::Element;
+use serde::{Deserialize, Serialize};
+
+/// Source of a mesh: a built-in shape, or a file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "shape", rename_all = "kebab-case")]
+pub enum MeshSpec {
+    /// Dimension 1: `left`, `right`.
+    Interval {
+        /// Left end.
+        min: f64,
+        /// Right end.
+        max: f64,
+        /// Number of cells.
+        cells: usize,
+    },
+    /// `bottom right top left`.
+    Rectangle {
+        /// Lower left corner.
+        min: [f64; 2],
+        /// Upper right corner.
+        max: [f64; 2],
+        /// Squares along x and y, each cut into two triangles.
+        cells: [usize; 2],
+    },
+    /// Whole disc, side `arc`.
+    Disc {
+        /// Radius.
+        radius: f64,
+        /// Centre.
+        center: [f64; 2],
+        /// Length of a cell's edge.
+        size: f64,
+    },
+    /// The half x ≥ centre of a disc, sides `arc axis`.
+    HalfDisc {
+        /// Radius.
+        radius: f64,
+        /// Centre.
+        center: [f64; 2],
+        /// Length of a cell's edge.
+        size: f64,
+    },
+    /// Between two circles, sides `inner outer`.
+    Ring {
+        /// Radius of the inner circle.
+        inner: f64,
+        /// Radius of the outer circle.
+        outer: f64,
+        /// Centre.
+        center: [f64; 2],
+        /// Length of a cell's edge.
+        size: f64,
+    },
+    /// Any simple polygon, sides `side1`, `side2`, ….
+    Polygon {
+        /// Corners in order, either way round.
+        points: Vec<[f64; 2]>,
+        /// Length of a cell's edge.
+        size: f64,
+        /// Places with finer cells.
+        refine: Vec<RefineSpec>,
+    },
+    /// A named physical surface (dimension 1: curve) of a .msh file; sides are its named physical curves (points).
+    File {
+        /// Absolute path.
+        file: PathBuf,
+        /// Name of the physical group.
+        surface: String,
+        /// BLAKE3 of the file when the case was read.
+        hash: String,
+        /// Nodes of the mesh.
+        nodes: usize,
+        /// Cells of the mesh.
+        cells: usize,
+        /// Sides of the mesh.
+        sides: Vec<String>,
+        /// What was put right when the mesh was read.
+        repairs: Vec<String>,
+    },
+}
+
+impl MeshSpec {
+    /// Names of the shape's sides, in the order in which its boundary is walked.
+    pub fn sides(&self) -> Vec<String> {
+        let words: &[&str] = match self {
+            Self::File { sides, .. } => return sides.clone(),
+            Self::Polygon { points, .. } => return (1..=points.len()).map(|k| format!("side{k}")).collect(),
+            Self::Interval { .. } => &["left", "right"],
+            Self::Rectangle { .. } => &["bottom", "right", "top", "left"],
+            Self::Disc { .. } => &["arc"],
+            Self::HalfDisc { .. } => &["arc", "axis"],
+            Self::Ring { .. } => &["inner", "outer"],
+        };
+        words.iter().map(ToString::to_string).collect()
+    }
+
+    /// Roughly how many cells and nodes the mesh will have, in floating point: nothing overflows.
+    pub fn estimate(&self, element: Element) -> (f64, f64) {
+        let k = element.degree() as f64;
+        let rings = |radius: f64, size: f64| (radius / size).ceil().max(1.0);
+        // Equilateral triangles with the edges h fill an area.
+        let filled = |area: f64, h: f64| area / (0.75_f64.sqrt() / 2.0 * h * h);
+        let nodes = |cells: f64| (cells, 0.5 * k * k * cells * 1.1 + 10.0 * k);
+        match *self {
+            Self::Ring { inner, outer, size, .. } => {
+                let h = size.min(outer - inner);
+                // Twelve to the circle near a small inner one.
+                let growing = 24.0 * (outer / inner).ln().max(1.0);
+                nodes(filled(PI * (outer * outer - inner * inner), h) + growing)
+            }
+            Self::Polygon { ref points, size, ref refine } => {
+                let next = points.iter().cycle().skip(1);
+                let twice: f64 = points.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum();
+                let area = twice.abs() / 2.0;
+                let place = |r: &RefineSpec| filled(area.min(PI * (r.radius + 3.0 * r.size).powi(2)), r.size);
+                nodes(filled(area, size) + refine.iter().map(place).sum::<f64>())
+            }
+            Self::File { nodes, cells, .. } => (cells as f64, nodes as f64),
+            Self::Interval { cells, .. } => (cells as f64, k * cells as f64 + 1.0),
+            Self::Rectangle { cells: [nx, ny], .. } => {
+                let (nx, ny) = (nx as f64, ny as f64);
+                (2.0 * nx * ny, (k * nx + 1.0) * (k * ny + 1.0))
+            }
+            Self::Disc { radius, size, .. } => {
+                let n = rings(radius, size);
+                (6.0 * n * n, 1.0 + 3.0 * k * n * (k * n + 1.0))
+            }
+            Self::HalfDisc { radius, size, .. } => {
+                let n = rings(radius, size);
+                (3.0 * n * n, 1.0 + 1.5 * k * n * (k * n + 1.0) + k * n)
+            }
+        }
+    }
+}
+
+/// A place with finer cells.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RefineSpec {
+    /// Its centre.
+    pub near: [f64; 2],
+    /// Edges have the size up to this distance.
+    pub radius: f64,
+    /// Length of a cell's edge there.
+    pub size: f64,
+}

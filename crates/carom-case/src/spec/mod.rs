@@ -1,0 +1,21 @@
+//! A case as data: one type for each of its tables, without any way to read it.
+
+mod body;
+mod case;
+mod contact;
+mod formula;
+mod load;
+mod mesh;
+mod output;
+mod time;
+
+pub use body::{BodySpec, Law, MassKind, MaterialSpec, PlaceSpec};
+pub use case::{Case, InitialSpec, Plane, Preset, Units, Velocities};
+pub use contact::{
+    ActiveSetRule, ContactLaw, ContactSpec, Detection, Enforcement, ForceTime, Persistency, PrimarySpec,
+};
+pub use formula::FormulaSpec;
+pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec};
+pub use mesh::{MeshSpec, RefineSpec};
+pub use output::{OutputSpec, ProbeSpec, Quantity};
+pub use time::{NewtonSpec, SchemeSpec, TangentRule, TimeSpec};

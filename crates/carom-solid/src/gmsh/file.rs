@@ -1,0 +1,85 @@
+//! A .msh file in memory: its nodes, its cells by type and group, its named groups, and where each of them was written.
+
+use super::cell_type::CellType;
+use super::error::{Fault, MshError, Place};
+
+/// Nodes, cells and named groups of a .msh file.
+#[derive(Clone, Debug)]
+pub struct MshFile {
+    pub(super) text: bool,
+    pub(super) groups: Vec<Group>,
+    pub(super) nodes: Vec<(Row, [f64; 3])>,
+    pub(super) blocks: Vec<Block>,
+}
+
+/// A named physical group.
+#[derive(Clone, Debug)]
+pub(super) struct Group {
+    pub(super) dimension: i64,
+    pub(super) tag: i64,
+    pub(super) name: String,
+}
+
+/// Tag of a node or cell, and the line or byte it was read at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub(super) tag: i64,
+    pub(super) place: usize,
+}
+
+impl Row {
+    pub(super) fn new(tag: i64, place: Place) -> Self {
+        match place {
+            Place::Line(place) | Place::Byte(place) => Self { tag, place },
+            Place::File => Self { tag, place: 0 },
+        }
+    }
+}
+
+/// Cells of one type in the same physical groups.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    pub(super) kind: CellType,
+    pub(super) groups: Vec<i64>,
+    pub(super) rows: Vec<Row>,
+    /// Places in the list of nodes, cell after cell.
+    pub(super) nodes: Vec<usize>,
+}
+
+impl Block {
+    pub(super) fn cells(&self) -> impl Iterator<Item = (&Row, &[usize])> {
+        self.rows.iter().zip(self.nodes.chunks_exact(self.kind.nodes))
+    }
+}
+
+impl MshFile {
+    /// Names of the physical groups of a dimension: 2 surfaces, 1 curves, 0 points. Each once.
+    pub fn names(&self, dimension: usize) -> Vec<&str> {
+        let mut names = Vec::new();
+        for group in self.groups.iter().filter(|g| g.dimension == dimension as i64) {
+            if !names.contains(&group.name.as_str()) {
+                names.push(&group.name);
+            }
+        }
+        names
+    }
+
+    /// Blocks of cells of a dimension in the groups of a name.
+    pub(super) fn blocks<'a>(&'a self, dimension: usize, name: &'a str) -> impl Iterator<Item = &'a Block> {
+        let d = dimension as i64;
+        let in_group = move |block: &Block| {
+            let named = |tag: &i64| self.groups.iter().any(|g| g.dimension == d && g.tag == *tag && g.name == name);
+            block.groups.iter().any(named)
+        };
+        self.blocks.iter().filter(move |b| b.kind.dimension() == d && in_group(b))
+    }
+
+    pub(super) fn at(&self, row: &Row, fault: Fault) -> MshError {
+        MshError { place: place(self.text, row), fault }
+    }
+}
+
+/// Where a cell was written.
+pub(super) fn place(text: bool, row: &Row) -> Place {
+    if text { Place::Line(row.place) } else { Place::Byte(row.place) }
+}

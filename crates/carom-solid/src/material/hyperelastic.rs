@@ -1,0 +1,84 @@
+//! What a hyperelastic law answers at a point of a body, and the one thing it refuses.
+
+use carom_algebra::{Mat, Vector};
+
+use super::kinematics::excess_det;
+use crate::points::{LANES, get, set};
+
+/// A determinant J of the deformation gradient that is not positive.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("J = {0:.3e} is not positive")]
+pub struct NotPositive(pub f64);
+
+/// A hyperelastic law. What several answers need is computed once by [`Material::at`]. `at`, `energy`, `stress` and `tangent` are `#[inline(always)]`: they are
+/// compiled into the loop over quadrature points, for wide registers.
+pub trait Material<const D: usize>: Send + Sync + 'static {
+    /// Degree of Ψ as a polynomial in F that is to be integrated exactly; 0 if it is none.
+    const ENERGY_DEGREE: usize;
+
+    /// Whether Ψ depends on FᵀF alone; else it is quadratic in H.
+    const OBJECTIVE: bool = true;
+
+    /// Kinematics at a point.
+    type Point;
+
+    /// Kinematics at H = F − I.
+    fn at(&self, h: &Mat<D>) -> Result<Self::Point, NotPositive>;
+
+    /// Strain energy Ψ per reference volume.
+    fn energy(&self, point: &Self::Point) -> f64;
+
+    /// First Piola–Kirchhoff stress P.
+    fn stress(&self, point: &Self::Point) -> Mat<D>;
+
+    /// The block Kᵢⱼ = Σ ∂Pᵢᴶ/∂Fⱼᴸ aᴶ bᴸ, bilinear in the reference gradients a and b.
+    fn tangent(&self, point: &Self::Point, a: &Vector<D>, b: &Vector<D>) -> Mat<D>;
+
+    /// ∂P/∂F : dF.
+    #[inline(always)]
+    fn change(&self, point: &Self::Point, df: &Mat<D>) -> Mat<D> {
+        let mut dp = Mat::ZERO;
+        for j in 0..D {
+            let mut unit = Vector::ZERO;
+            unit[j] = 1.0;
+            for l in 0..D {
+                let mut other = Vector::ZERO;
+                other[l] = 1.0;
+                let block = self.tangent(point, &unit, &other);
+                for i in 0..D {
+                    for k in 0..D {
+                        dp.0[i][j] += block.0[i][k] * df.0[k][l];
+                    }
+                }
+            }
+        }
+        dp
+    }
+
+    /// ∂P/∂F : dF at the first `count` of four points side by side: `h`, `dh` and the result are `[i][j][point]`.
+    #[inline(always)]
+    fn changes(
+        &self,
+        h: &[[[f64; LANES]; D]; D],
+        dh: &[[[f64; LANES]; D]; D],
+        count: usize,
+    ) -> Result<[[[f64; LANES]; D]; D], NotPositive> {
+        let mut changes = [[[0.0; LANES]; D]; D];
+        for l in 0..count {
+            let point = self.at(&get(h, l))?;
+            set(&mut changes, l, &self.change(&point, &get(dh, l)), 1.0);
+        }
+        Ok(changes)
+    }
+
+    /// Cauchy stress within the space of the body.
+    fn cauchy(&self, point: &Self::Point) -> Mat<D>;
+
+    /// Cauchy normal stress in the directions the body does not extend in.
+    fn lateral(&self, point: &Self::Point) -> f64;
+
+    /// Determinant J of the three-dimensional deformation gradient, positive or not.
+    fn volume_ratio(&self, h: &Mat<D>) -> f64 {
+        1.0 + excess_det(h)
+    }
+}

@@ -1,0 +1,43 @@
+//! The sides a case names, `body.side`, in the node numbers of the whole model.
+
+use carom_case::Problem;
+use carom_mechanics::model::Part;
+use carom_solid::FacetShape;
+
+/// A side in global node numbers.
+pub(super) struct Side {
+    pub(super) part: usize,
+    pub(super) nodes: Vec<usize>,
+    pub(super) facets: Vec<Vec<usize>>,
+    pub(super) orientations: Vec<f64>,
+    pub(super) shape: FacetShape,
+}
+
+/// The side of a name; what is missing is a problem with the key at `path`.
+pub(super) fn side(parts: &[Part], name: &str, path: &str) -> Result<Side, Problem> {
+    let missing = |why: String, help: String| Problem::new(path, format!("there is no side \"{name}\""), why, help);
+    let bodies = || parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
+    let (body, side) = name
+        .split_once('.')
+        .ok_or_else(|| missing("a side is written body.side".into(), format!("bodies: {}", bodies())))?;
+    let part = parts
+        .iter()
+        .position(|p| p.name == body)
+        .ok_or_else(|| missing(format!("there is no body \"{body}\""), format!("bodies: {}", bodies())))?;
+    let mesh = parts[part].body.mesh();
+    let first = parts[part].first_node;
+    let (Some(facets), Some(nodes)) = (mesh.sides.get(side), mesh.side_nodes(side)) else {
+        let sides = mesh.sides.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
+        return Err(missing(format!("the sides of \"{body}\" are: {sides}"), "use one of them".into()));
+    };
+    let Some(shape) = mesh.element.facet_shape() else {
+        return Err(missing("its cells have no facets".into(), "use another element".into()));
+    };
+    Ok(Side {
+        part,
+        nodes: nodes.iter().map(|n| n + first).collect(),
+        facets: facets.iter().map(|f| f.nodes.iter().map(|n| n + first).collect()).collect(),
+        orientations: facets.iter().map(|f| mesh.orientation(f)).collect(),
+        shape,
+    })
+}
