@@ -23,6 +23,10 @@ mod start;
 mod state;
 mod stepper;
 mod system;
+#[cfg(test)]
+mod tangent_tests;
+#[cfg(test)]
+mod testing;
 mod workspace;
 
 pub use kept::{Kept, Point};
