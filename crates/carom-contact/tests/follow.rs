@@ -1,24 +1,36 @@
 //! A node that slides along a chain of facets while Newton's method goes on: it is followed to the facet it is at, in one go, and back.
 
-use carom_contact::{ContactMethod, Detection, NodeToSegment, Pair, PairEvent, Surface};
+use carom_contact::{Detection, Kinematics, NodeToFacet, Pair, PairEvent, Pairing, Surface};
+use carom_solid::FacetShape;
 
 /// Facets of length 1 from x = 0 to x = 4, and a node (0) at `x`, pressed onto them.
-fn scene(x: f64) -> (NodeToSegment, Vec<[f64; 2]>) {
+fn scene(x: f64) -> (NodeToFacet, Vec<f64>) {
     let facets: Vec<Vec<usize>> = (0..4).map(|k| vec![k + 2, k + 1]).collect();
-    let mut y = vec![[x, 0.0]];
-    y.extend((0..5).map(|k| [f64::from(k), 0.0]));
-    (NodeToSegment::new(vec![0], Surface::new(&facets), Detection::ClosestPoint), y)
+    let mut y = vec![x, 0.0];
+    y.extend((0..5).flat_map(|k| [f64::from(k), 0.0]));
+    (NodeToFacet::new(vec![0], Surface::new(FacetShape::L2, &facets, &[1.0; 4]), Detection::ClosestPoint), y)
 }
 
-/// Facet and place of a pair on the facet from x = 1 to x = 2, followed to a node at `x`.
-fn followed(x: f64, left: Option<usize>) -> (usize, f64, Vec<PairEvent>) {
+/// Moves the node of a pairing to `x` and follows it there.
+fn follow(pairing: &mut Pairing, x: f64) -> Vec<PairEvent> {
     let (contact, y) = scene(x);
+    let pair = &mut pairing.pairs[0];
     // ξ runs against x here: the outward normal of the chain looks up.
-    let xi = 2.0 * (1.5 - x);
-    let mut pairs = [Pair { node: 0, facet: 1, xi, active: true, lambda: -1.0, start: None, left }];
+    pair.xi = 2.0 * (pair.facet as f64 + 0.5 - x);
     let mut events = Vec::new();
-    assert_eq!(contact.follow(&y, &mut pairs, &mut events), !events.is_empty());
-    (pairs[0].facet, pairs[0].xi, events)
+    assert_eq!(contact.follow(&y, pairing, &mut events), !events.is_empty());
+    events
+}
+
+/// Facet and place of a pair on the facet from x = 1 to x = 2, to which it may have `come_from` another, followed to a node at `x`.
+fn followed(x: f64, come_from: Option<usize>) -> (usize, f64, Vec<PairEvent>) {
+    let facet = come_from.unwrap_or(1);
+    let pair = Pair { active: true, lambda: -1.0, ..Pair::open(0, facet, 0.0) };
+    let mut pairing = Pairing::new(vec![pair]);
+    follow(&mut pairing, 1.5);
+    assert_eq!(pairing.pairs[0].facet, 1);
+    let events = follow(&mut pairing, x);
+    (pairing.pairs[0].facet, pairing.pairs[0].xi, events)
 }
 
 #[test]

@@ -25,6 +25,10 @@ mod stepper;
 mod sums;
 mod system;
 mod tangent;
+#[cfg(test)]
+mod tangent_tests;
+#[cfg(test)]
+mod testing;
 mod timings;
 mod workspace;
 

@@ -20,10 +20,11 @@ fn main() {
 }
 
 /// A square of 32 cells, its reference positions and deformed ones.
-fn square(element: Element, law: Law) -> (Box<dyn Body<2>>, Vec<[f64; 2]>, Vec<[f64; 2]>) {
+fn square(element: Element, law: Law) -> (Box<dyn Body>, Vec<f64>, Vec<f64>) {
     let mesh = generate::rectangle(element, [0.0, 0.0], [1.0, 1.0], [4, 4]).expect("valid");
-    let at = mesh.nodes.clone();
-    let moved = at.iter().map(|[x, y]| [x + 0.05 * (2.0 * y).sin(), y - 0.1 * y * x]).collect();
+    let at = mesh.nodes.flat().to_vec();
+    let bent = |[x, y]: &[f64; 2]| [x + 0.05 * (2.0 * y).sin(), y - 0.1 * y * x];
+    let moved = mesh.nodes.of_dimension().iter().flat_map(bent).collect();
     (body(mesh, law, 0.25, 1.0).expect("valid"), at, moved)
 }
 

@@ -302,7 +302,7 @@ fn pack<const D: usize, const N: usize>(points: impl Iterator<Item = ([Vector<D>
 /// Numbers in range, cells whole, nodes there.
 fn check<const D: usize, const N: usize>(mesh: &Mesh, density: f64, thickness: f64) -> Result<(), SolidError> {
     if mesh.element.dimension() != D || mesh.dimension() != D || mesh.element.nodes() != N {
-        return Err(SolidError::Dimension { element: mesh.element, dimension: D });
+        return Err(SolidError::Dimension { element: mesh.element, dimension: mesh.dimension() });
     }
     if !(density.is_finite() && density >= 0.0) {
         return Err(SolidError::Density(density));

@@ -24,7 +24,7 @@ fn variants(order: usize) -> impl Iterator<Item = String> {
 }
 
 /// ∫dΩ by the quadrature of the body.
-fn area(mesh: &Mesh<2>) -> f64 {
+fn area(mesh: &Mesh) -> f64 {
     let body = body(mesh.clone(), Law::NeoHookean { lambda: 1.0, mu: 1.0 }, 1.0, 1.0).unwrap();
     let n = mesh.element.nodes();
     let volumes = |cell| {
@@ -36,11 +36,12 @@ fn area(mesh: &Mesh<2>) -> f64 {
 }
 
 /// Places of the nodes of every cell, and of every side in its order: what does not depend on numbering.
-fn geometry(mesh: &Mesh<2>) -> (Vec<Vec<[f64; 2]>>, Vec<(String, Vec<[f64; 2]>)>) {
+fn geometry(mesh: &Mesh) -> (Vec<Vec<[f64; 2]>>, Vec<(String, Vec<[f64; 2]>)>) {
+    let nodes = mesh.nodes.of_dimension();
     let mut cells: Vec<Vec<_>> =
-        (0..mesh.cell_count()).map(|c| mesh.cell(c).iter().map(|&n| mesh.nodes[n]).collect()).collect();
+        (0..mesh.cell_count()).map(|c| mesh.cell(c).iter().map(|&n| nodes[n]).collect()).collect();
     cells.sort_by(|a, b| a.partial_cmp(b).unwrap());
-    let places = |side: &String| mesh.side_nodes(side).unwrap().into_iter().map(|n| mesh.nodes[n]).collect();
+    let places = |side: &String| mesh.side_nodes(side).unwrap().into_iter().map(|n| nodes[n]).collect();
     (cells, mesh.sides.keys().map(|side| (side.clone(), places(side))).collect())
 }
 
@@ -110,7 +111,7 @@ fn sides_are_walked_with_the_body_on_the_left() {
                     assert!(facets.windows(2).all(|f| f[0].nodes[1] == f[1].nodes[0]), "{side}");
                     for facet in facets {
                         assert!(facet.nodes.iter().all(|n| mesh.cell(facet.cell).contains(n)));
-                        let (a, b) = (mesh.nodes[facet.nodes[0]], mesh.nodes[facet.nodes[1]]);
+                        let (a, b) = (&mesh.nodes[facet.nodes[0]], &mesh.nodes[facet.nodes[1]]);
                         let (t, m) = ([b[0] - a[0], b[1] - a[1]], [middle[0] - a[0], middle[1] - a[1]]);
                         assert!(t[0] * m[1] - t[1] * m[0] > 0.0, "{side}");
                         let along: Vec<f64> = [facet.nodes[0]]
@@ -123,9 +124,9 @@ fn sides_are_walked_with_the_body_on_the_left() {
                     }
                 }
             }
-            let ends = |mesh: &Mesh<2>, side: &str| {
+            let ends = |mesh: &Mesh, side: &str| {
                 let nodes = mesh.side_nodes(side).unwrap();
-                [mesh.nodes[nodes[0]], mesh.nodes[nodes[nodes.len() - 1]]]
+                [nodes[0], nodes[nodes.len() - 1]].map(|n| mesh.nodes.of_dimension()[n])
             };
             assert!(near(&ends(&disc, "arc"), &[[0.0, 0.5], [0.0, 1.5]]));
             assert!(near(&ends(&prism, "top"), &[[1.0, 0.0], [0.0, 0.0]]));
@@ -209,7 +210,7 @@ fn byte_orders() {
     for version in [2.2, 4.1] {
         for big_endian in [false, true] {
             let mesh = gmsh::read(&square(version, big_endian)).unwrap().body("plate").unwrap();
-            assert_eq!(mesh.nodes, [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+            assert_eq!(mesh.nodes.of_dimension(), [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
             assert_eq!(
                 (mesh.cells.as_slice(), mesh.sides["low"][0].nodes.as_slice()),
                 (&[0, 1, 2, 0, 2, 3][..], &[0, 1][..])

@@ -5,7 +5,7 @@
 use std::path::PathBuf;
 
 use carom_solid::gmsh::{self, Fault, MshError, Place};
-use carom_solid::{Element, Mesh, generate};
+use carom_solid::{Element, Mesh, Positions, generate};
 use proptest::prelude::*;
 
 fn fixtures() -> Vec<(String, Vec<u8>)> {
@@ -73,7 +73,7 @@ const SQUARE: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n1
     $Nodes\n5\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n9 5 5 0\n$EndNodes\n\
     $Elements\n3\n1 1 2 7 1 2 1\n2 2 2 8 1 1 2 3\n3 2 2 8 1 1 3 4\n$EndElements\n";
 
-fn with(old: &str, new: &str) -> Result<Mesh<2>, MshError> {
+fn with(old: &str, new: &str) -> Result<Mesh, MshError> {
     assert!(SQUARE.contains(old), "{old}");
     gmsh::read(SQUARE.replacen(old, new, 1).as_bytes())?.body("plate")
 }
@@ -170,7 +170,7 @@ fn folded_cells_are_found() {
     for (element, pulled) in [(Element::T6, [0.9, 0.9]), (Element::T10, [0.9, 0.2]), (Element::T10, [0.7, 0.0])] {
         let mut mesh = generate::rectangle(element, [0.0, 0.0], [1.0, 1.0], [1, 1]).unwrap();
         let n = mesh.sides["bottom"][0].nodes[2];
-        mesh.nodes[n] = pulled;
+        mesh.nodes[n].copy_from_slice(&pulled);
         let file = gmsh::read(gmsh::write_msh41(&[("plate", &mesh)]).as_bytes()).unwrap();
         let error = file.body("plate").unwrap_err();
         assert!(matches!(error.fault, Fault::Folded { .. }), "{element:?} {error}");
@@ -183,8 +183,8 @@ fn folded_cells_are_found() {
 fn edges_share_their_nodes() {
     let mut mesh = generate::rectangle(Element::T6, [0.0, 0.0], [1.0, 1.0], [1, 1]).unwrap();
     let shared: Vec<usize> = mesh.cell(0)[3..].iter().copied().filter(|n| mesh.cell(1)[3..].contains(n)).collect();
-    mesh.nodes.push([0.501, 0.5]);
-    let new = mesh.nodes.len() - 1;
+    let new = mesh.nodes.len();
+    mesh.nodes = Positions::new(2, [mesh.nodes.flat(), &[0.501, 0.5]].concat());
     let place = mesh.cells.iter().rposition(|n| *n == shared[0]).unwrap();
     mesh.cells[place] = new;
     let error = gmsh::read(gmsh::write_msh41(&[("plate", &mesh)]).as_bytes()).unwrap().body("plate").unwrap_err();

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use carom::case::{Case, Document, read};
 use carom::{GridReport, Simulation};
 use carom_algebra::{Condensed, Elimination, Pattern, Precision};
-use carom_contact::{Linearised, Pair};
+use carom_contact::{Pair, Pairing, Rows};
 use divan::{Bencher, counter::ItemsCount};
 
 fn main() {
@@ -43,16 +43,16 @@ fn case_of(text: &str) -> Case {
     read(&Document::parse("case.toml", text, &[]).expect("the case is in the repository")).expect("valid")
 }
 
-fn at_start(job: Job) -> Simulation<2> {
+fn at_start(job: Job) -> Simulation {
     let text = match job {
         Job::Small => SMALL,
         Job::Large => LARGE,
     };
-    Simulation::new(&case_of(text), 1).expect("valid")
+    carom::simulation(&case_of(text), 1).expect("valid")
 }
 
 /// The job at a time with a dozen nodes (2k) in contact, or some forty (19k).
-fn in_contact(job: Job) -> Simulation<2> {
+fn in_contact(job: Job) -> Simulation {
     let mut sim = at_start(job);
     while sim.state.step < 60 {
         sim.advance(&mut GridReport::default()).expect("the job runs");
@@ -77,7 +77,7 @@ fn tangents_of_all_cells(bencher: Bencher, job: Job) {
     let bencher = bencher.counter(ItemsCount::new(cells));
     bencher.bench_local(|| {
         for part in &sim.model.parts {
-            let y = &sim.state.y.as_chunks::<2>().0[part.nodes()];
+            let y = part.of(&sim.state.y);
             for cell in 0..part.body.mesh().cell_count() {
                 black_box(part.body.cell_tangent(cell, y, &mut force, &mut tangent).is_ok());
             }
@@ -102,29 +102,30 @@ fn mass_times_vector(bencher: Bencher, job: Job) {
 #[divan::bench(args = JOBS)]
 fn detection(bencher: Bencher, job: Job) {
     let sim = in_contact(job);
-    let y = sim.state.y.as_chunks::<2>().0;
+    let y = &sim.state.y;
     bencher.bench_local(|| {
-        let mut pairs = sim.state.pairs[0].clone();
-        sim.model.contacts[0].method.detect(y, black_box(y), &mut pairs, &mut Vec::new()).is_ok()
+        let mut pairing = Pairing::new(sim.state.pairs[0].clone());
+        sim.model.contacts[0].kinematics.search(y, black_box(y), &mut pairing, &mut Vec::new())
     });
 }
 
 #[divan::bench(args = JOBS)]
 fn gaps(bencher: Bencher, job: Job) {
     let sim = in_contact(job);
-    let y = sim.state.y.as_chunks::<2>().0;
-    let mut gap = Linearised::default();
+    let y = &sim.state.y;
+    let kinematics = &sim.model.contacts[0].kinematics;
+    let (mut rows, mut curvature) = (Rows::new(2), vec![0.0; (2 * kinematics.stencil()).pow(2)]);
     bencher.counter(ItemsCount::new(sim.state.pairs[0].len())).bench_local(|| {
-        for pair in &sim.state.pairs[0] {
-            black_box(
-                sim.model.contacts[0].method.linearise(&mut pair.clone(), black_box(y), pair.lambda, &mut gap).is_ok(),
-            );
+        rows.clear();
+        for mut pair in sim.state.pairs[0].iter().copied() {
+            black_box(kinematics.measure(&mut pair, black_box(y), &mut rows).is_ok());
+            kinematics.curvature_into(&pair, black_box(y), &mut curvature);
         }
     });
 }
 
 /// The consistent mass on the pattern of the tangent, positive definite; left for last are the nodes that the pairs act on.
-fn mass_matrix(sim: &Simulation<2>) -> (Pattern, Vec<f64>, Vec<usize>, Vec<usize>) {
+fn mass_matrix(sim: &Simulation) -> (Pattern, Vec<f64>, Vec<usize>, Vec<usize>) {
     let mass = &sim.model.mass;
     let entries = (0..mass.nodes()).flat_map(|a| mass.row(a).map(move |(b, value)| (a, b, value)));
     let entries: Vec<_> = entries
@@ -139,8 +140,8 @@ fn mass_matrix(sim: &Simulation<2>) -> (Pattern, Vec<f64>, Vec<usize>, Vec<usize
         values[pattern.slot(i, j).expect("just made")] += value;
     }
     let groups = (0..sim.model.dofs()).map(|dof| dof / 2).collect();
-    let method = &sim.model.contacts[0].method;
-    let touched = |pair: &Pair| [&[method.secondary()[pair.node]], method.facet_nodes(pair.facet)].concat();
+    let kinematics = &sim.model.contacts[0].kinematics;
+    let touched = |pair: &Pair| [&[kinematics.secondary()[pair.node]], kinematics.facet_nodes(pair.facet)].concat();
     let touched: BTreeSet<usize> = sim.state.pairs[0].iter().flat_map(touched).collect();
     let last = touched.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
     (pattern, values, groups, last)
@@ -194,7 +195,7 @@ fn ten_steps(bencher: Bencher, job: Job) {
 #[divan::bench(sample_count = 10, sample_size = 1)]
 fn thousand_steps_of_a_bar(bencher: Bencher) {
     let case = case_of(BAR);
-    bencher.with_inputs(|| Simulation::<1>::new(&case, 1).expect("valid")).bench_local_values(|mut sim| {
+    bencher.with_inputs(|| carom::simulation(&case, 1).expect("valid")).bench_local_values(|mut sim| {
         for _ in 0..1000 {
             black_box(sim.advance(&mut GridReport::default()).is_ok());
         }

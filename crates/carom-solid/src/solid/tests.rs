@@ -7,7 +7,7 @@ use crate::material::NeoHookean;
 use crate::shape::Tet4;
 
 fn tetrahedron() -> Solid<3, 4, Tet4, NeoHookean> {
-    let nodes = vec![[0.0, 0.0, 0.0], [2.0, 0.1, 0.0], [0.2, 1.5, 0.1], [0.1, 0.2, 1.0]];
+    let nodes = vec![[0.0, 0.0, 0.0], [2.0, 0.1, 0.0], [0.2, 1.5, 0.1], [0.1, 0.2, 1.0]].into();
     let mesh =
         Mesh { element: Element::Tet4, nodes, cells: vec![0, 1, 2, 3], sides: BTreeMap::new(), repairs: Vec::new() };
     Solid::new(mesh, NeoHookean { lambda: 2.0, mu: 1.5 }, 3.0, 1.0).unwrap()
@@ -16,7 +16,7 @@ fn tetrahedron() -> Solid<3, 4, Tet4, NeoHookean> {
 #[test]
 fn a_tetrahedron_has_its_volume_and_mass() {
     let body = tetrahedron();
-    let [a, b, c] = [1, 2, 3].map(|n| body.mesh.nodes[n]);
+    let [a, b, c] = [1, 2, 3].map(|n| body.mesh.nodes.of_dimension::<3>()[n]);
     let volume = Mat([a, b, c]).det() / 6.0;
     let mut volumes = [0.0; 4];
     body.cell_volumes(0, &mut volumes);
@@ -29,17 +29,17 @@ fn a_tetrahedron_has_its_volume_and_mass() {
 #[test]
 fn a_tetrahedron_s_force_and_tangent_are_derivatives() {
     let body = tetrahedron();
-    let mut y: Vec<[f64; 3]> =
-        body.mesh.nodes.iter().map(|x| [1.1 * x[0] - 0.2 * x[1], 0.9 * x[1] + 0.1 * x[2], x[2] + 0.2 * x[0]]).collect();
+    let bent = |x: &[f64]| [1.1 * x[0] - 0.2 * x[1], 0.9 * x[1] + 0.1 * x[2], x[2] + 0.2 * x[0]];
+    let mut y: Vec<f64> = body.mesh.nodes.iter().flat_map(bent).collect();
     let (mut force, mut tangent) = ([0.0; 12], [0.0; 144]);
     body.cell_tangent(0, &y, &mut force, &mut tangent).unwrap();
     let h = 1e-6;
     for column in 0..12 {
         let mut at = |s: f64| {
-            y[column / 3][column % 3] += s;
+            y[column] += s;
             let mut f = [0.0; 12];
             let energy = body.cell_force(0, &y, &mut f).unwrap();
-            y[column / 3][column % 3] -= s;
+            y[column] -= s;
             (energy, f)
         };
         let (plus, minus) = (at(h), at(-h));

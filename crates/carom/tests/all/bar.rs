@@ -9,7 +9,7 @@ const BAR: &str = include_str!("../../../../cases/bar/single.toml");
 
 /// Peak p/300, rms of p/300 − 1 over 0.52 < t < 1.147, E/E₀ and v_cm/10 at the end, and the deepest penetration.
 fn figures(sets: &[String]) -> [f64; 5] {
-    let mut sim = simulation::<1>(BAR, sets);
+    let mut sim = simulation(BAR, sets);
     let start = sim.state.ledger.total();
     let (mut peak, mut squares, mut samples, mut depth) = (0.0_f64, 0.0, 0, 0.0_f64);
     while !sim.finished() {
@@ -31,7 +31,7 @@ fn figures(sets: &[String]) -> [f64; 5] {
 /// The bouncing bar: error of the end's position in the third period over the drop height, and the energy left at the end, as a share of 500.
 fn bounce(sets: &[String]) -> [f64; 2] {
     let sets = [&["body.bar.gravity=[-10.0]".into(), "body.bar.velocity=[0.0]".into()], sets].concat();
-    let mut sim = simulation::<1>(BAR, &sets);
+    let mut sim = simulation(BAR, &sets);
     let period = 16.0 / 3.0;
     let (mut squares, mut samples) = (0.0, 0);
     while !sim.finished() {

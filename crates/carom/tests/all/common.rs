@@ -1,7 +1,6 @@
 //! What the tests share: cases from text and settings, runs to the end, sums over bodies.
 
 use carom::case::{Case, Document, read};
-use carom::model::{Dimension, Space};
 use carom::{GridReport, Simulation};
 use carom_time::{KINDS, KindInfo, Member};
 
@@ -53,22 +52,16 @@ pub(crate) fn schemes(nonsmooth: bool) -> impl Iterator<Item = (String, &'static
 }
 
 /// A simulation of a case, on one thread.
-pub(crate) fn simulation<const D: usize>(text: &str, sets: &[impl AsRef<str>]) -> Simulation<D>
-where
-    Space: Dimension<D>,
-{
+pub(crate) fn simulation(text: &str, sets: &[impl AsRef<str>]) -> Simulation {
     on_threads(text, sets, 1)
 }
 
-pub(crate) fn on_threads<const D: usize>(text: &str, sets: &[impl AsRef<str>], threads: usize) -> Simulation<D>
-where
-    Space: Dimension<D>,
-{
-    Simulation::new(&case(text, sets), threads).unwrap_or_else(|p| panic!("{p:?}"))
+pub(crate) fn on_threads(text: &str, sets: &[impl AsRef<str>], threads: usize) -> Simulation {
+    carom::simulation(&case(text, sets), threads).unwrap_or_else(|p| panic!("{p:?}"))
 }
 
 /// Runs to the end.
-pub(crate) fn finish<const D: usize>(mut sim: Simulation<D>) -> Simulation<D> {
+pub(crate) fn finish(mut sim: Simulation) -> Simulation {
     while !sim.finished() {
         sim.advance(&mut GridReport::default()).unwrap();
     }
@@ -76,11 +69,16 @@ pub(crate) fn finish<const D: usize>(mut sim: Simulation<D>) -> Simulation<D> {
 }
 
 /// Momentum and moment of momentum of the velocities `v` where the nodes are.
-pub(crate) fn momenta(sim: &Simulation<2>, v: &[f64]) -> [f64; 3] {
+pub(crate) fn momenta(sim: &Simulation, v: &[f64]) -> [f64; 3] {
     let mut p = vec![0.0; v.len()];
     sim.model.mass.multiply_into(v, &mut p);
-    let pairs = p.as_chunks::<2>().0.iter().zip(sim.state.y.as_chunks::<2>().0);
-    pairs.fold([0.0; 3], |s, (p, y)| [s[0] + p[0], s[1] + p[1], s[2] + y[0] * p[1] - y[1] * p[0]])
+    sums(&p, &sim.state.y)
+}
+
+/// Sums of vectors at the nodes `y` and of their moments.
+pub(crate) fn sums(vectors: &[f64], y: &[f64]) -> [f64; 3] {
+    let pairs = vectors.as_chunks::<2>().0.iter().zip(y.as_chunks::<2>().0);
+    pairs.fold([0.0; 3], |s, (f, y)| [s[0] + f[0], s[1] + f[1], s[2] + y[0] * f[1] - y[1] * f[0]])
 }
 
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -25,8 +25,8 @@ scheme = { kind = "energy-momentum" }
 energy_guard = false
 "#;
 
-fn flight(sets: &[&str]) -> Simulation<2> {
-    let mut sim = simulation::<2>(FLIGHT, sets);
+fn flight(sets: &[&str]) -> Simulation {
+    let mut sim = simulation(FLIGHT, sets);
     // Spin about the centre, and a pull along x that stretches by tens of per cent.
     for node in sim.model.parts[0].nodes() {
         let [x, y] = [sim.model.reference[2 * node] - 1.0, sim.model.reference[2 * node + 1] - 0.25];

@@ -40,7 +40,7 @@ fn one_dof_is_amplified_as_the_analysis_says() {
         let kernel = case(SPRING, &[&scheme]).time.scheme.kernel().unwrap();
         let want = map::amplification(&*kernel, omega_dt);
         for column in 0..want.len() {
-            let mut sim = simulation::<1>(SPRING, &[&scheme]);
+            let mut sim = simulation(SPRING, &[&scheme]);
             let mut unit = [0.0; 5];
             unit[column] = 1e-3;
             let [u, v, a, d, w] = unit;
@@ -70,7 +70,7 @@ fn the_observed_order_on_a_nonlinear_oscillation_is_the_claimed_one() {
                 "body.bar.mesh.cells=3".into(),
                 "newton.tolerance=1e-12".into(),
             ];
-            let mut sim = simulation::<1>(SPRING, &sets.each_ref().map(String::as_str));
+            let mut sim = simulation(SPRING, &sets.each_ref().map(String::as_str));
             for node in 0..4 {
                 sim.state.v[node] = 1.5 * node as f64 / 3.0;
             }
@@ -101,14 +101,14 @@ fn the_booked_impulse_is_the_change_of_momentum() {
         [r#"time.scheme={ kind = "energy-momentum" }"#, "contact.wall.law=\"predictor\""],
         [r#"time.scheme={ kind = "energy-momentum" }"#, "contact.wall.enforcement=\"penalty\""],
     ] {
-        let sim = simulation::<1>(BAR, &sets);
+        let sim = simulation(BAR, &sets);
         let momentum = |state: &State| {
             let mut p = vec![0.0; state.v.len()];
             sim.model.mass.multiply_into(&state.v, &mut p);
             p.iter().sum::<f64>()
         };
         let start = momentum(&sim.state);
-        let end = finish(simulation::<1>(BAR, &sets)).state;
+        let end = finish(simulation(BAR, &sets)).state;
         let error = momentum(&end) - start - end.ledger.impulse[0];
         assert!(
             end.ledger.impulse[0] > 150.0 && error.abs() < 1e-7,
@@ -122,9 +122,9 @@ fn the_booked_impulse_is_the_change_of_momentum() {
 #[test]
 fn what_contact_laws_cost_is_booked_as_contact_work() {
     const CONSERVING: &str = r#"time.scheme={ kind = "energy-momentum" }"#;
-    let penalty = finish(simulation::<1>(BAR, &[CONSERVING, "contact.wall.enforcement=\"penalty\""])).state.ledger;
+    let penalty = finish(simulation(BAR, &[CONSERVING, "contact.wall.enforcement=\"penalty\""])).state.ledger;
     assert!(penalty.contact_work.abs() < 1e-7 && penalty.dissipation().abs() < 1e-7, "{penalty:?}");
-    let predictor = finish(simulation::<1>(BAR, &[CONSERVING, "contact.wall.law=\"predictor\""])).state.ledger;
+    let predictor = finish(simulation(BAR, &[CONSERVING, "contact.wall.law=\"predictor\""])).state.ledger;
     assert!(predictor.contact_work < -1.0 && predictor.dissipation().abs() < 1e-7, "{predictor:?}");
 }
 
@@ -136,14 +136,14 @@ fn a_checkpoint_holds_the_memory_of_schemes_and_springs() {
         [r#"time.scheme={ kind = "bathe", rho_inf = 0.4 }"#, "time.end=0.8"],
         [r#"time.scheme={ kind = "energy-momentum" }"#, "contact.wall.enforcement=\"penalty\""],
     ] {
-        let mut sim = simulation::<1>(BAR, &sets);
+        let mut sim = simulation(BAR, &sets);
         for _ in 0..190 {
             sim.advance(&mut GridReport::default()).unwrap();
         }
         assert!(sim.state.pairs[0].iter().any(|p| p.active));
         let bytes = postcard::to_stdvec(&sim.state).unwrap();
         let straight = finish(sim).state;
-        let resumed = finish(simulation::<1>(BAR, &sets).resumed(postcard::from_bytes(&bytes).unwrap())).state;
+        let resumed = finish(simulation(BAR, &sets).resumed(postcard::from_bytes(&bytes).unwrap())).state;
         assert_eq!(straight, resumed, "{sets:?}");
     }
 }

@@ -1,13 +1,12 @@
 //! Loads and moving supports against exact solutions: waves, oscillators, equilibria.
 
-use carom::model::{Dimension, Space};
 use carom::{GridReport, Simulation};
 
 use super::common::{self, case as case_of, finish};
 
 /// A bar of length 1, E = ρ = A = 1, held at the left; the rest is given.
-fn bar(rest: &str) -> Simulation<1> {
-    simulation::<1>(&format!(
+fn bar(rest: &str) -> Simulation {
+    simulation(&format!(
         r#"
 dimension = 1
 [[material]]
@@ -20,10 +19,7 @@ poisson = 0.0
     ))
 }
 
-fn simulation<const D: usize>(text: &str) -> Simulation<D>
-where
-    Space: Dimension<D>,
-{
+fn simulation(text: &str) -> Simulation {
     common::simulation(text, &[""; 0])
 }
 
@@ -133,7 +129,7 @@ fn means_over_two_steps_are_the_change_of_momentum() {
                 [[load]]\non = [\"bar.right\"]\ntraction = [\"0.02*sin(7*t)\"]\n";
     let dt = 0.01;
     let mut sim = bar(&[&body(5, "consistent"), rest, &time(1.0, dt, r#"{ kind = "bdf2" }"#)].concat());
-    let momentum = |sim: &Simulation<1>, v: &[f64]| {
+    let momentum = |sim: &Simulation, v: &[f64]| {
         let mut p = vec![0.0; v.len()];
         sim.model.mass.multiply_into(v, &mut p);
         p.iter().sum::<f64>()
@@ -275,7 +271,7 @@ scheme = { kind = "static" }
 [newton]
 tolerance = 1e-13
 "#;
-    let sim = finish(simulation::<2>(text));
+    let sim = finish(simulation(text));
     let (model, state) = (&sim.model, &sim.state);
     let (mut reaction, mut moment, mut size) = ([0.0; 2], 0.0, 0.0);
     let (mut load, mut load_moment) = ([0.0; 2], 0.0);
@@ -342,7 +338,7 @@ energy_guard = false
         if !scheme.is_empty() {
             case.time.scheme.forces = carom_time::ForceRule::AverageState;
         }
-        let mut whole = Simulation::<2>::new(&case, 1).unwrap();
+        let mut whole = carom::simulation(&case, 1).unwrap();
         let mut kept = None;
         while !whole.finished() {
             if whole.state.step == 23 {
@@ -351,7 +347,7 @@ energy_guard = false
             whole.advance(&mut GridReport::default()).unwrap();
         }
         let state = postcard::from_bytes(&kept.unwrap()).unwrap();
-        let resumed = finish(Simulation::<2>::resume(&case, 2, state).unwrap());
+        let resumed = finish(carom::resumed(&case, 2, state).unwrap());
         assert_eq!(resumed.state, whole.state);
     }
 }
@@ -392,14 +388,14 @@ scheme = {{ kind = "static" }}
     // Without its contact nothing could ever hold it: the case is wrong.
     let mut alone = case.clone();
     alone.contacts.clear();
-    let problems = Simulation::<2>::new(&alone, 1).err().unwrap();
+    let problems = carom::simulation(&alone, 1).err().unwrap();
     assert!(problems[0].what.starts_with("body \"disc\" is free to"), "{problems:?}");
     // With a gap it falls: said by name, with what to try.
-    let stopped = simulation::<2>(&text(axis, 0.6)).advance(&mut GridReport::default()).unwrap_err().to_string();
+    let stopped = simulation(&text(axis, 0.6)).advance(&mut GridReport::default()).unwrap_err().to_string();
     assert!(stopped.contains("body \"disc\" is free to move along y"), "{stopped}");
     assert!(stopped.contains("`move`"), "{stopped}");
     // Touching, it rests on the floor with its weight.
-    let sim = finish(simulation::<2>(&text(axis, 0.5)));
+    let sim = finish(simulation(&text(axis, 0.5)));
     let weight: f64 = sim.model.gravity.iter().skip(1).step_by(2).sum();
     assert!(
         (sim.state.contact_forces[0][1] + weight).abs() < 1e-9 * weight.abs(),
@@ -447,11 +443,11 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
     let stop = std::sync::atomic::AtomicBool::new(false);
     let preload = folder.path().join("preload");
     carom::recording::run(&case, source, &preload, options, &mut |_| {}, &stop).unwrap();
-    let pressed = finish(Simulation::<2>::new(&case, 1).unwrap());
+    let pressed = finish(carom::simulation(&case, 1).unwrap());
 
     let initial = format!("[initial]\nfrom = {:?}\n", preload.display().to_string());
     let again = |motion: &str| text(&time(0.1, 1e-3, r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#), &initial, motion);
-    let mut held = simulation::<2>(&again("-0.1"));
+    let mut held = simulation(&again("-0.1"));
     assert_eq!(held.state.y, pressed.state.y);
     let force = pressed.state.contact_forces[0][1];
     assert!((held.state.contact_forces[0][1] - force).abs() < 1e-8 * force, "{:?} {force}", held.state.contact_forces);
@@ -467,7 +463,7 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
         (again("-0.1").replace("cells = [3, 3]", "cells = [3, 4]"), "body \"block\" has another mesh in"),
         (again("-0.1").replace("/preload", "/nowhere"), "cannot be started from"),
     ] {
-        let problems = Simulation::<2>::new(&case_of(&text, &[""; 0]), 1).err().unwrap();
+        let problems = carom::simulation(&case_of(&text, &[""; 0]), 1).err().unwrap();
         assert!(problems[0].what.contains(told), "{problems:?}");
     }
 }

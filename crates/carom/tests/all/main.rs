@@ -5,10 +5,12 @@
 mod bar;
 mod common;
 mod energy_momentum;
+mod frequencies;
 mod impact;
 mod kernels;
 mod loads;
 mod nonsmooth;
 mod placed;
+mod probe;
 mod reversal;
 mod tangent;

@@ -18,8 +18,7 @@ const COARSE: [&str; 4] = [
 fn free_fall_is_that_of_the_scheme() {
     for (scheme, member) in schemes(true) {
         let scheme = format!("time.scheme={scheme}");
-        let sim =
-            finish(simulation::<2>(IMPACT, &[&COARSE[..], &[&scheme, "time.end=0.3", "time.step=3e-4"]].concat()));
+        let sim = finish(simulation(IMPACT, &[&COARSE[..], &[&scheme, "time.end=0.3", "time.step=3e-4"]].concat()));
         let late = (member.falls)(sim.state.step as f64) * sim.dt * sim.dt;
         let fallen = 9.81 * (0.5 * sim.state.time * sim.state.time + late);
         for node in sim.model.parts[0].nodes() {
@@ -61,12 +60,12 @@ energy_guard = false
 fn orders_on_smooth_nonlinear_motion_are_those_claimed() {
     let end = |scheme: &str, step: f64| {
         let (scheme, step) = (format!("time.scheme={scheme}"), format!("time.step={step:e}"));
-        let sim = finish(simulation::<2>(BLOCK, &[&scheme, &step]));
+        let sim = finish(simulation(BLOCK, &[&scheme, &step]));
         (sim.state.y, sim.state.v)
     };
     let exact = end("{ kind = \"chung-hulbert\", rho_inf = 1.0 }", 1e-3 / 128.0);
     let moved =
-        exact.0.iter().zip(&simulation::<2>(BLOCK, &[""; 0]).state.y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        exact.0.iter().zip(&simulation(BLOCK, &[""; 0]).state.y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(moved > 0.15, "{moved}");
     for (scheme, member) in schemes(true) {
         let error = |step: f64| {
@@ -91,7 +90,7 @@ fn orders_on_smooth_nonlinear_motion_are_those_claimed() {
 #[test]
 fn two_discs_keep_their_momentum() {
     for (scheme, member) in schemes(true) {
-        let mut sim = simulation::<2>(DISCS, &[&format!("time.scheme={scheme}")]);
+        let mut sim = simulation(DISCS, &[&format!("time.scheme={scheme}")]);
         let explicit = member.rho_inf.is_infinite();
         let size = 1.5 * sim.model.parts.iter().map(|p| p.total_mass).sum::<f64>();
         let (mut active, mut spin) = (0, None);
@@ -146,7 +145,7 @@ fn resuming_in_contact_and_threads_change_no_bit() {
             "time.energy_guard=false",
         ];
         let sets: Vec<&str> = sets.iter().map(|s| &**s).collect();
-        let mut whole = simulation::<2>(DISCS, &sets);
+        let mut whole = simulation(DISCS, &sets);
         let mut bytes = Vec::new();
         while !whole.finished() {
             whole.advance(&mut GridReport::default()).unwrap();
@@ -156,7 +155,7 @@ fn resuming_in_contact_and_threads_change_no_bit() {
         }
         let state: State = postcard::from_bytes(&bytes).unwrap();
         assert!(state.step < whole.state.step);
-        let resumed = finish(on_threads::<2>(DISCS, &sets, 2).resumed(state));
+        let resumed = finish(on_threads(DISCS, &sets, 2).resumed(state));
         assert!(resumed.state == whole.state, "{scheme}");
     }
 }
@@ -166,7 +165,7 @@ fn resuming_in_contact_and_threads_change_no_bit() {
 fn restitution_one_keeps_the_energy_of_moreau_and_jean() {
     let left = |e: &str| {
         let sets = ["time.scheme={ kind = \"moreau-jean\", theta = 0.5 }", &format!("contact.strike.restitution={e}")];
-        let sim = finish(simulation::<2>(DISCS, &sets));
+        let sim = finish(simulation(DISCS, &sets));
         let ledger = &sim.state.ledger;
         (ledger.total() / ledger.total_at_start, ledger.contact_work / ledger.total_at_start)
     };
@@ -180,12 +179,12 @@ fn restitution_one_keeps_the_energy_of_moreau_and_jean() {
 fn the_stable_step_is_where_central_differences_blow_up() {
     let coarse =
         case(IMPACT, &[&COARSE[..], &["time.scheme={ kind = \"central-difference\" }", "time.step=3e-4"]].concat());
-    let sim = Simulation::<2>::new(&coarse, 1).unwrap();
+    let sim = carom::simulation(&coarse, 1).unwrap();
     let stable = stable_step(&sim.model).unwrap();
     assert!(stable.cell <= stable.power && stable.power < 3.0 * stable.cell, "{stable:?}");
     let step = format!("time.step={:e}", 0.75 / (0.75 / (0.99 * stable.power)).floor());
     let long = case(IMPACT, &[&COARSE[..], &["time.scheme={ kind = \"central-difference\" }", &step]].concat());
-    let refused = Simulation::<2>::new(&long, 1).err().unwrap();
+    let refused = carom::simulation(&long, 1).err().unwrap();
     assert!(refused.len() == 1 && refused[0].path == "time.step", "{refused:?}");
     assert!(refused[0].what.contains(&format!("{:.4e}", SAFETY * stable.power)), "{refused:?}");
 }
@@ -196,7 +195,7 @@ fn the_stable_step_is_where_central_differences_blow_up() {
 fn the_impact_by_central_differences() {
     let lumped =
         ["body.cylinder.mass=lumped", "body.prism.mass=lumped", "time.scheme={ kind = \"central-difference\" }"];
-    let mut sim = simulation::<2>(IMPACT, &[&lumped[..], &["time.step=4e-4"]].concat());
+    let mut sim = simulation(IMPACT, &[&lumped[..], &["time.step=4e-4"]].concat());
     let top = (0..sim.model.dofs() / 2)
         .find(|&n| sim.model.reference[2 * n] == 0.0 && (sim.model.reference[2 * n + 1] - 1.5).abs() < 1e-12)
         .unwrap();

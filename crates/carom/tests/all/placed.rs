@@ -1,8 +1,6 @@
 //! A case that is turned and moved as a whole gives the turned and moved motion: shapes, contact, gravity and all. So does a body whose
 //! initial positions are a rigid motion of its mesh.
 
-use carom::Simulation;
-
 use super::common::{case, finish, simulation};
 
 const DROP: &str = r#"
@@ -35,7 +33,7 @@ primary = "anvil.side3"
 "#;
 
 fn run(sets: &[String]) -> (Vec<[f64; 2]>, usize) {
-    let sim = finish(simulation::<2>(DROP, sets));
+    let sim = finish(simulation(DROP, sets));
     let active = sim.state.pairs.iter().flatten().filter(|p| p.active).count();
     (sim.state.y.as_chunks::<2>().0.to_vec(), active)
 }
@@ -78,7 +76,7 @@ fn positions_that_only_turn_a_body_leave_it_unstrained() {
 fn bodies_must_not_overlap_where_they_start() {
     const LOWER: &str = "body.tube.position=[\"X\", \"Y - 0.05\"]";
     let problems = |sets: &[&str]| {
-        Simulation::<2>::new(&case(DROP, sets), 1)
+        carom::simulation(&case(DROP, sets), 1)
             .err()
             .unwrap_or_default()
             .iter()

@@ -31,7 +31,7 @@ energy_guard = false                # velocities are set by hand
 
 #[test]
 fn the_trapezoidal_rule_runs_back() {
-    let mut there = simulation::<2>(BLOCK, &[""; 0]);
+    let mut there = simulation(BLOCK, &[""; 0]);
     // A stretch and a bend of size one: strains of tens of per cent.
     let mut begin = there.state.clone();
     for (x, v) in begin.y.as_chunks::<2>().0.iter().zip(begin.v.as_chunks_mut::<2>().0) {
@@ -48,7 +48,7 @@ fn the_trapezoidal_rule_runs_back() {
     assert!(displaced > 0.3 && strain > 0.2, "the motion is not small: {displaced}, {strain}");
     turned.step = 0;
     turned.v.iter_mut().for_each(|v| *v = -*v);
-    let mut back = simulation::<2>(BLOCK, &[""; 0]).resumed(turned);
+    let mut back = simulation(BLOCK, &[""; 0]).resumed(turned);
     while !back.finished() {
         back.advance(&mut GridReport::default()).unwrap();
     }

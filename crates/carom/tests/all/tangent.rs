@@ -5,10 +5,10 @@ use carom::{GridReport, Simulation, State};
 use super::common::simulation;
 
 /// The last state of a coarse impact, and the contact force of every step.
-fn history(set: &str) -> (State, Vec<[f64; 2]>) {
+fn history(set: &str) -> (State, Vec<[f64; 3]>) {
     let text = include_str!("../../../../cases/impact/impact.toml");
     let coarse = ["body.cylinder.mesh.size=0.2", "body.prism.mesh.cells=[4,2]"];
-    let mut sim = simulation::<2>(text, &[&coarse[..], &[set]].concat());
+    let mut sim = simulation(text, &[&coarse[..], &[set]].concat());
     let mut forces = Vec::new();
     while !sim.finished() {
         sim.advance(&mut GridReport::default()).unwrap();
@@ -37,14 +37,14 @@ fn kept_and_full_tangents_with_and_without_mixing_lead_to_the_same_history() {
 }
 
 /// A case with factors that are large enough for single precision.
-fn large(set: &str) -> Simulation<2> {
-    let sim = simulation::<2>(include_str!("../../../../cases/perf/disc-19k.toml"), &[set]);
+fn large(set: &str) -> Simulation {
+    let sim = simulation(include_str!("../../../../cases/perf/disc-19k.toml"), &[set]);
     assert!(sim.model.free.len() > 10_000);
     sim
 }
 
 /// Contact forces of the next steps.
-fn forces(sim: &mut Simulation<2>, steps: usize) -> Vec<[f64; 2]> {
+fn forces(sim: &mut Simulation, steps: usize) -> Vec<[f64; 3]> {
     let mut advance = || {
         sim.advance(&mut GridReport::default()).unwrap();
         sim.state.contact_forces[0]

@@ -2,10 +2,10 @@
 
 use super::*;
 
-fn area(mesh: &Mesh<2>) -> f64 {
-    fn of<const N: usize, S: Shape<2, N>>(mesh: &Mesh<2>) -> f64 {
+fn area(mesh: &Mesh) -> f64 {
+    fn of<const N: usize, S: Shape<2, N>>(mesh: &Mesh) -> f64 {
         let cell = |cell: usize| {
-            let x: [Vector<2>; N] = std::array::from_fn(|a| Vector(mesh.nodes[mesh.cell(cell)[a]]));
+            let x: [Vector<2>; N] = std::array::from_fn(|a| Vector(places(mesh)[mesh.cell(cell)[a]]));
             let rule = triangle(6);
             rule.iter()
                 .map(|(xi, w)| {
@@ -24,7 +24,7 @@ fn area(mesh: &Mesh<2>) -> f64 {
     }
 }
 
-fn mean_edge(mesh: &Mesh<2>) -> f64 {
+fn mean_edge(mesh: &Mesh) -> f64 {
     let all = mesh.cells.chunks(mesh.element.nodes()).flat_map(|c| [[c[0], c[1]], [c[1], c[2]], [c[2], c[0]]]);
     let lengths: Vec<f64> =
         all.map(|[a, b]| (mesh.nodes[a][0] - mesh.nodes[b][0]).hypot(mesh.nodes[a][1] - mesh.nodes[b][1])).collect();
@@ -49,7 +49,7 @@ fn rings() {
                 assert!(nodes.len() >= 12 * k && nodes.len().is_multiple_of(4 * k));
                 assert_eq!(mesh.nodes[nodes[0]], [center[0] + radius, center[1]]);
                 for pair in nodes.windows(2) {
-                    let turned = angle(center, mesh.nodes[pair[0]], mesh.nodes[pair[1]]);
+                    let turned = angle(center, places(&mesh)[pair[0]], places(&mesh)[pair[1]]);
                     assert!((turned * turn - 360.0 / nodes.len() as f64).abs() < 1e-10);
                 }
                 for n in nodes {
@@ -62,7 +62,7 @@ fn rings() {
 }
 
 /// Area within a closed side, ½ ∮ x × dx over its facets.
-fn enclosed(mesh: &Mesh<2>, side: &str) -> f64 {
+fn enclosed(mesh: &Mesh, side: &str) -> f64 {
     let mut twice = 0.0;
     for facet in &mesh.sides[side] {
         for (xi, w) in [(-0.6_f64.sqrt(), 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.6_f64.sqrt(), 5.0 / 9.0)] {
@@ -144,7 +144,7 @@ fn polygons() {
                     let side = format!("side{}", k + 1);
                     walked_with_the_body_on_the_left(&mesh, &side);
                     let nodes = mesh.side_nodes(&side).unwrap();
-                    let ends = [mesh.nodes[nodes[0]], mesh.nodes[nodes[nodes.len() - 1]]];
+                    let ends = [nodes[0], nodes[nodes.len() - 1]].map(|n| places(&mesh)[n]);
                     let given = [outline[k], outline[(k + 1) % outline.len()]];
                     let turned = [given[1], given[0]];
                     assert_eq!(ends, if shoelace(outline) > 0.0 { given } else { turned });

@@ -1,0 +1,198 @@
+//! The whole Newton matrix against differences of the whole residual.
+
+use carom_formula::Formula;
+use carom_solid::{Element, Law, generate};
+use carom_time::{ForceRule, Kernel, Memory, Scheme, Stage};
+
+use crate::constraints::Constraints;
+use crate::equations::{Equations, Iterate};
+use crate::model::{Load, Loads, Model, Motions};
+use crate::simulation::GridReport;
+use crate::state::State;
+use crate::sums::dot;
+use crate::testing::{contact, loaded, model, nodes, parts, simulation};
+use crate::workspace::Workspace;
+
+/// An iterate with its matrix.
+struct Tangent<'a> {
+    equations: &'a Equations<'a>,
+    at: Iterate,
+    rows: Constraints,
+    work: Workspace,
+}
+
+impl<'a> Tangent<'a> {
+    /// Of the pairs of the state, with increments of a size all over the place.
+    fn new(equations: &'a Equations<'a>, size: f64) -> Self {
+        let model = equations.model;
+        let mut work = Workspace::new(model, 1);
+        let mut at = Iterate::at_start(equations.state);
+        model.free.iter().for_each(|&dof| at.increment[dof] = size * wave(dof, 0.3));
+        let now = equations.evaluate(at, &mut work.spare, &mut work.timings).unwrap();
+        let rows = Constraints::of(equations, &now);
+        let system = &mut work.system;
+        system.internal_tangent(model, None, &now.place, &mut vec![0.0; model.dofs()], None).unwrap();
+        system.loads_tangent(model, &equations.loads);
+        let (mass, stiffness) = (equations.mass_factor(), equations.stiffness_factor());
+        system.factor(model, mass, stiffness, equations.follower_factor(), &rows).unwrap();
+        Self { equations, at: now.at, rows, work }
+    }
+
+    /// A direction over free dofs and rows.
+    fn direction(&self, seed: f64) -> Vec<f64> {
+        (0..self.equations.model.free.len() + self.rows.len()).map(|i| wave(i, seed)).collect()
+    }
+
+    /// The matrix times a direction.
+    fn product(&mut self, u: &[f64]) -> Vec<f64> {
+        self.work.system.product(u)
+    }
+
+    /// The same without contact and without a matrix, of the free dofs.
+    fn applied(&mut self, u: &[f64]) -> Vec<f64> {
+        let Self { equations, at, work, .. } = self;
+        let model = equations.model;
+        let (mut change, mut product) = (vec![0.0; model.dofs()], vec![0.0; model.dofs()]);
+        model.free.iter().zip(u).for_each(|(&dof, u)| change[dof] = *u);
+        let now = equations.evaluate(at.clone(), &mut work.spare, &mut work.timings).unwrap();
+        equations.product_into(&now, &change, &mut product, &mut work.timings).unwrap();
+        model.free.iter().map(|&dof| product[dof]).collect()
+    }
+
+    /// Residual at free dofs and weighted gaps of the rows, `e` along a direction.
+    fn residual(&mut self, u: &[f64], e: f64) -> Vec<f64> {
+        let Self { equations, at, rows, work } = self;
+        let (free, mut at) = (&equations.model.free, at.clone());
+        let (dofs, multipliers) = u.split_at(free.len());
+        free.iter().zip(dofs).for_each(|(&dof, u)| at.increment[dof] += e * u);
+        for (&(k, p), u) in rows.places.iter().zip(multipliers) {
+            at.pairings[k].pairs[p].lambda += e * u;
+        }
+        let now = equations.evaluate(at, &mut work.spare, &mut work.timings).unwrap();
+        let gaps = rows.places.iter().zip(&rows.weights).map(|(&(k, p), weight)| weight * now.rows[k].row(p).gap);
+        free.iter().map(|&dof| now.residual[dof]).chain(gaps).collect()
+    }
+
+    /// Derivative of those along the direction, by central differences with steps `h` and 2`h`, extrapolated.
+    fn derivative(&mut self, u: &[f64], h: f64) -> Vec<f64> {
+        let mut slope = |h: f64| -> Vec<f64> {
+            let (plus, minus) = (self.residual(u, h), self.residual(u, -h));
+            plus.iter().zip(&minus).map(|(p, m)| (p - m) / (2.0 * h)).collect()
+        };
+        let (fine, coarse) = (slope(h), slope(2.0 * h));
+        fine.iter().zip(&coarse).map(|(fine, coarse)| (4.0 * fine - coarse) / 3.0).collect()
+    }
+}
+
+fn wave(i: usize, seed: f64) -> f64 {
+    ((i as f64 + seed) * 12.9898).sin()
+}
+
+fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |most, x| x.abs().max(most))
+}
+
+fn equations<'a>(model: &'a Model, state: &'a State, scheme: &Scheme, dt: f64, to: f64) -> Equations<'a> {
+    let mut stage = Stage::default();
+    scheme.stage_into(0, dt, &Memory { states: &[(&state.y, &state.v, &state.a)], before: None }, &mut stage);
+    Equations::new(model, state, stage, to).unwrap()
+}
+
+/// The right half of a disc that strikes a block.
+fn strike() -> Model {
+    let disc = generate::half_disc(Element::T10, 0.5, [0.0, 0.5], 0.25).unwrap();
+    let block = generate::rectangle(Element::T10, [0.0, -0.5], [1.0, 0.0], [4, 2]).unwrap();
+    let parts = parts([disc, block], Law::NeoHookean { lambda: 200.0, mu: 15.0 }, 0.25);
+    let bottom = nodes(&parts[1], "bottom").into_iter().flat_map(|node| [2 * node, 2 * node + 1]);
+    let symmetry = [nodes(&parts[0], "axis"), nodes(&parts[1], "left")].concat().into_iter().map(|node| 2 * node);
+    let fixed: Vec<usize> = bottom.chain(symmetry).collect();
+    let strike = contact(&parts, (0, "arc"), (1, "top"));
+    let mut model = model(parts, &fixed, Motions::default(), Loads::default(), vec![strike]);
+    model.parts[0].nodes().for_each(|node| model.initial_velocity[2 * node + 1] = -3.0);
+    model
+}
+
+/// With contact active and sliding; and the matrix is symmetric.
+#[test]
+fn the_whole_tangent_with_contact_is_the_derivative_of_the_residual() {
+    let averaged = Scheme::hht(0.2).unwrap().with_forces(ForceRule::AverageState);
+    for scheme in [Scheme::chung_hulbert(0.6).unwrap(), averaged] {
+        let mut sim = simulation(strike(), scheme, 2e-3);
+        while sim.state.time < 0.1 {
+            sim.advance(&mut GridReport::default()).unwrap();
+        }
+        let equations = equations(&sim.model, &sim.state, &scheme, sim.dt, sim.state.time + sim.dt);
+        let mut tangent = Tangent::new(&equations, 1e-3);
+        assert!(tangent.rows.len() > 3);
+        let (u, w) = (tangent.direction(0.1), tangent.direction(0.7));
+        let (ku, kw) = (tangent.product(&u), tangent.product(&w));
+        assert!((dot(&ku, &w) - dot(&kw, &u)).abs() < 1e-12 * dot(&ku, &ku).sqrt() * dot(&w, &w).sqrt());
+        for (i, (numeric, k)) in tangent.derivative(&u, 2.5e-5).iter().zip(&ku).enumerate() {
+            assert!((numeric - k).abs() < 1e-7 * largest(&ku), "{scheme:?} {i}: {numeric} {k}");
+        }
+    }
+}
+
+/// A block held at the left and moved at the right, with a pressure on another side.
+fn pressed(on: &str, pressure: &str) -> Model {
+    let block = generate::rectangle(Element::T6, [0.0, 0.0], [1.0, 1.0], [3, 2]).unwrap();
+    let parts = parts([block], Law::NeoHookean { lambda: 20.0, mu: 10.0 }, 1.0);
+    let read = |text: &str| Formula::parse(text, &["X", "Y", "t"]).unwrap();
+    let fixed: Vec<usize> = nodes(&parts[0], "left").into_iter().flat_map(|node| [2 * node, 2 * node + 1]).collect();
+    let mut right = nodes(&parts[0], "right");
+    right.sort_unstable();
+    let place = |node: usize| parts[0].body.mesh().nodes[node].to_vec();
+    let moved = right.iter().flat_map(|&node| [0, 1].map(|axis| (2 * node + axis, axis, place(node))));
+    let motions = ["0.1*t", "t^2"].map(|text| ("the right side".to_owned(), read(text))).to_vec();
+    let motions = Motions::new(motions, moved);
+    let mut loads = Loads::default();
+    let side = loaded(&parts[0], on);
+    loads.add_pressure(Load { on: side, value: vec![read(pressure)], label: on.to_owned(), amplitude: None });
+    model(parts, &fixed, motions, loads, Vec::new())
+}
+
+/// Follower pressure with open, free ends and a moving side: the quadratic form of the symmetric matrix is that of the residual's derivative, and where
+/// the ends are held and the pressure is uniform the whole matrix is.
+#[test]
+fn the_tangent_under_pressure_is_the_symmetric_part_of_the_derivative() {
+    let scheme = Scheme::chung_hulbert(0.5).unwrap();
+    for (on, pressure, symmetric) in [("top", "3", true), ("top", "3*(1 + X^2)", false), ("bottom", "-2", true)] {
+        let sim = simulation(pressed(on, pressure), scheme, 0.1);
+        // Without inertia and with soft springs the pressure is a good part of the tangent.
+        let equations = equations(&sim.model, &sim.state, &scheme, 1e3, 0.1);
+        let mut tangent = Tangent::new(&equations, 1e-2);
+        let u = tangent.direction(0.1);
+        let (ku, numeric) = (tangent.product(&u), tangent.derivative(&u, 1e-4));
+        let apart: Vec<f64> = numeric.iter().zip(&ku).map(|(numeric, k)| numeric - k).collect();
+        let (form, size) = (dot(&u, &apart), largest(&ku));
+        assert!(form.abs() < 1e-7 * size, "{on} {pressure}: {form:e}");
+        assert_eq!(largest(&apart) < 1e-7 * size, symmetric, "{on} {pressure}: {:e}", largest(&apart));
+        // Applied cell by cell and facet by facet it is the whole derivative.
+        for (i, (numeric, k)) in numeric.iter().zip(tangent.applied(&u)).enumerate() {
+            assert!((numeric - k).abs() < 1e-7 * size, "{on} {pressure} {i}: {numeric} {k}");
+        }
+    }
+}
+
+/// Also of a discrete gradient, whose tangent is not symmetric.
+#[test]
+fn the_product_of_a_discrete_gradient_is_the_derivative_of_its_force() {
+    let sim = simulation(pressed("top", "3"), Scheme::chung_hulbert(0.5).unwrap(), 0.1);
+    let model = &sim.model;
+    let at = |size: f64, seed: f64| -> Vec<f64> {
+        sim.state.y.iter().enumerate().map(|(i, y)| y + size * wave(i, seed)).collect()
+    };
+    let (before, y, u) = (at(0.02, 0.3), at(0.03, 0.9), (0..model.dofs()).map(|i| wave(i, 0.1)).collect::<Vec<_>>());
+    let mut product = vec![0.0; model.dofs()];
+    model.internal_product(Some(&before), &y, &u, &mut product).unwrap();
+    let force = |e: f64| {
+        let moved: Vec<f64> = y.iter().zip(&u).map(|(y, u)| y + e * u).collect();
+        let mut force = vec![0.0; model.dofs()];
+        model.internal_between(&before, &moved, &mut force).unwrap();
+        force
+    };
+    let h = 1e-5;
+    for (i, ((plus, minus), k)) in force(h).iter().zip(&force(-h)).zip(&product).enumerate() {
+        assert!(((plus - minus) / (2.0 * h) - k).abs() < 1e-6 * largest(&product), "{i}");
+    }
+}

@@ -1,0 +1,108 @@
+//! Small models in the plane from plain numbers, for unit tests.
+
+use carom_contact::{Detection, NodeToFacet, Surface, Unilateral};
+use carom_solid::{Law, LoadedSide, Mesh, body};
+use carom_time::Scheme;
+
+use crate::model::{Contact, Loads, Mass, Model, Motions, Part};
+use crate::settings::{Settings, Tangent};
+use crate::simulation::{Grid, Simulation};
+use crate::stepper::Implicit;
+
+/// Bodies of one material, nodes numbered through.
+pub(crate) fn parts(meshes: impl IntoIterator<Item = Mesh>, law: Law, density: f64) -> Vec<Part> {
+    let mut first_node = 0;
+    let part = |(k, mesh): (usize, Mesh)| {
+        let body = body(mesh, law, density, 1.0).unwrap();
+        let part = Part { name: format!("body {k}"), first_node, body, massless: density == 0.0, total_mass: 0.0 };
+        first_node = part.nodes().end;
+        part
+    };
+    meshes.into_iter().enumerate().map(part).collect()
+}
+
+/// Nodes of a side.
+pub(crate) fn nodes(part: &Part, side: &str) -> Vec<usize> {
+    part.body.mesh().side_nodes(side).unwrap().into_iter().map(|node| part.first_node + node).collect()
+}
+
+/// A side under loads.
+pub(crate) fn loaded(part: &Part, side: &str) -> LoadedSide {
+    let mesh = part.body.mesh();
+    LoadedSide::new(mesh, &mesh.sides[side], part.first_node, 1.0).unwrap()
+}
+
+/// A side of one body kept out of a side of another, by multipliers.
+pub(crate) fn contact(parts: &[Part], secondary: (usize, &str), primary: (usize, &str)) -> Contact {
+    let facets = |(k, side): (usize, &str)| -> Vec<Vec<usize>> {
+        let of = |facet: &carom_solid::Facet| facet.nodes.iter().map(|node| parts[k].first_node + node).collect();
+        parts[k].body.mesh().sides[side].iter().map(of).collect()
+    };
+    let shape = |k: usize| parts[k].body.mesh().element.facet_shape().unwrap();
+    let (touching, target) = (nodes(&parts[secondary.0], secondary.1), facets(primary));
+    let mut surface = [&touching[..], &nodes(&parts[primary.0], primary.1)].concat();
+    surface.sort_unstable();
+    let target = Surface::new(shape(primary.0), &target, &vec![1.0; target.len()]);
+    Contact {
+        name: "strike".to_owned(),
+        kinematics: Box::new(NodeToFacet::new(touching, target, Detection::ClosestPoint)),
+        interface: Box::new(Unilateral),
+        primary_part: Some(primary.0),
+        secondary_facets: facets(secondary),
+        secondary_shape: shape(secondary.0),
+        predictor: false,
+        surface,
+        at_the_end: false,
+        projects: true,
+        within: true,
+        restitution: 0.0,
+    }
+}
+
+/// A model with consistent masses, at rest in its reference positions; dofs that are fixed or move are held.
+pub(crate) fn model(
+    mut parts: Vec<Part>,
+    fixed: &[usize],
+    motions: Motions,
+    loads: Loads,
+    contacts: Vec<Contact>,
+) -> Model {
+    let mass = Mass::assemble(2, &parts, &vec![false; parts.len()]);
+    for part in &mut parts {
+        part.total_mass = part.nodes().flat_map(|node| mass.row(node)).map(|(_, mass)| mass).sum();
+    }
+    let reference: Vec<f64> = parts.iter().flat_map(|part| part.body.mesh().nodes.flat()).copied().collect();
+    let dofs = reference.len();
+    let mut held = vec![false; dofs];
+    fixed.iter().copied().chain(motions.dofs()).for_each(|dof| held[dof] = true);
+    let free: Vec<usize> = (0..dofs).filter(|&dof| !held[dof]).collect();
+    let mut unknown = vec![usize::MAX; dofs];
+    free.iter().enumerate().for_each(|(place, &dof)| unknown[dof] = place);
+    Model {
+        dimension: 2,
+        initial_position: reference.clone(),
+        initial_velocity: vec![0.0; dofs],
+        fixed: held,
+        free,
+        unknown,
+        massless: (0..dofs).map(|dof| mass.is_massless(dof / 2)).collect(),
+        mass,
+        gravity: vec![0.0; dofs],
+        loads,
+        motions,
+        unheld: Vec::new(),
+        contacts,
+        supports: Vec::new(),
+        probes: Vec::new(),
+        scale: parts.iter().map(|part| part.body.mesh().diameter()).fold(0.0, f64::max),
+        reference,
+        parts,
+    }
+}
+
+/// A model in motion.
+pub(crate) fn simulation(model: Model, scheme: Scheme, dt: f64) -> Simulation {
+    let settings = Settings { tolerance: 1e-9, max_iterations: 20, tangent: Tangent::Full, mixing: 0 };
+    let stepper = Box::new(Implicit::new(Box::new(scheme), settings));
+    Simulation::new(model, stepper, Grid { dt, steps: u64::MAX, guard: None }, true, None, 1).unwrap()
+}

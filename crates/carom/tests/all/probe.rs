@@ -1,0 +1,35 @@
+//! Probes at places where cells are badly bent.
+
+use carom::Simulation;
+
+use super::common::simulation;
+
+const SQUARE: &str = r#"
+dimension = 2
+material = [{ name = "rubber", law = "neo-hookean", density = 1.0, lambda = 2.0, mu = 1.5 }]
+body = [{ name = "a", material = "rubber", element = "T6", mesh = { shape = "rectangle", min = [0, 0], max = [1, 1], cells = [1, 1] } }]
+time = { end = 1.0, step = 1.0, scheme = { kind = "hu" } }
+probe = [
+  { name = "corner", at = [1, 0], body = "a", record = ["sigma_xx", "det_f", "ux"] },
+  { name = "shared", at = [0, 0], body = "a", record = ["sigma_yy"] },
+]
+"#;
+
+/// An edge's middle node four fifths along it: dx/dξ is 4·0.8 − 3 > 0 at its start, 1 − 4·0.2 = −0.2 < 0 backwards from its end, and
+/// positive at every quadrature point.
+#[test]
+fn a_corner_turned_over_has_j_but_no_stress() {
+    let Simulation { model, mut state, .. } = simulation(SQUARE, &[""; 0]);
+    let [corner, shared] = &model.probes[..] else { panic!() };
+    assert!(corner.has_stress(&model, &state));
+    let middle = model.reference.as_chunks::<2>().0.iter().position(|x| *x == [0.5, 0.0]).unwrap();
+    state.y[2 * middle] = 0.8;
+    assert!(model.min_det_f(&state.y) > 0.0);
+    assert!(!corner.has_stress(&model, &state) && shared.has_stress(&model, &state));
+    let mut values = Vec::new();
+    corner.values(&model, &state, &mut values);
+    assert!(values[0].is_nan() && (values[1] + 0.2).abs() < 1e-14 && values[2].abs() < 1e-14, "{values:?}");
+    values.clear();
+    shared.values(&model, &state, &mut values);
+    assert!(values[0].is_finite());
+}
