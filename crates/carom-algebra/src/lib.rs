@@ -10,6 +10,7 @@ mod pattern;
 mod saddle;
 mod simd;
 mod small;
+mod threads;
 
 pub use complementarity::complementarity;
 pub use condensed::{Condensed, Precision};
@@ -21,3 +22,4 @@ pub use pattern::Pattern;
 pub use saddle::Saddle;
 pub use simd::wide;
 pub use small::{Mat, Vector};
+pub use threads::Threads;
