@@ -5,6 +5,8 @@ mod condensed;
 mod difference;
 mod elimination;
 mod faer_engine;
+mod forest;
+mod front;
 mod linear;
 mod pattern;
 mod product;
