@@ -7,14 +7,23 @@
 use std::hint::black_box;
 use std::sync::Arc;
 
-use carom_algebra::{Condensed, Elimination, FaerSolver, LinearSolver, Pattern, Precision, Saddle, complementarity};
+use carom_algebra::{
+    Condensed, Elimination, FaerSolver, LinearSolver, Pattern, Precision, Product, Saddle, Threads, complementarity,
+};
 use divan::Bencher;
 
 /// Nodes along an edge: 2 178 and 18 818 unknowns.
 const EDGES: [usize; 2] = [33, 97];
-/// The same with the precisions the kept factor may have.
-const KEPT: [(usize, Precision); 4] =
-    [(33, Precision::Double), (33, Precision::Single), (97, Precision::Double), (97, Precision::Single)];
+/// The same, and 200 978 unknowns, with the precisions the kept factor may have and numbers of threads.
+const KEPT: [(usize, Precision, usize); 7] = [
+    (33, Precision::Double, 1),
+    (33, Precision::Single, 1),
+    (97, Precision::Double, 1),
+    (97, Precision::Single, 1),
+    (97, Precision::Single, 2),
+    (317, Precision::Single, 1),
+    (317, Precision::Single, 2),
+];
 /// Nodes that touch, of small systems.
 const TOUCHING: [usize; 2] = [12, 48];
 
@@ -38,7 +47,7 @@ fn grid(edge: usize, rows: usize) -> Grid {
             if (a / edge).abs_diff(b / edge).max((a % edge).abs_diff(b % edge)) <= 2 {
                 let of_pair = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(p, q)| (2 * a + p, 2 * b + q));
                 let lower = of_pair.into_iter().filter(|(i, j)| i >= j);
-                entries.extend(lower.map(|(i, j)| (i, j, if i == j { 40.0 } else { -0.7 })));
+                entries.extend(lower.map(|(i, j)| (i, j, if i == j { 35.0 } else { -0.7 })));
             }
         }
     }
@@ -64,28 +73,36 @@ fn elimination(grid: &Grid) -> Arc<Elimination> {
     Arc::new(Elimination::new(&grid.pattern, &grid.groups, &grid.side).expect("memory"))
 }
 
-fn condensed(grid: &Grid, precision: Precision) -> Condensed {
-    let mut condensed = Condensed::new(&elimination(grid), precision).expect("memory");
+fn condensed(grid: &Grid, precision: Precision, threads: usize) -> Condensed {
+    let mut condensed = Condensed::new(&elimination(grid), precision).expect("memory").on(&Threads::new(threads));
     condensed.factor(|k| grid.values[k]).expect("positive definite");
     condensed
 }
 
 #[divan::bench(args = KEPT)]
-fn kept_factor(bencher: Bencher, (edge, precision): (usize, Precision)) {
+fn kept_factor(bencher: Bencher, (edge, precision, threads): (usize, Precision, usize)) {
     let grid = grid(edge, 0);
-    let mut condensed = condensed(&grid, precision);
+    let mut condensed = condensed(&grid, precision, threads);
     bencher.bench_local(|| condensed.factor(|k| grid.values[k]).is_ok());
 }
 
 #[divan::bench(args = KEPT)]
-fn kept_solve(bencher: Bencher, (edge, precision): (usize, Precision)) {
+fn kept_solve(bencher: Bencher, (edge, precision, threads): (usize, Precision, usize)) {
     let grid = grid(edge, 0);
-    let mut condensed = condensed(&grid, precision);
+    let mut condensed = condensed(&grid, precision, threads);
     let (right, mut x, mut out) = (vec![1.0; grid.pattern.size()], Vec::new(), vec![0.0; grid.pattern.size()]);
     bencher.bench_local(|| {
         condensed.eliminate_into(black_box(&right), &mut x);
         condensed.substitute_into(&mut x, &mut out);
     });
+}
+
+#[divan::bench(args = [(33, 1), (97, 1), (97, 2), (317, 1), (317, 2)])]
+fn product(bencher: Bencher, (edge, threads): (usize, usize)) {
+    let grid = grid(edge, 0);
+    let (mut product, threads) = (Product::new(&grid.pattern), Threads::new(threads));
+    let (x, mut out) = (vec![1.0; grid.pattern.size()], vec![0.0; grid.pattern.size()]);
+    bencher.bench_local(|| product.multiply_add(&grid.values, black_box(&x), &mut out, &threads));
 }
 
 fn full(edge: usize) -> FaerSolver {

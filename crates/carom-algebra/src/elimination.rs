@@ -1,15 +1,22 @@
 //! The order in which unknowns are eliminated, chosen ones B last, and the structure of the factor that follows from it. B is one vertex of the graph that is
 //! ordered (approximate minimum degree; P. Amestoy, T. Davis, I. Duff, SIAM J. Matrix Anal. Appl. 17 (1996) 886–905), then moved to the end.
+//!
+//! Columns with the same rows below them are a node. The forest of nodes is cut into parts (`forest.rs`) that can be computed at the same time.
 
-use faer::Side;
+use std::ops::Range;
+
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
+use faer::sparse::linalg::SymbolicSupernodalParams;
+use faer::sparse::linalg::cholesky::simplicial::{
+    prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
+};
+use faer::sparse::linalg::cholesky::supernodal::{
+    SymbolicSupernodalCholesky, factorize_supernodal_symbolic_cholesky, factorize_supernodal_symbolic_cholesky_scratch,
 };
 
 use crate::faer_engine::grouped_ordering;
+use crate::forest::{Cut, cut};
 use crate::linear::LinearError;
 use crate::pattern::Pattern;
 
@@ -18,16 +25,63 @@ use crate::pattern::Pattern;
 pub struct Elimination {
     /// Place of each unknown in the elimination.
     pub(crate) place: Vec<u32>,
+    /// The unknown at each place.
+    pub(crate) order: Vec<u32>,
+    /// Where each unknown is in the vector of a solve.
+    pub(crate) positions: Vec<u32>,
     /// Number of unknowns that are not last.
     pub(crate) inner: usize,
-    /// Columns of the lower triangle in the order of elimination.
-    pub(crate) starts: Vec<u32>,
-    pub(crate) rows: Vec<u32>,
-    /// Where each entry of the pattern went.
+    /// Nodes in the order of elimination, and one behind the last for the ends of its ranges.
+    pub(crate) nodes: Vec<Node>,
+    /// Rows below each node, as places, ascending.
+    pub(crate) below: Vec<u32>,
+    /// The same rows, in the numbering of the node's part.
+    pub(crate) local: Vec<u32>,
+    /// Entries of the pattern, node by node, those between last unknowns at the end; and where in the node's values (the square of the last) each goes.
+    pub(crate) entries: Vec<u32>,
     pub(crate) slots: Vec<u32>,
+    /// The part that holds all others.
+    pub(crate) root: Part,
     /// The entries of the pattern's diagonal.
     pub(crate) diagonal: Vec<u32>,
-    symbolic: SymbolicCholesky<u32>,
+}
+
+/// Columns with the same rows below them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Node {
+    /// First column.
+    pub(crate) first: u32,
+    /// Start of its rows in [`Elimination::below`].
+    pub(crate) rows: u32,
+    /// Start of its entries in [`Elimination::entries`].
+    pub(crate) entries: u32,
+    /// The node that its first row below belongs to; [`LAST`] where that is one of the last unknowns, or where there is none.
+    pub(crate) parent: u32,
+    /// Start of its values, a column of all rows after the other.
+    pub(crate) values: usize,
+}
+
+/// Not a node: the last unknowns.
+pub(crate) const LAST: u32 = u32::MAX;
+
+/// A part of the forest. Its piece of a vector holds the pieces of the parts below it, its own columns, and the rows outside that they reach; places in the
+/// latter two are what its nodes' rows are numbered by.
+#[derive(Debug)]
+pub(crate) struct Part {
+    pub(crate) parts: Option<Box<[Part; 2]>>,
+    /// Its own nodes and columns.
+    pub(crate) nodes: Range<usize>,
+    pub(crate) columns: Range<usize>,
+    /// The rows outside, in the numbering of the part around; the last unknowns, where there is none.
+    pub(crate) outer: Vec<u32>,
+    /// Length of its piece of a vector.
+    pub(crate) length: usize,
+    /// Where its values begin, those of the parts below it among them.
+    pub(crate) values: usize,
+    /// Room for what its own nodes leave to each other.
+    pub(crate) room: usize,
+    /// Most rows of one of its nodes.
+    pub(crate) height: usize,
 }
 
 impl Elimination {
@@ -47,14 +101,44 @@ impl Elimination {
         names.dedup();
         let merged: Vec<usize> = merged.iter().map(|g| names.partition_point(|name| name < g)).collect();
         let (forward, _) = grouped_ordering(pattern, &merged).map_err(engine)?;
-        let order = forward.iter().filter(|&&i| !is_last[i]).chain(forward.iter().filter(|&&i| is_last[i]));
-        let mut place = vec![0; n];
-        order.enumerate().for_each(|(k, &i)| place[i] = k as u32);
         let inner = n - last.len();
-        let (starts, rows, slots) = permuted(pattern, &place);
-        let symbolic = structure(&starts, &rows, inner).map_err(engine)?;
-        let diagonal = (0..n).filter_map(|i| pattern.slot(i, i)).map(|k| k as u32).collect();
-        Ok(Self { place, inner, starts, rows, slots, diagonal, symbolic })
+        let mut order: Vec<u32> = forward.iter().filter(|&&i| !is_last[i]).map(|&i| i as u32).collect();
+        order.extend(forward.iter().filter(|&&i| is_last[i]).map(|&i| i as u32));
+
+        let (parents, counts) = Upper::new(pattern, &inverse(&order), inner).tree().map_err(engine)?;
+        let parent = |j: usize| usize::try_from(parents[j]).ok().filter(|&p| p < inner);
+        let (sorted, tree) = cut(inner, parent, |j| u64::from(counts[j]));
+        let moved: Vec<u32> = sorted.iter().map(|&k| order[k as usize]).collect();
+        order[..inner].copy_from_slice(&moved);
+        let place = inverse(&order);
+        let raw = Upper::new(pattern, &place, inner).supernodes().map_err(engine)?;
+
+        let mut elimination = Self {
+            place,
+            order,
+            positions: Vec::new(),
+            inner,
+            nodes: Vec::new(),
+            below: Vec::new(),
+            local: Vec::new(),
+            entries: Vec::new(),
+            slots: Vec::new(),
+            root: Part::default(),
+            diagonal: (0..n).filter_map(|i| pattern.slot(i, i)).map(|k| k as u32).collect(),
+        };
+        elimination.collect_nodes(&raw);
+        elimination.collect_entries(pattern);
+        elimination.local = vec![0; elimination.below.len()];
+        let kept: Vec<u32> = (inner as u32..n as u32).collect();
+        let mut begin = (0, 0);
+        elimination.root = elimination.part(&tree, &mut begin, Some(kept)).0;
+        elimination.positions = vec![0; n];
+        let mut positions = std::mem::take(&mut elimination.positions);
+        elimination.locate(&elimination.root, 0, &mut positions);
+        let tail = elimination.root.length - elimination.kept();
+        (inner..n).for_each(|k| positions[elimination.order[k] as usize] = (tail + k - inner) as u32);
+        elimination.positions = positions;
+        Ok(elimination)
     }
 
     /// Number of unknowns eliminated last.
@@ -67,78 +151,233 @@ impl Elimination {
         (self.place[unknown] as usize).checked_sub(self.inner)
     }
 
-    pub(crate) fn supernodes(&self) -> Result<&SymbolicSupernodalCholesky<u32>, LinearError> {
-        match self.symbolic.raw() {
-            SymbolicCholeskyRaw::Supernodal(raw) => Ok(raw),
-            SymbolicCholeskyRaw::Simplicial(_) => {
-                Err(LinearError::Engine { size: self.place.len(), reason: "no supernodes".into() })
+    /// Values of the factor.
+    pub(crate) fn len_values(&self) -> usize {
+        self.nodes.last().map_or(0, |end| end.values)
+    }
+
+    /// Columns of a node, and its rows below.
+    #[inline(always)]
+    pub(crate) fn columns(&self, s: usize) -> Range<usize> {
+        self.nodes[s].first as usize..self.nodes[s + 1].first as usize
+    }
+
+    #[inline(always)]
+    pub(crate) fn rows(&self, s: usize) -> Range<usize> {
+        self.nodes[s].rows as usize..self.nodes[s + 1].rows as usize
+    }
+
+    /// The columns before the last unknowns as nodes.
+    fn collect_nodes(&mut self, raw: &SymbolicSupernodalCholesky<u32>) {
+        let inner = self.inner;
+        let mut node_of = vec![LAST; self.place.len()];
+        let mut values = 0;
+        for s in 0..raw.n_supernodes() {
+            let (first, end) = (raw.supernode_begin()[s] as usize, raw.supernode_end()[s] as usize);
+            if first >= inner {
+                break;
             }
+            self.nodes.push(Node { first: first as u32, rows: self.below.len() as u32, values, ..Node::default() });
+            let own = end.min(inner);
+            node_of[first..own].fill(s as u32);
+            self.below.extend(own as u32..end as u32);
+            let start = raw.col_ptr_for_row_idx()[s] as usize;
+            self.below.extend_from_slice(&raw.row_idx()[start..][..raw.nnz_per_super()[s] as usize]);
+            let below = self.below.len() - self.nodes[s].rows as usize;
+            values += (own - first) * (own - first + below);
+        }
+        self.nodes.push(Node { first: inner as u32, rows: self.below.len() as u32, values, ..Node::default() });
+        for s in 0..self.nodes.len() - 1 {
+            self.nodes[s].parent = self.below[self.rows(s)].first().map_or(LAST, |&row| node_of[row as usize]);
+        }
+    }
+
+    /// Where each entry of the pattern goes.
+    fn collect_entries(&mut self, pattern: &Pattern) {
+        let (n, inner, place) = (pattern.size(), self.inner, &self.place);
+        let entry = |i: usize, j: usize| (place[i].max(place[j]), place[i].min(place[j]));
+        // By columns first.
+        let mut fill = vec![0_u32; n + 1];
+        for j in 0..n {
+            pattern.column(j).iter().for_each(|&i| fill[entry(i, j).1 as usize + 1] += 1);
+        }
+        (0..n).for_each(|j| fill[j + 1] += fill[j]);
+        let starts = fill.clone();
+        let (mut rows, mut entries) = (vec![0_u32; pattern.len()], vec![0_u32; pattern.len()]);
+        for j in 0..n {
+            for k in pattern.starts[j]..pattern.starts[j + 1] {
+                let (row, column) = entry(pattern.rows[k], j);
+                let target = fill[column as usize] as usize;
+                fill[column as usize] += 1;
+                (rows[target], entries[target]) = (row, k as u32);
+            }
+        }
+        let mut slots = rows;
+        let mut row_of = vec![0_u32; n];
+        for s in 0..self.nodes.len() - 1 {
+            let (columns, below) = (self.columns(s), &self.below[self.rows(s)]);
+            let height = columns.len() + below.len();
+            columns.clone().for_each(|row| row_of[row] = (row - columns.start) as u32);
+            below.iter().enumerate().for_each(|(k, &row)| row_of[row as usize] = (columns.len() + k) as u32);
+            for j in columns.clone() {
+                for slot in &mut slots[starts[j] as usize..starts[j + 1] as usize] {
+                    *slot = row_of[*slot as usize] + ((j - columns.start) * height) as u32;
+                }
+            }
+            self.nodes[s].entries = starts[columns.start];
+        }
+        if let Some(end) = self.nodes.last_mut() {
+            end.entries = starts[inner];
+        }
+        for j in inner..n {
+            for slot in &mut slots[starts[j] as usize..starts[j + 1] as usize] {
+                *slot = ((j - inner) * (n - inner) + *slot as usize - inner) as u32;
+            }
+        }
+        (self.entries, self.slots) = (entries, slots);
+    }
+
+    /// A part and those below it, its first node and column after `begin`; and the rows outside that it reaches, which may be given.
+    fn part(&mut self, tree: &Cut, begin: &mut (usize, usize), outside: Option<Vec<u32>>) -> (Part, Vec<u32>) {
+        let values = self.nodes[begin.0].values;
+        let mut below = tree.parts.as_ref().map(|parts| {
+            let [a, b] = &**parts;
+            [self.part(a, begin, None), self.part(b, begin, None)]
+        });
+        let (first, start) = *begin;
+        // A node that begins in the part before belongs to the one it ends in.
+        let mut end = first;
+        while end + 1 < self.nodes.len() && self.nodes[end + 1].first as usize <= tree.end {
+            end += 1;
+        }
+        let stop = (self.nodes[end].first as usize).max(start);
+        *begin = (end, stop);
+        let own = stop - start;
+        let outside = outside.unwrap_or_else(|| {
+            let rows = self.below[self.nodes[first].rows as usize..self.nodes[end].rows as usize].iter();
+            let deeper = below.iter().flatten().flat_map(|(_, outer)| outer);
+            let mut outer: Vec<u32> = rows.chain(deeper).copied().filter(|&row| row as usize >= stop).collect();
+            outer.sort_unstable();
+            outer.dedup();
+            outer
+        });
+        let number = |row: u32| match (row as usize).checked_sub(stop) {
+            None => row - start as u32,
+            Some(_) => (own + outside.partition_point(|&other| other < row)) as u32,
+        };
+        for k in self.nodes[first].rows as usize..self.nodes[end].rows as usize {
+            self.local[k] = number(self.below[k]);
+        }
+        let mut length = own + outside.len();
+        for (part, outer) in below.iter_mut().flatten() {
+            part.outer = outer.iter().map(|&row| number(row)).collect();
+            length += part.length;
+        }
+        let height = (first..end).map(|s| self.columns(s).len() + self.rows(s).len()).max().unwrap_or(0);
+        let room = self.room(first..end);
+        let parts = below.map(|[(a, _), (b, _)]| Box::new([a, b]));
+        let outer = Vec::new();
+        (Part { parts, nodes: first..end, columns: start..stop, outer, length, values, room, height }, outside)
+    }
+
+    /// Most that is left of nodes to each other, one after the other.
+    fn room(&self, nodes: Range<usize>) -> usize {
+        let (mut waiting, mut held, mut room): (Vec<(u32, usize)>, usize, usize) = (Vec::new(), 0, 0);
+        for s in nodes {
+            let square = self.rows(s).len().pow(2);
+            room = room.max(held + square);
+            while let Some((_, size)) = waiting.pop_if(|(parent, _)| *parent as usize == s) {
+                held -= size;
+            }
+            held += square;
+            waiting.push((self.nodes[s].parent, square));
+        }
+        room
+    }
+
+    /// Where the unknowns of a part are, its piece beginning at `start`.
+    fn locate(&self, part: &Part, start: usize, positions: &mut [u32]) {
+        let mut own = start;
+        for part in part.parts.iter().flat_map(|parts| parts.iter()) {
+            self.locate(part, own, positions);
+            own += part.length;
+        }
+        for (k, j) in part.columns.clone().enumerate() {
+            positions[self.order[j] as usize] = (own + k) as u32;
         }
     }
 }
 
-/// The lower triangle in the order of elimination, columns compressed, rows as they come: starts, rows, and where each entry of the pattern went.
-fn permuted(pattern: &Pattern, place: &[u32]) -> (Vec<u32>, Vec<u32>, Vec<u32>) {
-    let n = pattern.size();
-    let mut fill = vec![0_u32; n + 1];
-    let entry = |i: usize, j: usize| (place[i].max(place[j]), place[i].min(place[j]) as usize);
-    for j in 0..n {
-        pattern.column(j).iter().for_each(|&i| fill[entry(i, j).1 + 1] += 1);
+impl Default for Part {
+    fn default() -> Self {
+        let outer = Vec::new();
+        Self { parts: None, nodes: 0..0, columns: 0..0, outer, length: 0, values: 0, room: 0, height: 0 }
     }
-    for j in 0..n {
-        fill[j + 1] += fill[j];
-    }
-    let starts = fill.clone();
-    let (mut rows, mut slots) = (vec![0; pattern.len()], vec![0; pattern.len()]);
-    for j in 0..n {
-        for k in pattern.starts[j]..pattern.starts[j + 1] {
-            let (row, column) = entry(pattern.rows[k], j);
-            let slot = fill[column];
-            fill[column] += 1;
-            rows[slot as usize] = row;
-            slots[k] = slot;
-        }
-    }
-    (starts, rows, slots)
 }
 
-/// Symbolic factor, the last unknowns tied together by the row of their first.
-fn structure(starts: &[u32], rows: &[u32], inner: usize) -> Result<SymbolicCholesky<u32>, String> {
-    let n = starts.len() - 1;
-    // The upper triangle: the columns of the lower one in ascending order fill each of its columns in ascending order.
-    let tied = |row: usize| usize::from(row > inner);
-    let mut fill = vec![0_u32; n + 1];
-    rows.iter().for_each(|&i| fill[i as usize + 1] += 1);
-    for i in 0..n {
-        fill[i + 1] += fill[i] + tied(i) as u32;
-    }
-    let mut upper = vec![0_u32; *fill.last().unwrap_or(&0) as usize];
-    let first = fill.clone();
-    for j in 0..n {
-        for &i in &rows[starts[j] as usize..starts[j + 1] as usize] {
-            upper[fill[i as usize] as usize] = j as u32;
-            fill[i as usize] += 1;
+fn inverse(order: &[u32]) -> Vec<u32> {
+    let mut place = vec![0; order.len()];
+    order.iter().enumerate().for_each(|(k, &i)| place[i as usize] = k as u32);
+    place
+}
+
+/// The upper triangle of a pattern in some order; of the last columns only the rows before them, on which the columns before them depend.
+struct Upper {
+    starts: Vec<u32>,
+    rows: Vec<u32>,
+}
+
+impl Upper {
+    fn new(pattern: &Pattern, place: &[u32], inner: usize) -> Self {
+        let n = pattern.size();
+        let entry = |i: usize, j: usize| (place[i].min(place[j]), place[i].max(place[j]) as usize);
+        let matters = |&(row, column): &(u32, usize)| row as usize == column || (row as usize) < inner;
+        let mut fill = vec![0_u32; n + 1];
+        for j in 0..n {
+            let column = pattern.column(j).iter().map(|&i| entry(i, j));
+            column.filter(matters).for_each(|(_, column)| fill[column + 1] += 1);
         }
-    }
-    let (mut columns, mut entries) = (vec![0_u32], Vec::with_capacity(upper.len()));
-    for i in 0..n {
-        let column = &mut upper[first[i] as usize..first[i + 1] as usize];
-        if tied(i) == 1 {
-            column[column.len() - 1] = inner as u32;
-            column.sort_unstable();
-        }
-        let begin = entries.len();
-        for &j in &*column {
-            if entries.len() == begin || entries[entries.len() - 1] != j {
-                entries.push(j);
+        (0..n).for_each(|j| fill[j + 1] += fill[j]);
+        let starts = fill.clone();
+        let mut rows = vec![0_u32; starts[n] as usize];
+        for j in 0..n {
+            let column = pattern.column(j).iter().map(|&i| entry(i, j));
+            for (row, column) in column.filter(matters) {
+                rows[fill[column] as usize] = row;
+                fill[column] += 1;
             }
         }
-        columns.push(entries.len() as u32);
+        Self { starts, rows }
     }
-    let params = CholeskySymbolicParams {
-        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-        ..Default::default()
-    };
-    let upper = SymbolicSparseColMatRef::new_checked(n, n, &columns, None, &entries);
-    factorize_symbolic_cholesky(upper, Side::Upper, SymmetricOrdering::Identity, params).map_err(|e| format!("{e:?}"))
+
+    fn view(&self) -> SymbolicSparseColMatRef<'_, u32> {
+        let n = self.starts.len() - 1;
+        SymbolicSparseColMatRef::new_unsorted_checked(n, n, &self.starts, None, &self.rows)
+    }
+
+    /// Parent of each column in the elimination tree (negative: none), and the entries of each in the factor.
+    fn tree(&self) -> Result<(Vec<i32>, Vec<u32>), String> {
+        let n = self.starts.len() - 1;
+        let (mut parents, mut counts) = (vec![0; n], vec![0; n]);
+        let mut scratch = memory(prefactorize_symbolic_cholesky_scratch::<u32>(n, self.rows.len()))?;
+        prefactorize_symbolic_cholesky(&mut parents, &mut counts, self.view(), MemStack::new(&mut scratch));
+        Ok((parents, counts))
+    }
+
+    fn supernodes(&self) -> Result<SymbolicSupernodalCholesky<u32>, String> {
+        let n = self.starts.len() - 1;
+        let (mut parents, mut counts) = (vec![0; n], vec![0; n]);
+        let mut scratch = memory(
+            prefactorize_symbolic_cholesky_scratch::<u32>(n, self.rows.len())
+                .or(factorize_supernodal_symbolic_cholesky_scratch::<u32>(n)),
+        )?;
+        let stack = MemStack::new(&mut scratch);
+        let tree = prefactorize_symbolic_cholesky(&mut parents, &mut counts, self.view(), stack);
+        factorize_supernodal_symbolic_cholesky(self.view(), tree, &counts, stack, SymbolicSupernodalParams::default())
+            .map_err(|e| format!("{e:?}"))
+    }
+}
+
+fn memory(space: StackReq) -> Result<MemBuffer, String> {
+    MemBuffer::try_new(space).map_err(|e| format!("{e:?}"))
 }

@@ -9,11 +9,19 @@ pub fn wide<R>(work: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(work)
 }
 
-/// y += a x; x may be of single precision.
+/// y −= a x; x may be of single precision.
 #[inline(always)]
-pub(crate) fn add_scaled<T: Copy + Into<f64>>(y: &mut [f64], a: f64, x: &[T]) {
+pub(crate) fn subtract<T: Copy + Into<f64>>(y: &mut [f64], a: f64, x: &[T]) {
     for (y, x) in y.iter_mut().zip(x) {
-        *y += a * (*x).into();
+        *y -= a * (*x).into();
+    }
+}
+
+/// y −= a₀ x₀ and then a₁ x₁; x may be of single precision.
+#[inline(always)]
+pub(crate) fn subtract_both<T: Copy + Into<f64>>(y: &mut [f64], a: [f64; 2], x: [&[T]; 2]) {
+    for ((y, x0), x1) in y.iter_mut().zip(x[0]).zip(x[1]) {
+        *y = *y - a[0] * (*x0).into() - a[1] * (*x1).into();
     }
 }
 
@@ -29,5 +37,6 @@ pub(crate) fn dot<T: Copy + Into<f64>>(x: &[T], y: &[f64]) -> f64 {
         }
     }
     let rest: f64 = x_rest.iter().zip(y_rest).map(|(x, y)| (*x).into() * y).sum();
-    strands.iter().sum::<f64>() + rest
+    let [a, b, c, d, e, f, g, h] = strands;
+    (((a + e) + (c + g)) + ((b + f) + (d + h))) + rest
 }

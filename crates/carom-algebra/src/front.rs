@@ -1,0 +1,283 @@
+//! The factor, node by node (multifrontal: I. Duff, J. Reid, ACM Trans. Math. Softw. 9 (1983) 302–325): a node's columns are made of the matrix and of what
+//! the nodes below it leave; what they leave in turn, the square on the rows below, goes to the node above. Nodes of parts that do not depend on each other
+//! are factored at the same time, and large nodes in blocks of columns; sums have one order.
+
+use std::sync::Arc;
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{
+    LltError, LltParams, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
+};
+use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::prelude::{Reborrow, ReborrowMut};
+use faer::{Accum, MatMut, MatRef, Par, Spec};
+
+use crate::condensed::Entry;
+use crate::elimination::{Elimination, Part};
+use crate::threads::Threads;
+
+/// Columns of a block.
+const BLOCK: usize = 128;
+/// Multiplications that are worth another thread.
+const SHARED: usize = 1_000_000;
+
+/// Numbers that begin where a cache line does: how kernels group them then never depends on where memory was to be had.
+#[derive(Default)]
+pub(crate) struct Aligned<T> {
+    numbers: Vec<T>,
+    begin: usize,
+}
+
+impl<T: Entry> Aligned<T> {
+    pub(crate) fn new(len: usize) -> Self {
+        let numbers = vec![T::rounded(0.0); len + 64 / size_of::<T>()];
+        let begin = numbers.as_ptr().align_offset(64).min(64 / size_of::<T>());
+        Self { numbers, begin }
+    }
+
+    pub(crate) fn get(&self) -> &[T] {
+        &self.numbers[self.begin..]
+    }
+
+    pub(crate) fn get_mut(&mut self) -> &mut [T] {
+        &mut self.numbers[self.begin..]
+    }
+}
+
+/// The square that a node leaves to the node above it, or to the last unknowns: column-major, its lower triangle.
+struct Left<T> {
+    node: usize,
+    squares: Arc<Aligned<T>>,
+    begin: usize,
+}
+
+/// A matrix to be factored: `value(k)` for entry k of the pattern, each to be multiplied by `scale`.
+pub(crate) struct Matrix<'a, F> {
+    pub(crate) elimination: &'a Elimination,
+    pub(crate) value: F,
+    pub(crate) scale: f64,
+    pub(crate) threads: &'a Threads,
+}
+
+/// What a part needs beside its values.
+struct Work<T> {
+    squares: Aligned<T>,
+    scratch: MemBuffer,
+    runs: Vec<[usize; 3]>,
+}
+
+impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
+    /// Factors all columns before the last unknowns; `schur` becomes the lower triangle of what they leave of the last ones' square.
+    ///
+    /// # Errors
+    /// The place whose pivot is not positive.
+    pub(crate) fn factor<T: Entry>(&self, values: &mut [T], schur: &mut Vec<f64>) -> Result<(), usize> {
+        let all = self.elimination;
+        let left = self.part(&all.root, values)?;
+        let kept = all.kept();
+        schur.clear();
+        schur.resize(kept * kept, 0.0);
+        let first = all.nodes.last().map_or(0, |end| end.entries as usize);
+        for (&entry, &slot) in all.entries[first..].iter().zip(&all.slots[first..]) {
+            schur[slot as usize] = self.scale * (self.value)(entry as usize);
+        }
+        for left in left {
+            let rows = &all.below[all.rows(left.node)];
+            let square = &left.squares.get()[left.begin..][..rows.len().pow(2)];
+            for (j, (column, &target)) in square.chunks_exact(rows.len()).zip(rows).enumerate() {
+                let target = (target as usize - all.inner) * kept;
+                for (&row, value) in rows[j..].iter().zip(&column[j..]) {
+                    schur[target + row as usize - all.inner] += (*value).into();
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn part<T: Entry>(&self, part: &Part, values: &mut [T]) -> Result<Vec<Left<T>>, usize> {
+        let (mut below, mut values) = (Vec::new(), values);
+        if let Some(parts) = &part.parts {
+            let [a, b] = &**parts;
+            let begin = self.elimination.nodes[part.nodes.start].values - part.values;
+            let (deeper, own) = values.split_at_mut(begin);
+            let (for_a, for_b) = deeper.split_at_mut(b.values - a.values);
+            let (of_a, of_b) = self.threads.join(|| self.part(a, for_a), || self.part(b, for_b));
+            below = of_a?;
+            below.extend(of_b?);
+            values = own;
+        }
+        self.own(part, values, below)
+    }
+
+    /// The part's own nodes; `below` is what the parts below it left.
+    fn own<T: Entry>(&self, part: &Part, values: &mut [T], mut below: Vec<Left<T>>) -> Result<Vec<Left<T>>, usize> {
+        let all = self.elimination;
+        let parent = |node: usize| all.nodes[node].parent;
+        // Last first, so that the next is popped.
+        below.sort_by_key(|left| std::cmp::Reverse((parent(left.node), left.node)));
+        let widest = part.nodes.clone().map(|s| all.columns(s).len()).max().unwrap_or(0);
+        let space = cholesky_in_place_scratch::<T>(widest.min(BLOCK), Par::Seq, Spec::<LltParams, T>::default());
+        let mut work = Work { squares: Aligned::<T>::new(part.room), scratch: MemBuffer::new(space), runs: Vec::new() };
+        let mut waiting: Vec<(usize, usize)> = Vec::new();
+        let mut top = 0;
+        let mut rest = values;
+        for s in part.nodes.clone() {
+            let (columns, count) = (all.columns(s), all.rows(s).len());
+            let (panel, after) = rest.split_at_mut(all.nodes[s + 1].values - all.nodes[s].values);
+            rest = after;
+            panel.fill(T::rounded(0.0));
+            let entries = all.nodes[s].entries as usize..all.nodes[s + 1].entries as usize;
+            for (&entry, &slot) in all.entries[entries.clone()].iter().zip(&all.slots[entries]) {
+                panel[slot as usize] = T::rounded(self.scale * (self.value)(entry as usize));
+            }
+            let (held, free) = work.squares.get_mut().split_at_mut(top);
+            let square = &mut free[..count * count];
+            square.fill(T::rounded(0.0));
+            while let Some(left) = below.pop_if(|left| parent(left.node) as usize == s) {
+                all.extend_add((left.node, &left.squares.get()[left.begin..]), (s, panel, square), &mut work.runs);
+            }
+            let mut begin = top;
+            while let Some((node, start)) = waiting.pop_if(|(node, _)| parent(*node) as usize == s) {
+                all.extend_add((node, &held[start..]), (s, panel, square), &mut work.runs);
+                begin = start;
+            }
+            let height = columns.len() + count;
+            let panel = MatMut::from_column_major_slice_mut(panel, height, columns.len());
+            let target = MatMut::from_column_major_slice_mut(square, count, count);
+            eliminate(panel, target, self.threads, MemStack::new(&mut work.scratch))
+                .map_err(|index| columns.start + index)?;
+            if count > 0 {
+                work.squares.get_mut().copy_within(top..top + count * count, begin);
+                waiting.push((s, begin));
+            }
+            top = begin + count * count;
+        }
+        let squares = Arc::new(work.squares);
+        let mut passing: Vec<Left<T>> = below.into_iter().rev().collect();
+        passing.extend(waiting.into_iter().map(|(node, begin)| Left { node, squares: squares.clone(), begin }));
+        Ok(passing)
+    }
+}
+
+impl Elimination {
+    /// Adds what `node` left to the columns and the square of node s.
+    fn extend_add<T: Entry>(
+        &self,
+        (node, left): (usize, &[T]),
+        (s, panel, square): (usize, &mut [T], &mut [T]),
+        runs: &mut Vec<[usize; 3]>,
+    ) {
+        let (rows, columns, below) = (&self.below[self.rows(node)], self.columns(s), &self.below[self.rows(s)]);
+        // Rows that follow each other in both: place in the one, in the other, and how many.
+        runs.clear();
+        let mut place = 0;
+        for (k, &row) in rows.iter().enumerate() {
+            let target = if (row as usize) < columns.end {
+                row as usize - columns.start
+            } else {
+                while below[place] < row {
+                    place += 1;
+                }
+                columns.len() + place
+            };
+            match runs.last_mut() {
+                Some([from, to, count]) if *to + *count == target && *from + *count == k => *count += 1,
+                _ => runs.push([k, target, 1]),
+            }
+        }
+        let (height, own) = (columns.len() + below.len(), columns.len());
+        let mut first = 0;
+        for j in 0..rows.len() {
+            while runs[first][0] + runs[first][2] <= j {
+                first += 1;
+            }
+            let source = &left[j * rows.len()..(j + 1) * rows.len()];
+            let column = runs[first][1] + j - runs[first][0];
+            // The column as all rows of the node have it, and how many of them are not there.
+            let (target, missing) = match column.checked_sub(own) {
+                None => (&mut panel[column * height..(column + 1) * height], 0),
+                Some(column) => (&mut square[column * below.len()..(column + 1) * below.len()], own),
+            };
+            for &[from, to, count] in &runs[first..] {
+                let skip = j.saturating_sub(from);
+                let target = &mut target[to + skip - missing..to + count - missing];
+                for (target, source) in target.iter_mut().zip(&source[from + skip..from + count]) {
+                    *target += *source;
+                }
+            }
+        }
+    }
+}
+
+/// Factors a node's columns and subtracts their product from the square of the rows below. The index of the pivot that is not positive otherwise.
+fn eliminate<T: Entry>(
+    mut panel: MatMut<'_, T>,
+    mut square: MatMut<'_, T>,
+    threads: &Threads,
+    stack: &mut MemStack,
+) -> Result<(), usize> {
+    let (height, columns) = panel.shape();
+    let alone = Threads::one();
+    for start in (0..columns).step_by(BLOCK) {
+        let width = BLOCK.min(columns - start);
+        let threads = if width * (height - start).pow(2) > SHARED { threads } else { &alone };
+        let rest = panel.rb_mut().subrows_mut(start, height - start).subcols_mut(start, columns - start);
+        let (block, mut after) = rest.split_at_col_mut(width);
+        let (mut diagonal, mut lower) = block.split_at_row_mut(width);
+        match cholesky_in_place(
+            diagonal.rb_mut(),
+            LltRegularization::default(),
+            Par::Seq,
+            stack,
+            Spec::<LltParams, T>::default(),
+        ) {
+            Ok(_) => {}
+            Err(LltError::NonPositivePivot { index }) => return Err(start + index),
+        }
+        let diagonal = diagonal.rb();
+        threads.for_each(row_blocks(lower.rb_mut()), |_, rows| {
+            solve_lower_triangular_in_place(diagonal, rows.transpose_mut(), Par::Seq);
+        });
+        let lower = lower.rb();
+        let ahead = columns - start - width;
+        let (_, trailing) = after.rb_mut().split_at_row_mut(width);
+        threads.for_each(column_blocks(trailing), |k, target| subtract_product(target, lower, k * BLOCK));
+        if square.nrows() > 0 {
+            let lower = lower.subrows(ahead, square.nrows());
+            threads.for_each(column_blocks(square.rb_mut()), |k, target| subtract_product(target, lower, k * BLOCK));
+        }
+    }
+    Ok(())
+}
+
+/// target −= L Lᵀ in the lower triangle of a square, of which the target is some columns from `first`.
+fn subtract_product<T: Entry>(target: MatMut<'_, T>, lower: MatRef<'_, T>, first: usize) {
+    let (height, width) = target.shape();
+    let lower = lower.subrows(first, height - first);
+    let (_, target) = target.split_at_row_mut(first);
+    let (square, rest) = target.split_at_row_mut(width);
+    let (top, bottom) = lower.split_at_row(width);
+    let (half, whole) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
+    let minus = T::rounded(-1.0);
+    triangular::matmul(square, half, Accum::Add, top, whole, top.transpose(), whole, minus, Par::Seq);
+    if rest.nrows() > 0 {
+        matmul(rest, Accum::Add, bottom, top.transpose(), minus, Par::Seq);
+    }
+}
+
+fn column_blocks<T: Entry>(matrix: MatMut<'_, T>) -> impl Iterator<Item = MatMut<'_, T>> {
+    let mut rest = Some(matrix);
+    std::iter::from_fn(move || {
+        let matrix = rest.take().filter(|matrix| matrix.ncols() > 0)?;
+        let width = BLOCK.min(matrix.ncols());
+        let (block, after) = matrix.split_at_col_mut(width);
+        rest = Some(after);
+        Some(block)
+    })
+}
+
+fn row_blocks<T: Entry>(matrix: MatMut<'_, T>) -> impl Iterator<Item = MatMut<'_, T>> {
+    column_blocks(matrix.transpose_mut()).map(MatMut::transpose_mut)
+}

@@ -1,0 +1,101 @@
+//! Threads that the parts of a computation share. What is computed never depends on how many there are: work is cut into pieces by its structure alone, and
+//! every sum has one order.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+/// A number of threads; copies share them.
+///
+/// ```
+/// use carom_algebra::Threads;
+/// let threads = Threads::new(2);
+/// let mut squares = vec![0; 100];
+/// threads.for_each_block(&mut squares, 16, |first, block| {
+///     for (i, square) in block.iter_mut().enumerate() {
+///         *square = (first + i).pow(2);
+///     }
+/// });
+/// assert_eq!(squares[99], 99 * 99);
+/// assert_eq!(threads.join(|| 1, || 2), (1, 2));
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Threads {
+    pool: Option<Arc<rayon::ThreadPool>>,
+}
+
+impl Threads {
+    /// The calling thread alone.
+    pub fn one() -> Self {
+        Self::default()
+    }
+
+    /// As many threads; one where the machine gives no more.
+    pub fn new(count: usize) -> Self {
+        let pool = || rayon::ThreadPoolBuilder::new().num_threads(count).build().ok().map(Arc::new);
+        Self { pool: if count > 1 { pool() } else { None } }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.pool.as_ref().map_or(1, |pool| pool.current_num_threads())
+    }
+
+    /// Does `work` on one of the threads: what it hands out from there costs no change of threads.
+    pub fn within<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        match &self.pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
+    }
+
+    /// Does both, at the same time where there is a second thread.
+    pub fn join<A: Send, B: Send>(
+        &self,
+        first: impl FnOnce() -> A + Send,
+        second: impl FnOnce() -> B + Send,
+    ) -> (A, B) {
+        match &self.pool {
+            Some(pool) => pool.install(|| rayon::join(first, second)),
+            None => (first(), second()),
+        }
+    }
+
+    /// Calls `work(k, item)` for every item k.
+    pub fn for_each<T: Send>(&self, items: impl IntoIterator<Item = T>, work: impl Fn(usize, T) + Sync) {
+        match &self.pool {
+            Some(pool) => {
+                let items: Vec<T> = items.into_iter().collect();
+                let share = || items.into_par_iter().with_max_len(1).enumerate().for_each(|(k, item)| work(k, item));
+                pool.install(share);
+            }
+            None => items.into_iter().enumerate().for_each(|(k, item)| work(k, item)),
+        }
+    }
+
+    /// Calls `work(first, block)` for blocks of `size` items, the last one maybe shorter; `first` is the index of a block's first item.
+    pub fn for_each_block<T: Send>(&self, items: &mut [T], size: usize, work: impl Fn(usize, &mut [T]) + Sync) {
+        self.for_each(items.chunks_mut(size.max(1)), |k, block| work(k * size.max(1), block));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_item_once_with_any_number() {
+        for count in [0, 1, 2, 3] {
+            let threads = Threads::new(count);
+            assert_eq!(threads.count(), count.max(1));
+            let mut items = vec![0; 77];
+            threads.within(|| {
+                threads.for_each_block(&mut items, 10, |first, block| {
+                    block.iter_mut().enumerate().for_each(|(i, item)| *item += first + i);
+                });
+            });
+            assert!(items.iter().enumerate().all(|(i, item)| i == *item));
+            assert_eq!(threads.join(|| 'a', || 'b'), ('a', 'b'));
+        }
+    }
+}
