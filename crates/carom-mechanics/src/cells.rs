@@ -1,71 +1,48 @@
-//! Forces and tangents of a body's cells: computed by any number of threads, handed over one by one in the order of the cells, so that sums have the same
-//! bits whatever the number of threads.
+//! What the cells of a body contribute: computed by any number of threads, handed over one by one in the order of the cells, so that sums have the same bits
+//! whatever the number of threads.
 
-use carom_solid::{Body, Inverted};
-use rayon::prelude::*;
+use carom_algebra::Threads;
+use carom_solid::Inverted;
 
-/// Cells of a block: small enough for the cache, large enough to share among threads.
-const BLOCK: usize = 64;
+/// Cells that are computed before they are handed over: enough to share among threads, few enough for their caches.
+const BLOCK: usize = 512;
+/// Cells that a thread takes at once.
+const SHARE: usize = 32;
 
-/// What one cell contributes.
-#[derive(Clone)]
-struct Contribution {
-    strain: Result<f64, Inverted>,
-    force: Vec<f64>,
-    tangent: Vec<f64>,
-}
-
-/// Threads and buffers for the cells.
-pub(crate) struct Cells {
-    pool: Option<rayon::ThreadPool>,
-    block: Vec<Contribution>,
-}
-
-impl Cells {
-    /// With this many threads; with one, where the machine gives no more.
-    pub(crate) fn new(threads: usize) -> Self {
-        let pool = (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()).flatten();
-        let empty = Contribution { strain: Ok(0.0), force: Vec::new(), tangent: Vec::new() };
-        Self { pool, block: vec![empty; BLOCK] }
-    }
-
-    /// Calls `add(cell, force, tangent)` for every cell in order; the strain energy of the body is returned. With `before`, the forces are the discrete
-    /// gradient from there to `y`.
-    pub(crate) fn for_each(
-        &mut self,
-        body: &dyn Body,
-        before: Option<&[f64]>,
-        y: &[f64],
-        mut add: impl FnMut(usize, &[f64], &[f64]),
-    ) -> Result<f64, Inverted> {
-        let (count, dofs) = (body.mesh().cell_count(), body.mesh().element.dofs());
-        for out in &mut self.block {
-            out.force.resize(dofs, 0.0);
-            out.tangent.resize(dofs * dofs, 0.0);
+/// Calls `compute(cell, numbers)` for `count` cells, on all threads, and `add(cell, numbers)` with its results in the order of the cells; what `compute`
+/// returns is added up in that order.
+///
+/// # Errors
+/// The first cell that is inverted.
+pub(crate) fn for_each(
+    threads: &Threads,
+    count: usize,
+    numbers: usize,
+    compute: impl Fn(usize, &mut [f64]) -> Result<f64, Inverted> + Sync,
+    mut add: impl FnMut(usize, &[f64]),
+) -> Result<f64, Inverted> {
+    let mut sum = 0.0;
+    if threads.count() == 1 || count < 2 * SHARE {
+        // What has just been computed is still in the cache.
+        let mut local = vec![0.0; numbers];
+        for cell in 0..count {
+            sum += compute(cell, &mut local)?;
+            add(cell, &local);
         }
-        let compute = |cell: usize, out: &mut Contribution| {
-            let (force, tangent) = (&mut out.force[..], &mut out.tangent[..]);
-            out.strain = match before {
-                None => body.cell_tangent(cell, y, force, tangent),
-                Some(before) => body.cell_between(cell, before, y, force, Some(tangent)),
-            };
-        };
-        let mut strain = 0.0;
-        // What one thread has just computed is still in its cache.
-        let size = if self.pool.is_some() { BLOCK } else { 1 };
-        for first in (0..count).step_by(size) {
-            let block = &mut self.block[..size.min(count - first)];
-            match &self.pool {
-                Some(pool) => {
-                    pool.install(|| block.par_iter_mut().enumerate().for_each(|(k, out)| compute(first + k, out)));
-                }
-                None => block.iter_mut().enumerate().for_each(|(k, out)| compute(first + k, out)),
-            }
-            for (k, out) in block.iter().enumerate() {
-                strain += out.strain?;
-                add(first + k, &out.force, &out.tangent);
-            }
-        }
-        Ok(strain)
+        return Ok(sum);
     }
+    let mut block: Vec<(Result<f64, Inverted>, Vec<f64>)> = vec![(Ok(0.0), vec![0.0; numbers]); BLOCK.min(count)];
+    for first in (0..count).step_by(BLOCK) {
+        let block = &mut block[..BLOCK.min(count - first)];
+        threads.for_each_block(block, SHARE, |from, cells| {
+            for (k, (result, local)) in cells.iter_mut().enumerate() {
+                *result = compute(first + from + k, local);
+            }
+        });
+        for (k, (result, local)) in block.iter().enumerate() {
+            sum += (*result)?;
+            add(first + k, local);
+        }
+    }
+    Ok(sum)
 }

@@ -38,7 +38,7 @@ pub struct Frequencies {
 
 /// Frequencies of a model; none where its tangent or its mass cannot be factored.
 pub fn frequencies(model: &Model) -> Option<Frequencies> {
-    let mut system = System::new(model, 1);
+    let mut system = System::new(model);
     let mut force = vec![0.0; model.dofs()];
     system.internal_tangent(model, None, &model.reference, &mut force, None).ok()?;
     let n = model.free.len();
@@ -87,7 +87,7 @@ pub fn spring(model: &Model) -> Option<f64> {
     if model.contacts.iter().all(|c| c.interface.is_constraint()) || model.free.iter().any(|dof| model.massless[*dof]) {
         return None;
     }
-    let mut system = System::new(model, 1);
+    let mut system = System::new(model);
     let mut force = vec![0.0; model.dofs()];
     system.internal_tangent(model, None, &model.reference, &mut force, None).ok()?;
     system.factor(model, 1.0, 0.0, 0.0, &Constraints::none(model.dimension)).ok()?;

@@ -149,7 +149,8 @@ impl Simulation {
 
     /// A model that goes on from a state of an earlier run of it.
     pub fn resume(model: Model, stepper: Box<dyn Stepper>, grid: Grid, state: State, threads: usize) -> Self {
-        let work = Workspace::new(&model, threads);
+        let model = model.on_threads(threads);
+        let work = Workspace::new(&model);
         let Grid { dt, steps, guard } = grid;
         Self { model, state, dt, steps, stepper, work, guard }
     }

@@ -17,7 +17,7 @@ use carom_algebra::{FaerSolver, Inertia, LinearError, LinearSolver, Pattern};
 use carom_contact::Row;
 use carom_solid::Inverted;
 
-use crate::cells::Cells;
+use crate::cells;
 use crate::constraints::Constraints;
 use crate::equations::Equations;
 use crate::kept_factor::KeptFactor;
@@ -40,7 +40,6 @@ pub(crate) struct System {
     slots: Vec<u32>,
     /// Slots of every two dofs of the facets under pressure.
     facet_slots: Vec<u32>,
-    cells: Cells,
     merged: Pattern,
     from_base: Vec<usize>,
     /// Stencils of the rows the merged pattern was made for.
@@ -59,7 +58,7 @@ pub(crate) struct System {
 
 impl System {
     /// Pattern and slots of the bodies of a model.
-    pub(crate) fn new(model: &Model, threads: usize) -> Self {
+    pub(crate) fn new(model: &Model) -> Self {
         let base = pattern(model);
         let mut slots = Vec::new();
         for_each_cell_pair(model, |pair| {
@@ -96,7 +95,6 @@ impl System {
             mass,
             facet_slots,
             slots,
-            cells: Cells::new(threads),
             merged: Pattern::default(),
             from_base: Vec::new(),
             rows: Vec::new(),
@@ -147,19 +145,27 @@ impl System {
         let mut slots = self.slots.iter();
         let mut strain = 0.0;
         for part in &model.parts {
-            let stiffness = &mut self.stiffness;
-            let add = |cell: usize, f: &[f64], k: &[f64]| {
-                let dofs = part.cell_dofs(cell);
+            let (mesh, stiffness) = (part.body.mesh(), &mut self.stiffness);
+            let n = mesh.element.dofs();
+            let compute = |cell: usize, local: &mut [f64]| {
+                let (force, tangent) = local.split_at_mut(n);
+                match before {
+                    None => part.body.cell_tangent(cell, part.of(y), force, tangent),
+                    Some(before) => part.body.cell_between(cell, part.of(before), part.of(y), force, Some(tangent)),
+                }
+            };
+            let add = |cell: usize, local: &[f64]| {
+                let (dofs, (f, k)) = (part.cell_dofs(cell), local.split_at(n));
                 for (dof, f) in dofs.iter().zip(f) {
                     force[*dof as usize] += f;
                 }
                 if let Some((moved, product)) = &mut pull {
-                    for (dof, row) in dofs.iter().zip(k.chunks_exact(f.len())) {
+                    for (dof, row) in dofs.iter().zip(k.chunks_exact(n)) {
                         product[*dof as usize] +=
                             row.iter().zip(dofs).map(|(k, other)| k * moved[*other as usize]).sum::<f64>();
                     }
                 }
-                for (row, k) in k.chunks_exact(f.len()).enumerate() {
+                for (row, k) in k.chunks_exact(n).enumerate() {
                     for (value, slot) in k[..=row].iter().zip(slots.by_ref()) {
                         if *slot != SKIP {
                             stiffness[*slot as usize] += value;
@@ -167,9 +173,7 @@ impl System {
                     }
                 }
             };
-            strain += self
-                .cells
-                .for_each(&*part.body, before.map(|y| part.of(y)), part.of(y), add)
+            strain += cells::for_each(&model.threads, mesh.cell_count(), n + n * n, compute, add)
                 .map_err(|inverted| (part.name.clone(), inverted))?;
         }
         self.diagonals[1] = diagonal_of(&self.base, &self.stiffness);

@@ -25,7 +25,7 @@ impl<'a> Tangent<'a> {
     /// Of the pairs of the state, with increments of a size all over the place.
     fn new(equations: &'a Equations<'a>, size: f64) -> Self {
         let model = equations.model;
-        let mut work = Workspace::new(model, 1);
+        let mut work = Workspace::new(model);
         let mut at = Iterate::at_start(equations.state);
         model.free.iter().for_each(|&dof| at.increment[dof] = size * wave(dof, 0.3));
         let now = equations.evaluate(at, &mut work.spare, &mut work.timings).unwrap();

@@ -95,6 +95,7 @@ pub(crate) fn model(
         supports: Vec::new(),
         probes: Vec::new(),
         scale: parts.iter().map(|part| part.body.mesh().diameter()).fold(0.0, f64::max),
+        threads: carom_algebra::Threads::one(),
         reference,
         parts,
     }

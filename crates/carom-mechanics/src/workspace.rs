@@ -29,11 +29,11 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Buffers for a model; cells are computed by this many threads.
-    pub fn new(model: &Model, threads: usize) -> Self {
+    /// Buffers for a model.
+    pub fn new(model: &Model) -> Self {
         let zeros = vec![0.0; model.dofs()];
         Self {
-            system: System::new(model, threads),
+            system: System::new(model),
             spare: Spare::default(),
             states: Vec::new(),
             explicit: Scratch::default(),

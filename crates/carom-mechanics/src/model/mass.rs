@@ -1,8 +1,12 @@
 //! Mass matrix M = ∫ρ₀ NᵀN dΩ₀ between nodes; the same for every direction.
 
+use carom_algebra::Threads;
 use carom_solid::cell_lumped_mass;
 
 use super::part::Part;
+
+/// Nodes whose products a thread computes at once.
+const BLOCK: usize = 2048;
 
 /// Symmetric matrix between nodes, compressed by rows, both triangles.
 #[derive(Clone, Debug, Default)]
@@ -11,6 +15,7 @@ pub struct Mass {
     columns: Vec<u32>,
     values: Vec<f64>,
     directions: usize,
+    threads: Threads,
 }
 
 impl Mass {
@@ -94,21 +99,28 @@ impl Mass {
         }
     }
 
+    /// Lets these threads compute products.
+    pub(crate) fn on(&mut self, threads: &Threads) {
+        self.threads = threads.clone();
+    }
+
     fn multiply<const D: usize>(&self, x: &[f64], factor: f64, share: f64, out: &mut [f64]) {
         let x = x.as_chunks::<D>().0;
-        for (range, out) in self.starts.windows(2).zip(out.as_chunks_mut::<D>().0) {
-            let range = range[0]..range[1];
-            let mut sum = [0.0; D];
-            for (&column, value) in self.columns[range.clone()].iter().zip(&self.values[range]) {
-                let x = &x[column as usize];
+        self.threads.for_each_block(out.as_chunks_mut::<D>().0, BLOCK, |first, block| {
+            for (range, out) in self.starts[first..].windows(2).zip(block) {
+                let range = range[0]..range[1];
+                let mut sum = [0.0; D];
+                for (&column, value) in self.columns[range.clone()].iter().zip(&self.values[range]) {
+                    let x = &x[column as usize];
+                    for i in 0..D {
+                        sum[i] += value * x[i];
+                    }
+                }
                 for i in 0..D {
-                    sum[i] += value * x[i];
+                    out[i] = if share == 0.0 { factor * sum[i] } else { factor * sum[i] + share * out[i] };
                 }
             }
-            for i in 0..D {
-                out[i] = if share == 0.0 { factor * sum[i] } else { factor * sum[i] + share * out[i] };
-            }
-        }
+        });
     }
 
     /// Whether a node carries no mass at all.

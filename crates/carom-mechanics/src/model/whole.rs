@@ -1,5 +1,6 @@
 //! Everything a step needs to know that does not change, as plain numbers. Every vector over nodes is flat, `dimension` components a node.
 
+use carom_algebra::Threads;
 use carom_solid::Inverted;
 
 use super::contact::Contact;
@@ -10,6 +11,7 @@ use super::motion::Motions;
 use super::part::Part;
 use super::probe::Probe;
 use super::rigid::Mode;
+use crate::cells;
 use crate::sums::dot;
 
 /// A named support: the dofs whose reaction is recorded.
@@ -58,6 +60,8 @@ pub struct Model {
     pub probes: Vec<Probe>,
     /// Length L that tolerances refer to: the largest body's diameter.
     pub scale: f64,
+    /// What computes; no result depends on how many there are.
+    pub threads: Threads,
 }
 
 impl Model {
@@ -109,19 +113,20 @@ impl Model {
     fn add_cells(
         &self,
         force: &mut [f64],
-        of_cell: impl Fn(&Part, usize, &mut [f64]) -> Result<f64, Inverted>,
+        of_cell: impl Fn(&Part, usize, &mut [f64]) -> Result<f64, Inverted> + Sync,
     ) -> Result<f64, (String, Inverted)> {
         force.fill(0.0);
         let mut strain = 0.0;
         for part in &self.parts {
             let mesh = part.body.mesh();
-            let mut local = vec![0.0; mesh.element.dofs()];
-            for cell in 0..mesh.cell_count() {
-                strain += of_cell(part, cell, &mut local).map_err(|inverted| (part.name.clone(), inverted))?;
-                for (dof, f) in part.cell_dofs(cell).iter().zip(&local) {
+            let add = |cell: usize, local: &[f64]| {
+                for (dof, f) in part.cell_dofs(cell).iter().zip(local) {
                     force[*dof as usize] += f;
                 }
-            }
+            };
+            let compute = |cell: usize, local: &mut [f64]| of_cell(part, cell, local);
+            strain += cells::for_each(&self.threads, mesh.cell_count(), mesh.element.dofs(), compute, add)
+                .map_err(|inverted| (part.name.clone(), inverted))?;
         }
         Ok(strain)
     }
@@ -136,6 +141,14 @@ impl Model {
             self.loads.force_into(at, y, force);
         }
         Ok(())
+    }
+
+    /// The same model, computed by this many threads.
+    #[must_use]
+    pub fn on_threads(mut self, count: usize) -> Self {
+        self.threads = Threads::new(count);
+        self.mass.on(&self.threads);
+        self
     }
 
     /// Kinetic energy ½ vᵀM v.

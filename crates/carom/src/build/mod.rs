@@ -6,6 +6,7 @@ mod motions;
 mod refusals;
 mod side;
 
+use carom_algebra::Threads;
 use carom_case::{Case, FormulaSpec, MassKind, PrimarySpec, Problem};
 use carom_mechanics::model::{Mass, Model, Part, Probe, Quantity, Support, free_motions, redistribute, value};
 use carom_solid::{Law, SolidError};
@@ -106,6 +107,7 @@ pub fn build(case: &Case) -> Result<Model, Vec<Problem>> {
             supports,
             probes,
             scale,
+            threads: Threads::one(),
         })
     } else {
         Err(problems)
