@@ -72,6 +72,9 @@ pub(crate) fn solve_stage(
     if equations.stage.is_static() && hold_on(model, &mut now) {
         now = again(equations, now, work)?;
     }
+    if !full {
+        work.restore_factor(equations, &mut renewal, double)?;
+    }
     let mut contact = ContactUpdate::new(model, !full);
     let (mut step, mut ratio, mut grown, mut iteration) = (f64::INFINITY, 1.0_f64, 0, 0);
     loop {

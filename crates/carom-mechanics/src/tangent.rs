@@ -16,7 +16,26 @@ use crate::timings::timed;
 use crate::workspace::Workspace;
 
 impl Workspace {
-    /// Has the kept factor ready for these rows: that of the point in the state, or a new one where it is due; whether there is one.
+    /// Makes the factor that the state's point asks for: there already, but in a run that was resumed. Where there is none, a new one is due.
+    ///
+    /// # Errors
+    /// A cell is inverted there.
+    pub(crate) fn restore_factor(
+        &mut self,
+        equations: &Equations,
+        renewal: &mut Renewal,
+        double: bool,
+    ) -> Result<(), Rejected> {
+        if !renewal.due {
+            renewal.due = match renewal.kept.point.clone() {
+                Some(point) => !self.hold(equations, &point, double)?,
+                None => true,
+            };
+        }
+        Ok(())
+    }
+
+    /// Has a factor ready for these rows, a new one where it is due; whether there is one.
     ///
     /// # Errors
     /// A cell is inverted.
@@ -28,13 +47,6 @@ impl Workspace {
         renewal: &mut Renewal,
         double: bool,
     ) -> Result<bool, Rejected> {
-        if !renewal.due {
-            // A resumed run makes the factor it had.
-            renewal.due = match renewal.kept.point.clone() {
-                Some(point) => !self.hold(equations, &point, double)?,
-                None => true,
-            };
-        }
         for _ in 0..2 {
             if (renewal.due || !self.system.kept.covers(rows))
                 && !self.renew(equations, now, rows, renewal, double)?

@@ -375,13 +375,13 @@ const NEWTON: Table = Table {
         key(
             "tangent",
             Choice(&["kept", "kept-double", "full"], &[]),
-            "The factored tangent is kept over iterations and steps while that pays (factors of 10 000 unknowns and more in single precision where that is enough, or all in double), or formed in every iteration.",
+            "A factored tangent is kept over iterations and steps as a preconditioner while that pays (factors of 10 000 unknowns and more in single precision where that is enough, or all in double), or the tangent is formed and factored in every iteration.",
         )
         .default("\"kept\""),
         key(
             "mixing",
             Count(0),
-            "Earlier corrections with a kept tangent that the next one is improved by (Anderson's mixing); 0 switches it off.",
+            "Earlier corrections with the kept factor that the next one is improved by: the restart length of the Krylov method; 0 switches it off.",
         )
         .default("4"),
     ],

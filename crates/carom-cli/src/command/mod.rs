@@ -11,6 +11,7 @@ pub(crate) mod schema;
 pub(crate) mod study;
 pub(crate) mod verify;
 
+use std::num::NonZero;
 use std::path::Path;
 
 use carom::case::{Case, Document, read};
@@ -24,7 +25,7 @@ fn case(path: &Path, sets: &[String]) -> Result<(Case, Document), Failure> {
     Ok((case, document))
 }
 
-/// Threads as asked for, or one.
-fn threads(asked: Option<std::num::NonZero<usize>>) -> usize {
-    asked.map_or(1, std::num::NonZero::get)
+/// Threads as asked for, or one for each core.
+fn threads(asked: Option<NonZero<usize>>) -> usize {
+    asked.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get)
 }

@@ -20,7 +20,7 @@ Examples:
 pub(crate) struct Arguments {
     /// The directory of the run or study
     directory: PathBuf,
-    /// Threads of a run; the results are the same bits for any number [default: 1]
+    /// Threads of a run; the results are the same bits for any number [default: one for each core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZero<usize>>,
     /// Arms of a study computed at the same time; the results are the same bits for any number [default: all cores]

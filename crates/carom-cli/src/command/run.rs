@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
     /// Replace a value of the case; tables of a list by their name: body.cylinder.element=T6
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
-    /// Threads; the results are the same bits for any number [default: 1]
+    /// Threads; the results are the same bits for any number [default: one for each core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZero<usize>>,
     /// Make no figures and no page
