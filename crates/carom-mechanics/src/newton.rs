@@ -20,7 +20,7 @@ const DIGITS: f64 = 1e-3;
 /// Loosest share of its first correction that a linear problem is solved to, and share of what the iteration before left of its residual.
 const FORCING: f64 = 0.1;
 const FORCING_RATIO: f64 = 0.9;
-/// Corrections that may be larger than the one before with the same contacts.
+/// Corrections with a kept factor that may be larger than the one before with the same contacts.
 const PATIENCE: u32 = 2;
 /// Halvings of a Newton step that inverts a cell or makes the residual much worse.
 const HALVINGS: usize = 8;
@@ -94,7 +94,7 @@ pub(crate) fn solve_stage(
             now = again(equations, now, work)?;
             work.linear.restart();
         }
-        if iteration >= settings.max_iterations || grown > PATIENCE {
+        if iteration >= settings.max_iterations || (!full && grown > PATIENCE) {
             check_stuck(equations, &now)?;
             return Err(Rejected::NoConvergence {
                 iterations: effort.iterations,
@@ -169,6 +169,8 @@ fn advance(
     work: &mut Workspace,
 ) -> Result<Evaluation, Rejected> {
     let merit = |m: &Measure| (m.residual / m.forces.max(f64::MIN_POSITIVE)).max(m.gap / equations.model.scale);
+    // Before moved supports have arrived, the balance is that of another problem.
+    let compare = compare && equations.remaining(&now.at).all(|(_, left)| left == 0.0);
     let worse = |next: &Measure| compare && merit(next) > 2.0 * merit(&now.measure) && merit(next) > 1e-6;
     let take = |length: f64, work: &mut Workspace| {
         let mut at = work.spare.copy(&now.at);
@@ -184,7 +186,8 @@ fn advance(
     let (mut length, mut outcome) = (1.0, take(1.0, work));
     for _ in 0..HALVINGS {
         if outcome.as_ref().is_ok_and(|next| !worse(&next.measure)) {
-            break;
+            work.spare.put(now);
+            return outcome;
         }
         work.linear.restart();
         length *= 0.5;
@@ -193,7 +196,7 @@ fn advance(
         }
         outcome = take(length, work);
     }
-    if outcome.as_ref().is_ok_and(|next| worse(&next.measure)) {
+    if outcome.is_ok() {
         // Where shortening does not help, the full step is as good as any: contact forces come and go.
         outcome = take(1.0, work).or(outcome);
     }

@@ -14,7 +14,7 @@ pub(crate) fn parts(meshes: impl IntoIterator<Item = Mesh>, law: Law, density: f
     let mut first_node = 0;
     let part = |(k, mesh): (usize, Mesh)| {
         let body = body(mesh, law, density, 1.0).unwrap();
-        let part = Part { name: format!("body {k}"), first_node, body, massless: density == 0.0, total_mass: 0.0 };
+        let part = Part::new(format!("body {k}"), first_node, body);
         first_node = part.nodes().end;
         part
     };

@@ -56,7 +56,7 @@ pub struct NodeToFacet {
 impl NodeToFacet {
     /// Secondary nodes and primary surface in global node numbers; a node of the primary itself is left out of the secondary.
     pub fn new(secondary: Vec<usize>, primary: Surface, detection: Detection) -> Self {
-        let search = Mutex::new(Search::new(&primary, REACH));
+        let search = Mutex::new(Search::new(&primary));
         Self { secondary, primary, detection, search }
     }
 

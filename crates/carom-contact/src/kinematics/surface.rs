@@ -64,7 +64,7 @@ impl Surface {
     }
 }
 
-/// Facets by the boxes of their paths during a step, which hold them and what they are extrapolated to: nothing that comes near is missed.
+/// Facets by the boxes of their paths during a step, which hold them wherever they are curved to: nothing that comes near is missed.
 /// A cache that never changes a result; O(facets) to bring up to date, O(log facets) to ask.
 #[derive(Debug)]
 pub(crate) struct Search {
@@ -74,9 +74,9 @@ pub(crate) struct Search {
 }
 
 impl Search {
-    /// For a surface whose facets are extrapolated up to |ξ| = `reach`.
-    pub(crate) fn new(surface: &Surface, reach: f64) -> Self {
-        Self { hull: Hull::line(surface.shape.nodes(), reach), tree: None, found: Vec::new() }
+    /// For the facets of a surface.
+    pub(crate) fn new(surface: &Surface) -> Self {
+        Self { hull: Hull::line(surface.shape.nodes(), 1.0), tree: None, found: Vec::new() }
     }
 
     /// Takes motion from `before` to `now` up; whether the path of any of these nodes comes near the path of any facet.
@@ -112,7 +112,7 @@ impl Search {
     }
 }
 
-/// How far around a facet's path a node is watched, as a share of the path's size: before it touches.
+/// How far around a facet's path a node is watched, as a share of the path's size: before it touches, and as far as facets are extrapolated.
 const MARGIN: f64 = 0.35;
 /// The same around a node's path.
 const AHEAD: f64 = 0.1;

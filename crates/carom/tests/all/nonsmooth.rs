@@ -1,7 +1,7 @@
 //! Explicit and impulse steppers in the plane: what must hold to round-off, their order, and the impact of cases/impact.
 
 use carom::stability::{SAFETY, stable_step};
-use carom::{GridReport, Simulation, State};
+use carom::{GridReport, State};
 use carom_time::{Integrator, Nonsmooth};
 
 use super::common::{DISCS, case, dot, finish, momenta, on_threads, schemes, simulation};
