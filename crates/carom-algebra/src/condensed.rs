@@ -227,9 +227,6 @@ fn check_positive(schur: &[f64], elimination: &Elimination) -> Result<(), Linear
     }
 }
 
-/// Columns that are solved together.
-const FEW: usize = 8;
-
 /// The triangular solves, part by part: what one needs of another is handed over at their common boundary, in one order.
 struct Solver<'a, T> {
     elimination: &'a Elimination,
@@ -353,27 +350,19 @@ impl<T: Entry> Solver<'_, T> {
         let (first, below, values, inverse) = self.node(s, start);
         let (columns, height) = (inverse.len(), inverse.len() + below.len());
         let rows = &mut rows[..height];
-        for (value, x) in rows[..columns].iter_mut().zip(&x[first..first + columns]) {
-            *value = self.square * x;
-        }
-        for (value, &row) in rows[columns..].iter_mut().zip(below) {
+        let (own, outside) = rows.split_at_mut(columns);
+        let outside = &mut outside[..below.len()];
+        for (value, &row) in outside.iter_mut().zip(below) {
             *value = x[row as usize];
         }
-        // Long sums do not wait for each other; only what a few columns take from each other does.
-        for begin in (0..columns).step_by(FEW).rev() {
-            let end = columns.min(begin + FEW);
-            let (top, known) = rows.split_at_mut(end);
-            for c in (begin..end).rev() {
-                top[c] -= dot(&values[c * height + end..(c + 1) * height], known);
-            }
-            for c in (begin..end).rev() {
-                top[c] *= inverse[c];
-                for k in begin..c {
-                    top[k] -= values[k * height + c].into() * top[c];
-                }
-            }
+        let own = &mut x[first..first + columns];
+        own.iter_mut().for_each(|x| *x *= self.square);
+        // The long sum does not wait for the column before.
+        for c in (0..columns).rev() {
+            let (near, far) = values[c * height + c + 1..(c + 1) * height].split_at(columns - c - 1);
+            let known = dot(far, outside) + dot(near, &own[c + 1..]);
+            own[c] = inverse[c] * (own[c] - known);
         }
-        x[first..first + columns].copy_from_slice(&rows[..columns]);
     }
 }
 
