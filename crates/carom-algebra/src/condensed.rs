@@ -180,6 +180,9 @@ impl Condensed {
             Numbers::Double(entries) => self.solver(entries).forward(&self.elimination.root, rhs, x),
             Numbers::Single(entries) => self.solver(entries).forward(&self.elimination.root, rhs, x),
         }
+        for (value, &i) in self.kept_part(x).iter_mut().zip(&self.elimination.order[self.elimination.inner..]) {
+            *value += rhs[i as usize];
+        }
     }
 
     /// Backward through the inner unknowns, the last ones known, and into the order of the pattern.
@@ -239,7 +242,7 @@ struct Solver<'a, T> {
 
 impl<T: Entry> Solver<'_, T> {
     fn forward(&self, part: &Part, rhs: &[f64], x: &mut [f64]) {
-        let (own, mut x) = (part.columns.len(), x);
+        let mut x = x;
         if let Some(parts) = &part.parts {
             let [a, b] = &**parts;
             let (deeper, rest) = x.split_at_mut(a.length + b.length);
@@ -255,7 +258,6 @@ impl<T: Entry> Solver<'_, T> {
         } else {
             self.take(part, rhs, x);
         }
-        debug_assert!(x.len() >= own);
         wide(
             #[inline(always)]
             || {
@@ -267,18 +269,13 @@ impl<T: Entry> Solver<'_, T> {
         );
     }
 
-    /// The right-hand side on a part's own columns; nothing yet on the rows outside, but what is given on the last ones.
+    /// The right-hand side on a part's own columns; nothing yet on the rows outside.
     fn take(&self, part: &Part, rhs: &[f64], x: &mut [f64]) {
         let (own, outside) = x.split_at_mut(part.columns.len());
         for (value, &i) in own.iter_mut().zip(&self.elimination.order[part.columns.clone()]) {
             *value = rhs[i as usize];
         }
         outside.fill(0.0);
-        if std::ptr::eq(part, &raw const self.elimination.root) {
-            for (value, &i) in outside.iter_mut().zip(&self.elimination.order[self.elimination.inner..]) {
-                *value = rhs[i as usize];
-            }
-        }
     }
 
     fn backward(&self, part: &Part, x: &mut [f64]) {
@@ -349,9 +346,7 @@ impl<T: Entry> Solver<'_, T> {
     fn backward_node(&self, s: usize, start: usize, rows: &mut [f64], x: &mut [f64]) {
         let (first, below, values, inverse) = self.node(s, start);
         let (columns, height) = (inverse.len(), inverse.len() + below.len());
-        let rows = &mut rows[..height];
-        let (own, outside) = rows.split_at_mut(columns);
-        let outside = &mut outside[..below.len()];
+        let outside = &mut rows[..below.len()];
         for (value, &row) in outside.iter_mut().zip(below) {
             *value = x[row as usize];
         }
