@@ -180,6 +180,9 @@ impl Condensed {
             Numbers::Double(entries) => self.solver(entries).forward(&self.elimination.root, rhs, x),
             Numbers::Single(entries) => self.solver(entries).forward(&self.elimination.root, rhs, x),
         }
+        for (value, &i) in self.kept_part(x).iter_mut().zip(&self.elimination.order[self.elimination.inner..]) {
+            *value += rhs[i as usize];
+        }
     }
 
     /// Backward through the inner unknowns, the last ones known, and into the order of the pattern.
@@ -227,9 +230,6 @@ fn check_positive(schur: &[f64], elimination: &Elimination) -> Result<(), Linear
     }
 }
 
-/// Columns that are solved together.
-const FEW: usize = 8;
-
 /// The triangular solves, part by part: what one needs of another is handed over at their common boundary, in one order.
 struct Solver<'a, T> {
     elimination: &'a Elimination,
@@ -242,7 +242,7 @@ struct Solver<'a, T> {
 
 impl<T: Entry> Solver<'_, T> {
     fn forward(&self, part: &Part, rhs: &[f64], x: &mut [f64]) {
-        let (own, mut x) = (part.columns.len(), x);
+        let mut x = x;
         if let Some(parts) = &part.parts {
             let [a, b] = &**parts;
             let (deeper, rest) = x.split_at_mut(a.length + b.length);
@@ -258,7 +258,6 @@ impl<T: Entry> Solver<'_, T> {
         } else {
             self.take(part, rhs, x);
         }
-        debug_assert!(x.len() >= own);
         wide(
             #[inline(always)]
             || {
@@ -270,18 +269,13 @@ impl<T: Entry> Solver<'_, T> {
         );
     }
 
-    /// The right-hand side on a part's own columns; nothing yet on the rows outside, but what is given on the last ones.
+    /// The right-hand side on a part's own columns; nothing yet on the rows outside.
     fn take(&self, part: &Part, rhs: &[f64], x: &mut [f64]) {
         let (own, outside) = x.split_at_mut(part.columns.len());
         for (value, &i) in own.iter_mut().zip(&self.elimination.order[part.columns.clone()]) {
             *value = rhs[i as usize];
         }
         outside.fill(0.0);
-        if std::ptr::eq(part, &raw const self.elimination.root) {
-            for (value, &i) in outside.iter_mut().zip(&self.elimination.order[self.elimination.inner..]) {
-                *value = rhs[i as usize];
-            }
-        }
     }
 
     fn backward(&self, part: &Part, x: &mut [f64]) {
@@ -352,28 +346,18 @@ impl<T: Entry> Solver<'_, T> {
     fn backward_node(&self, s: usize, start: usize, rows: &mut [f64], x: &mut [f64]) {
         let (first, below, values, inverse) = self.node(s, start);
         let (columns, height) = (inverse.len(), inverse.len() + below.len());
-        let rows = &mut rows[..height];
-        for (value, x) in rows[..columns].iter_mut().zip(&x[first..first + columns]) {
-            *value = self.square * x;
-        }
-        for (value, &row) in rows[columns..].iter_mut().zip(below) {
+        let outside = &mut rows[..below.len()];
+        for (value, &row) in outside.iter_mut().zip(below) {
             *value = x[row as usize];
         }
-        // Long sums do not wait for each other; only what a few columns take from each other does.
-        for begin in (0..columns).step_by(FEW).rev() {
-            let end = columns.min(begin + FEW);
-            let (top, known) = rows.split_at_mut(end);
-            for c in (begin..end).rev() {
-                top[c] -= dot(&values[c * height + end..(c + 1) * height], known);
-            }
-            for c in (begin..end).rev() {
-                top[c] *= inverse[c];
-                for k in begin..c {
-                    top[k] -= values[k * height + c].into() * top[c];
-                }
-            }
+        let own = &mut x[first..first + columns];
+        own.iter_mut().for_each(|x| *x *= self.square);
+        // The long sum does not wait for the column before.
+        for c in (0..columns).rev() {
+            let (near, far) = values[c * height + c + 1..(c + 1) * height].split_at(columns - c - 1);
+            let known = dot(far, outside) + dot(near, &own[c + 1..]);
+            own[c] = inverse[c] * (own[c] - known);
         }
-        x[first..first + columns].copy_from_slice(&rows[..columns]);
     }
 }
 
