@@ -75,7 +75,11 @@ impl Threads {
 
     /// Calls `work(first, block)` for blocks of `size` items, the last one maybe shorter; `first` is the index of a block's first item.
     pub fn for_each_block<T: Send>(&self, items: &mut [T], size: usize, work: impl Fn(usize, &mut [T]) + Sync) {
-        self.for_each(items.chunks_mut(size.max(1)), |k, block| work(k * size.max(1), block));
+        let size = size.max(1);
+        if items.len() <= size {
+            return work(0, items);
+        }
+        self.for_each(items.chunks_mut(size), |k, block| work(k * size, block));
     }
 }
 

@@ -28,11 +28,18 @@ impl Pair {
     }
 }
 
+/// How far around a facet's path a node is watched, as a share of the path's size: before it touches, and as far as facets are extrapolated.
+const WATCHED: f64 = 0.35;
+/// The same for who asks only what touches within the step.
+const NEAR: f64 = 0.01;
+
 /// The pairs of one contact during one solve, ascending by node.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Pairing {
     /// The pairs.
     pub pairs: Vec<Pair>,
+    /// How far around facets nodes are watched.
+    pub(crate) margin: f64,
     /// Facet a node was handed over from in the present step: it does not go back within the step.
     pub(crate) left: BTreeMap<usize, usize>,
 }
@@ -40,7 +47,12 @@ pub struct Pairing {
 impl Pairing {
     /// Pairs at the start of a solve: each is free to change facets again.
     pub fn new(pairs: Vec<Pair>) -> Self {
-        Self { pairs, left: BTreeMap::new() }
+        Self { pairs, margin: WATCHED, left: BTreeMap::new() }
+    }
+
+    /// The same for an explicit step, which cannot go further than it looks: only nodes that may touch within it are watched.
+    pub fn near(pairs: Vec<Pair>) -> Self {
+        Self { margin: NEAR, ..Self::new(pairs) }
     }
 
     /// Forgets the open pairs and which facets were left: what is found afresh depends on positions alone.
@@ -52,7 +64,14 @@ impl Pairing {
     /// Becomes a copy of another one and keeps its memory.
     pub fn copy_from(&mut self, other: &Self) {
         self.pairs.clone_from(&other.pairs);
+        self.margin = other.margin;
         self.left.clone_from(&other.left);
+    }
+}
+
+impl Default for Pairing {
+    fn default() -> Self {
+        Self::new(Vec::new())
     }
 }
 

@@ -5,9 +5,11 @@ use carom_algebra::Threads;
 use carom_solid::Inverted;
 
 /// Cells that are computed before they are handed over: enough to share among threads, few enough for their caches.
-const BLOCK: usize = 512;
+const BLOCK: usize = 1024;
 /// Cells that a thread takes at once.
-const SHARE: usize = 32;
+const SHARE: usize = 64;
+/// Cells below which one thread has computed them before another has woken up.
+const FEW: usize = 512;
 
 /// Calls `compute(cell, numbers)` for `count` cells, on all threads, and `add(cell, numbers)` with its results in the order of the cells; what `compute`
 /// returns is added up in that order.
@@ -22,7 +24,7 @@ pub(crate) fn for_each(
     mut add: impl FnMut(usize, &[f64]),
 ) -> Result<f64, Inverted> {
     let mut sum = 0.0;
-    if threads.count() == 1 || count < 2 * SHARE {
+    if threads.count() == 1 || count < FEW {
         // What has just been computed is still in the cache.
         let mut local = vec![0.0; numbers];
         for cell in 0..count {
@@ -31,15 +33,17 @@ pub(crate) fn for_each(
         }
         return Ok(sum);
     }
-    let mut block: Vec<(Result<f64, Inverted>, Vec<f64>)> = vec![(Ok(0.0), vec![0.0; numbers]); BLOCK.min(count)];
+    let size = BLOCK.min(count);
+    let (mut results, mut locals) = (vec![Ok(0.0); size], vec![0.0; size * numbers]);
     for first in (0..count).step_by(BLOCK) {
-        let block = &mut block[..BLOCK.min(count - first)];
-        threads.for_each_block(block, SHARE, |from, cells| {
-            for (k, (result, local)) in cells.iter_mut().enumerate() {
-                *result = compute(first + from + k, local);
+        let here = BLOCK.min(count - first);
+        let shares = results[..here].chunks_mut(SHARE).zip(locals[..here * numbers].chunks_mut(SHARE * numbers));
+        threads.for_each(shares, |share, (results, locals)| {
+            for (k, (result, local)) in results.iter_mut().zip(locals.chunks_exact_mut(numbers)).enumerate() {
+                *result = compute(first + share * SHARE + k, local);
             }
         });
-        for (k, (result, local)) in block.iter().enumerate() {
+        for (k, (result, local)) in results[..here].iter().zip(locals.chunks_exact(numbers)).enumerate() {
             sum += (*result)?;
             add(first + k, local);
         }

@@ -190,6 +190,12 @@ impl Simulation {
     /// # Errors
     /// Why it cannot; `state` is then still that of the last grid time. The report tells what was tried.
     pub fn advance(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
+        // On one of the threads: what a step hands out to the others from there costs no change of threads.
+        let threads = self.model.threads.clone();
+        threads.within(|| self.advance_here(report))
+    }
+
+    fn advance_here(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
         let start = self.state.step as f64 * self.dt;
         // The state after the substeps so far; none before the first.
         let mut reached: Option<State> = None;

@@ -161,7 +161,7 @@ impl Kinematics for NodeToFacet {
             return false;
         }
         let (before, now) = (self.places(before), self.places(now));
-        let Pairing { pairs, left } = pairing;
+        let Pairing { pairs, margin, left } = pairing;
         let mut changed = false;
         pairs.retain_mut(|pair| {
             let node = self.secondary[pair.node];
@@ -191,7 +191,7 @@ impl Kinematics for NodeToFacet {
             true
         });
         let mut search = self.search.lock().unwrap_or_else(PoisonError::into_inner);
-        if search.update(&self.primary, &self.secondary, before, now) {
+        if search.update(&self.primary, &self.secondary, *margin, before, now) {
             let known = pairs.len();
             let mut next = 0;
             for (k, &node) in self.secondary.iter().enumerate() {
@@ -223,7 +223,7 @@ impl Kinematics for NodeToFacet {
 
     fn follow(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
         let now = self.places(now);
-        let Pairing { pairs, left } = pairing;
+        let Pairing { pairs, left, .. } = pairing;
         let mut changed = false;
         for pair in pairs.iter_mut().filter(|pair| pair.active) {
             let came_from = left.get(&pair.node).copied();

@@ -79,14 +79,22 @@ impl Search {
         Self { hull: Hull::line(surface.shape.nodes(), 1.0), tree: None, found: Vec::new() }
     }
 
-    /// Takes motion from `before` to `now` up; whether the path of any of these nodes comes near the path of any facet.
-    pub(crate) fn update(&mut self, surface: &Surface, nodes: &[usize], before: Places, now: Places) -> bool {
+    /// Takes motion from `before` to `now` up, with a `margin` around facets as a share of their size; whether the path of any of these nodes comes near
+    /// the path of any facet.
+    pub(crate) fn update(
+        &mut self,
+        surface: &Surface,
+        nodes: &[usize],
+        margin: f64,
+        before: Places,
+        now: Places,
+    ) -> bool {
         let hull = &self.hull;
         let swept = |facet: usize| {
             let nodes = surface.facet(facet).nodes;
             let [old, new] = [before, now].map(|y| hull.bounds(|a| y.coordinates(nodes[a])));
             let bounds = old.union(&new);
-            bounds.grown(MARGIN * bounds.size())
+            bounds.grown(margin * bounds.size())
         };
         match &mut self.tree {
             Some(tree) => _ = tree.update(swept),
@@ -112,9 +120,7 @@ impl Search {
     }
 }
 
-/// How far around a facet's path a node is watched, as a share of the path's size: before it touches, and as far as facets are extrapolated.
-const MARGIN: f64 = 0.35;
-/// The same around a node's path.
+/// How far around a node's path facets are looked for, as a share of the path's size.
 const AHEAD: f64 = 0.1;
 
 #[cfg(test)]

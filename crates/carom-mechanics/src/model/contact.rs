@@ -4,6 +4,7 @@ use carom_contact::{Interface, Kinematics};
 use carom_solid::FacetShape;
 
 /// A contact: where its surfaces are to each other, what its gaps are answered with, and what schemes are to do about it.
+#[allow(clippy::struct_excessive_bools)] // Each is a choice of the case, independent of the others.
 pub struct Contact {
     /// Name in the case.
     pub name: String,

@@ -31,7 +31,7 @@ impl Part {
         let total_mass = volume * body.density();
         let dofs = mesh.cells.iter().flat_map(|node| (0..d).map(move |i| ((first_node + node) * d + i) as u32));
         let dofs = dofs.collect();
-        Self { name, first_node, total_mass, dofs, body }
+        Self { name, first_node, body, total_mass, dofs }
     }
 
     /// Whether its density is zero: its balance holds at s + 1 without inertia.

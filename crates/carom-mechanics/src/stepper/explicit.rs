@@ -195,7 +195,7 @@ impl Explicit {
         let Scratch { free, at, pairings, rows, impulses, .. } = scratch;
         free.clear();
         free.extend(before.iter().zip(&state.a).map(|(v, a)| v + dt * a));
-        carry_into(model, state, pairings);
+        carry_into(model, state, Pairing::near, pairings);
         let mut row = Rows::new(model.dimension);
         at.resize(free.len(), 0.0);
         ahead.clone_from(free);

@@ -16,6 +16,7 @@
 //! Velocities are held, not positions: a node penetrates by up to Δt times its speed when it arrives, and that is recorded as it is.
 
 use carom_algebra::complementarity;
+use carom_contact::Pairing;
 use carom_time::{Impulse, ImpulseShares, Memory, Stage};
 
 use super::watch::{active, approach, carry_into, depth, measure_into};
@@ -75,13 +76,13 @@ impl Stepper for Impulsive {
 
         let mut report = StepReport::default();
         let mut pairings = Vec::new();
-        carry_into(model, state, &mut pairings);
+        carry_into(model, state, Pairing::new, &mut pairings);
         let mut increment: Vec<f64> = (0..state.v.len()).map(|i| dt * (state.v[i] + 0.5 * dt * state.a[i])).collect();
         let mut impulses = Impulses::none(model.dimension);
         let mut solved = None;
         let predicted: Vec<f64> = if self.scheme.predicts_by_solving() {
-            let free = self.solve(&equations, shares, increment, &mut impulses, &mut report.newton, work)?;
-            increment = free.at.increment.clone();
+            let free = self.solve(&equations, shares, increment.clone(), &mut impulses, &mut report.newton, work)?;
+            increment.clone_from(&free.at.increment);
             let predicted = free.y.clone();
             solved = Some(free);
             predicted
@@ -289,7 +290,7 @@ impl Impulses {
         state: &State,
         shares: ImpulseShares,
         predicted: &[f64],
-        pairings: &mut [carom_contact::Pairing],
+        pairings: &mut [Pairing],
         work: &mut Workspace,
     ) -> Result<Self, Rejected> {
         let mut measured = Vec::new();

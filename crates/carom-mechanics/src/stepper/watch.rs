@@ -7,8 +7,13 @@ use crate::model::{Contact, Model};
 use crate::rejected::Rejected;
 use crate::state::State;
 
-/// The pairs a step begins with: those that touched or are behind, released and without multiplier.
-pub(super) fn carry_into(model: &Model, state: &State, pairings: &mut Vec<Pairing>) {
+/// The pairs a step begins with: those that touched or are behind, released and without multiplier; `watch` says how far others are looked for.
+pub(super) fn carry_into(
+    model: &Model,
+    state: &State,
+    watch: impl Fn(Vec<Pair>) -> Pairing,
+    pairings: &mut Vec<Pairing>,
+) {
     let mut row = Rows::new(model.dimension);
     pairings.resize_with(model.contacts.len(), Pairing::default);
     for ((contact, pairs), pairing) in model.contacts.iter().zip(&state.pairs).zip(pairings) {
@@ -18,7 +23,7 @@ pub(super) fn carry_into(model: &Model, state: &State, pairings: &mut Vec<Pairin
             (pair.active, pair.lambda) = (false, 0.0);
             kept
         });
-        *pairing = Pairing::new(std::mem::take(&mut pairing.pairs));
+        *pairing = watch(std::mem::take(&mut pairing.pairs));
     }
 }
 

@@ -7,7 +7,7 @@ use std::time::Instant;
 use carom_case::Case;
 use carom_mechanics::{GridReport, Simulation, State};
 use carom_record::{ContactRow, Event, Manifest, RunWriter, Source, Status};
-use cpu_time::ThreadTime;
+use cpu_time::{ProcessTime, ThreadTime};
 
 use super::columns::{center_weights, columns, row};
 use super::fields::{consistent_weights, field_set, gap_of, sides};
@@ -30,7 +30,7 @@ struct Session<'a> {
     first_step: u64,
     /// Wall seconds spent on writing.
     output: f64,
-    /// Processor seconds of this thread in steps.
+    /// Processor seconds in steps.
     cpu: f64,
     values: Vec<f64>,
 }
@@ -168,9 +168,9 @@ impl<'a> Session<'a> {
                 break;
             }
             let mut report = GridReport::default();
-            let busy = ThreadTime::now();
+            let busy = Busy::now(self.manifest.threads);
             let advanced = self.simulation.advance(&mut report);
-            self.cpu += busy.elapsed().as_secs_f64();
+            self.cpu += busy.seconds();
             let step = self.simulation.state.step + u64::from(advanced.is_err());
             for event in &report.events {
                 self.writer.log(&entry(&self.simulation.model, step, event))?;
@@ -338,4 +338,23 @@ fn stressed(simulation: &Simulation) -> Vec<bool> {
 
 fn bytes(state: &State) -> Result<Vec<u8>, RunError> {
     postcard::to_stdvec(state).map_err(|e| RunError::Incompatible { what: format!("the state cannot be encoded: {e}") })
+}
+
+/// Processor time: of this thread alone, since other runs may share the process; of all where steps are computed on several.
+enum Busy {
+    Thread(ThreadTime),
+    Process(ProcessTime),
+}
+
+impl Busy {
+    fn now(threads: usize) -> Self {
+        if threads == 1 { Self::Thread(ThreadTime::now()) } else { Self::Process(ProcessTime::now()) }
+    }
+
+    fn seconds(&self) -> f64 {
+        match self {
+            Self::Thread(began) => began.elapsed().as_secs_f64(),
+            Self::Process(began) => began.elapsed().as_secs_f64(),
+        }
+    }
 }
