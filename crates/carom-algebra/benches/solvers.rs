@@ -8,7 +8,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use carom_algebra::{
-    Condensed, Elimination, FaerSolver, LinearSolver, Pattern, Precision, Product, Saddle, Threads, complementarity,
+    Condensed, Elimination, FaerSolver, LinearSolver, Pattern, Precision, Saddle, Threads, complementarity,
 };
 use divan::Bencher;
 
@@ -95,14 +95,6 @@ fn kept_solve(bencher: Bencher, (edge, precision, threads): (usize, Precision, u
         condensed.eliminate_into(black_box(&right), &mut x);
         condensed.substitute_into(&mut x, &mut out);
     });
-}
-
-#[divan::bench(args = [(33, 1), (97, 1), (97, 2), (317, 1), (317, 2)])]
-fn product(bencher: Bencher, (edge, threads): (usize, usize)) {
-    let grid = grid(edge, 0);
-    let (mut product, threads) = (Product::new(&grid.pattern), Threads::new(threads));
-    let (x, mut out) = (vec![1.0; grid.pattern.size()], vec![0.0; grid.pattern.size()]);
-    bencher.bench_local(|| product.multiply_add(&grid.values, black_box(&x), &mut out, &threads));
 }
 
 fn full(edge: usize) -> FaerSolver {
