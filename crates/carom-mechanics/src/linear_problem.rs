@@ -47,6 +47,8 @@ pub(crate) struct Goal {
     pub step: f64,
     /// The factor was made at this iterate: another one would be the same.
     pub fresh: bool,
+    /// A first correction larger than this is of no use: it is returned as it is.
+    pub trust: f64,
 }
 
 /// Right-hand sides and buffers, and what the last corrections have shown.
@@ -96,6 +98,9 @@ impl LinearProblem {
             self.correct(equations, factor, depth, &mut total, timings)?;
             if let Some(last) = self.comparable.replace(total.last) {
                 renewal.observe(total.last / last);
+            }
+            if total.first > goal.trust {
+                return Ok(total);
             }
             renewal.due = !goal.fresh && renewal.pays(total.last, goal.step);
             let enough = renewal.solves(total.last, goal.forcing * total.first) <= 0.0;

@@ -108,20 +108,20 @@ pub(crate) fn solve_stage(
             full = true;
             work.system.kept.release();
         }
+        let trust = if rest.is_some() && predicted > 0.0 { TRUST * predicted } else { f64::INFINITY };
         let correction = if full {
             work.full_correction(equations, &now, &rows)?
         } else {
             // No further than the iteration as a whole has come, and than what ends it.
             let pace = if changed { 1.0 } else { ratio };
             let forcing = FORCING.min(FORCING_RATIO * pace).max(enough / now.measure.residual);
-            let goal = Goal { forcing, step: tolerance * model.scale, fresh: renewal.made != made };
+            let goal = Goal { forcing, step: tolerance * model.scale, fresh: renewal.made != made, trust };
             let Workspace { linear, system, timings, .. } = work;
             linear.solve(equations, &now, &rows, &mut system.kept, &mut renewal, goal, settings.mixing, timings)?
         };
         (iteration, effort.iterations) = (iteration + 1, effort.iterations + correction.solves);
         if let Some(rest) = rest.take()
-            && predicted > 0.0
-            && correction.first > TRUST * predicted
+            && correction.first > trust
         {
             work.spare.put(now);
             contact.restart();
