@@ -15,49 +15,14 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{
     LltError, LltParams, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
 };
-use faer::traits::RealField;
 use faer::{MatMut, Par, Spec};
 
-use crate::elimination::{Elimination, Part};
+use crate::elimination::Elimination;
 use crate::front::{Aligned, Matrix};
 use crate::linear::LinearError;
-use crate::simd::{dot, subtract, subtract_both, wide};
+use crate::precision::{Entry, Precision};
+use crate::substitution::Solver;
 use crate::threads::Threads;
-
-/// Entries of a factor: all of their digits, or half of them in half of the memory and the time. What takes the factor for an approximation loses nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Precision {
-    /// 53 bits.
-    Double,
-    /// 24 bits.
-    Single,
-}
-
-/// A number of the factor.
-pub(crate) trait Entry: RealField + Copy + Into<f64> {
-    /// Power of two that the largest entry of the matrix is brought to; none where the range is wide enough.
-    const TOP: Option<i32>;
-
-    fn rounded(value: f64) -> Self;
-}
-
-impl Entry for f64 {
-    const TOP: Option<i32> = None;
-
-    fn rounded(value: f64) -> Self {
-        value
-    }
-}
-
-/// Where mass prevails, entries of the factor fall off with the distance of their unknowns, below what 8 bits of exponent hold; and numbers with fewer bits
-/// than 24 are slow. With the matrix near the upper end of the range they may fall by 55 decades instead of 38.
-impl Entry for f32 {
-    const TOP: Option<i32> = Some(110);
-
-    fn rounded(value: f64) -> Self {
-        value as f32
-    }
-}
 
 /// The factor of a matrix that was multiplied by the square of `scale`.
 struct Entries<T> {
@@ -118,16 +83,13 @@ pub struct Condensed {
 
 impl Condensed {
     /// Room for the factor of a matrix with this structure; the calling thread does the work.
-    ///
-    /// # Errors
-    /// The engine ran out of memory.
-    pub fn new(elimination: &Arc<Elimination>, precision: Precision) -> Result<Self, LinearError> {
+    pub fn new(elimination: &Arc<Elimination>, precision: Precision) -> Self {
         let numbers = match precision {
             Precision::Double => Numbers::Double(Entries::new(elimination)),
             Precision::Single => Numbers::Single(Entries::new(elimination)),
         };
         let elimination = elimination.clone();
-        Ok(Self { elimination, numbers, threads: Threads::one(), schur: Vec::new() })
+        Self { elimination, numbers, threads: Threads::one(), schur: Vec::new() }
     }
 
     /// Work is shared by these threads. The result does not depend on them.
@@ -160,9 +122,6 @@ impl Condensed {
         }
         check_positive(schur, elimination)
     }
-
-    /// Gives back memory that only factoring needs; there is none at present.
-    pub fn seal(&mut self) {}
 
     /// S, column by column; only the lower triangle is filled.
     pub fn schur(&self) -> &[f64] {
@@ -230,137 +189,6 @@ fn check_positive(schur: &[f64], elimination: &Elimination) -> Result<(), Linear
     }
 }
 
-/// The triangular solves, part by part: what one needs of another is handed over at their common boundary, in one order.
-struct Solver<'a, T> {
-    elimination: &'a Elimination,
-    factors: &'a [T],
-    inverse: &'a [f64],
-    /// Of the scale.
-    square: f64,
-    threads: &'a Threads,
-}
-
-impl<T: Entry> Solver<'_, T> {
-    fn forward(&self, part: &Part, rhs: &[f64], x: &mut [f64]) {
-        let mut x = x;
-        if let Some(parts) = &part.parts {
-            let [a, b] = &**parts;
-            let (deeper, rest) = x.split_at_mut(a.length + b.length);
-            let (of_a, of_b) = deeper.split_at_mut(a.length);
-            self.threads.join(|| self.forward(a, rhs, of_a), || self.forward(b, rhs, of_b));
-            self.take(part, rhs, rest);
-            for (part, x) in [(a, of_a), (b, of_b)] {
-                for (&row, value) in part.outer.iter().zip(&x[x.len() - part.outer.len()..]) {
-                    rest[row as usize] += value;
-                }
-            }
-            x = rest;
-        } else {
-            self.take(part, rhs, x);
-        }
-        wide(
-            #[inline(always)]
-            || {
-                let mut rows = vec![0.0; part.height];
-                for s in part.nodes.clone() {
-                    self.forward_node(s, part.columns.start, &mut rows, x);
-                }
-            },
-        );
-    }
-
-    /// The right-hand side on a part's own columns; nothing yet on the rows outside.
-    fn take(&self, part: &Part, rhs: &[f64], x: &mut [f64]) {
-        let (own, outside) = x.split_at_mut(part.columns.len());
-        for (value, &i) in own.iter_mut().zip(&self.elimination.order[part.columns.clone()]) {
-            *value = rhs[i as usize];
-        }
-        outside.fill(0.0);
-    }
-
-    fn backward(&self, part: &Part, x: &mut [f64]) {
-        let deeper = part.parts.iter().flat_map(|parts| parts.iter()).map(|part| part.length).sum();
-        let (deeper, x) = x.split_at_mut(deeper);
-        wide(
-            #[inline(always)]
-            || {
-                let mut rows = vec![0.0; part.height];
-                for s in part.nodes.clone().rev() {
-                    self.backward_node(s, part.columns.start, &mut rows, x);
-                }
-            },
-        );
-        if let Some(parts) = &part.parts {
-            let [a, b] = &**parts;
-            let (of_a, of_b) = deeper.split_at_mut(a.length);
-            let known = &*x;
-            let half = |part: &Part, x: &mut [f64]| {
-                let first = x.len() - part.outer.len();
-                for (value, &row) in x[first..].iter_mut().zip(&part.outer) {
-                    *value = known[row as usize];
-                }
-                self.backward(part, x);
-            };
-            self.threads.join(|| half(a, of_a), || half(b, of_b));
-        }
-    }
-
-    /// First place in the part's numbering, rows below in that numbering, values (column-major, all rows), and a divisor for each column.
-    #[inline(always)]
-    fn node(&self, s: usize, start: usize) -> (usize, &[u32], &[T], &[f64]) {
-        let (columns, all) = (self.elimination.columns(s), self.elimination);
-        let values = &self.factors[all.nodes[s].values..all.nodes[s + 1].values];
-        (columns.start - start, &all.local[all.rows(s)], values, &self.inverse[columns])
-    }
-
-    #[inline(always)]
-    fn forward_node(&self, s: usize, start: usize, rows: &mut [f64], x: &mut [f64]) {
-        let (first, below, values, inverse) = self.node(s, start);
-        let (columns, height) = (inverse.len(), inverse.len() + below.len());
-        let rows = &mut rows[..height];
-        rows[..columns].copy_from_slice(&x[first..first + columns]);
-        for (value, &row) in rows[columns..].iter_mut().zip(below) {
-            *value = x[row as usize];
-        }
-        for c in (0..columns - columns % 2).step_by(2) {
-            let (a, b) = values[c * height..(c + 2) * height].split_at(height);
-            let first = inverse[c] * rows[c];
-            let second = inverse[c + 1] * (rows[c + 1] - first * a[c + 1].into());
-            (rows[c], rows[c + 1]) = (first, second);
-            subtract_both(&mut rows[c + 2..], [first, second], [&a[c + 2..], &b[c + 2..]]);
-        }
-        if columns % 2 == 1 {
-            let c = columns - 1;
-            rows[c] *= inverse[c];
-            let (known, rest) = rows[c..].split_at_mut(1);
-            subtract(rest, known[0], &values[c * height + columns..]);
-        }
-        x[first..first + columns].copy_from_slice(&rows[..columns]);
-        for (value, &row) in rows[columns..].iter().zip(below) {
-            x[row as usize] = *value;
-        }
-    }
-
-    /// Forward left z/σ; backward solves L'ᵀx = σ²(z/σ) − L'_BIᵀ x_B.
-    #[inline(always)]
-    fn backward_node(&self, s: usize, start: usize, rows: &mut [f64], x: &mut [f64]) {
-        let (first, below, values, inverse) = self.node(s, start);
-        let (columns, height) = (inverse.len(), inverse.len() + below.len());
-        let outside = &mut rows[..below.len()];
-        for (value, &row) in outside.iter_mut().zip(below) {
-            *value = x[row as usize];
-        }
-        let own = &mut x[first..first + columns];
-        own.iter_mut().for_each(|x| *x *= self.square);
-        // The long sum does not wait for the column before.
-        for c in (0..columns).rev() {
-            let (near, far) = values[c * height + c + 1..(c + 1) * height].split_at(columns - c - 1);
-            let known = dot(far, outside) + dot(near, &own[c + 1..]);
-            own[c] = inverse[c] * (own[c] - known);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -394,7 +222,7 @@ mod tests {
             let elimination = Arc::new(Elimination::new(&pattern, &groups, &last).unwrap());
             assert_eq!(elimination.kept(), last.len());
             for (precision, digits) in [(Precision::Double, 1e-13), (Precision::Single, 1e-5)] {
-                let mut condensed = Condensed::new(&elimination, precision).unwrap();
+                let mut condensed = Condensed::new(&elimination, precision);
                 condensed.factor(|k| values[k]).unwrap();
                 let (mut x, mut out) = (Vec::new(), vec![0.0; n]);
                 condensed.eliminate_into(&rhs, &mut x);
@@ -422,7 +250,7 @@ mod tests {
             let (mut rhs, mut out) = (vec![0.0; exact.len()], vec![0.0; exact.len()]);
             pattern.multiply_add(&values, &exact, &mut rhs);
             let elimination = Arc::new(Elimination::new(&pattern, &groups, &[]).unwrap());
-            let mut condensed = Condensed::new(&elimination, Precision::Single).unwrap();
+            let mut condensed = Condensed::new(&elimination, Precision::Single);
             condensed.factor(|k| values[k]).unwrap();
             let mut x = Vec::new();
             condensed.eliminate_into(&rhs, &mut x);
@@ -451,7 +279,7 @@ mod tests {
             assert!(parts.iter().all(|part| part.parts.is_some()));
             for (precision, digits) in [(Precision::Double, 1e-13), (Precision::Single, 1e-4)] {
                 let solve = |threads: usize| {
-                    let mut condensed = Condensed::new(&elimination, precision).unwrap().on(&Threads::new(threads));
+                    let mut condensed = Condensed::new(&elimination, precision).on(&Threads::new(threads));
                     condensed.factor(|k| values[k]).unwrap();
                     let (mut x, mut out) = (Vec::new(), vec![0.0; n]);
                     condensed.eliminate_into(&rhs, &mut x);
@@ -481,7 +309,7 @@ mod tests {
         let (pattern, mut values, groups) = grid(4);
         values[pattern.slot(5, 5).unwrap()] = -1.0;
         let elimination = Arc::new(Elimination::new(&pattern, &groups, &[30, 31]).unwrap());
-        let mut condensed = Condensed::new(&elimination, Precision::Double).unwrap();
+        let mut condensed = Condensed::new(&elimination, Precision::Double);
         assert!(matches!(condensed.factor(|k| values[k]), Err(LinearError::Singular { .. })));
     }
 }

@@ -14,8 +14,8 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, MatMut, MatRef, Par, Spec};
 
-use crate::condensed::Entry;
 use crate::elimination::{Elimination, Part};
+use crate::precision::Entry;
 use crate::threads::Threads;
 
 /// Columns of a block.

@@ -56,7 +56,7 @@ impl KeptFactor {
         if !self.tangent.as_ref().is_some_and(fits) {
             // The old factor is not wanted beside the new one.
             self.tangent = None;
-            self.tangent = Some(Condensed::new(&elimination, precision)?.on(&model.threads));
+            self.tangent = Some(Condensed::new(&elimination, precision).on(&model.threads));
         }
         if let Some(tangent) = &mut self.tangent {
             tangent.factor(|k| point.mass * mass[k] + point.stiffness * stiffness[k])?;
@@ -114,9 +114,8 @@ impl KeptFactor {
         let elimination = self.elimination(model, pattern, &boundary)?;
         if !self.mass.as_ref().is_some_and(|factor| Arc::ptr_eq(factor.elimination(), &elimination)) {
             self.mass = None;
-            let mut factor = Condensed::new(&elimination, Precision::Double)?.on(&model.threads);
+            let mut factor = Condensed::new(&elimination, Precision::Double).on(&model.threads);
             factor.factor(|k| mass[k])?;
-            factor.seal();
             self.mass = Some(factor);
         }
         self.of_mass = true;

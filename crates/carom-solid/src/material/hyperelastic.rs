@@ -63,12 +63,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
         dh: &[[[f64; LANES]; D]; D],
         count: usize,
     ) -> Result<[[[f64; LANES]; D]; D], NotPositive> {
-        let mut changes = [[[0.0; LANES]; D]; D];
-        for l in 0..count {
-            let point = self.at(&get(h, l))?;
-            set(&mut changes, l, &self.change(&point, &get(dh, l)), 1.0);
-        }
-        Ok(changes)
+        changes_one_by_one(self, h, dh, count)
     }
 
     /// Cauchy stress within the space of the body.
@@ -81,4 +76,20 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     fn volume_ratio(&self, h: &Mat<D>) -> f64 {
         1.0 + excess_det(h)
     }
+}
+
+/// [`Material::changes`] by [`Material::change`], for a law or a dimension that has no better way.
+#[inline(always)]
+pub(super) fn changes_one_by_one<const D: usize>(
+    law: &(impl Material<D> + ?Sized),
+    h: &[[[f64; LANES]; D]; D],
+    dh: &[[[f64; LANES]; D]; D],
+    count: usize,
+) -> Result<[[[f64; LANES]; D]; D], NotPositive> {
+    let mut changes = [[[0.0; LANES]; D]; D];
+    for l in 0..count {
+        let point = law.at(&get(h, l))?;
+        set(&mut changes, l, &law.change(&point, &get(dh, l)), 1.0);
+    }
+    Ok(changes)
 }

@@ -8,9 +8,9 @@
 
 use carom_algebra::{Mat, Vector};
 
-use super::hyperelastic::{Material, NotPositive};
+use super::hyperelastic::{Material, NotPositive, changes_one_by_one};
 use super::kinematics::{excess_cofactor, excess_det, ln_1p, ln_1p_lanes};
-use crate::points::{LANES, get, set};
+use crate::points::LANES;
 
 /// Compressible neo-Hookean law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,14 +90,10 @@ impl<const D: usize> Material<D> for NeoHookean {
         dh: &[[[f64; LANES]; D]; D],
         count: usize,
     ) -> Result<[[[f64; LANES]; D]; D], NotPositive> {
-        let mut changes = [[[0.0; LANES]; D]; D];
         if D != 2 {
-            for l in 0..count {
-                let point = self.at(&get(h, l))?;
-                set(&mut changes, l, &self.change(&point, &get(dh, l)), 1.0);
-            }
-            return Ok(changes);
+            return changes_one_by_one(self, h, dh, count);
         }
+        let mut changes = [[[0.0; LANES]; D]; D];
         let mut excess = [0.0; LANES];
         for l in 0..LANES {
             excess[l] = h[0][0][l] + h[1][1][l] + (h[0][0][l] * h[1][1][l] - h[0][1][l] * h[1][0][l]);
