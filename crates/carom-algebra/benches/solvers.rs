@@ -1,5 +1,5 @@
 //! Factors and solves on a square grid of nodes with two unknowns each, tied to all nodes within two columns and rows (as dense as quadratic triangles): the
-//! kept factor with the nodes of one side left for last, the full one of the same matrix with constraints on that side, the small systems of contact.
+//! kept factor with the nodes of one side left for last, the small systems of contact.
 //!
 //!     cargo bench -p carom-algebra            times
 //!     bench/instructions.py carom-algebra     instructions
@@ -7,9 +7,7 @@
 use std::hint::black_box;
 use std::sync::Arc;
 
-use carom_algebra::{
-    Condensed, Elimination, FaerSolver, LinearSolver, Pattern, Precision, Saddle, Threads, complementarity,
-};
+use carom_algebra::{Condensed, Elimination, Pattern, Precision, Saddle, Threads, complementarity};
 use divan::Bencher;
 
 /// Nodes along an edge: 2 178 and 18 818 unknowns.
@@ -31,7 +29,7 @@ fn main() {
     divan::main();
 }
 
-/// A positive definite matrix with `rows` constraints on as many nodes of the first row.
+/// A positive definite matrix.
 struct Grid {
     pattern: Pattern,
     values: Vec<f64>,
@@ -39,7 +37,7 @@ struct Grid {
     side: Vec<usize>,
 }
 
-fn grid(edge: usize, rows: usize) -> Grid {
+fn grid(edge: usize) -> Grid {
     let nodes = edge * edge;
     let mut entries = Vec::new();
     for a in 0..nodes {
@@ -51,21 +49,18 @@ fn grid(edge: usize, rows: usize) -> Grid {
             }
         }
     }
-    for row in 0..rows {
-        entries.extend([(2 * nodes + row, 2 * row, 0.1), (2 * nodes + row, 2 * row + 1, 1.0)]);
-    }
-    let pattern = Pattern::from_entries(2 * nodes + rows, entries.iter().map(|&(i, j, _)| (i, j)));
+    let pattern = Pattern::from_entries(2 * nodes, entries.iter().map(|&(i, j, _)| (i, j)));
     let mut values = vec![0.0; pattern.len()];
     for (i, j, value) in entries {
         values[pattern.slot(i, j).expect("made of these")] = value;
     }
-    let groups = (0..2 * nodes).map(|dof| dof / 2).chain(0..rows).collect();
+    let groups = (0..2 * nodes).map(|dof| dof / 2).collect();
     Grid { pattern, values, groups, side: (0..2 * edge).collect() }
 }
 
 #[divan::bench(args = EDGES)]
 fn kept_analysis(bencher: Bencher, edge: usize) {
-    let grid = grid(edge, 0);
+    let grid = grid(edge);
     bencher.bench_local(|| Elimination::new(black_box(&grid.pattern), &grid.groups, &grid.side).is_ok());
 }
 
@@ -81,43 +76,20 @@ fn condensed(grid: &Grid, precision: Precision, threads: usize) -> Condensed {
 
 #[divan::bench(args = KEPT)]
 fn kept_factor(bencher: Bencher, (edge, precision, threads): (usize, Precision, usize)) {
-    let grid = grid(edge, 0);
+    let grid = grid(edge);
     let mut condensed = condensed(&grid, precision, threads);
     bencher.bench_local(|| condensed.factor(|k| grid.values[k]).is_ok());
 }
 
 #[divan::bench(args = KEPT)]
 fn kept_solve(bencher: Bencher, (edge, precision, threads): (usize, Precision, usize)) {
-    let grid = grid(edge, 0);
+    let grid = grid(edge);
     let mut condensed = condensed(&grid, precision, threads);
     let (right, mut x, mut out) = (vec![1.0; grid.pattern.size()], Vec::new(), vec![0.0; grid.pattern.size()]);
     bencher.bench_local(|| {
         condensed.eliminate_into(black_box(&right), &mut x);
         condensed.substitute_into(&mut x, &mut out);
     });
-}
-
-fn full(edge: usize) -> FaerSolver {
-    let grid = grid(edge, edge / 2);
-    let mut solver = FaerSolver::default();
-    solver.analyse(&grid.pattern, &grid.groups).expect("memory");
-    solver.values().copy_from_slice(&grid.values);
-    solver.factor().expect("regular");
-    solver
-}
-
-#[divan::bench(args = EDGES)]
-fn full_factor(bencher: Bencher, edge: usize) {
-    let mut solver = full(edge);
-    bencher.bench_local(|| solver.factor().is_ok());
-}
-
-#[divan::bench(args = EDGES)]
-fn full_solve(bencher: Bencher, edge: usize) {
-    let mut solver = full(edge);
-    let size = 2 * edge * edge + edge / 2;
-    let (right, mut out) = (vec![1.0; size], vec![0.0; size]);
-    bencher.bench_local(|| solver.solve(black_box(&right), &mut out).is_ok());
 }
 
 /// One constraint for every node that touches, two unknowns and as many that only lie near.

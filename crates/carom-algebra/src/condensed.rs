@@ -1,4 +1,4 @@
-//! Cholesky of a sparse positive definite matrix with chosen unknowns B eliminated last (static condensation),
+//! Cholesky of a sparse symmetric matrix with chosen unknowns B eliminated last (static condensation),
 //!
 //! ```text
 //! A = L Lᵀ,    S = A_BB − A_BI A_II⁻¹ A_IB = L_BB L_BBᵀ
@@ -7,19 +7,17 @@
 //! so that any change of A on B alone, and any constraint on B alone, is a matter of the small dense S: forward through the inner unknowns, a dense
 //! solve on B, backward. The factor is kept while B's neighbourhood changes as it likes.
 //!
-//! In single precision it is σ²A that is factored, L' = σL with σ a power of two.
+//! Where A is not positive definite it is the factor of a matrix near it (`pivots.rs`). In single precision it is σ²A that is factored, L' = σL with σ a power of two.
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicUsize;
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{
-    LltError, LltParams, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
-};
-use faer::{MatMut, Par, Spec};
+use faer::MatMut;
 
 use crate::elimination::Elimination;
 use crate::front::{Aligned, Matrix};
 use crate::linear::LinearError;
+use crate::pivots::{Room, diagonal_size};
 use crate::precision::{Entry, Precision};
 use crate::substitution::Solver;
 use crate::threads::Threads;
@@ -48,7 +46,7 @@ impl<T: Entry> Entries<T> {
         value: impl Fn(usize) -> f64 + Sync,
         threads: &Threads,
         schur: &mut Vec<f64>,
-    ) -> Result<(), LinearError> {
+    ) -> Result<usize, LinearError> {
         let n = elimination.place.len();
         if let Some(top) = T::TOP {
             // The largest entry of a positive definite matrix is on its diagonal.
@@ -58,7 +56,7 @@ impl<T: Entry> Entries<T> {
         }
         let square = self.scale * self.scale;
         let singular = |pivot| LinearError::Singular { size: n, pivot, value: 0.0 };
-        let matrix = Matrix { elimination, value, scale: square, threads };
+        let matrix = Matrix { elimination, value, scale: square, threads, raised: AtomicUsize::new(0) };
         matrix.factor(self.factors.get_mut(), schur).map_err(singular)?;
         schur.iter_mut().for_each(|value| *value /= square);
         for s in 0..elimination.nodes.len() - 1 {
@@ -69,7 +67,7 @@ impl<T: Entry> Entries<T> {
                 *inverse = (*value).into().recip();
             }
         }
-        Ok(())
+        Ok(matrix.raised.into_inner())
     }
 }
 
@@ -110,17 +108,18 @@ impl Condensed {
         }
     }
 
-    /// Factors a matrix: `value(k)` for entry k of the pattern.
+    /// Factors a matrix, `value(k)` for entry k of the pattern. How many diagonal entries were raised to make it
+    /// positive definite, those that S will need among them.
     ///
     /// # Errors
-    /// It is not positive definite.
-    pub fn factor(&mut self, value: impl Fn(usize) -> f64 + Sync) -> Result<(), LinearError> {
+    /// A pivot is no number.
+    pub fn factor(&mut self, value: impl Fn(usize) -> f64 + Sync) -> Result<usize, LinearError> {
         let (elimination, threads, schur) = (&*self.elimination, &self.threads, &mut self.schur);
-        match &mut self.numbers {
+        let raised = match &mut self.numbers {
             Numbers::Double(entries) => entries.factor(elimination, value, threads, schur)?,
             Numbers::Single(entries) => entries.factor(elimination, value, threads, schur)?,
-        }
-        check_positive(schur, elimination)
+        };
+        Ok(raised + not_positive(schur, elimination)?)
     }
 
     /// S, column by column; only the lower triangle is filled.
@@ -172,21 +171,16 @@ impl Condensed {
     }
 }
 
-/// Whether S is positive definite: with it the whole matrix is.
-fn check_positive(schur: &[f64], elimination: &Elimination) -> Result<(), LinearError> {
+/// Entries of S that must be raised: without any the whole matrix is positive definite.
+fn not_positive(schur: &[f64], elimination: &Elimination) -> Result<usize, LinearError> {
     let kept = elimination.kept();
     let mut copy = schur.to_vec();
-    let space = cholesky_in_place_scratch::<f64>(kept, Par::Seq, Spec::<LltParams, f64>::default());
+    let size = diagonal_size(copy.iter().step_by(kept + 1).copied());
     let target = MatMut::from_column_major_slice_mut(&mut copy, kept, kept);
-    let mut scratch = MemBuffer::new(space);
-    let stack = MemStack::new(&mut scratch);
-    match cholesky_in_place(target, LltRegularization::default(), Par::Seq, stack, Spec::default()) {
-        Ok(_) => Ok(()),
-        Err(LltError::NonPositivePivot { index }) => {
-            let (size, pivot) = (elimination.place.len(), elimination.inner + index);
-            Err(LinearError::Singular { size, pivot, value: copy[index * kept + index] })
-        }
-    }
+    Room::new(kept).cholesky(target, size).map_err(|index| {
+        let (size, pivot) = (elimination.place.len(), elimination.inner + index);
+        LinearError::Singular { size, pivot, value: copy[index * kept + index] }
+    })
 }
 
 #[cfg(test)]
@@ -304,12 +298,34 @@ mod tests {
         }
     }
 
+    /// What the factor multiplies to differs from the matrix by the rank of the entries that were raised: with one, all residuals are parallel.
     #[test]
-    fn an_indefinite_matrix_is_refused() {
-        let (pattern, mut values, groups) = grid(4);
-        values[pattern.slot(5, 5).unwrap()] = -1.0;
-        let elimination = Arc::new(Elimination::new(&pattern, &groups, &[30, 31]).unwrap());
-        let mut condensed = Condensed::new(&elimination, Precision::Double);
-        assert!(matches!(condensed.factor(|k| values[k]), Err(LinearError::Singular { .. })));
+    fn an_indefinite_matrix_has_a_factor_of_a_matrix_near_it() {
+        for last in [vec![], vec![30, 31], vec![5, 30]] {
+            let (pattern, mut values, groups) = grid(4);
+            values[pattern.slot(5, 5).unwrap()] = -1.0;
+            let n = pattern.size();
+            let elimination = Arc::new(Elimination::new(&pattern, &groups, &last).unwrap());
+            let mut condensed = Condensed::new(&elimination, Precision::Double);
+            assert_eq!(condensed.factor(|k| values[k]), Ok(1));
+            let mut residual = |seed: f64| {
+                let rhs: Vec<f64> = (0..n).map(|i| ((i as f64 + seed) * 0.7).sin()).collect();
+                let (mut x, mut out, mut product) = (Vec::new(), vec![0.0; n], vec![0.0; n]);
+                condensed.eliminate_into(&rhs, &mut x);
+                let mut saddle = Saddle::default();
+                saddle.begin(condensed.schur(), elimination.kept(), 0);
+                saddle.factor().unwrap();
+                saddle.solve(condensed.kept_part(&mut x), &mut []);
+                condensed.substitute_into(&mut x, &mut out);
+                pattern.multiply_add(&values, &out, &mut product);
+                rhs.iter().zip(&product).map(|(b, p)| b - p).collect::<Vec<f64>>()
+            };
+            let (a, b) = (residual(0.0), residual(5.0));
+            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            assert!(dot(&a, &a) > 1e-3 && dot(&b, &b) > 1e-3);
+            assert!((dot(&a, &b).powi(2) / dot(&a, &a) / dot(&b, &b) - 1.0).abs() < 1e-12);
+            values[pattern.slot(5, 5).unwrap()] = f64::NAN;
+            assert!(matches!(condensed.factor(|k| values[k]), Err(LinearError::Singular { .. })));
+        }
     }
 }

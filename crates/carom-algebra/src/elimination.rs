@@ -7,15 +7,14 @@ use std::ops::Range;
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::SymbolicSupernodalParams;
 use faer::sparse::linalg::cholesky::simplicial::{
     prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
 };
 use faer::sparse::linalg::cholesky::supernodal::{
     SymbolicSupernodalCholesky, factorize_supernodal_symbolic_cholesky, factorize_supernodal_symbolic_cholesky_scratch,
 };
+use faer::sparse::linalg::{SymbolicSupernodalParams, amd};
 
-use crate::faer_engine::grouped_ordering;
 use crate::forest::{Cut, cut};
 use crate::linear::LinearError;
 use crate::pattern::Pattern;
@@ -100,7 +99,7 @@ impl Elimination {
         names.sort_unstable();
         names.dedup();
         let merged: Vec<usize> = merged.iter().map(|g| names.partition_point(|name| name < g)).collect();
-        let (forward, _) = grouped_ordering(pattern, &merged).map_err(engine)?;
+        let forward = grouped_ordering(pattern, &merged).map_err(engine)?;
         let inner = n - last.len();
         let mut order: Vec<u32> = forward.iter().filter(|&&i| !is_last[i]).map(|&i| i as u32).collect();
         order.extend(forward.iter().filter(|&&i| is_last[i]).map(|&i| i as u32));
@@ -376,6 +375,23 @@ impl Upper {
         factorize_supernodal_symbolic_cholesky(self.view(), tree, &counts, stack, SymbolicSupernodalParams::default())
             .map_err(|e| format!("{e:?}"))
     }
+}
+
+/// Elimination order: AMD on the graph of groups, each group expanded in ascending order.
+fn grouped_ordering(pattern: &Pattern, groups: &[usize]) -> Result<Vec<usize>, String> {
+    let count = groups.iter().max().map_or(0, |g| g + 1);
+    let entries = (0..pattern.size()).flat_map(|j| pattern.column(j).iter().map(move |&i| (groups[i], groups[j])));
+    let quotient = Pattern::from_entries(count, entries);
+    let graph = SymbolicSparseColMatRef::new_checked(count, count, &quotient.starts, None, &quotient.rows);
+    let (mut order, mut inverse) = (vec![0_usize; count], vec![0_usize; count]);
+    let mut scratch = memory(amd::order_maybe_unsorted_scratch::<usize>(count, quotient.len()))?;
+    amd::order_maybe_unsorted(&mut order, &mut inverse, graph, amd::Control::default(), MemStack::new(&mut scratch))
+        .map_err(|e| format!("{e:?}"))?;
+    let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
+    for (i, &g) in groups.iter().enumerate() {
+        members[g].push(i);
+    }
+    Ok(order.iter().flat_map(|&g| members[g].iter().copied()).collect())
 }
 
 fn memory(space: StackReq) -> Result<MemBuffer, String> {

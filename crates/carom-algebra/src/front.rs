@@ -3,18 +3,16 @@
 //! are factored at the same time, and large nodes in blocks of columns; sums have one order.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{
-    LltError, LltParams, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
-};
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::prelude::{Reborrow, ReborrowMut};
-use faer::{Accum, MatMut, MatRef, Par, Spec};
+use faer::{Accum, MatMut, MatRef, Par};
 
 use crate::elimination::{Elimination, Part};
+use crate::pivots::{Room, diagonal_size};
 use crate::precision::Entry;
 use crate::threads::Threads;
 
@@ -59,12 +57,14 @@ pub(crate) struct Matrix<'a, F> {
     pub(crate) value: F,
     pub(crate) scale: f64,
     pub(crate) threads: &'a Threads,
+    /// Diagonal entries raised so far.
+    pub(crate) raised: AtomicUsize,
 }
 
 /// What a part needs beside its values.
 struct Work<T> {
     squares: Aligned<T>,
-    scratch: MemBuffer,
+    room: Room<T>,
     runs: Vec<[usize; 3]>,
 }
 
@@ -72,7 +72,7 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
     /// Factors all columns before the last unknowns; `schur` becomes the lower triangle of what they leave of the last ones' square.
     ///
     /// # Errors
-    /// The place whose pivot is not positive.
+    /// The place of a pivot that is no number, or nothing from the beginning.
     pub(crate) fn factor<T: Entry>(&self, values: &mut [T], schur: &mut Vec<f64>) -> Result<(), usize> {
         let all = self.elimination;
         let left = self.part(&all.root, values)?;
@@ -118,8 +118,8 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
         // Last first, so that the next is popped.
         below.sort_by_key(|left| std::cmp::Reverse((parent(left.node), left.node)));
         let widest = part.nodes.clone().map(|s| all.columns(s).len()).max().unwrap_or(0);
-        let space = cholesky_in_place_scratch::<T>(widest.min(BLOCK), Par::Seq, Spec::<LltParams, T>::default());
-        let mut work = Work { squares: Aligned::<T>::new(part.room), scratch: MemBuffer::new(space), runs: Vec::new() };
+        let (squares, room) = (Aligned::<T>::new(part.room), Room::new(widest.min(BLOCK)));
+        let mut work = Work { squares, room, runs: Vec::new() };
         let mut waiting: Vec<(usize, usize)> = Vec::new();
         let mut top = 0;
         let mut rest = values;
@@ -132,6 +132,8 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
             for (&entry, &slot) in all.entries[entries.clone()].iter().zip(&all.slots[entries]) {
                 panel[slot as usize] = T::rounded(self.scale * (self.value)(entry as usize));
             }
+            let height = columns.len() + count;
+            let size = diagonal_size(panel.iter().step_by(height + 1).take(columns.len()).copied());
             let (held, free) = work.squares.get_mut().split_at_mut(top);
             let square = &mut free[..count * count];
             square.fill(T::rounded(0.0));
@@ -143,11 +145,11 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
                 all.extend_add((node, &held[start..]), (s, panel, square), &mut work.runs);
                 begin = start;
             }
-            let height = columns.len() + count;
             let panel = MatMut::from_column_major_slice_mut(panel, height, columns.len());
             let target = MatMut::from_column_major_slice_mut(square, count, count);
-            eliminate(panel, target, self.threads, MemStack::new(&mut work.scratch))
-                .map_err(|index| columns.start + index)?;
+            let raised =
+                eliminate(panel, target, size, self.threads, &mut work.room).map_err(|index| columns.start + index)?;
+            self.raised.fetch_add(raised, Ordering::Relaxed);
             if count > 0 {
                 work.squares.get_mut().copy_within(top..top + count * count, begin);
                 waiting.push((s, begin));
@@ -211,14 +213,17 @@ impl Elimination {
     }
 }
 
-/// Factors a node's columns and subtracts their product from the square of the rows below. The index of the pivot that is not positive otherwise.
+/// Factors a node's columns and subtracts their product from the square of the rows below. How many diagonal entries were raised, or
+/// the index of a pivot that is none.
 fn eliminate<T: Entry>(
     mut panel: MatMut<'_, T>,
     mut square: MatMut<'_, T>,
+    size: f64,
     threads: &Threads,
-    stack: &mut MemStack,
-) -> Result<(), usize> {
+    room: &mut Room<T>,
+) -> Result<usize, usize> {
     let (height, columns) = panel.shape();
+    let mut raised = 0;
     let alone = Threads::one();
     for start in (0..columns).step_by(BLOCK) {
         let width = BLOCK.min(columns - start);
@@ -226,16 +231,7 @@ fn eliminate<T: Entry>(
         let rest = panel.rb_mut().subrows_mut(start, height - start).subcols_mut(start, columns - start);
         let (block, mut after) = rest.split_at_col_mut(width);
         let (mut diagonal, mut lower) = block.split_at_row_mut(width);
-        match cholesky_in_place(
-            diagonal.rb_mut(),
-            LltRegularization::default(),
-            Par::Seq,
-            stack,
-            Spec::<LltParams, T>::default(),
-        ) {
-            Ok(_) => {}
-            Err(LltError::NonPositivePivot { index }) => return Err(start + index),
-        }
+        raised += room.cholesky(diagonal.rb_mut(), size).map_err(|index| start + index)?;
         let diagonal = diagonal.rb();
         threads.for_each(row_blocks(lower.rb_mut()), |_, rows| {
             solve_lower_triangular_in_place(diagonal, rows.transpose_mut(), Par::Seq);
@@ -249,7 +245,7 @@ fn eliminate<T: Entry>(
             threads.for_each(column_blocks(square.rb_mut()), |k, target| subtract_product(target, lower, k * BLOCK));
         }
     }
-    Ok(())
+    Ok(raised)
 }
 
 /// target −= L Lᵀ in the lower triangle of a square, of which the target is some columns from `first`.

@@ -9,17 +9,14 @@
 //! Acta Numerica 14 (2005), §3.4). Where S is so only on the kernel of G, S + Σ κ gᵀg with b + Σ κ c g has the same solution and is so everywhere
 //! (ibid., §3.5: the augmented Lagrangian).
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{
-    LltError, LltParams, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
-};
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::prelude::{Reborrow, ReborrowMut};
-use faer::{Accum, MatMut, MatRef, Par, Spec};
+use faer::{Accum, MatMut, MatRef, Par};
 
 use crate::linear::LinearError;
+use crate::pivots::{Room, diagonal_size};
 
 /// What is left of a row, as a share of its square, when it repeats the others.
 const DEPENDENT: f64 = 1e-14;
@@ -38,8 +35,7 @@ pub struct Saddle {
     /// κ of each row.
     penalties: Vec<f64>,
     nonzeros: Vec<usize>,
-    scratch: Option<MemBuffer>,
-    room: usize,
+    room: Room<f64>,
 }
 
 impl Saddle {
@@ -85,13 +81,13 @@ impl Saddle {
         self.rows[row * self.size + j] += value;
     }
 
-    /// Factors.
+    /// Factors; how many diagonal entries of S were raised (`pivots.rs`), none where it is positive definite.
     ///
     /// # Errors
-    /// S is not positive definite, or the rows depend on each other.
-    pub fn factor(&mut self) -> Result<(), LinearError> {
+    /// A pivot is no number, or the rows depend on each other.
+    pub fn factor(&mut self) -> Result<usize, LinearError> {
         let (n, m) = (self.size, self.count);
-        cholesky(&mut self.stiffness, n, &mut self.scratch, &mut self.room)?;
+        let raised = cholesky(&mut self.stiffness, n, &mut self.room)?;
         let lower = MatRef::from_column_major_slice(&self.stiffness, n, n);
         let mut t = MatMut::from_column_major_slice_mut(&mut self.rows, n, m);
         solve_lower_triangular_in_place(lower, t.rb_mut(), Par::Seq);
@@ -101,9 +97,9 @@ impl Saddle {
         let (half, whole) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
         triangular::matmul(product, half, Accum::Replace, t.rb().transpose(), whole, t.rb(), whole, 1.0, Par::Seq);
         let diagonal: Vec<f64> = (0..m).map(|i| self.small[i * m + i]).collect();
-        cholesky(&mut self.small, m, &mut self.scratch, &mut self.room)?;
-        let dependent = |&i: &usize| self.small[i * m + i].powi(2) <= DEPENDENT * diagonal[i];
-        (0..m).find(dependent).map_or(Ok(()), |i| {
+        let repeated = cholesky(&mut self.small, m, &mut self.room)? > 0;
+        let dependent = |&i: &usize| repeated || self.small[i * m + i].powi(2) <= DEPENDENT * diagonal[i];
+        (0..m).find(dependent).map_or(Ok(raised), |i| {
             Err(LinearError::Singular { size: n + m, pivot: n + i, value: -self.small[i * m + i].powi(2) })
         })
     }
@@ -134,27 +130,12 @@ impl Saddle {
     }
 }
 
-fn cholesky(
-    matrix: &mut [f64],
-    n: usize,
-    scratch: &mut Option<MemBuffer>,
-    room: &mut usize,
-) -> Result<(), LinearError> {
-    if scratch.is_none() || *room < n {
-        let space = cholesky_in_place_scratch::<f64>(2 * n, Par::Seq, Spec::<LltParams, f64>::default());
-        let engine = |e| LinearError::Engine { size: n, reason: format!("{e:?}") };
-        *scratch = Some(MemBuffer::try_new(space).map_err(engine)?);
-        *room = 2 * n;
-    }
-    let Some(scratch) = scratch else { return Ok(()) };
+/// Overwrites a lower triangle with its factor; how many diagonal entries were raised.
+fn cholesky(matrix: &mut [f64], n: usize, room: &mut Room<f64>) -> Result<usize, LinearError> {
+    let size = diagonal_size(matrix.iter().step_by(n + 1).copied());
     let target = MatMut::from_column_major_slice_mut(matrix, n, n);
-    let stack = MemStack::new(scratch);
-    match cholesky_in_place(target, LltRegularization::default(), Par::Seq, stack, Spec::default()) {
-        Ok(_) => Ok(()),
-        Err(LltError::NonPositivePivot { index }) => {
-            Err(LinearError::Singular { size: n, pivot: index, value: matrix[index * n + index] })
-        }
-    }
+    let singular = |pivot| LinearError::Singular { size: n, pivot, value: f64::NAN };
+    room.cholesky(target, size).map_err(singular)
 }
 
 #[cfg(test)]
@@ -195,7 +176,7 @@ mod tests {
             saddle.add_row(0, 2, 2.0);
             saddle.add(2, 2, push);
             saddle.augment(share);
-            assert_eq!(saddle.factor().is_ok(), share > 0.0);
+            assert_eq!(saddle.factor(), Ok(usize::from(share == 0.0)));
         }
         let (mut x, mut multiplier) = (b.clone(), [0.5]);
         saddle.solve(&mut x, &mut multiplier);

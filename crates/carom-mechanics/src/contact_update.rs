@@ -56,15 +56,13 @@ pub(crate) struct ContactUpdate {
     sets: Vec<ActiveSet>,
     /// Times that pairs may still be handed over early.
     follows: u32,
-    /// Whether iterations leave so much over that hand-overs are looked for early.
-    early: bool,
 }
 
 impl ContactUpdate {
-    /// `early`: linear problems are not solved to the end.
-    pub(crate) fn new(model: &Model, early: bool) -> Self {
+    /// At the beginning of a stage.
+    pub(crate) fn new(model: &Model) -> Self {
         let set = |contact: &Contact| ActiveSet::new(GAP_TOLERANCE * model.scale, contact.within);
-        Self { sets: model.contacts.iter().map(set).collect(), follows: if early { FOLLOWS } else { 0 }, early }
+        Self { sets: model.contacts.iter().map(set).collect(), follows: FOLLOWS }
     }
 
     /// Forgets the visited sets: the pairs themselves have changed.
@@ -96,7 +94,7 @@ impl ContactUpdate {
         }
         changed |= handed_over;
         // Where a node will slide to is known long before the last digits are.
-        let nearly = self.early && step <= CLOSE * model.scale;
+        let nearly = step <= CLOSE * model.scale;
         if !changed && (settled || nearly) {
             handed_over = timed(&mut work.timings.contact, || search_again(model, before, now, events));
             changed = handed_over;

@@ -4,12 +4,15 @@
 //! r(d, λ) = 0   (balance.rs),   c(d, λ) = 0 for each pressing pair   (carom_contact::Interface)
 //! ```
 
+use std::sync::Arc;
+
 use carom_contact::{Answer, Pairing, Point, Rows};
 use carom_time::{Internal, Stage};
 
 use crate::balance::{Forces, contact_weights, known_into, mean_acceleration, residual_into};
 use crate::model::{LoadsAt, Model, Prescribed};
 use crate::rejected::Rejected;
+use crate::renewal::Point as FactorPoint;
 use crate::state::State;
 use crate::timings::{Timings, timed};
 
@@ -99,7 +102,8 @@ pub(crate) struct Equations<'a> {
     /// The state at the step's start.
     pub state: &'a State,
     pub stage: Stage,
-    /// Loads at the time internal forces are taken at.
+    /// The time internal forces are taken at, and the loads then.
+    pub time: f64,
     pub loads: LoadsAt,
     /// Moved dofs at the stage's end.
     pub motions: Vec<Prescribed>,
@@ -122,7 +126,7 @@ impl<'a> Equations<'a> {
         let average = stage.average;
         let time = if average == 0.0 { to } else { (1.0 - average) * to + average * state.time };
         let mut equations =
-            Self { model, state, stage, loads: LoadsAt::default(), motions: Vec::new(), known: Vec::new() };
+            Self { model, state, stage, time, loads: LoadsAt::default(), motions: Vec::new(), known: Vec::new() };
         if !model.loads.is_empty() {
             model.loads.at(&model.parts, model.dofs(), time, &mut equations.loads)?;
         }
@@ -158,6 +162,18 @@ impl<'a> Equations<'a> {
     /// Factor of the loads' tangent.
     pub(crate) fn follower_factor(&self) -> f64 {
         self.stage.weights.external * (1.0 - self.stage.average)
+    }
+
+    /// The point of a factor made at these positions, with these nodes last.
+    pub(crate) fn point(&self, at: &[f64], boundary: &[usize]) -> Arc<FactorPoint> {
+        Arc::new(FactorPoint {
+            at: at.to_vec(),
+            mass: self.mass_factor(),
+            stiffness: self.factor_stiffness(),
+            follower: if self.model.loads.follow() { self.follower_factor() } else { 0.0 },
+            time: if self.model.loads.follow() { self.time } else { 0.0 },
+            boundary: boundary.to_vec(),
+        })
     }
 
     /// What moved dofs still have to go, with their dofs.

@@ -14,8 +14,11 @@
 //! ω² = k mᵢ⁻¹,   mᵢ⁻¹ = eᵢᵀ M⁻¹ eᵢ      acceleration of the node under a unit force at it; the stiffest of all nodes
 //! ```
 
+use std::sync::Arc;
+
 use crate::constraints::Constraints;
 use crate::model::Model;
+use crate::renewal::Point;
 use crate::sums::dot;
 use crate::system::System;
 
@@ -39,8 +42,7 @@ pub struct Frequencies {
 /// Frequencies of a model; none where its tangent or its mass cannot be factored.
 pub fn frequencies(model: &Model) -> Option<Frequencies> {
     let mut system = System::new(model);
-    let mut force = vec![0.0; model.dofs()];
-    system.internal_tangent(model, None, &model.reference, &mut force, None).ok()?;
+    system.assemble(model, &model.reference).ok()?;
     let n = model.free.len();
     let massless = model.free.iter().any(|dof| model.massless[*dof]);
     let start = |seed: f64| -> Vec<f64> { (0..n).map(|i| ((12.9898 + seed) * (i as f64 + 1.0)).sin()).collect() };
@@ -49,7 +51,11 @@ pub fn frequencies(model: &Model) -> Option<Frequencies> {
         let stiffness: f64 = system.diagonal(0.0, 1.0).sum();
         stiffness / system.diagonal(1.0, 0.0).sum::<f64>()
     });
-    system.factor(model, 1e-6 * scale, 1.0, 0.0, &Constraints::none(model.dimension)).ok()?;
+    let point = Arc::new(Point { mass: 1e-6 * scale, stiffness: 1.0, ..Point::default() });
+    let none = Constraints::none(model.dimension);
+    if system.factor(model, &point, true).ok()? + system.kept.prepare(model, &none).ok()? > 0 {
+        return None;
+    }
     let mut found: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
     let mut lowest = Vec::new();
     for k in 0..VECTORS.min(n) {
@@ -88,9 +94,8 @@ pub fn spring(model: &Model) -> Option<f64> {
         return None;
     }
     let mut system = System::new(model);
-    let mut force = vec![0.0; model.dofs()];
-    system.internal_tangent(model, None, &model.reference, &mut force, None).ok()?;
-    system.factor(model, 1.0, 0.0, 0.0, &Constraints::none(model.dimension)).ok()?;
+    system.assemble(model, &model.reference).ok()?;
+    system.factor_mass(model, &Constraints::none(model.dimension)).ok()?;
     let mut highest: Option<f64> = None;
     let springs = model.contacts.iter().flat_map(|contact| {
         let nodes = contact.kinematics.secondary().iter().enumerate();
@@ -108,7 +113,7 @@ pub fn spring(model: &Model) -> Option<f64> {
 }
 
 fn power(model: &Model, system: &mut System, mut x: Vec<f64>) -> Option<f64> {
-    system.factor(model, 1.0, 0.0, 0.0, &Constraints::none(model.dimension)).ok()?;
+    system.factor_mass(model, &Constraints::none(model.dimension)).ok()?;
     let mut square = 0.0;
     for _ in 0..ITERATIONS {
         let quotient = normalise(model, system, &mut x);
@@ -127,7 +132,7 @@ fn power(model: &Model, system: &mut System, mut x: Vec<f64>) -> Option<f64> {
 fn solved(model: &Model, system: &mut System, right: &[f64]) -> Option<Vec<f64>> {
     let (mut forces, mut answer) = (vec![0.0; model.dofs()], vec![0.0; model.dofs()]);
     model.free.iter().zip(right).for_each(|(dof, f)| forces[*dof] = *f);
-    system.solve(model, &forces, &[], &mut answer, &mut Vec::new()).ok()?;
+    system.kept.solve(model, &forces, &[], &mut answer, &mut Vec::new()).ok()?;
     Some(model.free.iter().map(|dof| answer[*dof]).collect())
 }
 

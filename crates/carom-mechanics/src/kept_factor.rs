@@ -1,7 +1,7 @@
 //! The kept factor: bodies condensed on the nodes that contact can act on, contact itself solved on those alone.
 //!
 //! ```text
-//! [ A + Σ w λ∇²g  Gᵀ ] [Δy]   [−r]       A = w.mass a' M + w.internal K_int at the kept point
+//! [ A + Σ w λ∇²g  Gᵀ ] [Δy]   [−r]       A = w.mass a' M + w.internal K_int − w.external K_ext at the kept point
 //! [ G             0  ] [Δλ] = [−g]       (or M where velocities are projected)
 //! ```
 //!
@@ -14,6 +14,7 @@ use carom_algebra::{Condensed, Elimination, LinearError, Pattern, Precision, Sad
 
 use crate::constraints::Constraints;
 use crate::model::Model;
+use crate::rejected::Rejected;
 use crate::renewal::Point;
 
 /// Factors of the kept tangent and of the mass matrix, and the scratch of their solves.
@@ -21,6 +22,8 @@ use crate::renewal::Point;
 pub(crate) struct KeptFactor {
     /// What the tangent's factor was made of.
     point: Option<Arc<Point>>,
+    /// Diagonal entries raised for it, and for the rows at hand (`carom_algebra::Condensed`).
+    raised: [usize; 2],
     tangent: Option<Condensed>,
     mass: Option<Condensed>,
     of_mass: bool,
@@ -36,18 +39,19 @@ pub(crate) struct KeptFactor {
 }
 
 impl KeptFactor {
-    /// Factors `mass` M + `stiffness` K for a point; M and K are given in the slots of the pattern.
+    /// Factors `mass` M + `stiffness` K − `follower` K_ext for a point; the matrices are given in the slots of the pattern, the last may be empty. How many diagonal entries were raised: where it is not
+    /// positive definite, the factor is that of a matrix near it.
     ///
     /// # Errors
-    /// The matrix is not positive definite.
+    /// A number is none.
     pub(crate) fn factor(
         &mut self,
         model: &Model,
         pattern: &Pattern,
         point: &Arc<Point>,
         double: bool,
-        (mass, stiffness): (&[f64], &[f64]),
-    ) -> Result<(), LinearError> {
+        [mass, stiffness, follower]: [&[f64]; 3],
+    ) -> Result<usize, LinearError> {
         self.point = None;
         let elimination = self.elimination(model, pattern, &point.boundary)?;
         let single = !double && single_is_enough(pattern, point, mass, stiffness);
@@ -59,10 +63,13 @@ impl KeptFactor {
             self.tangent = Some(Condensed::new(&elimination, precision).on(&model.threads));
         }
         if let Some(tangent) = &mut self.tangent {
-            tangent.factor(|k| point.mass * mass[k] + point.stiffness * stiffness[k])?;
+            self.raised[0] = tangent.factor(|k| {
+                let internal = point.mass * mass[k] + point.stiffness * stiffness[k];
+                if follower.is_empty() { internal } else { internal - point.follower * follower[k] }
+            })?;
         }
         self.point = Some(point.clone());
-        Ok(())
+        Ok(self.raised[0])
     }
 
     /// The order of elimination that leaves these nodes for last.
@@ -86,14 +93,14 @@ impl KeptFactor {
         Ok(elimination)
     }
 
-    /// Forgets the factors, memory and all; how to eliminate is remembered.
-    pub(crate) fn release(&mut self) {
-        (self.point, self.tangent, self.mass) = (None, None, None);
+    /// The entries raised, if it is the factor of a point.
+    pub(crate) fn of(&self, point: &Arc<Point>) -> Option<usize> {
+        (self.point.as_ref() == Some(point)).then_some(self.raised[0])
     }
 
-    /// Whether it is the factor of a point.
-    pub(crate) fn is_of(&self, point: &Arc<Point>) -> bool {
-        self.point.as_ref() == Some(point)
+    /// The entries raised, for the rows at hand among them.
+    pub(crate) fn raised(&self) -> usize {
+        self.raised.iter().sum()
     }
 
     /// Whether the kept factor can take these rows.
@@ -101,36 +108,51 @@ impl KeptFactor {
         self.point.as_ref().is_some_and(|point| covers(&point.boundary, rows))
     }
 
-    /// Factors M with these rows; `boundary` if it covers them.
+    /// Factors M with these rows, over the dofs that have mass: the others keep a unit diagonal and stay out of the rows.
+    ///
+    /// # Errors
+    /// M is not positive definite, or the rows depend on each other.
     pub(crate) fn factor_mass(
         &mut self,
         model: &Model,
         pattern: &Pattern,
         mass: &[f64],
         rows: &Constraints,
-    ) -> Result<(), LinearError> {
+    ) -> Result<(), Rejected> {
         let kept = self.point.as_ref().filter(|point| covers(&point.boundary, rows));
         let boundary = kept.map_or_else(|| rows.nodes(), |point| point.boundary.clone());
         let elimination = self.elimination(model, pattern, &boundary)?;
         if !self.mass.as_ref().is_some_and(|factor| Arc::ptr_eq(factor.elimination(), &elimination)) {
             self.mass = None;
             let mut factor = Condensed::new(&elimination, Precision::Double).on(&model.threads);
-            factor.factor(|k| mass[k])?;
+            let mut mass = mass.to_vec();
+            for place in (0..model.free.len()).filter(|&place| model.massless[model.free[place]]) {
+                mass[pattern.starts[place]] = 1.0;
+            }
+            let directions = factor.factor(|k| mass[k])?;
+            if directions > 0 {
+                return Err(Rejected::NegativeMass { directions });
+            }
             self.mass = Some(factor);
         }
         self.of_mass = true;
-        self.constrain(model, rows, false)
+        Ok(self.constrain(model, rows, false).map(|_| ())?)
     }
 
-    /// Takes the rows up for solves with the kept tangent.
-    pub(crate) fn prepare(&mut self, model: &Model, rows: &Constraints) -> Result<(), LinearError> {
+    /// Takes the rows up for solves with the kept tangent; how many diagonal entries had to be raised for them.
+    ///
+    /// # Errors
+    /// The rows depend on each other.
+    pub(crate) fn prepare(&mut self, model: &Model, rows: &Constraints) -> Result<usize, LinearError> {
         self.of_mass = false;
         // A multiplier far from its value can bend the sides too much: without second derivatives there still is a descent.
-        self.constrain(model, rows, true).or_else(|_| self.constrain(model, rows, false))
+        let curved = self.constrain(model, rows, true);
+        self.raised[1] = if curved == Ok(0) { 0 } else { self.constrain(model, rows, false)? };
+        Ok(self.raised[1])
     }
 
     /// The dense system on the boundary. A spring is no row of it: it adds its stiffness.
-    fn constrain(&mut self, model: &Model, rows: &Constraints, curved: bool) -> Result<(), LinearError> {
+    fn constrain(&mut self, model: &Model, rows: &Constraints, curved: bool) -> Result<usize, LinearError> {
         let Some(condensed) = (if self.of_mass { &self.mass } else { &self.tangent }) else {
             return Err(no_factor(model));
         };
@@ -143,7 +165,8 @@ impl KeptFactor {
         saddle.begin(condensed.schur(), elimination.kept(), self.places.iter().flatten().count());
         let place = |unknown: usize| elimination.kept_place(unknown);
         rows.each_entry(model, |r, unknown, slope| {
-            if let (Some(row), Some(a)) = (self.places[r], place(unknown)) {
+            let part = !(self.of_mass && model.massless[model.free[unknown]]);
+            if let (Some(row), Some(a)) = (self.places[r].filter(|_| part), place(unknown)) {
                 saddle.add_row(row, a, slope);
             }
         });
@@ -155,6 +178,8 @@ impl KeptFactor {
         rows.each_spring(model, &mut add);
         if curved {
             rows.each_curvature(model, &mut add);
+        }
+        if !self.of_mass {
             saddle.augment(STIFFENING);
         }
         saddle.factor()
@@ -198,7 +223,7 @@ impl KeptFactor {
 /// what rounding leaves over of a correction is far below what an old tangent leaves. Scaled to a unit diagonal, and with a stiffness that is positive
 /// semidefinite, the matrix has a condition number of at most some hundred times the largest quotient of its diagonal and the mass's: λ_max is at most the
 /// number of dofs of a cell, and λ_min at least that of the scaled mass matrix over that quotient. Another stiffness may do worse; iterations then contract
-/// slowly or the factor does not exist, and the full tangent follows.
+/// slowly, and it is made anew.
 fn single_is_enough(pattern: &Pattern, point: &Point, mass: &[f64], stiffness: &[f64]) -> bool {
     let mut diagonal = pattern.starts[..pattern.size()].iter();
     let soft = |&k: &usize| point.stiffness * stiffness[k] <= STIFF * point.mass * mass[k];

@@ -6,6 +6,7 @@ mod cells;
 mod constraints;
 mod contact_update;
 mod equations;
+mod factor;
 pub mod frequencies;
 mod kept_factor;
 mod ledger;
@@ -24,7 +25,6 @@ mod state;
 mod stepper;
 mod sums;
 mod system;
-mod tangent;
 #[cfg(test)]
 mod tangent_tests;
 #[cfg(test)]

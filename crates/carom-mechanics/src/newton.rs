@@ -8,6 +8,7 @@ use crate::constraints::Constraints;
 use crate::contact_update::{ContactUpdate, Events, GAP_TOLERANCE, check_stuck, hold_on, search};
 use crate::equations::{Equations, Evaluation, Iterate, Measure};
 use crate::linear_problem::{Correction, Goal};
+use crate::model::check_held;
 use crate::rejected::Rejected;
 use crate::renewal::{Kept, Renewal};
 use crate::settings::{Settings, Tangent};
@@ -49,11 +50,10 @@ pub(crate) fn solve_stage(
 ) -> Result<(Evaluation, Effort), Rejected> {
     let (model, state, tolerance) = (equations.model, equations.state, settings.tolerance);
     let mut effort = Effort::default();
-    // Without inertia nothing but the tangent itself holds a body.
-    let mut full = settings.tangent == Tangent::Full || equations.stage.is_static();
     let (mass, stiffness) = (equations.mass_factor(), equations.factor_stiffness());
-    let mut renewal = Renewal::new(kept, mass, stiffness);
-    let double = settings.tangent == Tangent::KeptDouble;
+    let mut renewal = Renewal::new(kept, mass, stiffness, settings.tangent != Tangent::Kept);
+    // Without inertia corrections may well grow before they shrink, and what is enough is mostly round-off of positions: reactions would show what is left over.
+    let (anew, free) = (settings.tangent == Tangent::Full, equations.stage.is_static());
     work.linear.restart();
     // Where contact begins, velocities and accelerations jump from node to node. That motion, predicted for a step, tears cells that the balance
     // holds together or turns them over, and Newton's method begins better from rest.
@@ -62,26 +62,24 @@ pub(crate) fn solve_stage(
         increment: before.iter().zip(&state.y).map(|(start, old)| start - old).collect(),
         pairings: guess.pairings.clone(),
     })
-    .filter(|_| !equations.stage.is_static());
+    .filter(|_| !free);
     let mut now = match begin(equations, before, guess, &mut effort.events, work) {
         Err(Rejected::Inverted { .. }) if let Some(rest) = rest.take() => {
             begin(equations, before, rest, &mut effort.events, work)?
         }
         begun => begun?,
     };
-    if equations.stage.is_static() && hold_on(model, &mut now) {
+    if free && hold_on(model, &mut now) {
         now = again(equations, now, work)?;
     }
-    if !full {
-        work.restore_factor(equations, &mut renewal, double)?;
-    }
-    let mut contact = ContactUpdate::new(model, !full);
+    work.restore_factor(equations, &renewal)?;
+    let digits = if free { DIGITS } else { 1.0 };
+    let mut contact = ContactUpdate::new(model);
     let (mut step, mut ratio, mut grown, mut iteration) = (f64::INFINITY, 1.0_f64, 0, 0);
     loop {
         // What a linear problem leaves over shrinks with the residual: the balance is taken further where it is not solved to the end.
-        let (next, digits) = if full { (step, 1.0) } else { (step * ratio.min(1.0), DIGITS) };
-        let enough = digits * tolerance * now.measure.forces + work.system.round_off(equations);
-        let settled = next <= tolerance * model.scale
+        let enough = DIGITS * tolerance * now.measure.forces + work.system.round_off(equations);
+        let settled = step * if free { 1.0 } else { ratio.min(1.0) } <= tolerance * model.scale
             && now.measure.residual <= enough
             && now.measure.gap <= GAP_TOLERANCE * model.scale;
         let changed = contact.update(equations, before, &mut now, &mut effort.events, settled, step, work)?;
@@ -94,7 +92,7 @@ pub(crate) fn solve_stage(
             now = again(equations, now, work)?;
             work.linear.restart();
         }
-        if iteration >= settings.max_iterations || (!full && grown > PATIENCE) {
+        if iteration >= settings.max_iterations || (!free && grown > PATIENCE) {
             check_stuck(equations, &now)?;
             return Err(Rejected::NoConvergence {
                 iterations: effort.iterations,
@@ -103,22 +101,20 @@ pub(crate) fn solve_stage(
             });
         }
         let rows = Constraints::of(equations, &now);
-        let made = renewal.made;
-        if !full && !work.factor_for(equations, &now, &rows, &mut renewal, double)? {
-            full = true;
-            work.system.kept.release();
+        if free {
+            check_held(&model.parts, &model.unheld, &now.place, rows.rows.iter())?;
         }
+        let made = renewal.made;
+        renewal.due |= anew;
+        work.factor_for(equations, &now, &rows, &mut renewal)?;
         let trust = if rest.is_some() && predicted > 0.0 { TRUST * predicted } else { f64::INFINITY };
-        let correction = if full {
-            work.full_correction(equations, &now, &rows)?
-        } else {
-            // No further than the iteration as a whole has come, and than what ends it.
-            let pace = if changed { 1.0 } else { ratio };
-            let forcing = FORCING.min(FORCING_RATIO * pace).max(enough / now.measure.residual);
-            let goal = Goal { forcing, step: tolerance * model.scale, fresh: renewal.made != made, trust };
-            let Workspace { linear, system, timings, .. } = work;
-            linear.solve(equations, &now, &rows, &mut system.kept, &mut renewal, goal, settings.mixing, timings)?
-        };
+        // No further than the iteration as a whole has come, and than what ends it.
+        let pace = if changed { 1.0 } else { ratio };
+        let forcing = digits * FORCING.min(FORCING_RATIO * pace).max(enough / now.measure.residual);
+        let goal = Goal { forcing, step: tolerance * model.scale, fresh: renewal.made != made, trust };
+        let Workspace { linear, system, timings, .. } = work;
+        let correction =
+            linear.solve(equations, &now, &rows, &mut system.kept, &mut renewal, goal, settings.mixing, timings)?;
         (iteration, effort.iterations) = (iteration + 1, effort.iterations + correction.solves);
         if let Some(rest) = rest.take()
             && correction.first > trust

@@ -31,16 +31,12 @@ pub(crate) fn project(
     let mut places = independent_rows(model, pressing(state), &gaps);
     places.retain(|&(k, _)| asks(k));
     let rows = Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), gaps[k].row(p))));
-    let inertia = system.factor_mass(model, &rows)?;
-    if inertia.negative < rows.len() {
-        let size = model.free.len() + rows.len();
-        return Err(carom_algebra::LinearError::Singular { size, pivot: inertia.negative, value: 0.0 }.into());
-    }
+    system.factor_mass(model, &rows)?;
     let dofs = model.dofs();
     let (mut change, mut multipliers) = (vec![0.0; dofs], Vec::new());
 
     let closing: Vec<f64> = rows.rows.iter().map(|row| -row.along(&state.v)).collect();
-    system.solve(model, &vec![0.0; dofs], &closing, &mut change, &mut multipliers)?;
+    system.kept.solve(model, &vec![0.0; dofs], &closing, &mut change, &mut multipliers)?;
     for i in 0..dofs {
         state.v[i] += if model.massless[i] { 0.0 } else { change[i] };
     }
@@ -50,7 +46,7 @@ pub(crate) fn project(
     }
 
     let (forces, bending) = drive(model, state, &gaps, &rows);
-    system.solve(model, &forces, &bending, &mut change, &mut multipliers)?;
+    system.kept.solve(model, &forces, &bending, &mut change, &mut multipliers)?;
     take_accelerations(model, state, &change);
     for (&(k, p), lambda) in places.iter().zip(&multipliers) {
         state.pairs[k][p].lambda = *lambda;

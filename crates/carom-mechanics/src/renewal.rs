@@ -29,6 +29,9 @@ pub struct Point {
     pub(crate) mass: f64,
     /// Factor of the internal tangent.
     pub(crate) stiffness: f64,
+    /// Factor of the tangent of the loads, and their time.
+    pub(crate) follower: f64,
+    pub(crate) time: f64,
     /// Nodes that are eliminated last, ascending: contact acts on them alone.
     pub(crate) boundary: Vec<usize>,
 }
@@ -49,6 +52,8 @@ pub(crate) struct Renewal {
     pub(crate) kept: Kept,
     /// A new factor is wanted before the next solve.
     pub(crate) due: bool,
+    /// Its numbers are to have all of their digits.
+    pub(crate) double: bool,
     /// Factors made.
     pub(crate) made: u32,
     /// How often what was left shrank with the present factor, and ln of by how much in all.
@@ -57,11 +62,11 @@ pub(crate) struct Renewal {
 
 impl Renewal {
     /// At the beginning of a stage with these factors of mass and stiffness.
-    pub(crate) fn new(kept: &Kept, mass: f64, stiffness: f64) -> Self {
+    pub(crate) fn new(kept: &Kept, mass: f64, stiffness: f64, double: bool) -> Self {
         let same = |a: f64, b: f64| (a - b).abs() <= SAME * b.abs();
         let fits = kept.point.as_ref().is_some_and(|p| same(p.mass, mass) && same(p.stiffness, stiffness));
         let due = !fits || (kept.steps > 0 && kept.last > (COST + kept.spent) / f64::from(kept.steps));
-        Self { kept: kept.clone(), due, made: 0, shrunk: (0.0, 0.0) }
+        Self { kept: kept.clone(), due, double, made: 0, shrunk: (0.0, 0.0) }
     }
 
     /// A new factor was made.
@@ -109,7 +114,7 @@ mod tests {
 
     #[test]
     fn a_factor_is_made_anew_where_more_solves_are_left_than_it_costs() {
-        let mut renewal = Renewal::new(&Kept::default(), 1.0, 1.0);
+        let mut renewal = Renewal::new(&Kept::default(), 1.0, 1.0, true);
         assert!(renewal.due, "there is none");
         renewal.renewed(Arc::default());
         assert!(!renewal.pays(1.0, 1e-9), "nothing has been seen of it yet");
@@ -123,21 +128,21 @@ mod tests {
     fn steps_that_take_longer_than_the_mean_end_the_life_of_a_factor() {
         let point = Arc::new(Point { mass: 1.0, stiffness: 1.0, ..Point::default() });
         let mut kept = {
-            let mut renewal = Renewal::new(&Kept::default(), 1.0, 1.0);
+            let mut renewal = Renewal::new(&Kept::default(), 1.0, 1.0, true);
             renewal.renewed(point);
             renewal.observe(0.01);
             renewal.finish()
         };
         // ln 1e-2 takes 3.9 solves a step and the factor 6: the mean after n steps is 3.9 + 6/n.
         for _ in 0..5 {
-            let mut renewal = Renewal::new(&kept, 1.0, 1.0);
+            let mut renewal = Renewal::new(&kept, 1.0, 1.0, true);
             assert!(!renewal.due);
             renewal.observe(0.01);
             kept = renewal.finish();
         }
-        let mut slow = Renewal::new(&kept, 1.0, 1.0);
+        let mut slow = Renewal::new(&kept, 1.0, 1.0, true);
         slow.observe(0.1);
-        assert!(Renewal::new(&slow.finish(), 1.0, 1.0).due);
-        assert!(Renewal::new(&kept, 2.0, 1.0).due, "another step has another matrix");
+        assert!(Renewal::new(&slow.finish(), 1.0, 1.0, true).due);
+        assert!(Renewal::new(&kept, 2.0, 1.0, true).due, "another step has another matrix");
     }
 }

@@ -1,7 +1,6 @@
 //! The loop: steps on the grid of times n·Δt, bisected where one is rejected and brought back to the grid, watched by the energy guard.
 
 use carom_contact::PairEvent;
-use carom_solid::Inverted;
 
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -176,13 +175,12 @@ impl Simulation {
         self.work.system.factorisations
     }
 
-    /// Internal forces over all dofs and their tangent, assembled where the simulation is, as every iteration with a full tangent does; the strain energy
-    /// is returned. For measurements.
+    /// The tangent of the internal forces, assembled where the simulation is, as for every factor. For measurements.
     ///
     /// # Errors
-    /// The body's name and the cell that is inverted.
-    pub fn assemble(&mut self, force: &mut [f64]) -> Result<f64, (String, Inverted)> {
-        self.work.system.internal_tangent(&self.model, None, &self.state.y, force, None)
+    /// A cell is inverted.
+    pub fn assemble(&mut self) -> Result<(), Rejected> {
+        self.work.system.assemble(&self.model, &self.state.y)
     }
 
     /// Advances to the next grid time.

@@ -29,7 +29,7 @@ pub struct StableStep {
 /// Stable step of a model with lumped masses at its initial tangent; `None` where a cell is inverted or a free node has no mass.
 pub fn stable_step(model: &Model) -> Option<StableStep> {
     let mut system = System::new(model);
-    system.internal_tangent(model, None, &model.initial_position, &mut vec![0.0; model.dofs()], None).ok()?;
+    system.assemble(model, &model.initial_position).ok()?;
     let mass: Vec<f64> =
         lumped(model).into_iter().zip(&model.fixed).filter(|(_, held)| !**held).map(|(m, _)| m).collect();
     if mass.iter().any(|m| *m <= 0.0) {

@@ -114,13 +114,10 @@ fn accelerate(model: &Model, state: &mut State, gaps: &[Rows], system: &mut Syst
     let mut places = independent_rows(model, pressing(state), gaps);
     places.retain(asks);
     let rows = Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), gaps[k].row(p))));
-    let inertia = system.factor_mass(model, &rows)?;
-    if inertia.negative > rows.len() {
-        return Err(Rejected::NegativeMass { directions: inertia.negative - rows.len() });
-    }
+    system.factor_mass(model, &rows)?;
     let (forces, bending) = drive(model, state, gaps, &rows);
     let (mut solved, mut multipliers) = (vec![0.0; model.dofs()], Vec::new());
-    system.solve(model, &forces, &bending, &mut solved, &mut multipliers)?;
+    system.kept.solve(model, &forces, &bending, &mut solved, &mut multipliers)?;
     take_accelerations(model, state, &solved);
     for (&(k, p), lambda) in places.iter().zip(&multipliers) {
         state.pairs[k][p].lambda = *lambda;

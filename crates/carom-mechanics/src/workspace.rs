@@ -20,10 +20,6 @@ pub struct Workspace {
     pub(crate) explicit: Scratch,
     /// Wall time by phase.
     pub timings: Timings,
-    /// ∂f_int/∂y times what moved dofs still have to go.
-    pub(crate) pull: Vec<f64>,
-    /// Right-hand side of a solve.
-    pub(crate) right: Vec<f64>,
     /// The linear problem of an iteration, and what earlier ones have shown.
     pub(crate) linear: LinearProblem,
 }
@@ -31,15 +27,12 @@ pub struct Workspace {
 impl Workspace {
     /// Buffers for a model.
     pub fn new(model: &Model) -> Self {
-        let zeros = vec![0.0; model.dofs()];
         Self {
             system: System::new(model),
             spare: Spare::default(),
             states: Vec::new(),
             explicit: Scratch::default(),
             timings: Timings::default(),
-            pull: zeros.clone(),
-            right: zeros,
             linear: LinearProblem::default(),
         }
     }

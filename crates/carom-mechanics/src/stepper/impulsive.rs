@@ -177,25 +177,23 @@ impl Impulsive {
                 return Err(Rejected::NoConvergence { iterations: iteration as u32, step, residual });
             }
             *iterations += 1;
-            let Workspace { system, timings, right: scratch, .. } = work;
-            timed(&mut timings.assembly, || system.internal_tangent(model, None, &now.place, scratch, None))
-                .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
-            if model.loads.follow() {
-                system.loads_tangent(model, &equations.loads);
-            }
-            let (mass, stiffness) = (equations.mass_factor(), equations.stiffness_factor());
-            timed(&mut timings.factor, || system.factor(model, mass, stiffness, equations.follower_factor(), &none))?;
+            let Workspace { system, timings, .. } = work;
+            let point = equations.point(&now.place, &[]);
+            timed(&mut timings.factor, || -> Result<(), Rejected> {
+                system.hold(model, &point, true)?;
+                Ok(system.kept.prepare(model, &none).map(|_| ())?)
+            })?;
             // −r₀: the residual without the impulses.
             for (right, (contact, r)) in right.iter_mut().zip(now.forces.contact.iter().zip(&now.residual)) {
                 *right = contact - r;
             }
             timed(&mut timings.solve, || -> Result<(), Rejected> {
                 let multipliers = &mut Vec::new();
-                system.solve(model, &right, &[], &mut correction, multipliers)?;
+                system.kept.solve(model, &right, &[], &mut correction, multipliers)?;
                 for (row, column) in impulses.rows.rows.iter().zip(&mut columns) {
                     right.fill(0.0);
                     row.add_to(1.0, &mut right);
-                    system.solve(model, &right, &[], column, multipliers)?;
+                    system.kept.solve(model, &right, &[], column, multipliers)?;
                 }
                 Ok(())
             })?;
@@ -310,7 +308,7 @@ impl Impulses {
                 force.fill(0.0);
                 row.add_to(1.0, &mut force);
                 let mut column = vec![0.0; model.dofs()];
-                work.system.solve(model, &force, &[], &mut column, &mut Vec::new())?;
+                work.system.kept.solve(model, &force, &[], &mut column, &mut Vec::new())?;
                 released.push(column);
             }
         }
