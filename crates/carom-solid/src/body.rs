@@ -38,15 +38,8 @@ pub trait Body: Send + Sync {
     fn cell_tangent(&self, cell: usize, y: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Result<f64, Inverted>;
 
     /// Discrete gradient of the strain energy between `before` and `now`: overwrites `force` with f such that f·(now − before) = U(now) − U(before) to
-    /// round-off, and `tangent`, if asked for, with the symmetric part of ∂f/∂now. U(now) is returned.
-    fn cell_between(
-        &self,
-        cell: usize,
-        before: &[f64],
-        now: &[f64],
-        force: &mut [f64],
-        tangent: Option<&mut [f64]>,
-    ) -> Result<f64, Inverted>;
+    /// round-off. U(now) is returned.
+    fn cell_between(&self, cell: usize, before: &[f64], now: &[f64], force: &mut [f64]) -> Result<f64, Inverted>;
 
     /// Overwrites `product` (`N·D`) with ∂f/∂y · `change`, f that of [`Self::cell_force`] or, with `before`, of [`Self::cell_between`]; nothing of it is
     /// symmetrised.

@@ -8,108 +8,80 @@
 //! with the triangular F̂ᵀF̂ = I + 2E_m, and so does its derivative: dF̂ = F̂⁻ᵀ dE has sym(F̂ᵀ dF̂) = dE, and dS = F̂⁻¹ (dP − dF̂ S).
 //! A law of the small strain has a quadratic energy in H: its stress at the middle is such a gradient as it stands.
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::Mat;
 
 use crate::material::{Material, NotPositive};
-use crate::points::Moduli;
 
 /// Below this ΔE:ΔE the correction is left out: it is of third order in ΔE and would be the rounding of W divided by ‖ΔE‖.
 const NO_STRAIN: f64 = 1e-12;
 
-/// W₁, P, and ∂P/∂F₁, which is not symmetric: F_m stands on its left, F₁ on its right.
+/// W₁ and P.
 #[inline(always)]
-pub(crate) fn between<const D: usize, L: Material<D>>(
+pub(crate) fn between<const D: usize, L: Material<D>>(law: &L, h: [&Mat<D>; 2]) -> Result<(f64, Mat<D>), NotPositive> {
+    if L::OBJECTIVE {
+        return Middle::new(law, h).map(|middle| (middle.energy, middle.f * middle.s));
+    }
+    let (end, middle) = (law.at(h[1])?, law.at(&((*h[0] + *h[1]) * 0.5))?);
+    Ok((law.energy(&end), law.stress(&middle)))
+}
+
+/// ∂P/∂F₁ : dF₁, which is not symmetric: F_m stands on its left, F₁ on its right.
+#[inline(always)]
+pub(crate) fn change_between<const D: usize, L: Material<D>>(
     law: &L,
     h: [&Mat<D>; 2],
-    with_moduli: bool,
-) -> Result<(f64, Mat<D>, Option<Moduli<D>>), NotPositive> {
-    let ends = [law.at(h[0])?, law.at(h[1])?];
-    let [start, end] = ends.each_ref().map(|point| law.energy(point));
-    let middle = (*h[0] + *h[1]) * 0.5;
+    dh: &Mat<D>,
+) -> Result<Mat<D>, NotPositive> {
     if !L::OBJECTIVE {
-        let point = law.at(&middle)?;
-        let moduli = with_moduli.then(|| scaled(moduli_of(law, &point), 0.5));
-        return Ok((end, law.stress(&point), moduli));
+        let point = law.at(&((*h[0] + *h[1]) * 0.5))?;
+        return Ok(law.change(&point, &(*dh * 0.5)));
     }
-    let f_middle = Mat::identity() + middle;
-    let change = symmetric(&(f_middle.transposed() * (*h[1] - *h[0])));
-    let [e0, e1] = h.map(strain);
-    let excess = root(&((e0 + e1) * 0.5)).ok_or(NotPositive(0.0))?;
-    let point = law.at(&excess)?;
-    let inverse = (Mat::identity() + excess).inverse();
-    let at_middle = symmetric(&(inverse * law.stress(&point)));
-    let square = change.double_dot(&change);
-    let correct = square > NO_STRAIN;
-    let phi = if correct { (end - start - at_middle.double_dot(&change)) / square } else { 0.0 };
-    let s = at_middle + change * phi;
-    let stress = f_middle * s;
-    if !with_moduli {
-        return Ok((end, stress, None));
+    let Middle { f, point, inverse, at_middle, change, square, phi, s, .. } = Middle::new(law, h)?;
+    let de = symmetric(&((Mat::identity() + *h[1]).transposed() * *dh));
+    let df = inverse.transposed() * (de * 0.5);
+    let mut ds = inverse * (law.change(&point, &df) - df * at_middle);
+    if square > NO_STRAIN {
+        let end = law.stress(&law.at(h[1])?);
+        let numerator = end.double_dot(dh) - at_middle.double_dot(&de) - ds.double_dot(&change);
+        let dphi = (numerator - 2.0 * phi * change.double_dot(&de)) / square;
+        ds = ds + change * dphi + de * phi;
     }
-
-    let (f_end, p_end) = (Mat::identity() + *h[1], law.stress(&ends[1]));
-    let of_law = moduli_of(law, &point);
-    let mut moduli = [[Mat::ZERO; D]; D];
-    for j in 0..D {
-        for l in 0..D {
-            let mut unit = Mat::ZERO;
-            unit.0[j][l] = 1.0;
-            let de = symmetric(&(f_end.transposed() * unit));
-            let df = inverse.transposed() * (de * 0.5);
-            let mut ds = inverse * (contracted(&of_law, &df) - df * at_middle);
-            let mut dphi = 0.0;
-            if correct {
-                let numerator = p_end.0[j][l] - at_middle.double_dot(&de) - ds.double_dot(&change);
-                dphi = (numerator - 2.0 * phi * change.double_dot(&de)) / square;
-            }
-            ds = ds + change * dphi + de * phi;
-            let dp = unit * s * 0.5 + f_middle * ds;
-            for big_j in 0..D {
-                for i in 0..D {
-                    moduli[big_j][l].0[i][j] = dp.0[i][big_j];
-                }
-            }
-        }
-    }
-    Ok((end, stress, Some(moduli)))
+    Ok(*dh * s * 0.5 + f * ds)
 }
 
-/// ∂P/∂F of the law at a point.
-#[inline(always)]
-pub(crate) fn moduli_of<const D: usize, L: Material<D>>(law: &L, point: &L::Point) -> Moduli<D> {
-    let unit = Mat::<D>::identity().0.map(Vector);
-    let mut moduli = [[Mat::ZERO; D]; D];
-    for j in 0..D {
-        for l in 0..D {
-            moduli[j][l] = law.tangent(point, &unit[j], &unit[l]);
-        }
+/// What the formulas above are made of.
+struct Middle<const D: usize, P> {
+    /// W₁.
+    energy: f64,
+    f: Mat<D>,
+    /// The law at F̂, and F̂⁻¹.
+    point: P,
+    inverse: Mat<D>,
+    /// S(E_m).
+    at_middle: Mat<D>,
+    /// ΔE and ΔE:ΔE.
+    change: Mat<D>,
+    square: f64,
+    phi: f64,
+    s: Mat<D>,
+}
+
+impl<const D: usize, P> Middle<D, P> {
+    #[inline(always)]
+    fn new<L: Material<D, Point = P>>(law: &L, h: [&Mat<D>; 2]) -> Result<Self, NotPositive> {
+        let [start, energy] = [law.at(h[0])?, law.at(h[1])?].map(|point| law.energy(&point));
+        let f = Mat::identity() + (*h[0] + *h[1]) * 0.5;
+        let change = symmetric(&(f.transposed() * (*h[1] - *h[0])));
+        let [e0, e1] = h.map(strain);
+        let excess = root(&((e0 + e1) * 0.5)).ok_or(NotPositive(0.0))?;
+        let point = law.at(&excess)?;
+        let inverse = (Mat::identity() + excess).inverse();
+        let at_middle = symmetric(&(inverse * law.stress(&point)));
+        let square = change.double_dot(&change);
+        let excess_work = energy - start - at_middle.double_dot(&change);
+        let phi = if square > NO_STRAIN { excess_work / square } else { 0.0 };
+        Ok(Self { energy, f, point, inverse, at_middle, change, square, phi, s: at_middle + change * phi })
     }
-    moduli
-}
-
-/// The part of the moduli that has a symmetric tangent.
-#[inline(always)]
-pub(crate) fn symmetric_part<const D: usize>(moduli: &Moduli<D>) -> Moduli<D> {
-    std::array::from_fn(|j| std::array::from_fn(|l| (moduli[j][l] + moduli[l][j].transposed()) * 0.5))
-}
-
-#[inline(always)]
-fn scaled<const D: usize>(moduli: Moduli<D>, factor: f64) -> Moduli<D> {
-    moduli.map(|row| row.map(|block| block * factor))
-}
-
-/// ∂P/∂F : dF.
-#[inline(always)]
-pub(crate) fn contracted<const D: usize>(moduli: &Moduli<D>, df: &Mat<D>) -> Mat<D> {
-    let mut dp = Mat::ZERO;
-    for (j, row) in moduli.iter().enumerate() {
-        for (l, block) in row.iter().enumerate() {
-            for i in 0..D {
-                dp.0[i][j] += (0..D).map(|k| block.0[i][k] * df.0[k][l]).sum::<f64>();
-            }
-        }
-    }
-    dp
 }
 
 #[inline(always)]
@@ -156,7 +128,7 @@ mod tests {
 
     fn check<L: Material<2>>(law: &L) {
         let (h0, h1) = (Mat(H), Mat(NEXT));
-        let (end, p, moduli) = between(law, [&h0, &h1], true).unwrap();
+        let (end, p) = between(law, [&h0, &h1]).unwrap();
         let energy = |h: &Mat<2>| law.energy(&law.at(h).ok().unwrap());
         assert_eq!(end, energy(&h1));
         let work = p.double_dot(&(h1 - h0));
@@ -171,23 +143,19 @@ mod tests {
         let q = Mat([[c, -s], [s, c]]);
         let turned = |h: &Mat<2>| q * (Mat::identity() + *h) - Mat::identity();
         if L::OBJECTIVE {
-            let (_, other, _) = between(law, [&turned(&h0), &turned(&h1)], false).unwrap();
+            let (_, other) = between(law, [&turned(&h0), &turned(&h1)]).unwrap();
             let error = other - q * p;
             assert!(error.double_dot(&error).sqrt() < 1e-13);
         }
-        let moduli = moduli.unwrap();
         let mut jacobian = [0.0; 16];
-        for i in 0..2 {
-            for big_j in 0..2 {
-                for j in 0..2 {
-                    for l in 0..2 {
-                        jacobian[(i * 2 + big_j) * 4 + j * 2 + l] = moduli[big_j][l].0[i][j];
-                    }
-                }
-            }
+        for column in 0..4 {
+            let mut unit = Mat::ZERO;
+            unit.0[column / 2][column % 2] = 1.0;
+            let change = change_between(law, [&h0, &h1], &unit).unwrap();
+            change.0.as_flattened().iter().enumerate().for_each(|(row, value)| jacobian[row * 4 + column] = *value);
         }
         let stress = |x: &[f64]| {
-            let (_, p, _) = between(law, [&h0, &Mat([[x[0], x[1]], [x[2], x[3]]])], false).unwrap();
+            let (_, p) = between(law, [&h0, &Mat([[x[0], x[1]], [x[2], x[3]]])]).unwrap();
             p.0.as_flattened().to_vec()
         };
         let error = jacobian_error(NEXT.as_flattened(), 1e-3, stress, &jacobian);

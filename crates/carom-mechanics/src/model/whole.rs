@@ -88,9 +88,7 @@ impl Model {
     /// # Errors
     /// The body's name and the cell that is inverted.
     pub fn internal_between(&self, before: &[f64], now: &[f64], force: &mut [f64]) -> Result<f64, (String, Inverted)> {
-        self.add_cells(force, |part, cell, local| {
-            part.body.cell_between(cell, part.of(before), part.of(now), local, None)
-        })
+        self.add_cells(force, |part, cell, local| part.body.cell_between(cell, part.of(before), part.of(now), local))
     }
 
     /// ∂f_int/∂y · `change` at `y`, overwriting `product`; with `before`, of the discrete gradient from there.

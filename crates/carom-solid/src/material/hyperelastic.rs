@@ -3,7 +3,7 @@
 use carom_algebra::{Mat, Vector};
 
 use super::kinematics::excess_det;
-use crate::points::{LANES, get, set};
+use crate::points::{LANES, Moduli, get, set};
 
 /// A determinant J of the deformation gradient that is not positive.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -92,4 +92,17 @@ pub(super) fn changes_one_by_one<const D: usize>(
         set(&mut changes, l, &law.change(&point, &get(dh, l)), 1.0);
     }
     Ok(changes)
+}
+
+/// ∂P/∂F of the law at a point.
+#[inline(always)]
+pub(crate) fn moduli_of<const D: usize, L: Material<D>>(law: &L, point: &L::Point) -> Moduli<D> {
+    let unit = Mat::<D>::identity().0.map(Vector);
+    let mut moduli = [[Mat::ZERO; D]; D];
+    for j in 0..D {
+        for l in 0..D {
+            moduli[j][l] = law.tangent(point, &unit[j], &unit[l]);
+        }
+    }
+    moduli
 }

@@ -14,6 +14,7 @@ mod neo_hookean;
 mod plane_stress;
 mod saint_venant_kirchhoff;
 
+pub(crate) use hyperelastic::moduli_of;
 pub use hyperelastic::{Material, NotPositive};
 pub use kinematics::{excess_cofactor, excess_det};
 pub use law::Law;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::*;
+use crate::body::Body;
 use crate::material::NeoHookean;
 use crate::shape::Tet4;
 

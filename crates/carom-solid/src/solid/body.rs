@@ -1,0 +1,204 @@
+//! What a solid gives as a body.
+
+use carom_algebra::{Mat, Vector, wide};
+
+use super::{Place, Solid};
+use crate::body::{Body, Inverted, PointState};
+use crate::bounds::Bounds;
+use crate::discrete_gradient::change_between;
+use crate::material::{Material, NotPositive};
+use crate::mesh::Mesh;
+use crate::points::{LANES, get, set};
+use crate::reference::{self, gradient};
+use crate::shape::Shape;
+use crate::tree::Tree;
+
+impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for Solid<D, N, S, L> {
+    fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
+        wide(
+            #[inline(always)]
+            || self.integrate_at(cell, y, force, None),
+        )
+    }
+
+    fn cell_tangent(&self, cell: usize, y: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Result<f64, Inverted> {
+        wide(
+            #[inline(always)]
+            || self.integrate_at(cell, y, force, Some(tangent)),
+        )
+    }
+
+    fn cell_between(&self, cell: usize, before: &[f64], now: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
+        wide(
+            #[inline(always)]
+            || self.integrate_between(cell, [before, now], force),
+        )
+    }
+
+    fn cell_product(
+        &self,
+        cell: usize,
+        before: Option<&[f64]>,
+        y: &[f64],
+        change: &[f64],
+        product: &mut [f64],
+    ) -> Result<(), Inverted> {
+        wide(
+            #[inline(always)]
+            || match before {
+                None => self.differentiate(
+                    cell,
+                    [y],
+                    change,
+                    #[inline(always)]
+                    |[h], dh, count| self.law.changes(h, dh, count),
+                    product,
+                ),
+                Some(before) => self.differentiate(
+                    cell,
+                    [before, y],
+                    change,
+                    #[inline(always)]
+                    |[start, end], dh, count| {
+                        let mut changes = [[[0.0; LANES]; D]; D];
+                        for l in 0..count {
+                            let ends = [&get(start, l), &get(end, l)];
+                            set(&mut changes, l, &change_between(&self.law, ends, &get(dh, l))?, 1.0);
+                        }
+                        Ok(changes)
+                    },
+                    product,
+                ),
+            },
+        )
+    }
+
+    fn cell_mass(&self, cell: usize, mass: &mut [f64]) {
+        mass.fill(0.0);
+        self.each_mass_point(cell, |values, volume| {
+            for a in 0..N {
+                for b in 0..N {
+                    mass[a * N + b] += self.density * volume * values[a] * values[b];
+                }
+            }
+        });
+    }
+
+    fn cell_volumes(&self, cell: usize, volumes: &mut [f64]) {
+        volumes.fill(0.0);
+        self.each_mass_point(cell, |values, volume| {
+            for a in 0..N {
+                volumes[a] += volume * values[a];
+            }
+        });
+    }
+
+    fn each_volume_point(&self, cell: usize, visit: &mut dyn FnMut(&[f64], &[f64], f64)) {
+        let x = self.reference(cell);
+        self.each_mass_point(cell, |values, volume| {
+            let mut position = Vector::<D>::ZERO;
+            for a in 0..N {
+                position += x[a] * values[a];
+            }
+            visit(values, &position.0, volume);
+        });
+    }
+
+    fn each_moved_point(&self, cell: usize, y: &[f64], visit: &mut dyn FnMut(&[f64], &[f64], &[f64], f64)) {
+        let (x, u) = (self.reference(cell), self.displacements(cell, y));
+        for (xi, weight) in self.mass_rules[usize::from(self.curved[cell])].iter() {
+            let (values, local) = (S::values(xi), S::gradients(xi));
+            let derivative = gradient(&x, &local);
+            let inverse_transposed = derivative.inverse().transposed();
+            let h = gradient(&u, &local.map(|g| inverse_transposed.apply(&g)));
+            let place = reference::interpolate(&values, &x);
+            let moved = place + reference::interpolate(&values, &u);
+            visit(&place.0, &moved.0, h.0.as_flattened(), weight * derivative.det() * self.thickness);
+        }
+    }
+
+    /// ∂Pᵢᴶ/∂Xᴶ = Σ ∂Pᵢᴶ/∂Fₖᴸ ∂²yₖ/∂Xᴶ∂Xᴸ.
+    fn stress_divergence(&self, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64> {
+        let h = Mat(std::array::from_fn(|i| std::array::from_fn(|j| h[i * D + j])));
+        let point = self.law.at(&h).map_err(|NotPositive(det_f)| det_f)?;
+        let unit = Mat::<D>::identity().0.map(Vector);
+        let mut sum = Vector::<D>::ZERO;
+        for j in 0..D {
+            for l in 0..D {
+                let bent = Vector(std::array::from_fn(|k| second[(k * D + j) * D + l]));
+                sum += self.law.tangent(&point, &unit[j], &unit[l]).apply(&bent);
+            }
+        }
+        out.copy_from_slice(&sum.0);
+        Ok(())
+    }
+
+    fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64 {
+        let u = self.displacements(cell, y);
+        let Place { points, inverse, .. } = &self.places[cell];
+        let ratios = self.points[points.clone()].iter().flat_map(|points| {
+            let h = points.gradient(&u, inverse);
+            (0..points.count).map(move |l| self.law.volume_ratio(&get(&h, l)))
+        });
+        ratios.fold(f64::INFINITY, f64::min)
+    }
+
+    fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted> {
+        let x = self.reference(cell);
+        let inverse_transposed = gradient(&x, &S::gradients(&vector(xi))).inverse().transposed();
+        let g = S::gradients(&vector(xi)).map(|g| inverse_transposed.apply(&g));
+        let h = gradient(&self.displacements(cell, y), &g);
+        let point = self.law.at(&h).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
+        let within = self.law.cauchy(&point);
+        let lateral = self.law.lateral(&point);
+        let cauchy = std::array::from_fn(|i| {
+            std::array::from_fn(|j| match (i < D && j < D, i == j) {
+                (true, _) => within.0[i][j],
+                (false, true) => lateral,
+                (false, false) => 0.0,
+            })
+        });
+        Ok(PointState { det_f: self.law.volume_ratio(&h), cauchy })
+    }
+
+    fn shape(&self, xi: &[f64], values: &mut [f64]) {
+        values.copy_from_slice(&S::values(&vector(xi)));
+    }
+
+    fn reference_nodes(&self) -> Vec<Vec<f64>> {
+        S::NODES.iter().map(|x| x.0.to_vec()).collect()
+    }
+
+    fn locate(&self, point: &[f64]) -> Vec<(usize, Vec<f64>)> {
+        let x = self.mesh.nodes.flat();
+        let tree = self.tree.get_or_init(|| Tree::new(self.mesh.cell_count(), |cell| self.cell_bounds(cell, x)));
+        let mut near = Vec::new();
+        tree.find_into(&Bounds::of(point), &mut near);
+        near.into_iter().filter_map(|cell| Some((cell, self.invert(cell, x, point)?))).collect()
+    }
+
+    fn cell_bounds(&self, cell: usize, y: &[f64]) -> Bounds {
+        let (nodes, y) = (self.nodes(cell), y.as_chunks::<D>().0);
+        let bounds = self.hull.bounds(|a| &y[nodes[a]]);
+        bounds.grown(reference::MARGIN * bounds.size())
+    }
+
+    fn invert(&self, cell: usize, y: &[f64], point: &[f64]) -> Option<Vec<f64>> {
+        let y = y.as_chunks::<D>().0;
+        let nodes = self.nodes(cell).map(|node| Vector(y[node]));
+        reference::invert::<D, N, S>(&nodes, &vector(point)).map(|xi| xi.0.to_vec())
+    }
+
+    fn density(&self) -> f64 {
+        self.density
+    }
+}
+
+/// Reference coordinates from a slice of `D` numbers.
+fn vector<const D: usize>(xi: &[f64]) -> Vector<D> {
+    Vector(std::array::from_fn(|i| xi[i]))
+}
