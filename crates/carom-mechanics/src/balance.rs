@@ -61,10 +61,16 @@ pub(crate) fn known_into(model: &Model, stage: &Stage, state: &State, known: &mu
     }
 }
 
-/// r over all dofs. The sum of the norms of its terms is returned: the scale a residual is small against.
-pub(crate) fn residual_into(model: &Model, stage: &Stage, forces: &Forces, known: &[f64], residual: &mut [f64]) -> f64 {
+/// r over all dofs. Its norm over the free ones is returned, and the sum of the norms of its terms, the scale it is small against.
+pub(crate) fn residual_into(
+    model: &Model,
+    stage: &Stage,
+    forces: &Forces,
+    known: &[f64],
+    residual: &mut [f64],
+) -> (f64, f64) {
     let Weights { mass, internal, external, .. } = stage.weights;
-    let mut squares = [0.0_f64; 5];
+    let mut squares = [0.0_f64; 6];
     for i in 0..residual.len() {
         let terms = [
             mass * forces.inertia[i],
@@ -78,7 +84,9 @@ pub(crate) fn residual_into(model: &Model, stage: &Stage, forces: &Forces, known
             for (square, term) in squares.iter_mut().zip(terms) {
                 *square += term * term;
             }
+            squares[5] += residual[i] * residual[i];
         }
     }
-    squares.iter().map(|s| s.sqrt()).sum()
+    let norms = squares.map(f64::sqrt);
+    (norms[5], norms[..5].iter().sum())
 }

@@ -248,8 +248,7 @@ impl<'a> Equations<'a> {
         model.mass.multiply_into(acceleration, &mut forces.inertia);
         timed(&mut timings.contact, || self.touch(evaluation))?;
         let Evaluation { forces, residual, measure, .. } = evaluation;
-        measure.forces = residual_into(model, stage, forces, &self.known, residual);
-        measure.residual = model.free.iter().map(|&i| residual[i] * residual[i]).sum::<f64>().sqrt();
+        (measure.residual, measure.forces) = residual_into(model, stage, forces, &self.known, residual);
         Ok(())
     }
 

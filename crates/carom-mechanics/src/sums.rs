@@ -1,11 +1,55 @@
-//! Sums of one fixed order.
+//! Sums of one fixed order: strands side by side, which processors add up at once.
 
-/// Scalar product with one fixed order of summation.
+/// Strands.
+const STRANDS: usize = 8;
+
+/// Scalar product.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+    let (whole, rest) = a.as_chunks::<STRANDS>();
+    let (other, rest_of_other) = b.as_chunks::<STRANDS>();
+    let mut sums = [0.0; STRANDS];
+    for (a, b) in whole.iter().zip(other) {
+        for l in 0..STRANDS {
+            sums[l] += a[l] * b[l];
+        }
+    }
+    let rest: f64 = rest.iter().zip(rest_of_other).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 /// Largest absolute value; infinite where a number is none.
 pub(crate) fn max_abs(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |m: f64, v| if v.is_finite() { m.max(v.abs()) } else { f64::INFINITY })
+    let (whole, rest) = x.as_chunks::<STRANDS>();
+    let (mut most, mut zeros) = ([0.0_f64; STRANDS], [0.0; STRANDS]);
+    for x in whole {
+        for l in 0..STRANDS {
+            most[l] = if x[l].abs() > most[l] { x[l].abs() } else { most[l] };
+            // Of a number, and of nothing else.
+            zeros[l] += 0.0 * x[l];
+        }
+    }
+    let finite = zeros.iter().all(|zero| *zero == 0.0) && rest.iter().all(|x| x.is_finite());
+    if finite { most.iter().chain(rest).fold(0.0, |m, x| f64::max(m, x.abs())) } else { f64::INFINITY }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_counts_and_what_is_none_is_seen() {
+        for n in 0..40 {
+            let x: Vec<f64> = (1..=n).map(f64::from).collect();
+            assert_eq!(dot(&x, &x), f64::from(n * (n + 1) * (2 * n + 1) / 6));
+            for k in 0..n as usize {
+                let mut other: Vec<f64> = x.iter().map(|x| -x).collect();
+                other[k] = -100.0;
+                assert_eq!(max_abs(&other), 100.0);
+                for none in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                    other[k] = none;
+                    assert_eq!(max_abs(&other), f64::INFINITY);
+                }
+            }
+        }
+    }
 }

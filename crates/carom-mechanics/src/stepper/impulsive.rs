@@ -266,8 +266,8 @@ fn evaluate(
     for (row, impulse) in impulses.rows.rows.iter().zip(&impulses.values) {
         row.add_to(-shares.force * impulse, &mut now.forces.contact);
     }
-    now.measure.forces = residual_into(model, &equations.stage, &now.forces, &equations.known, &mut now.residual);
-    now.measure.residual = model.free.iter().map(|&i| now.residual[i] * now.residual[i]).sum::<f64>().sqrt();
+    let norms = residual_into(model, &equations.stage, &now.forces, &equations.known, &mut now.residual);
+    (now.measure.residual, now.measure.forces) = norms;
     Ok(now)
 }
 
