@@ -70,7 +70,7 @@ fn elimination(grid: &Grid) -> Arc<Elimination> {
 
 fn condensed(grid: &Grid, precision: Precision, threads: usize) -> Condensed {
     let mut condensed = Condensed::new(&elimination(grid), precision).on(&Threads::new(threads));
-    condensed.factor(|k| grid.values[k]).expect("positive definite");
+    condensed.factor(|k| grid.values[k]).expect("numbers");
     condensed
 }
 

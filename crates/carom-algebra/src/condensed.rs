@@ -7,10 +7,9 @@
 //! so that any change of A on B alone, and any constraint on B alone, is a matter of the small dense S: forward through the inner unknowns, a dense
 //! solve on B, backward. The factor is kept while B's neighbourhood changes as it likes.
 //!
-//! Where A is not positive definite it is the factor of a matrix near it (`pivots.rs`). In single precision it is σ²A that is factored, L' = σL with σ a power of two.
+//! Where A is not positive definite signs stand between L and Lᵀ (`pivots.rs`). In single precision it is σ²A that is factored, L' = σL with σ a power of two.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicUsize;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::MatMut;
 
@@ -27,6 +26,8 @@ struct Entries<T> {
     factors: Aligned<T>,
     /// What divides by its diagonal.
     inverse: Vec<f64>,
+    /// J; empty where it is the identity.
+    signs: Vec<f64>,
     scale: f64,
 }
 
@@ -37,16 +38,22 @@ enum Numbers {
 
 impl<T: Entry> Entries<T> {
     fn new(elimination: &Elimination) -> Self {
-        Self { factors: Aligned::new(elimination.len_values()), inverse: vec![0.0; elimination.inner], scale: 1.0 }
+        Self {
+            factors: Aligned::new(elimination.len_values()),
+            inverse: vec![0.0; elimination.inner],
+            signs: Vec::new(),
+            scale: 1.0,
+        }
     }
 
     fn factor(
         &mut self,
         elimination: &Elimination,
         value: impl Fn(usize) -> f64 + Sync,
+        signed: bool,
         threads: &Threads,
         schur: &mut Vec<f64>,
-    ) -> Result<usize, LinearError> {
+    ) -> Result<(), LinearError> {
         let n = elimination.place.len();
         if let Some(top) = T::TOP {
             // The largest entry of a positive definite matrix is on its diagonal.
@@ -56,7 +63,7 @@ impl<T: Entry> Entries<T> {
         }
         let square = self.scale * self.scale;
         let singular = |pivot| LinearError::Singular { size: n, pivot, value: 0.0 };
-        let matrix = Matrix { elimination, value, scale: square, threads, raised: AtomicUsize::new(0) };
+        let matrix = Matrix { elimination, value, scale: square, threads, signed, negative: Mutex::default() };
         matrix.factor(self.factors.get_mut(), schur).map_err(singular)?;
         schur.iter_mut().for_each(|value| *value /= square);
         for s in 0..elimination.nodes.len() - 1 {
@@ -67,7 +74,11 @@ impl<T: Entry> Entries<T> {
                 *inverse = (*value).into().recip();
             }
         }
-        Ok(matrix.raised.into_inner())
+        let negative = matrix.negative.into_inner().unwrap_or_else(PoisonError::into_inner);
+        self.signs.clear();
+        self.signs.resize(if negative.is_empty() { 0 } else { elimination.inner }, 1.0);
+        negative.into_iter().for_each(|place| self.signs[place] = -1.0);
+        Ok(())
     }
 }
 
@@ -108,18 +119,24 @@ impl Condensed {
         }
     }
 
-    /// Factors a matrix, `value(k)` for entry k of the pattern. How many diagonal entries were raised to make it
-    /// positive definite, those that S will need among them.
+    /// Factors a matrix, `value(k)` for entry k of the pattern; whether it is positive definite.
     ///
     /// # Errors
-    /// A pivot is no number.
-    pub fn factor(&mut self, value: impl Fn(usize) -> f64 + Sync) -> Result<usize, LinearError> {
+    /// A pivot is no number, or a diagonal vanishes.
+    pub fn factor(&mut self, value: impl Fn(usize) -> f64 + Sync) -> Result<bool, LinearError> {
         let (elimination, threads, schur) = (&*self.elimination, &self.threads, &mut self.schur);
-        let raised = match &mut self.numbers {
-            Numbers::Double(entries) => entries.factor(elimination, value, threads, schur)?,
-            Numbers::Single(entries) => entries.factor(elimination, value, threads, schur)?,
+        let mut factor = |signed: bool| match &mut self.numbers {
+            Numbers::Double(entries) => entries.factor(elimination, &value, signed, threads, schur),
+            Numbers::Single(entries) => entries.factor(elimination, &value, signed, threads, schur),
         };
-        Ok(raised + not_positive(schur, elimination)?)
+        if factor(false).is_err() {
+            factor(true)?;
+            return Ok(false);
+        }
+        let mut copy = schur.clone();
+        let size = diagonal_size(copy.iter().step_by(elimination.kept() + 1).copied());
+        let square = MatMut::from_column_major_slice_mut(&mut copy, elimination.kept(), elimination.kept());
+        Ok(Room::default().cholesky(square, size).is_ok())
     }
 
     /// S, column by column; only the lower triangle is filled.
@@ -165,22 +182,11 @@ impl Condensed {
             elimination: &self.elimination,
             factors: entries.factors.get(),
             inverse: &entries.inverse,
+            signs: &entries.signs,
             square: entries.scale * entries.scale,
             threads: &self.threads,
         }
     }
-}
-
-/// Entries of S that must be raised: without any the whole matrix is positive definite.
-fn not_positive(schur: &[f64], elimination: &Elimination) -> Result<usize, LinearError> {
-    let kept = elimination.kept();
-    let mut copy = schur.to_vec();
-    let size = diagonal_size(copy.iter().step_by(kept + 1).copied());
-    let target = MatMut::from_column_major_slice_mut(&mut copy, kept, kept);
-    Room::new(kept).cholesky(target, size).map_err(|index| {
-        let (size, pivot) = (elimination.place.len(), elimination.inner + index);
-        LinearError::Singular { size, pivot, value: copy[index * kept + index] }
-    })
 }
 
 #[cfg(test)]
@@ -298,34 +304,34 @@ mod tests {
         }
     }
 
-    /// What the factor multiplies to differs from the matrix by the rank of the entries that were raised: with one, all residuals are parallel.
+    /// Negative pivots among the inner unknowns, among the last ones and in both.
     #[test]
-    fn an_indefinite_matrix_has_a_factor_of_a_matrix_near_it() {
-        for last in [vec![], vec![30, 31], vec![5, 30]] {
-            let (pattern, mut values, groups) = grid(4);
-            values[pattern.slot(5, 5).unwrap()] = -1.0;
+    fn an_indefinite_matrix_has_a_factor_with_signs() {
+        for (m, last) in [(4, vec![]), (4, vec![30, 31]), (4, vec![5, 30]), (4, vec![5, 17]), (40, vec![5, 6, 7])] {
+            let (pattern, mut values, groups) = grid(m);
+            for i in [5, 17] {
+                values[pattern.slot(i, i).unwrap()] = -1.0;
+            }
             let n = pattern.size();
+            let exact: Vec<f64> = (0..n).map(|i| (i as f64 * 0.7).sin()).collect();
+            let (mut rhs, mut x, mut out) = (vec![0.0; n], Vec::new(), vec![0.0; n]);
+            pattern.multiply_add(&values, &exact, &mut rhs);
             let elimination = Arc::new(Elimination::new(&pattern, &groups, &last).unwrap());
             let mut condensed = Condensed::new(&elimination, Precision::Double);
-            assert_eq!(condensed.factor(|k| values[k]), Ok(1));
-            let mut residual = |seed: f64| {
-                let rhs: Vec<f64> = (0..n).map(|i| ((i as f64 + seed) * 0.7).sin()).collect();
-                let (mut x, mut out, mut product) = (Vec::new(), vec![0.0; n], vec![0.0; n]);
-                condensed.eliminate_into(&rhs, &mut x);
-                let mut saddle = Saddle::default();
-                saddle.begin(condensed.schur(), elimination.kept(), 0);
-                saddle.factor().unwrap();
-                saddle.solve(condensed.kept_part(&mut x), &mut []);
-                condensed.substitute_into(&mut x, &mut out);
-                pattern.multiply_add(&values, &out, &mut product);
-                rhs.iter().zip(&product).map(|(b, p)| b - p).collect::<Vec<f64>>()
-            };
-            let (a, b) = (residual(0.0), residual(5.0));
-            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-            assert!(dot(&a, &a) > 1e-3 && dot(&b, &b) > 1e-3);
-            assert!((dot(&a, &b).powi(2) / dot(&a, &a) / dot(&b, &b) - 1.0).abs() < 1e-12);
-            values[pattern.slot(5, 5).unwrap()] = f64::NAN;
-            assert!(matches!(condensed.factor(|k| values[k]), Err(LinearError::Singular { .. })));
+            assert_eq!(condensed.factor(|k| values[k]), Ok(false));
+            condensed.eliminate_into(&rhs, &mut x);
+            let mut saddle = Saddle::default();
+            saddle.begin(condensed.schur(), elimination.kept(), 0);
+            saddle.factor().unwrap();
+            saddle.solve(condensed.kept_part(&mut x), &mut []);
+            condensed.substitute_into(&mut x, &mut out);
+            let error = out.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(error < 1e-12, "{last:?}: {error:e}");
         }
+        let (pattern, mut values, groups) = grid(4);
+        values[pattern.slot(5, 5).unwrap()] = f64::NAN;
+        let elimination = Arc::new(Elimination::new(&pattern, &groups, &[]).unwrap());
+        let factor = Condensed::new(&elimination, Precision::Double).factor(|k| values[k]);
+        assert!(matches!(factor, Err(LinearError::Singular { .. })));
     }
 }

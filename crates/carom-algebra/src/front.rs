@@ -2,8 +2,7 @@
 //! the nodes below it leave; what they leave in turn, the square on the rows below, goes to the node above. Nodes of parts that do not depend on each other
 //! are factored at the same time, and large nodes in blocks of columns; sums have one order.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
@@ -57,14 +56,15 @@ pub(crate) struct Matrix<'a, F> {
     pub(crate) value: F,
     pub(crate) scale: f64,
     pub(crate) threads: &'a Threads,
-    /// Diagonal entries raised so far.
-    pub(crate) raised: AtomicUsize,
+    /// Whether pivots may be negative, and the places of those that are.
+    pub(crate) signed: bool,
+    pub(crate) negative: Mutex<Vec<usize>>,
 }
 
 /// What a part needs beside its values.
 struct Work<T> {
     squares: Aligned<T>,
-    room: Room<T>,
+    room: Room,
     runs: Vec<[usize; 3]>,
 }
 
@@ -72,7 +72,7 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
     /// Factors all columns before the last unknowns; `schur` becomes the lower triangle of what they leave of the last ones' square.
     ///
     /// # Errors
-    /// The place of a pivot that is no number, or nothing from the beginning.
+    /// The place of a pivot that is not positive, or, with signs, none.
     pub(crate) fn factor<T: Entry>(&self, values: &mut [T], schur: &mut Vec<f64>) -> Result<(), usize> {
         let all = self.elimination;
         let left = self.part(&all.root, values)?;
@@ -117,9 +117,7 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
         let parent = |node: usize| all.nodes[node].parent;
         // Last first, so that the next is popped.
         below.sort_by_key(|left| std::cmp::Reverse((parent(left.node), left.node)));
-        let widest = part.nodes.clone().map(|s| all.columns(s).len()).max().unwrap_or(0);
-        let (squares, room) = (Aligned::<T>::new(part.room), Room::new(widest.min(BLOCK)));
-        let mut work = Work { squares, room, runs: Vec::new() };
+        let mut work = Work { squares: Aligned::<T>::new(part.room), room: Room::default(), runs: Vec::new() };
         let mut waiting: Vec<(usize, usize)> = Vec::new();
         let mut top = 0;
         let mut rest = values;
@@ -147,9 +145,13 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
             }
             let panel = MatMut::from_column_major_slice_mut(panel, height, columns.len());
             let target = MatMut::from_column_major_slice_mut(square, count, count);
-            let raised =
-                eliminate(panel, target, size, self.threads, &mut work.room).map_err(|index| columns.start + index)?;
-            self.raised.fetch_add(raised, Ordering::Relaxed);
+            let mut signs = vec![1.0; if self.signed { columns.len() } else { 0 }];
+            eliminate(panel, target, size, &mut signs, self.threads, &mut work.room)
+                .map_err(|index| columns.start + index)?;
+            let negative = columns.zip(&signs).filter(|(_, sign)| **sign < 0.0).map(|(place, _)| place);
+            if self.signed {
+                self.negative.lock().unwrap_or_else(PoisonError::into_inner).extend(negative);
+            }
             if count > 0 {
                 work.squares.get_mut().copy_within(top..top + count * count, begin);
                 waiting.push((s, begin));
@@ -213,17 +215,19 @@ impl Elimination {
     }
 }
 
-/// Factors a node's columns and subtracts their product from the square of the rows below. How many diagonal entries were raised, or
-/// the index of a pivot that is none.
+/// Factors a node's columns and subtracts their product from the square of the rows below. With room for signs pivots may be negative.
+///
+/// # Errors
+/// The index of a pivot that is not positive, or no number.
 fn eliminate<T: Entry>(
     mut panel: MatMut<'_, T>,
     mut square: MatMut<'_, T>,
     size: f64,
+    signs: &mut [f64],
     threads: &Threads,
-    room: &mut Room<T>,
-) -> Result<usize, usize> {
+    room: &mut Room,
+) -> Result<(), usize> {
     let (height, columns) = panel.shape();
-    let mut raised = 0;
     let alone = Threads::one();
     for start in (0..columns).step_by(BLOCK) {
         let width = BLOCK.min(columns - start);
@@ -231,35 +235,49 @@ fn eliminate<T: Entry>(
         let rest = panel.rb_mut().subrows_mut(start, height - start).subcols_mut(start, columns - start);
         let (block, mut after) = rest.split_at_col_mut(width);
         let (mut diagonal, mut lower) = block.split_at_row_mut(width);
-        raised += room.cholesky(diagonal.rb_mut(), size).map_err(|index| start + index)?;
+        let signs = if signs.is_empty() { &mut *signs } else { &mut signs[start..start + width] };
+        let made = match signs.is_empty() {
+            true => room.cholesky(diagonal.rb_mut(), size),
+            false => room.signed(diagonal.rb_mut(), size, signs),
+        };
+        made.map_err(|index| start + index)?;
         let diagonal = diagonal.rb();
         threads.for_each(row_blocks(lower.rb_mut()), |_, rows| {
             solve_lower_triangular_in_place(diagonal, rows.transpose_mut(), Par::Seq);
         });
+        // L Lᵀ, or L J Lᵀ from (L J) J (L J)ᵀ.
+        let with_signs = signs.iter().any(|sign| *sign < 0.0).then(|| {
+            let signed = lower.to_owned();
+            for (j, sign) in signs.iter().enumerate() {
+                lower.rb_mut().col_mut(j).iter_mut().for_each(|x| *x = *x * T::rounded(*sign));
+            }
+            signed
+        });
         let lower = lower.rb();
+        let other = with_signs.as_ref().map_or(lower, |signed| signed.as_ref());
         let ahead = columns - start - width;
         let (_, trailing) = after.rb_mut().split_at_row_mut(width);
-        threads.for_each(column_blocks(trailing), |k, target| subtract_product(target, lower, k * BLOCK));
+        threads.for_each(column_blocks(trailing), |k, target| subtract_product(target, [lower, other], k * BLOCK));
         if square.nrows() > 0 {
-            let lower = lower.subrows(ahead, square.nrows());
-            threads.for_each(column_blocks(square.rb_mut()), |k, target| subtract_product(target, lower, k * BLOCK));
+            let rows = [lower, other].map(|lower| lower.subrows(ahead, square.nrows()));
+            threads.for_each(column_blocks(square.rb_mut()), |k, target| subtract_product(target, rows, k * BLOCK));
         }
     }
-    Ok(raised)
+    Ok(())
 }
 
-/// target −= L Lᵀ in the lower triangle of a square, of which the target is some columns from `first`.
-fn subtract_product<T: Entry>(target: MatMut<'_, T>, lower: MatRef<'_, T>, first: usize) {
+/// target −= L Mᵀ, symmetric, in the lower triangle of a square, of which the target is some columns from `first`.
+fn subtract_product<T: Entry>(target: MatMut<'_, T>, rows: [MatRef<'_, T>; 2], first: usize) {
     let (height, width) = target.shape();
-    let lower = lower.subrows(first, height - first);
+    let [lower, other] = rows.map(|rows| rows.subrows(first, height - first));
     let (_, target) = target.split_at_row_mut(first);
     let (square, rest) = target.split_at_row_mut(width);
-    let (top, bottom) = lower.split_at_row(width);
+    let ((top, bottom), other) = (lower.split_at_row(width), other.subrows(0, width).transpose());
     let (half, whole) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
     let minus = T::rounded(-1.0);
-    triangular::matmul(square, half, Accum::Add, top, whole, top.transpose(), whole, minus, Par::Seq);
+    triangular::matmul(square, half, Accum::Add, top, whole, other, whole, minus, Par::Seq);
     if rest.nrows() > 0 {
-        matmul(rest, Accum::Add, bottom, top.transpose(), minus, Par::Seq);
+        matmul(rest, Accum::Add, bottom, other, minus, Par::Seq);
     }
 }
 

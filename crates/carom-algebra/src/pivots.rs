@@ -1,24 +1,21 @@
-//! Cholesky of a dense symmetric matrix that may be indefinite: where a pivot is not positive, its diagonal entry is raised until it is.
+//! Cholesky of a dense symmetric matrix, with signs where it is indefinite:
 //!
 //! ```text
-//! L Lᵀ = A + Σ δᵢ eᵢ eᵢᵀ      of as low a rank as A has eigenvalues that are not positive
+//! A = L J Lᵀ,   J = diag(±1)
 //! ```
 //!
-//! As a preconditioner of A it leaves an identity and a matrix of that rank: Krylov methods end as many iterations later.
+//! J is the identity where A is positive definite; else as many of its entries are negative as A has negative eigenvalues (Sylvester). Rows are not exchanged:
+//! a tangent has so few negative pivots that hardly one of the others gets small, and what is lost of the solution is found again by the Krylov method.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{
-    LltError, LltParams, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
-};
-use faer::prelude::{Reborrow, ReborrowMut};
+use faer::linalg::cholesky::{ldlt, llt};
+use faer::prelude::ReborrowMut;
 use faer::{MatMut, Par, Spec};
 
 use crate::precision::Entry;
 
 /// What is left of a diagonal entry when its unknown depends on those before.
 const NOTHING: f64 = 1e-13;
-/// How often an entry is raised, each time to ten times as much.
-const RAISES: u32 = 20;
 
 /// Size of the diagonal that pivots are compared with.
 pub(crate) fn diagonal_size(diagonal: impl Iterator<Item = impl Into<f64>>) -> f64 {
@@ -26,67 +23,68 @@ pub(crate) fn diagonal_size(diagonal: impl Iterator<Item = impl Into<f64>>) -> f
 }
 
 /// Room to factor in.
-pub(crate) struct Room<T> {
-    scratch: MemBuffer,
-    size: usize,
-    copy: Vec<T>,
+#[derive(Default)]
+pub(crate) struct Room {
+    scratch: Option<MemBuffer>,
+    bytes: usize,
 }
 
-impl<T: Entry> Default for Room<T> {
-    fn default() -> Self {
-        Self::new(0)
+impl Room {
+    fn stack<T: Entry>(&mut self, size: usize) -> &mut MemStack {
+        if self.bytes < size * size_of::<T>() {
+            (self.scratch, self.bytes) = (None, 2 * size * size_of::<T>());
+        }
+        let scratch = self.scratch.get_or_insert_with(|| {
+            let one = llt::factor::cholesky_in_place_scratch::<T>(2 * size, Par::Seq, Spec::default());
+            MemBuffer::new(one.or(ldlt::factor::cholesky_in_place_scratch::<T>(2 * size, Par::Seq, Spec::default())))
+        });
+        MemStack::new(scratch)
     }
-}
 
-impl<T: Entry> Room<T> {
-    /// For matrices of up to so many rows.
-    pub(crate) fn new(size: usize) -> Self {
-        let space = cholesky_in_place_scratch::<T>(size, Par::Seq, Spec::<LltParams, T>::default());
-        Self { scratch: MemBuffer::new(space), size, copy: Vec::new() }
-    }
-
-    /// Overwrites the lower triangle with the factor; `size` is that of the diagonal before anything was eliminated. How many entries were raised.
+    /// Overwrites the lower triangle of a positive definite matrix with L; `size` is that of its diagonal before anything was eliminated.
     ///
     /// # Errors
-    /// The index of a pivot that stays what it is: no number, or zero where the whole diagonal is.
-    pub(crate) fn cholesky(&mut self, mut matrix: MatMut<'_, T>, size: f64) -> Result<usize, usize> {
+    /// The index of a pivot that is not positive.
+    pub(crate) fn cholesky<T: Entry>(&mut self, mut matrix: MatMut<'_, T>, size: f64) -> Result<(), usize> {
         let n = matrix.nrows();
-        if self.size < n {
-            *self = Self::new(2 * n);
-        }
-        self.copy.clear();
-        (0..n).for_each(|j| self.copy.extend(matrix.rb().col(j).iter().copied()));
+        let stack = self.stack::<T>(n);
         let least = (NOTHING * size).sqrt();
-        let mut raised: Vec<(usize, u32)> = Vec::new();
-        loop {
-            let stack = MemStack::new(&mut self.scratch);
-            let made = cholesky_in_place(
-                matrix.rb_mut(),
-                LltRegularization::default(),
-                Par::Seq,
-                stack,
-                Spec::<LltParams, T>::default(),
-            );
-            let low = match made {
-                Ok(_) => (0..n).find(|&j| matrix[(j, j)].into() <= least),
-                Err(LltError::NonPositivePivot { index }) => Some(index),
-            };
-            let Some(index) = low else { return Ok(raised.len()) };
-            let place = raised.iter().position(|(place, _)| *place == index).unwrap_or(raised.len());
-            if place == raised.len() {
-                raised.push((index, 0));
-            }
-            raised[place].1 += 1;
-            if raised[place].1 > RAISES || size == 0.0 {
-                return Err(index);
-            }
-            for j in 0..n {
-                (j..n).for_each(|i| matrix[(i, j)] = self.copy[j * n + i]);
-            }
-            for &(index, times) in &raised {
-                let value: f64 = matrix[(index, index)].into() + size * 10f64.powi(times as i32 - 1);
-                matrix[(index, index)] = T::rounded(value);
-            }
+        let regularization = llt::factor::LltRegularization::default();
+        match llt::factor::cholesky_in_place(matrix.rb_mut(), regularization, Par::Seq, stack, Spec::default()) {
+            Ok(_) => (0..n).find(|&j| matrix[(j, j)].into() <= least).map_or(Ok(()), Err),
+            Err(llt::factor::LltError::NonPositivePivot { index }) => Err(index),
         }
+    }
+
+    /// Overwrites the lower triangle of an indefinite matrix with L, and `signs` with J. A pivot that is next to nothing is taken for one as large as that.
+    ///
+    /// # Errors
+    /// The index of a pivot that is no number, or zero where the whole diagonal is.
+    pub(crate) fn signed<T: Entry>(
+        &mut self,
+        mut matrix: MatMut<'_, T>,
+        size: f64,
+        signs: &mut [f64],
+    ) -> Result<(), usize> {
+        let n = matrix.nrows();
+        let stack = self.stack::<T>(n);
+        let regularization = ldlt::factor::LdltRegularization {
+            dynamic_regularization_signs: None,
+            dynamic_regularization_delta: T::rounded(NOTHING * size),
+            dynamic_regularization_epsilon: T::rounded(NOTHING * size),
+        };
+        ldlt::factor::cholesky_in_place(matrix.rb_mut(), regularization, Par::Seq, stack, Spec::default())
+            .map_err(|ldlt::factor::LdltError::ZeroPivot { index }| index)?;
+        for (j, sign) in signs.iter_mut().enumerate() {
+            let pivot: f64 = matrix[(j, j)].into();
+            if !pivot.is_finite() {
+                return Err(j);
+            }
+            let root = T::rounded(pivot.abs().sqrt());
+            *sign = pivot.signum();
+            matrix[(j, j)] = root;
+            (j + 1..n).for_each(|i| matrix[(i, j)] = matrix[(i, j)] * root);
+        }
+        Ok(())
     }
 }

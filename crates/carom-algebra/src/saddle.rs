@@ -7,13 +7,14 @@
 //!
 //! S positive definite and G of full rank make both factors exist; the saddle then has as many negative eigenvalues as rows (Benzi, Golub, Liesen,
 //! Acta Numerica 14 (2005), §3.4). Where S is so only on the kernel of G, S + Σ κ gᵀg with b + Σ κ c g has the same solution and is so everywhere
-//! (ibid., §3.5: the augmented Lagrangian).
+//! (ibid., §3.5: the augmented Lagrangian). Where it still is not (a structure that buckles), the whole matrix is factored with rows exchanged (Bunch, Kaufman).
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::linalg::solvers::{Lblt, Solve};
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::prelude::{Reborrow, ReborrowMut};
-use faer::{Accum, MatMut, MatRef, Par};
+use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 
 use crate::linear::LinearError;
 use crate::pivots::{Room, diagonal_size};
@@ -35,7 +36,9 @@ pub struct Saddle {
     /// κ of each row.
     penalties: Vec<f64>,
     nonzeros: Vec<usize>,
-    room: Room<f64>,
+    room: Room,
+    /// Of the whole, where S is not positive definite.
+    indefinite: Option<Lblt<f64>>,
 }
 
 impl Saddle {
@@ -81,13 +84,24 @@ impl Saddle {
         self.rows[row * self.size + j] += value;
     }
 
-    /// Factors; how many diagonal entries of S were raised (`pivots.rs`), none where it is positive definite.
+    /// Factors; whether S is positive definite.
     ///
     /// # Errors
-    /// A pivot is no number, or the rows depend on each other.
-    pub fn factor(&mut self) -> Result<usize, LinearError> {
+    /// The rows depend on each other.
+    pub fn factor(&mut self) -> Result<bool, LinearError> {
         let (n, m) = (self.size, self.count);
-        let raised = cholesky(&mut self.stiffness, n, &mut self.room)?;
+        let stiffness = self.stiffness.clone();
+        self.indefinite = None;
+        if cholesky(&mut self.stiffness, n, &mut self.room).is_err() {
+            self.stiffness = stiffness;
+            let entry = |i: usize, j: usize| match (i < n, j < n) {
+                (true, true) if i >= j => self.stiffness[j * n + i],
+                (false, true) => self.rows[(i - n) * n + j],
+                _ => 0.0,
+            };
+            self.indefinite = Some(Mat::from_fn(n + m, n + m, entry).lblt(Side::Lower));
+            return Ok(false);
+        }
         let lower = MatRef::from_column_major_slice(&self.stiffness, n, n);
         let mut t = MatMut::from_column_major_slice_mut(&mut self.rows, n, m);
         solve_lower_triangular_in_place(lower, t.rb_mut(), Par::Seq);
@@ -97,16 +111,26 @@ impl Saddle {
         let (half, whole) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
         triangular::matmul(product, half, Accum::Replace, t.rb().transpose(), whole, t.rb(), whole, 1.0, Par::Seq);
         let diagonal: Vec<f64> = (0..m).map(|i| self.small[i * m + i]).collect();
-        let repeated = cholesky(&mut self.small, m, &mut self.room)? > 0;
-        let dependent = |&i: &usize| repeated || self.small[i * m + i].powi(2) <= DEPENDENT * diagonal[i];
-        (0..m).find(dependent).map_or(Ok(raised), |i| {
-            Err(LinearError::Singular { size: n + m, pivot: n + i, value: -self.small[i * m + i].powi(2) })
-        })
+        let dependent = |pivot: usize| LinearError::Singular { size: n + m, pivot: n + pivot, value: 0.0 };
+        cholesky(&mut self.small, m, &mut self.room).map_err(dependent)?;
+        let repeats = |&i: &usize| self.small[i * m + i].powi(2) <= DEPENDENT * diagonal[i];
+        (0..m).find(repeats).map_or(Ok(true), |i| Err(dependent(i)))
     }
 
     /// Overwrites `b` with x and `c` with λ.
     pub fn solve(&self, b: &mut [f64], c: &mut [f64]) {
         let (n, m) = (self.size, self.count);
+        if let Some(indefinite) = &self.indefinite {
+            for (i, row) in self.rows.chunks_exact(n.max(1)).enumerate() {
+                let pull = self.penalties[i] * c[i];
+                b.iter_mut().zip(row).for_each(|(b, slope)| *b += pull * slope);
+            }
+            let mut both = [&*b, &*c].concat();
+            indefinite.solve_in_place(MatMut::from_column_major_slice_mut(&mut both, n + m, 1));
+            b.copy_from_slice(&both[..n]);
+            c.copy_from_slice(&both[n..]);
+            return;
+        }
         let lower = MatRef::from_column_major_slice(&self.stiffness, n, n);
         let t = MatRef::from_column_major_slice(&self.rows, n, m);
         let small = MatRef::from_column_major_slice(&self.small, m, m);
@@ -130,12 +154,10 @@ impl Saddle {
     }
 }
 
-/// Overwrites a lower triangle with its factor; how many diagonal entries were raised.
-fn cholesky(matrix: &mut [f64], n: usize, room: &mut Room<f64>) -> Result<usize, LinearError> {
+/// Overwrites a lower triangle with its factor.
+fn cholesky(matrix: &mut [f64], n: usize, room: &mut Room) -> Result<(), usize> {
     let size = diagonal_size(matrix.iter().step_by(n + 1).copied());
-    let target = MatMut::from_column_major_slice_mut(matrix, n, n);
-    let singular = |pivot| LinearError::Singular { size: n, pivot, value: f64::NAN };
-    room.cholesky(target, size).map_err(singular)
+    room.cholesky(MatMut::from_column_major_slice_mut(matrix, n, n), size)
 }
 
 #[cfg(test)]
@@ -168,7 +190,7 @@ mod tests {
         for r in 0..m {
             assert!(((0..n).map(|j| row(r, j) * x[j]).sum::<f64>() - c[r]).abs() < 1e-13);
         }
-        // Negative along the first row alone: only with its share along that row has it a factor.
+        // Negative along the first row alone: with its share along that row it has a factor, without it the whole has.
         let push = -30.0;
         let along = |i: usize| if i == 2 { 1.0 } else { 0.0 };
         for share in [0.0, 20.0] {
@@ -176,14 +198,14 @@ mod tests {
             saddle.add_row(0, 2, 2.0);
             saddle.add(2, 2, push);
             saddle.augment(share);
-            assert_eq!(saddle.factor(), Ok(usize::from(share == 0.0)));
-        }
-        let (mut x, mut multiplier) = (b.clone(), [0.5]);
-        saddle.solve(&mut x, &mut multiplier);
-        assert!((2.0 * x[2] - 0.5).abs() < 1e-13);
-        for i in 0..n {
-            let upper: f64 = (0..n).map(|j| entry(i, j) * x[j]).sum();
-            assert!((upper + along(i) * (push * x[2] + 2.0 * multiplier[0]) - b[i]).abs() < 1e-12);
+            assert_eq!(saddle.factor(), Ok(share > 0.0));
+            let (mut x, mut multiplier) = (b.clone(), [0.5]);
+            saddle.solve(&mut x, &mut multiplier);
+            assert!((2.0 * x[2] - 0.5).abs() < 1e-13);
+            for i in 0..n {
+                let upper: f64 = (0..n).map(|j| entry(i, j) * x[j]).sum();
+                assert!((upper + along(i) * (push * x[2] + 2.0 * multiplier[0]) - b[i]).abs() < 1e-12);
+            }
         }
         saddle.begin(&stiffness, n, 2);
         (0..2).for_each(|r| saddle.add_row(r, 0, 1.0));

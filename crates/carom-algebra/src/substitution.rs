@@ -1,4 +1,4 @@
-//! Triangular solves with the inner part of a factor, L y = b and Lᵀ x = y, part by part of the elimination: parts that do not touch each other on threads.
+//! Triangular solves with the inner part of a factor, L y = b and Lᵀ x = J y, part by part of the elimination: parts that do not touch each other on threads.
 
 use crate::elimination::{Elimination, Part};
 use crate::precision::Entry;
@@ -10,6 +10,8 @@ pub(crate) struct Solver<'a, T> {
     pub(crate) elimination: &'a Elimination,
     pub(crate) factors: &'a [T],
     pub(crate) inverse: &'a [f64],
+    /// J; empty where it is the identity.
+    pub(crate) signs: &'a [f64],
     /// Of the scale.
     pub(crate) square: f64,
     pub(crate) threads: &'a Threads,
@@ -127,6 +129,9 @@ impl<T: Entry> Solver<'_, T> {
         }
         let own = &mut x[first..first + columns];
         own.iter_mut().for_each(|x| *x *= self.square);
+        if !self.signs.is_empty() {
+            own.iter_mut().zip(&self.signs[self.elimination.columns(s)]).for_each(|(x, sign)| *x *= sign);
+        }
         // The long sum does not wait for the column before.
         for c in (0..columns).rev() {
             let (near, far) = values[c * height + c + 1..(c + 1) * height].split_at(columns - c - 1);

@@ -38,8 +38,8 @@ impl Workspace {
                 self.renew(equations, now, rows, renewal)?;
             }
             let Self { system, timings, .. } = self;
-            let raised = timed(&mut timings.factor, || system.kept.prepare(equations.model, rows))?;
-            if raised == 0 || !again {
+            let positive = timed(&mut timings.factor, || system.kept.prepare(equations.model, rows))?;
+            if positive || !again {
                 break;
             }
             renewal.due = true;
@@ -60,9 +60,9 @@ impl Workspace {
         // An iterate far from the solution may have no positive definite tangent; the state the step began with nearly always has, with inertia.
         let (present, start) = [&now.place, &equations.state.y].map(|at| equations.point(at, &boundary)).into();
         let mut chosen = &present;
-        if self.hold(equations, &present, renewal.double)? > 0 && !equations.stage.is_static() {
+        if !self.hold(equations, &present, renewal.double)? && !equations.stage.is_static() {
             chosen = &start;
-            if self.hold(equations, &start, renewal.double)? > 0 {
+            if !self.hold(equations, &start, renewal.double)? {
                 chosen = &present;
                 self.hold(equations, &present, renewal.double)?;
             }
@@ -73,8 +73,8 @@ impl Workspace {
         Ok(())
     }
 
-    /// Makes the factor of a point, unless it is there already; how many diagonal entries were raised for it.
-    fn hold(&mut self, equations: &Equations, point: &Arc<Point>, double: bool) -> Result<usize, Rejected> {
+    /// Makes the factor of a point, unless it is there already; whether it is positive definite.
+    fn hold(&mut self, equations: &Equations, point: &Arc<Point>, double: bool) -> Result<bool, Rejected> {
         let Self { system, timings, .. } = self;
         timed(&mut timings.factor, || system.hold(equations.model, point, double))
     }

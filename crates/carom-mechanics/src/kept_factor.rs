@@ -22,8 +22,7 @@ use crate::renewal::Point;
 pub(crate) struct KeptFactor {
     /// What the tangent's factor was made of.
     point: Option<Arc<Point>>,
-    /// Diagonal entries raised for it, and for the rows at hand (`carom_algebra::Condensed`).
-    raised: [usize; 2],
+    positive: bool,
     tangent: Option<Condensed>,
     mass: Option<Condensed>,
     of_mass: bool,
@@ -32,15 +31,14 @@ pub(crate) struct KeptFactor {
     saddle: Saddle,
     /// The row of the dense system that each constraint is; none of springs.
     places: Vec<Option<usize>>,
-    answers: Vec<f64>,
-    right: Vec<f64>,
-    x: Vec<f64>,
+    /// Right-hand side and solution, over unknowns and rows; and in the order of elimination.
     solution: Vec<f64>,
+    inner: Vec<f64>,
 }
 
 impl KeptFactor {
-    /// Factors `mass` M + `stiffness` K − `follower` K_ext for a point; the matrices are given in the slots of the pattern, the last may be empty. How many diagonal entries were raised: where it is not
-    /// positive definite, the factor is that of a matrix near it.
+    /// Factors `mass` M + `stiffness` K − `follower` K_ext for a point; the matrices are given in the slots of the pattern, the last may be empty. Whether the matrix is
+    /// positive definite.
     ///
     /// # Errors
     /// A number is none.
@@ -51,7 +49,7 @@ impl KeptFactor {
         point: &Arc<Point>,
         double: bool,
         [mass, stiffness, follower]: [&[f64]; 3],
-    ) -> Result<usize, LinearError> {
+    ) -> Result<bool, LinearError> {
         self.point = None;
         let elimination = self.elimination(model, pattern, &point.boundary)?;
         let single = !double && single_is_enough(pattern, point, mass, stiffness);
@@ -63,13 +61,13 @@ impl KeptFactor {
             self.tangent = Some(Condensed::new(&elimination, precision).on(&model.threads));
         }
         if let Some(tangent) = &mut self.tangent {
-            self.raised[0] = tangent.factor(|k| {
+            self.positive = tangent.factor(|k| {
                 let internal = point.mass * mass[k] + point.stiffness * stiffness[k];
                 if follower.is_empty() { internal } else { internal - point.follower * follower[k] }
             })?;
         }
         self.point = Some(point.clone());
-        Ok(self.raised[0])
+        Ok(self.positive)
     }
 
     /// The order of elimination that leaves these nodes for last.
@@ -93,14 +91,9 @@ impl KeptFactor {
         Ok(elimination)
     }
 
-    /// The entries raised, if it is the factor of a point.
-    pub(crate) fn of(&self, point: &Arc<Point>) -> Option<usize> {
-        (self.point.as_ref() == Some(point)).then_some(self.raised[0])
-    }
-
-    /// The entries raised, for the rows at hand among them.
-    pub(crate) fn raised(&self) -> usize {
-        self.raised.iter().sum()
+    /// Whether it is positive definite, if it is the factor of a point.
+    pub(crate) fn of(&self, point: &Arc<Point>) -> Option<bool> {
+        (self.point.as_ref() == Some(point)).then_some(self.positive)
     }
 
     /// Whether the kept factor can take these rows.
@@ -129,9 +122,8 @@ impl KeptFactor {
             for place in (0..model.free.len()).filter(|&place| model.massless[model.free[place]]) {
                 mass[pattern.starts[place]] = 1.0;
             }
-            let directions = factor.factor(|k| mass[k])?;
-            if directions > 0 {
-                return Err(Rejected::NegativeMass { directions });
+            if !factor.factor(|k| mass[k])? {
+                return Err(Rejected::NegativeMass);
             }
             self.mass = Some(factor);
         }
@@ -139,20 +131,20 @@ impl KeptFactor {
         Ok(self.constrain(model, rows, false).map(|_| ())?)
     }
 
-    /// Takes the rows up for solves with the kept tangent; how many diagonal entries had to be raised for them.
+    /// Takes the rows up for solves with the kept tangent; whether what is solved is positive definite where the rows hold.
     ///
     /// # Errors
     /// The rows depend on each other.
-    pub(crate) fn prepare(&mut self, model: &Model, rows: &Constraints) -> Result<usize, LinearError> {
+    pub(crate) fn prepare(&mut self, model: &Model, rows: &Constraints) -> Result<bool, LinearError> {
         self.of_mass = false;
         // A multiplier far from its value can bend the sides too much: without second derivatives there still is a descent.
-        let curved = self.constrain(model, rows, true);
-        self.raised[1] = if curved == Ok(0) { 0 } else { self.constrain(model, rows, false)? };
-        Ok(self.raised[1])
+        Ok(self.constrain(model, rows, true)?
+            || self.constrain(model, rows, false)?
+            || self.constrain(model, rows, true)?)
     }
 
-    /// The dense system on the boundary. A spring is no row of it: it adds its stiffness.
-    fn constrain(&mut self, model: &Model, rows: &Constraints, curved: bool) -> Result<usize, LinearError> {
+    /// The dense system on the boundary. A spring is no row of it: it adds its stiffness. Whether all is positive definite.
+    fn constrain(&mut self, model: &Model, rows: &Constraints, curved: bool) -> Result<bool, LinearError> {
         let Some(condensed) = (if self.of_mass { &self.mass } else { &self.tangent }) else {
             return Err(no_factor(model));
         };
@@ -182,7 +174,16 @@ impl KeptFactor {
         if !self.of_mass {
             saddle.augment(STIFFENING);
         }
-        saddle.factor()
+        Ok(saddle.factor()? && (self.of_mass || self.positive))
+    }
+
+    /// Overwrites a right-hand side over unknowns and rows with the factor's solution.
+    fn solve_all(&mut self, unknowns: usize, x: &mut [f64]) {
+        let Some(condensed) = (if self.of_mass { &mut self.mass } else { &mut self.tangent }) else { return };
+        let (x, multipliers) = x.split_at_mut(unknowns);
+        condensed.eliminate_into(x, &mut self.inner);
+        self.saddle.solve(condensed.kept_part(&mut self.inner), multipliers);
+        condensed.substitute_into(&mut self.inner, x);
     }
 
     /// Solves with what was prepared last: `forces` over all dofs, `gaps` one per row; answers alike (held dofs and springs get zero).
@@ -194,28 +195,21 @@ impl KeptFactor {
         increment: &mut [f64],
         multipliers: &mut Vec<f64>,
     ) -> Result<(), LinearError> {
-        let condensed = if self.of_mass { &mut self.mass } else { &mut self.tangent };
-        let Some(condensed) = condensed else { return Err(no_factor(model)) };
-        self.right.clear();
-        self.right.extend(model.free.iter().map(|&dof| forces[dof]));
-        condensed.eliminate_into(&self.right, &mut self.x);
-        self.answers.clear();
-        self.answers.extend(self.places.iter().zip(gaps).filter_map(|(place, gap)| place.map(|_| *gap)));
-        self.saddle.solve(condensed.kept_part(&mut self.x), &mut self.answers);
-        multipliers.clear();
-        multipliers.extend(self.places.iter().map(|place| place.map_or(0.0, |row| self.answers[row])));
-        self.solution.clear();
-        self.solution.resize(self.right.len(), 0.0);
-        condensed.substitute_into(&mut self.x, &mut self.solution);
+        let unknowns = model.free.len();
+        let mut x = std::mem::take(&mut self.solution);
+        x.clear();
+        x.extend(model.free.iter().map(|&dof| forces[dof]));
+        x.extend(self.places.iter().zip(gaps).filter_map(|(place, gap)| place.map(|_| *gap)));
+        self.solve_all(unknowns, &mut x);
         increment.fill(0.0);
-        for (value, &dof) in self.solution.iter().zip(&model.free) {
+        for (value, &dof) in x.iter().zip(&model.free) {
             increment[dof] = *value;
         }
-        if self.solution.iter().chain(multipliers.iter()).all(|x| x.is_finite()) {
-            Ok(())
-        } else {
-            Err(LinearError::Inaccurate { size: self.solution.len(), residual: f64::NAN })
-        }
+        multipliers.clear();
+        multipliers.extend(self.places.iter().map(|place| place.map_or(0.0, |row| x[unknowns + row])));
+        let finite = x.iter().all(|x| x.is_finite());
+        self.solution = x;
+        if finite { Ok(()) } else { Err(LinearError::Inaccurate { size: unknowns, residual: f64::NAN }) }
     }
 }
 

@@ -104,10 +104,7 @@ impl LinearProblem {
             }
             renewal.due = !goal.fresh && renewal.pays(total.last, goal.step);
             let enough = renewal.solves(total.last, goal.forcing * total.first) <= 0.0;
-            // The factor of another matrix has to be seen through first.
-            if factor.raised() > 0 && total.solves < factor.raised() as u32 + 2 {
-                renewal.due = false;
-            } else if renewal.due || enough || total.solves == MOST_SOLVES {
+            if renewal.due || enough || total.solves == MOST_SOLVES {
                 return Ok(total);
             }
             self.take_off(equations, now, rows, timings)?;
@@ -155,8 +152,6 @@ impl LinearProblem {
             total.first = total.last;
         }
         total.solves += 1;
-        // What a factor of another matrix gets wrong in some directions takes as many corrections to see.
-        let depth = if factor.raised() > 0 { depth.max(factor.raised() + 1) } else { depth };
         self.mixing.improve([&mut self.increment, &mut self.multipliers], depth);
         total.increment.iter_mut().zip(&self.increment).for_each(|(total, part)| *total += part);
         total.multipliers.iter_mut().zip(&self.multipliers).for_each(|(total, part)| *total += part);

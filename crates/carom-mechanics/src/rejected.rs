@@ -59,13 +59,8 @@ pub enum Rejected {
         depth: f64,
     },
     /// The mass matrix does not make every motion cost energy.
-    #[error(
-        "the mass matrix is negative in {directions} directions: redistributed mass needs more nodes behind the contact"
-    )]
-    NegativeMass {
-        /// Negative eigenvalues.
-        directions: usize,
-    },
+    #[error("the mass matrix is not positive definite: redistributed mass needs more nodes behind the contact")]
+    NegativeMass,
     /// A load or a motion has no value.
     #[error(transparent)]
     NoValue(#[from] NoValue),
@@ -118,7 +113,7 @@ impl Rejected {
             Self::Cycle { .. } => "active-set-cycle",
             Self::Linear(_) => "linear-solver",
             Self::Stuck { .. } => "stuck-contact",
-            Self::NegativeMass { .. } => "negative-mass",
+            Self::NegativeMass => "negative-mass",
             Self::NoValue(_) => "no-value",
             Self::Unheld(_) => "unheld-body",
             Self::Jump { .. } => "jump",

@@ -155,13 +155,13 @@ impl System {
         self.pattern.multiply_add(&self.stiffness, x, out);
     }
 
-    /// Makes the kept factor that of a point, unless it is already; `double`: with all its digits. How many diagonal entries were raised.
+    /// Makes the kept factor that of a point, unless it is already; `double`: with all its digits. Whether it is positive definite.
     ///
     /// # Errors
     /// A cell is inverted there, or a load has no value.
-    pub(crate) fn hold(&mut self, model: &Model, point: &Arc<Point>, double: bool) -> Result<usize, Rejected> {
-        if let Some(raised) = self.kept.of(point) {
-            return Ok(raised);
+    pub(crate) fn hold(&mut self, model: &Model, point: &Arc<Point>, double: bool) -> Result<bool, Rejected> {
+        if let Some(positive) = self.kept.of(point) {
+            return Ok(positive);
         }
         self.assemble(model, &point.at)?;
         if point.follower != 0.0 {
@@ -170,11 +170,11 @@ impl System {
         Ok(self.factor(model, point, double)?)
     }
 
-    /// Makes the kept factor that of the last tangent, by the factors of a point.
+    /// Makes the kept factor that of the last tangent, by the factors of a point; whether it is positive definite.
     ///
     /// # Errors
     /// A number is none.
-    pub(crate) fn factor(&mut self, model: &Model, point: &Arc<Point>, double: bool) -> Result<usize, LinearError> {
+    pub(crate) fn factor(&mut self, model: &Model, point: &Arc<Point>, double: bool) -> Result<bool, LinearError> {
         self.factorisations += 1;
         self.kept.factor(model, &self.pattern, point, double, [&self.mass, &self.stiffness, &self.follower])
     }

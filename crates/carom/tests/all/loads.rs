@@ -5,7 +5,7 @@ use carom::{GridReport, Simulation};
 use super::common::{self, case as case_of, finish};
 
 /// A bar of length 1, E = ρ = A = 1, held at the left; the rest is given.
-fn bar(rest: &str) -> Simulation {
+pub(crate) fn bar(rest: &str) -> Simulation {
     simulation(&format!(
         r#"
 dimension = 1
@@ -23,7 +23,7 @@ fn simulation(text: &str) -> Simulation {
     common::simulation(text, &[""; 0])
 }
 
-fn body(cells: usize, mass: &str) -> String {
+pub(crate) fn body(cells: usize, mass: &str) -> String {
     format!(
         r#"
 [[body]]
@@ -36,9 +36,9 @@ mesh = {{ shape = "interval", min = 0.0, max = 1.0, cells = {cells} }}
     )
 }
 
-const HELD: &str = "[[support]]\nname = \"wall\"\non = [\"bar.left\"]\nfix = [\"x\"]\n";
+pub(crate) const HELD: &str = "[[support]]\nname = \"wall\"\non = [\"bar.left\"]\nfix = [\"x\"]\n";
 
-fn time(end: f64, step: f64, scheme: &str) -> String {
+pub(crate) fn time(end: f64, step: f64, scheme: &str) -> String {
     format!("[time]\nend = {end:?}\nstep = {step:?}\nscheme = {scheme}\n")
 }
 
@@ -178,62 +178,6 @@ fn a_velocity_that_jumps_takes_its_impulse_from_the_support() {
     assert!((sim.state.y[0] - 0.03).abs() < 1e-16 && sim.state.v[0] == 0.0);
 }
 
-/// The end of a massless bar follows at once: u(x) = x u(t), force E A u(t).
-#[test]
-fn without_mass_a_moved_bar_is_in_equilibrium_at_every_time() {
-    let support = "[[support]]\nname = \"pull\"\non = [\"bar.right\"]\nmove = { x = \"0.1*t^2\" }\n";
-    let rest = [&body(5, "consistent"), HELD, support, &time(1.0, 0.05, r#"{ kind = "newmark", rho_inf = 1.0 }"#)];
-    for scheme in [r#"{ kind = "newmark", rho_inf = 1.0 }"#, r#"{ kind = "static" }"#] {
-        let mut sim = bar(&rest.concat().replace(rest[3], &time(1.0, 0.05, scheme)));
-        if !scheme.contains("static") {
-            sim = simulation(&format!("{MASSLESS}{}", rest.concat()));
-        }
-        while !sim.finished() {
-            sim.advance(&mut GridReport::default()).unwrap();
-            let u = 0.1 * sim.state.time * sim.state.time;
-            for (y, x) in sim.state.y.iter().zip(&sim.model.reference) {
-                assert!((y - x - x * u).abs() < 1e-14, "{scheme}");
-            }
-            assert!((sim.state.f_internal[0] + u).abs() < 1e-13);
-            assert!((sim.state.ledger.strain - 0.5 * u * u).abs() < 1e-13);
-        }
-        // Trapezoids of the work are exact where force and way grow together; the massless balance at the step's end takes the end's force.
-        if scheme.contains("static") {
-            assert!(sim.state.ledger.dissipation().abs() < 1e-14, "{:e}", sim.state.ledger.dissipation());
-            assert!(sim.state.v.iter().chain(&sim.state.a).all(|x| *x == 0.0) && sim.state.ledger.kinetic == 0.0);
-        }
-    }
-}
-
-const MASSLESS: &str = r#"
-dimension = 1
-[[material]]
-name = "unit"
-law = "linear-elastic"
-density = 0.0
-young = 1.0
-poisson = 0.0
-"#;
-
-/// u(x) = ρg (L x − x²/2)/E, exact at the nodes of linear elements; as a body force and as gravity.
-#[test]
-fn a_bar_hangs_under_its_own_weight() {
-    let time = time(1.0, 0.25, r#"{ kind = "static" }"#);
-    let weight = "[[load]]\nname = \"weight\"\nbody = \"bar\"\nbody_force = [\"0.02*t\"]\n";
-    let sim = finish(bar(&[&body(8, "consistent"), HELD, weight, &time].concat()));
-    let gravity = body(8, "consistent") + "gravity = [0.02]\n";
-    let other = finish(bar(&[&gravity, HELD, &time].concat()));
-    for sim in [&sim, &other] {
-        for (y, x) in sim.state.y.iter().zip(&sim.model.reference) {
-            assert!((y - x - 0.02 * (x - 0.5 * x * x)).abs() < 1e-14);
-        }
-        assert!((sim.state.f_internal[0] - sim.model.gravity[0] - sim.state.f_external[0] + 0.02).abs() < 1e-12 * 0.02);
-    }
-    // A load that grows with its displacement does the work that becomes strain energy; trapezoids sum it exactly.
-    let ledger = &sim.state.ledger;
-    assert!((ledger.external_work - ledger.strain).abs() < 1e-15, "{ledger:?}");
-}
-
 /// A block under every load at once: the reactions are the applied forces, in the deformed place their moments too (neo-Hookean, pressure follows).
 #[test]
 fn reactions_are_the_applied_loads() {
@@ -297,175 +241,6 @@ tolerance = 1e-13
     model.loads_into(1.0, &model.reference, &mut dead, &mut force).unwrap();
     let total = force.as_chunks::<2>().0.iter().fold([0.0, 0.0], |s, f| [s[0] + f[0], s[1] + f[1]]);
     assert!((total[0] - 3.3).abs() < 1e-13 && (total[1] + 2.0 + 0.5).abs() < 1e-13, "{total:?}");
-}
-
-/// A run taken up from its state in the middle ends with the same bits, loads, motions and bisected steps included.
-#[test]
-fn a_resumed_run_with_loads_and_motions_ends_with_the_same_bits() {
-    let text = r#"
-dimension = 2
-[[material]]
-name = "rubber"
-law = "neo-hookean"
-density = 1.0
-lambda = 20.0
-mu = 10.0
-[[body]]
-name = "block"
-material = "rubber"
-element = "T6"
-mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [3, 3] }
-velocity = ["0", "0.1*X"]
-[[support]]
-on = ["block.bottom"]
-fix = ["x"]
-move = { y = "0.1*sin(3*t)" }
-[[load]]
-on = ["block.top"]
-pressure = "2*sin(7*t)"
-[[load]]
-on = ["block.right"]
-traction = ["0.5*t", 0]
-[time]
-end = 0.5
-step = 0.01
-scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
-energy_guard = false
-"#;
-    let case = case_of(text, &[""; 0]);
-    for scheme in ["", "state"] {
-        let mut case = case.clone();
-        if !scheme.is_empty() {
-            case.time.scheme.forces = carom_time::ForceRule::AverageState;
-        }
-        let mut whole = carom::simulation(&case, 1).unwrap();
-        let mut kept = None;
-        while !whole.finished() {
-            if whole.state.step == 23 {
-                kept = Some(postcard::to_stdvec(&whole.state).unwrap());
-            }
-            whole.advance(&mut GridReport::default()).unwrap();
-        }
-        let state = postcard::from_bytes(&kept.unwrap()).unwrap();
-        let resumed = finish(carom::resumed(&case, 2, state).unwrap());
-        assert_eq!(resumed.state, whole.state);
-    }
-}
-
-/// A body that nothing holds is named; one that contact may hold is let, and named once contact does not.
-#[test]
-fn a_body_held_by_nothing_is_said_by_name() {
-    let text = |support: &str, at: f64| {
-        format!(
-            r#"
-dimension = 2
-[[material]]
-name = "rubber"
-law = "neo-hookean"
-density = 1.0
-lambda = 20.0
-mu = 10.0
-[[body]]
-name = "disc"
-material = "rubber"
-element = "T6"
-mesh = {{ shape = "half-disc", radius = 0.5, center = [0.0, {at:?}], size = 0.125 }}
-gravity = [0.0, -0.2]
-{support}
-[[contact]]
-name = "floor"
-secondary = "disc.arc"
-primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
-[time]
-end = 1.0
-step = 0.5
-scheme = {{ kind = "static" }}
-"#
-        )
-    };
-    let axis = "[[support]]\non = [\"disc.axis\"]\nfix = [\"x\"]\n";
-    let case = case_of(&text("", 0.5), &[""; 0]);
-    // Without its contact nothing could ever hold it: the case is wrong.
-    let mut alone = case.clone();
-    alone.contacts.clear();
-    let problems = carom::simulation(&alone, 1).err().unwrap();
-    assert!(problems[0].what.starts_with("body \"disc\" is free to"), "{problems:?}");
-    // With a gap it falls: said by name, with what to try.
-    let stopped = simulation(&text(axis, 0.6)).advance(&mut GridReport::default()).unwrap_err().to_string();
-    assert!(stopped.contains("body \"disc\" is free to move along y"), "{stopped}");
-    assert!(stopped.contains("`move`"), "{stopped}");
-    // Touching, it rests on the floor with its weight.
-    let sim = finish(simulation(&text(axis, 0.5)));
-    let weight: f64 = sim.model.gravity.iter().skip(1).step_by(2).sum();
-    assert!(
-        (sim.state.contact_forces[0][1] + weight).abs() < 1e-9 * weight.abs(),
-        "{:?} {weight}",
-        sim.state.contact_forces
-    );
-}
-
-/// A block pressed by a moved support springs back from where the press left it: [initial] takes positions and the contact over.
-#[test]
-fn a_run_begins_where_another_ended() {
-    let folder = tempfile::tempdir().unwrap();
-    let text = |time: &str, initial: &str, motion: &str| {
-        format!(
-            r#"
-dimension = 2
-[[material]]
-name = "rubber"
-law = "neo-hookean"
-density = 1.0
-lambda = 20.0
-mu = 10.0
-[[body]]
-name = "block"
-material = "rubber"
-element = "T6"
-mesh = {{ shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [3, 3] }}
-[[support]]
-name = "press"
-on = ["block.top"]
-move = {{ x = 0, y = "{motion}" }}
-[[contact]]
-name = "floor"
-secondary = "block.bottom"
-primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
-{initial}
-{time}
-"#
-        )
-    };
-    let statics = text(&time(1.0, 0.25, r#"{ kind = "static" }"#), "", "-0.1*t");
-    let case = case_of(&statics, &[""; 0]);
-    let source = carom_record::Source { text: statics.clone(), sets: Vec::new() };
-    let options = carom::recording::Options { threads: 1 };
-    let stop = std::sync::atomic::AtomicBool::new(false);
-    let preload = folder.path().join("preload");
-    carom::recording::run(&case, source, &preload, options, &mut |_| {}, &stop).unwrap();
-    let pressed = finish(carom::simulation(&case, 1).unwrap());
-
-    let initial = format!("[initial]\nfrom = {:?}\n", preload.display().to_string());
-    let again = |motion: &str| text(&time(0.1, 1e-3, r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#), &initial, motion);
-    let mut held = simulation(&again("-0.1"));
-    assert_eq!(held.state.y, pressed.state.y);
-    let force = pressed.state.contact_forces[0][1];
-    assert!((held.state.contact_forces[0][1] - force).abs() < 1e-8 * force, "{:?} {force}", held.state.contact_forces);
-    // It is in equilibrium: nothing moves.
-    for _ in 0..20 {
-        held.advance(&mut GridReport::default()).unwrap();
-    }
-    let moved = held.state.y.iter().zip(&pressed.state.y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(moved < 1e-9, "{moved:e}");
-    // A support that does not begin there, and another mesh, are refused.
-    for (text, told) in [
-        (again("0"), "a support would jump at the start"),
-        (again("-0.1").replace("cells = [3, 3]", "cells = [3, 4]"), "body \"block\" has another mesh in"),
-        (again("-0.1").replace("/preload", "/nowhere"), "cannot be started from"),
-    ] {
-        let problems = carom::simulation(&case_of(&text, &[""; 0]), 1).err().unwrap();
-        assert!(problems[0].what.contains(told), "{problems:?}");
-    }
 }
 
 /// Under a load that changes, the averaged force of a scheme with α_f ≠ ½ does another work than the load, by (½ − α_f) Σ Δy·ΔF, though nothing is

@@ -12,5 +12,7 @@ mod loads;
 mod nonsmooth;
 mod placed;
 mod probe;
+mod restart;
 mod reversal;
+mod statics;
 mod tangent;

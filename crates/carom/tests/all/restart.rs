@@ -1,0 +1,123 @@
+//! Runs taken up in the middle, and runs that begin where another ended.
+
+use carom::GridReport;
+
+use super::common::{case as case_of, finish, simulation};
+use super::loads::time;
+
+/// A run taken up from its state in the middle ends with the same bits, loads, motions and bisected steps included.
+#[test]
+fn a_resumed_run_with_loads_and_motions_ends_with_the_same_bits() {
+    let text = r#"
+dimension = 2
+[[material]]
+name = "rubber"
+law = "neo-hookean"
+density = 1.0
+lambda = 20.0
+mu = 10.0
+[[body]]
+name = "block"
+material = "rubber"
+element = "T6"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [3, 3] }
+velocity = ["0", "0.1*X"]
+[[support]]
+on = ["block.bottom"]
+fix = ["x"]
+move = { y = "0.1*sin(3*t)" }
+[[load]]
+on = ["block.top"]
+pressure = "2*sin(7*t)"
+[[load]]
+on = ["block.right"]
+traction = ["0.5*t", 0]
+[time]
+end = 0.5
+step = 0.01
+scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
+energy_guard = false
+"#;
+    let case = case_of(text, &[""; 0]);
+    for scheme in ["", "state"] {
+        let mut case = case.clone();
+        if !scheme.is_empty() {
+            case.time.scheme.forces = carom_time::ForceRule::AverageState;
+        }
+        let mut whole = carom::simulation(&case, 1).unwrap();
+        let mut kept = None;
+        while !whole.finished() {
+            if whole.state.step == 23 {
+                kept = Some(postcard::to_stdvec(&whole.state).unwrap());
+            }
+            whole.advance(&mut GridReport::default()).unwrap();
+        }
+        let state = postcard::from_bytes(&kept.unwrap()).unwrap();
+        let resumed = finish(carom::resumed(&case, 2, state).unwrap());
+        assert_eq!(resumed.state, whole.state);
+    }
+}
+
+/// A block pressed by a moved support springs back from where the press left it: [initial] takes positions and the contact over.
+#[test]
+fn a_run_begins_where_another_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = |time: &str, initial: &str, motion: &str| {
+        format!(
+            r#"
+dimension = 2
+[[material]]
+name = "rubber"
+law = "neo-hookean"
+density = 1.0
+lambda = 20.0
+mu = 10.0
+[[body]]
+name = "block"
+material = "rubber"
+element = "T6"
+mesh = {{ shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [3, 3] }}
+[[support]]
+name = "press"
+on = ["block.top"]
+move = {{ x = 0, y = "{motion}" }}
+[[contact]]
+name = "floor"
+secondary = "block.bottom"
+primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
+{initial}
+{time}
+"#
+        )
+    };
+    let statics = text(&time(1.0, 0.25, r#"{ kind = "static" }"#), "", "-0.1*t");
+    let case = case_of(&statics, &[""; 0]);
+    let source = carom_record::Source { text: statics.clone(), sets: Vec::new() };
+    let options = carom::recording::Options { threads: 1 };
+    let stop = std::sync::atomic::AtomicBool::new(false);
+    let preload = folder.path().join("preload");
+    carom::recording::run(&case, source, &preload, options, &mut |_| {}, &stop).unwrap();
+    let pressed = finish(carom::simulation(&case, 1).unwrap());
+
+    let initial = format!("[initial]\nfrom = {:?}\n", preload.display().to_string());
+    let again = |motion: &str| text(&time(0.1, 1e-3, r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#), &initial, motion);
+    let mut held = simulation(&again("-0.1"), &[""; 0]);
+    assert_eq!(held.state.y, pressed.state.y);
+    let force = pressed.state.contact_forces[0][1];
+    assert!((held.state.contact_forces[0][1] - force).abs() < 1e-8 * force, "{:?} {force}", held.state.contact_forces);
+    // It is in equilibrium: nothing moves.
+    for _ in 0..20 {
+        held.advance(&mut GridReport::default()).unwrap();
+    }
+    let moved = held.state.y.iter().zip(&pressed.state.y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(moved < 1e-9, "{moved:e}");
+    // A support that does not begin there, and another mesh, are refused.
+    for (text, told) in [
+        (again("0"), "a support would jump at the start"),
+        (again("-0.1").replace("cells = [3, 3]", "cells = [3, 4]"), "body \"block\" has another mesh in"),
+        (again("-0.1").replace("/preload", "/nowhere"), "cannot be started from"),
+    ] {
+        let problems = carom::simulation(&case_of(&text, &[""; 0]), 1).err().unwrap();
+        assert!(problems[0].what.contains(told), "{problems:?}");
+    }
+}

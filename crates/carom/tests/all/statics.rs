@@ -1,0 +1,162 @@
+//! Load steps without inertia: exact equilibria, stable and not, and bodies that nothing holds.
+
+use carom::GridReport;
+
+use super::common::{case as case_of, finish, simulation};
+use super::loads::{HELD, bar, body, time};
+
+/// The end of a massless bar follows at once: u(x) = x u(t), force E A u(t).
+#[test]
+fn without_mass_a_moved_bar_is_in_equilibrium_at_every_time() {
+    let support = "[[support]]\nname = \"pull\"\non = [\"bar.right\"]\nmove = { x = \"0.1*t^2\" }\n";
+    let rest = [&body(5, "consistent"), HELD, support, &time(1.0, 0.05, r#"{ kind = "newmark", rho_inf = 1.0 }"#)];
+    for scheme in [r#"{ kind = "newmark", rho_inf = 1.0 }"#, r#"{ kind = "static" }"#] {
+        let mut sim = bar(&rest.concat().replace(rest[3], &time(1.0, 0.05, scheme)));
+        if !scheme.contains("static") {
+            sim = simulation(&format!("{MASSLESS}{}", rest.concat()), &[""; 0]);
+        }
+        while !sim.finished() {
+            sim.advance(&mut GridReport::default()).unwrap();
+            let u = 0.1 * sim.state.time * sim.state.time;
+            for (y, x) in sim.state.y.iter().zip(&sim.model.reference) {
+                assert!((y - x - x * u).abs() < 1e-14, "{scheme}");
+            }
+            assert!((sim.state.f_internal[0] + u).abs() < 1e-13);
+            assert!((sim.state.ledger.strain - 0.5 * u * u).abs() < 1e-13);
+        }
+        // Trapezoids of the work are exact where force and way grow together; the massless balance at the step's end takes the end's force.
+        if scheme.contains("static") {
+            assert!(sim.state.ledger.dissipation().abs() < 1e-14, "{:e}", sim.state.ledger.dissipation());
+            assert!(sim.state.v.iter().chain(&sim.state.a).all(|x| *x == 0.0) && sim.state.ledger.kinetic == 0.0);
+        }
+    }
+}
+
+const MASSLESS: &str = r#"
+dimension = 1
+[[material]]
+name = "unit"
+law = "linear-elastic"
+density = 0.0
+young = 1.0
+poisson = 0.0
+"#;
+
+/// u(x) = ρg (L x − x²/2)/E, exact at the nodes of linear elements; as a body force and as gravity.
+#[test]
+fn a_bar_hangs_under_its_own_weight() {
+    let time = time(1.0, 0.25, r#"{ kind = "static" }"#);
+    let weight = "[[load]]\nname = \"weight\"\nbody = \"bar\"\nbody_force = [\"0.02*t\"]\n";
+    let sim = finish(bar(&[&body(8, "consistent"), HELD, weight, &time].concat()));
+    let gravity = body(8, "consistent") + "gravity = [0.02]\n";
+    let other = finish(bar(&[&gravity, HELD, &time].concat()));
+    for sim in [&sim, &other] {
+        for (y, x) in sim.state.y.iter().zip(&sim.model.reference) {
+            assert!((y - x - 0.02 * (x - 0.5 * x * x)).abs() < 1e-14);
+        }
+        assert!((sim.state.f_internal[0] - sim.model.gravity[0] - sim.state.f_external[0] + 0.02).abs() < 1e-12 * 0.02);
+    }
+    // A load that grows with its displacement does the work that becomes strain energy; trapezoids sum it exactly.
+    let ledger = &sim.state.ledger;
+    assert!((ledger.external_work - ledger.strain).abs() < 1e-15, "{ledger:?}");
+}
+
+/// A body that nothing holds is named; one that contact may hold is let, and named once contact does not.
+#[test]
+fn a_body_held_by_nothing_is_said_by_name() {
+    let text = |support: &str, at: f64| {
+        format!(
+            r#"
+dimension = 2
+[[material]]
+name = "rubber"
+law = "neo-hookean"
+density = 1.0
+lambda = 20.0
+mu = 10.0
+[[body]]
+name = "disc"
+material = "rubber"
+element = "T6"
+mesh = {{ shape = "half-disc", radius = 0.5, center = [0.0, {at:?}], size = 0.125 }}
+gravity = [0.0, -0.2]
+{support}
+[[contact]]
+name = "floor"
+secondary = "disc.arc"
+primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
+[time]
+end = 1.0
+step = 0.5
+scheme = {{ kind = "static" }}
+"#
+        )
+    };
+    let axis = "[[support]]\non = [\"disc.axis\"]\nfix = [\"x\"]\n";
+    let case = case_of(&text("", 0.5), &[""; 0]);
+    // Without its contact nothing could ever hold it: the case is wrong.
+    let mut alone = case.clone();
+    alone.contacts.clear();
+    let problems = carom::simulation(&alone, 1).err().unwrap();
+    assert!(problems[0].what.starts_with("body \"disc\" is free to"), "{problems:?}");
+    // With a gap it falls: said by name, with what to try.
+    let stopped = simulation(&text(axis, 0.6), &[""; 0]).advance(&mut GridReport::default()).unwrap_err().to_string();
+    assert!(stopped.contains("body \"disc\" is free to move along y"), "{stopped}");
+    assert!(stopped.contains("`move`"), "{stopped}");
+    // Touching, it rests on the floor with its weight.
+    let sim = finish(simulation(&text(axis, 0.5), &[""; 0]));
+    let weight: f64 = sim.model.gravity.iter().skip(1).step_by(2).sum();
+    assert!(
+        (sim.state.contact_forces[0][1] + weight).abs() < 1e-9 * weight.abs(),
+        "{:?} {weight}",
+        sim.state.contact_forces
+    );
+}
+
+/// A strut compressed by a fifth, far beyond the loads at which it buckles: the straight equilibrium is unstable in several directions and the tangent
+/// indefinite, but exact: P₂₂ of homogeneous plane strain with P₁₁ = 0, neo-Hookean Ψ = Λ/2 ln²J + μ/2 (I₁ − 3) − μ ln J.
+#[test]
+fn a_straight_strut_stays_in_its_unstable_equilibrium() {
+    let text = r#"
+dimension = 2
+[[material]]
+name = "rubber"
+law = "neo-hookean"
+density = 1.0
+lambda = 20.0
+mu = 10.0
+[[body]]
+name = "strut"
+material = "rubber"
+element = "T6"
+mesh = { shape = "polygon", points = [[0.0, 0.0], [1.0, 0.0], [1.0, 12.0], [0.0, 12.0], [0.0, 0.5]], size = 0.5 }
+[[support]]
+on = ["strut.side1"]
+fix = ["y"]
+[[support]]
+on = ["strut.side5"]
+fix = ["x"]
+[[support]]
+name = "press"
+on = ["strut.side3"]
+move = { y = "-2.4*t" }
+[time]
+end = 1.0
+step = 0.125
+scheme = { kind = "static" }
+"#;
+    let p11 = |a: f64| 10.0 * (a - 1.0 / a) + 20.0 * (a * 0.8).ln() / a;
+    let (mut low, mut high) = (0.9, 1.3);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if p11(middle) < 0.0 { low = middle } else { high = middle }
+    }
+    let force = (10.0 * (0.8 - 1.0 / 0.8) + 20.0 * (low * 0.8).ln() / 0.8).abs();
+    let sim = finish(simulation(text, &[""; 0]));
+    let top = sim.model.reference.as_chunks::<2>().0.iter().zip(sim.state.f_internal.as_chunks::<2>().0);
+    let pushed: f64 = top.filter(|(x, _)| x[1] == 12.0).map(|(_, f)| f[1]).sum();
+    assert!((pushed + force).abs() < 1e-9 * force, "{pushed} {force}");
+    for (y, x) in sim.state.y.as_chunks::<2>().0.iter().zip(sim.model.reference.as_chunks::<2>().0) {
+        assert!((y[0] - low * x[0]).abs() < 1e-9 && (y[1] - 0.8 * x[1]).abs() < 1e-9, "{x:?} {y:?}");
+    }
+}
