@@ -8,7 +8,7 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::prelude::{Reborrow, ReborrowMut};
-use faer::{Accum, MatMut, MatRef, Par};
+use faer::{Accum, Mat, MatMut, MatRef, Par};
 
 use crate::elimination::{Elimination, Part};
 use crate::pivots::{Room, diagonal_size};
@@ -236,9 +236,11 @@ fn eliminate<T: Entry>(
         let (block, mut after) = rest.split_at_col_mut(width);
         let (mut diagonal, mut lower) = block.split_at_row_mut(width);
         let signs = if signs.is_empty() { &mut *signs } else { &mut signs[start..start + width] };
-        let made = match signs.is_empty() {
-            true => room.cholesky(diagonal.rb_mut(), size),
-            false => room.signed(diagonal.rb_mut(), size, signs),
+        let diagonal_block = diagonal.rb_mut();
+        let made = if signs.is_empty() {
+            room.cholesky(diagonal_block, size)
+        } else {
+            room.signed(diagonal_block, size, signs)
         };
         made.map_err(|index| start + index)?;
         let diagonal = diagonal.rb();
@@ -249,12 +251,12 @@ fn eliminate<T: Entry>(
         let with_signs = signs.iter().any(|sign| *sign < 0.0).then(|| {
             let signed = lower.to_owned();
             for (j, sign) in signs.iter().enumerate() {
-                lower.rb_mut().col_mut(j).iter_mut().for_each(|x| *x = *x * T::rounded(*sign));
+                lower.rb_mut().col_mut(j).iter_mut().for_each(|x| *x *= T::rounded(*sign));
             }
             signed
         });
         let lower = lower.rb();
-        let other = with_signs.as_ref().map_or(lower, |signed| signed.as_ref());
+        let other = with_signs.as_ref().map_or(lower, Mat::as_ref);
         let ahead = columns - start - width;
         let (_, trailing) = after.rb_mut().split_at_row_mut(width);
         threads.for_each(column_blocks(trailing), |k, target| subtract_product(target, [lower, other], k * BLOCK));

@@ -83,7 +83,7 @@ impl Room {
             let root = T::rounded(pivot.abs().sqrt());
             *sign = pivot.signum();
             matrix[(j, j)] = root;
-            (j + 1..n).for_each(|i| matrix[(i, j)] = matrix[(i, j)] * root);
+            (j + 1..n).for_each(|i| matrix[(i, j)] *= root);
         }
         Ok(())
     }

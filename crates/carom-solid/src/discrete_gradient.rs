@@ -36,13 +36,13 @@ pub(crate) fn change_between<const D: usize, L: Material<D>>(
         let point = law.at(&((*h[0] + *h[1]) * 0.5))?;
         return Ok(law.change(&point, &(*dh * 0.5)));
     }
-    let Middle { f, point, inverse, at_middle, change, square, phi, s, .. } = Middle::new(law, h)?;
+    let Middle { f, point, inverse, of_law, change, square, phi, s, .. } = Middle::new(law, h)?;
     let de = symmetric(&((Mat::identity() + *h[1]).transposed() * *dh));
     let df = inverse.transposed() * (de * 0.5);
-    let mut ds = inverse * (law.change(&point, &df) - df * at_middle);
+    let mut ds = inverse * (law.change(&point, &df) - df * of_law);
     if square > NO_STRAIN {
         let end = law.stress(&law.at(h[1])?);
-        let numerator = end.double_dot(dh) - at_middle.double_dot(&de) - ds.double_dot(&change);
+        let numerator = end.double_dot(dh) - of_law.double_dot(&de) - ds.double_dot(&change);
         let dphi = (numerator - 2.0 * phi * change.double_dot(&de)) / square;
         ds = ds + change * dphi + de * phi;
     }
@@ -58,7 +58,7 @@ struct Middle<const D: usize, P> {
     point: P,
     inverse: Mat<D>,
     /// S(E_m).
-    at_middle: Mat<D>,
+    of_law: Mat<D>,
     /// ΔE and ΔE:ΔE.
     change: Mat<D>,
     square: f64,
@@ -76,11 +76,11 @@ impl<const D: usize, P> Middle<D, P> {
         let excess = root(&((e0 + e1) * 0.5)).ok_or(NotPositive(0.0))?;
         let point = law.at(&excess)?;
         let inverse = (Mat::identity() + excess).inverse();
-        let at_middle = symmetric(&(inverse * law.stress(&point)));
+        let of_law = symmetric(&(inverse * law.stress(&point)));
         let square = change.double_dot(&change);
-        let excess_work = energy - start - at_middle.double_dot(&change);
+        let excess_work = energy - start - of_law.double_dot(&change);
         let phi = if square > NO_STRAIN { excess_work / square } else { 0.0 };
-        Ok(Self { energy, f, point, inverse, at_middle, change, square, phi, s: at_middle + change * phi })
+        Ok(Self { energy, f, point, inverse, of_law, change, square, phi, s: of_law + change * phi })
     }
 }
 
@@ -135,8 +135,8 @@ mod tests {
         assert!((work - (end - energy(&h0))).abs() < 1e-14, "{work}");
         // P F_mᵀ symmetric: no moment.
         if L::OBJECTIVE {
-            let kirchhoff = p * (Mat::identity() + (h0 + h1) * 0.5).transposed();
-            assert!((kirchhoff.0[0][1] - kirchhoff.0[1][0]).abs() < 1e-14);
+            let tau = p * (Mat::identity() + (h0 + h1) * 0.5).transposed();
+            assert!((tau.0[0][1] - tau.0[1][0]).abs() < 1e-14);
         }
         // Turned as a whole, P turns along.
         let (s, c) = 0.8_f64.sin_cos();

@@ -2,7 +2,7 @@
 
 use carom::{GridReport, Simulation};
 
-use super::common::{self, case as case_of, finish};
+use super::common::{self, finish};
 
 /// A bar of length 1, E = ρ = A = 1, held at the left; the rest is given.
 pub(crate) fn bar(rest: &str) -> Simulation {
