@@ -84,12 +84,15 @@ fn vtu(case: &Case, meshes: &[Mesh]) -> Result<Vec<u8>, Failure> {
     fields.to_vtu(0.0).map_err(|e| Failure::Refused { what: e.to_string() })
 }
 
-/// A file that was not there before; half a file is taken away again.
+/// A file that was not there before: whole, or not at all.
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let refused = |e: std::io::Error| Failure::Refused { what: format!("{}: {e}", path.display()) };
-    let mut file = std::fs::File::create_new(path).map_err(refused)?;
-    file.write_all(bytes).and_then(|()| file.sync_all()).map_err(|e| {
-        let _ = std::fs::remove_file(path);
-        refused(e)
-    })
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    // As readable as the user's mask makes any other file.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.tempfile_in(folder).map_err(refused)?;
+    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(refused)?;
+    file.persist_noclobber(path).map(|_| ()).map_err(|e| refused(e.error))
 }

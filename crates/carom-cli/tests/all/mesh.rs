@@ -1,7 +1,5 @@
 //! `carom mesh` from outside: what it writes is read back the same, and it overwrites nothing.
 
-#![allow(clippy::unwrap_used)]
-
 use std::path::PathBuf;
 use std::process::{Command, Output};
 

@@ -1,10 +1,6 @@
 //! The examples of the book run as the book says, and give what they expect; every kind of scheme has its page, and its rows in the verification.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{Place, text};
+use crate::common::{Place, text};
 
 /// A path in the folder of the book's examples.
 fn example(name: &str) -> String {

@@ -1,7 +1,5 @@
 //! Energy and momentum of single steps, against identities that hold to round-off.
 
-#![allow(clippy::unwrap_used)]
-
 use carom_time::{ForceRule, Kernel, Memory, Oscillator, Scheme, Stage};
 
 /// Krenk 2006, for α_m = α_f = 0: E* = E + (β − γ/2) Δt²/2 m a² changes by the dissipation of the increments and the work of the force.

@@ -1,7 +1,5 @@
 //! Studies of a bar that falls on a plane: rows, failure, stop and resume, what is wrong with a study file.
 
-#![allow(clippy::unwrap_used)]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};

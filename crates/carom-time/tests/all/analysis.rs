@@ -1,7 +1,5 @@
 //! The analysis against published and measured numbers, and against the kernel itself.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::TAU;
 
 use carom_time::{ForceRule, KINDS, Kernel, Memory, Oscillator, Root, Scheme, Stage, explain};

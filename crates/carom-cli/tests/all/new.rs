@@ -1,7 +1,5 @@
 //! `carom new` from outside: every template reads, runs and makes a page; nothing is overwritten.
 
-#![allow(clippy::unwrap_used)]
-
 use std::path::Path;
 use std::process::{Command, Output};
 

@@ -1,7 +1,5 @@
 //! Sheets in plane stress: cells by differences, and Cook's membrane.
 
-#![allow(clippy::unwrap_used)]
-
 use carom_solid::{Element, Law, generate, line_shape, plane_stress_body};
 
 const LAWS: [Law; 3] = [

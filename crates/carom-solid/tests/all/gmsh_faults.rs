@@ -1,7 +1,5 @@
 //! Damaged and wrong mesh files: an error that says where and what, or a stated repair; never a panic, never a wrong mesh.
 
-#![allow(clippy::unwrap_used)]
-
 use std::path::PathBuf;
 
 use carom_solid::gmsh::{self, Fault, MshError, Place};

@@ -1,12 +1,8 @@
 //! The binary from outside: exit codes, what is said where, and that a wrong case leaves nothing behind.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::process::Stdio;
 
-use common::{IMPACT, Place, text};
+use crate::common::{IMPACT, Place, text};
 
 #[test]
 fn wrong_cases_exit_2_say_where_and_write_nothing() {
@@ -195,7 +191,7 @@ fn explain_and_schema_and_help() {
 /// The case that the README shows is a case.
 #[test]
 fn the_case_of_the_readme() {
-    let readme = include_str!("../../../README.md");
+    let readme = include_str!("../../../../README.md");
     let case = readme.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
     let place = Place::new("readme");
     place.file("case.toml", case);

@@ -1,10 +1,6 @@
 //! One impact under every kind of scheme, with its sides swapped, and twice as large: each runs to its end, and to the same rebound.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{COARSE, IMPACT, Place, text};
+use crate::common::{COARSE, IMPACT, Place, text};
 use serde_json::Value;
 
 /// Last event of a run of the impact: extremes of the probes, expectations.

@@ -1,7 +1,5 @@
 //! Meshes of Gmsh (made by `scripts/make_gmsh_fixtures.py`): every version, encoding and order gives the same bodies.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::PI;
 use std::path::PathBuf;
 

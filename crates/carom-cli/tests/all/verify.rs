@@ -1,10 +1,6 @@
 //! `carom verify` as a process: table, files, exit codes.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{Place, text};
+use crate::common::{Place, text};
 
 /// A bar in free flight, exact for the trapezoidal rule; 20 steps.
 const FALL: &str = r#"

@@ -1,8 +1,6 @@
 //! Every member of every kind that is a list of stages, impulse schemes between impacts among them: order and ρ∞ against what the table says is
 //! published. Then tabulated damping and rational functions of the published rules.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::TAU;
 
 use carom_time::schemes::backward_euler::BackwardEuler;
@@ -12,9 +10,7 @@ use carom_time::schemes::energy_momentum::EnergyMomentum;
 use carom_time::schemes::moreau_jean::MoreauJean;
 use carom_time::{Explained, ForceRule, KINDS, Kernel, Member, Oscillator, STATIC, Scheme, map};
 
-mod common;
-
-use common::{all, run};
+use crate::common::{all, run};
 
 #[test]
 fn every_kind_has_members_and_names_nothing_twice() {

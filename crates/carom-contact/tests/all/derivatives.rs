@@ -1,7 +1,5 @@
 //! Gap derivatives of contact with curved facets of every order against differences; balance of force and moment; objectivity.
 
-#![allow(clippy::unwrap_used)]
-
 use carom_algebra::{Vector, jacobian_error};
 use carom_contact::{Detection, Kinematics, NodeToFacet, Pair, PairEvent, Pairing, Rows, Surface};
 use carom_solid::FacetShape;

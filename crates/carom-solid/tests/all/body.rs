@@ -1,7 +1,5 @@
 //! Bodies as the rest of Carom uses them: rigid motion, derivatives, affine patch test, masses, stress, places.
 
-#![allow(clippy::unwrap_used)]
-
 use carom_solid::{Body, Bounds, Cover, Element, Law, Mesh, SolidError, body, cell_lumped_mass, generate, line_shape};
 
 const LAMBDA: f64 = 2.0;

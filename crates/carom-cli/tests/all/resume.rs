@@ -1,17 +1,12 @@
 //! A run that is killed, interrupted or run differently leaves the same record, byte for byte.
 
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use common::{COARSE, IMPACT, Place, text};
+use crate::common::{COARSE, IMPACT, Place, text};
 
 fn place(name: &str) -> Place {
     let place = Place::new(name);

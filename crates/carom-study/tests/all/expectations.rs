@@ -1,7 +1,5 @@
 //! Expectations of arms and of studies: judged on records, orders in time, arms of other cases, stopped arms, and what is wrong with them.
 
-#![allow(clippy::unwrap_used)]
-
 use std::fs;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;

@@ -1,7 +1,5 @@
 //! What a motion that is given needs of a body: the divergence of its stress, errors at its points, and which nodes lie on the boundary.
 
-#![allow(clippy::unwrap_used)]
-
 use carom_solid::{Body, Element, Law, Mesh, body, generate, plane_stress_body};
 
 /// A quadratic motion: H = ∂y/∂X − 1 is linear in X.

@@ -1,11 +1,7 @@
 //! Free fall is a polynomial of degree two in time, which most kernels reproduce: what remains is round-off. The others err by what their members say.
 //! A wrong factor on inertia, a shifted weight or a careless increment shows here first.
 
-#![allow(clippy::unwrap_used)]
-
 use carom_time::{ForceRule, Kernel, Oscillator, Scheme};
-
-mod common;
 
 #[test]
 fn free_fall_errs_by_what_the_rules_say_over_thousands_of_steps() {
@@ -16,10 +12,10 @@ fn free_fall_errs_by_what_the_rules_say_over_thousands_of_steps() {
         let exactly: fn(f64) -> f64 = |_| 0.0;
         (exactly, format!("{scheme:?}"), Box::new(scheme) as Box<dyn Kernel>)
     });
-    let members = common::all().into_iter().map(|(member, name, kernel)| (member.falls, name, kernel));
+    let members = crate::common::all().into_iter().map(|(member, name, kernel)| (member.falls, name, kernel));
     for (falls, name, kernel) in members.chain(others) {
         for dt in [1.875e-3, 1e-4] {
-            for (n, [y, v, _]) in common::run(&*kernel, fall, dt, 4000, 1.5, 0.3).into_iter().enumerate() {
+            for (n, [y, v, _]) in crate::common::run(&*kernel, fall, dt, 4000, 1.5, 0.3).into_iter().enumerate() {
                 let t = n as f64 * dt;
                 let right = [1.5 + 0.3 * t + 0.5 * G * t * t + falls(n as f64) * G * dt * dt, 0.3 + G * t];
                 let (dy, dv) = ((y - right[0]).abs(), (v - right[1]).abs());

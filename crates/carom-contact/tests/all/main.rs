@@ -1,0 +1,6 @@
+//! Contact from outside: one program, so that it is linked once.
+
+#![allow(clippy::unwrap_used)]
+
+mod derivatives;
+mod follow;

@@ -1,0 +1,9 @@
+//! Schemes from outside: one program, so that it is linked once.
+
+#![allow(clippy::unwrap_used)]
+
+mod analysis;
+mod common;
+mod energy;
+mod free_fall;
+mod kernels;

@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+"""Holds `carom schema` against the cases and studies of the repository with a validator from outside: it is a JSON Schema, accepts every one of them, and refuses
+every key that is misspelt. That the reader refuses the same is tested by `cargo test`.
+
+    scripts/check_schema.py target/release/carom        needs jsonschema (pip install jsonschema)
+"""
+
+import copy
+import json
+import pathlib
+import subprocess
+import sys
+import tomllib
+
+import jsonschema
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def validator(program, *options):
+    schema = json.loads(subprocess.run([program, "schema", *options], check=True, capture_output=True, text=True).stdout)
+    jsonschema.Draft202012Validator.check_schema(schema)
+    return jsonschema.Draft202012Validator(schema)
+
+
+def places(value, path=()):
+    """The path of every key; of tables in a list, those of the first that has it."""
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield (*path, key)
+            # Names of a manufactured solution are the body's.
+            if key != "exact":
+                yield from places(inner, (*path, key))
+    elif isinstance(value, list):
+        seen = set()
+        for i, inner in enumerate(value):
+            for place in places(inner, (*path, i)):
+                if place[len(path) + 1 :] not in seen:
+                    seen.add(place[len(path) + 1 :])
+                    yield place
+
+
+def misspelt(document, place):
+    changed = copy.deepcopy(document)
+    table = changed
+    for step in place[:-1]:
+        table = table[step]
+    table[place[-1] + place[-1][-1]] = table.pop(place[-1])
+    return changed
+
+
+def main(program):
+    kinds = {False: validator(program), True: validator(program, "--study")}
+    files = keys = 0
+    for path in sorted([*ROOT.glob("cases/*/*.toml"), *ROOT.glob("crates/carom-cli/templates/*.toml"), *ROOT.glob("docs/book/examples/*.toml")]):
+        document = tomllib.loads(path.read_text())
+        kind = kinds["case" in document]
+        told = [f"{error.message} at {error.json_path}" for error in kind.iter_errors(document)]
+        assert not told, f"{path}: {told}"
+        files += 1
+        for place in places(document):
+            assert not kind.is_valid(misspelt(document, place)), f"{path}: the schema lets {place} pass misspelt"
+            keys += 1
+    print(f"{files} files fit the schema, {keys} misspelt keys do not")
+    assert files > 50 and keys > 1000
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
