@@ -15,8 +15,8 @@ use crate::material::{Material, NotPositive};
 /// Below this ΔE:ΔE the correction is left out: it is of third order in ΔE and would be the rounding of W divided by ‖ΔE‖.
 const NO_STRAIN: f64 = 1e-12;
 
-/// W₁ and P.
-#[inline(always)]
+/// W₁ and P. Compiled once for a law, not into every loop: what a call costs is little beside it.
+#[inline(never)]
 pub(crate) fn between<const D: usize, L: Material<D>>(law: &L, h: [&Mat<D>; 2]) -> Result<(f64, Mat<D>), NotPositive> {
     if L::OBJECTIVE {
         return Middle::new(law, h).map(|middle| (middle.energy, middle.f * middle.s));
@@ -26,7 +26,7 @@ pub(crate) fn between<const D: usize, L: Material<D>>(law: &L, h: [&Mat<D>; 2]) 
 }
 
 /// ∂P/∂F₁ : dF₁, which is not symmetric: F_m stands on its left, F₁ on its right.
-#[inline(always)]
+#[inline(never)]
 pub(crate) fn change_between<const D: usize, L: Material<D>>(
     law: &L,
     h: [&Mat<D>; 2],

@@ -31,7 +31,8 @@ impl<L: Thickness> Material<2> for PlaneStress<L> {
     const OBJECTIVE: bool = <L as Material<3>>::OBJECTIVE;
     type Point = <L as Material<3>>::Point;
 
-    #[inline(always)]
+    // Not compiled into every loop: what a call costs is little beside the thickness it finds.
+    #[inline(never)]
     fn at(&self, h: &Mat<2>) -> Result<Self::Point, NotPositive> {
         let across = self.0.excess_stretch(h)?;
         let [[a, b], [c, d]] = h.0;
@@ -48,7 +49,7 @@ impl<L: Thickness> Material<2> for PlaneStress<L> {
         within(&self.0.stress(point))
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn tangent(&self, point: &Self::Point, a: &Vector<2>, b: &Vector<2>) -> Mat<2> {
         let [a, b] = [a, b].map(|v| Vector([v[0], v[1], 0.0]));
         let coupled = |v: &Vector<3>| self.0.tangent(point, v, &E3).0.map(|row| row[2]);
