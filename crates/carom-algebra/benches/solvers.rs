@@ -1,5 +1,6 @@
-//! Factors and solves on a square grid of nodes with two unknowns each, tied to all nodes within two columns and rows (as dense as quadratic triangles): the
-//! kept factor with the nodes of one side left for last, the small systems of contact.
+//! Factors and solves on a square grid of nodes with two unknowns each, tied to all nodes within
+//! two columns and rows (as dense as quadratic triangles): the kept factor with the nodes of one
+//! side left for last, the small systems of contact.
 //!
 //!     cargo bench -p carom-algebra            times
 //!     bench/instructions.py carom-algebra     instructions
@@ -12,7 +13,8 @@ use divan::Bencher;
 
 /// Nodes along an edge: 2 178 and 18 818 unknowns.
 const EDGES: [usize; 2] = [33, 97];
-/// The same, and 200 978 unknowns, with the precisions the kept factor may have and numbers of threads.
+/// The same, and 200 978 unknowns, with the precisions the kept factor may have and numbers of
+/// threads.
 const KEPT: [(usize, Precision, usize); 7] = [
     (33, Precision::Double, 1),
     (33, Precision::Single, 1),
@@ -85,7 +87,8 @@ fn kept_factor(bencher: Bencher, (edge, precision, threads): (usize, Precision, 
 fn kept_solve(bencher: Bencher, (edge, precision, threads): (usize, Precision, usize)) {
     let grid = grid(edge);
     let mut condensed = condensed(&grid, precision, threads);
-    let (right, mut x, mut out) = (vec![1.0; grid.pattern.size()], Vec::new(), vec![0.0; grid.pattern.size()]);
+    let (right, mut x, mut out) =
+        (vec![1.0; grid.pattern.size()], Vec::new(), vec![0.0; grid.pattern.size()]);
     bencher.bench_local(|| {
         condensed.eliminate_into(black_box(&right), &mut x);
         condensed.substitute_into(&mut x, &mut out);

@@ -1,7 +1,9 @@
-//! The linear complementarity problem of a few unilateral contacts, 0 ≤ z ⊥ D z + b ≥ 0 with D symmetric and positive definite: one solution, whatever b.
+//! The linear complementarity problem of a few unilateral contacts, 0 ≤ z ⊥ D z + b ≥ 0 with D
+//! symmetric and positive definite: one solution, whatever b.
 //!
-//! Block principal pivoting (Júdice and Pires 1994): every index on the wrong side changes sides at once; where that stops helping, only the last of them does
-//! (Murty 1974), which ends for every positive definite D. Dense: its size is the number of nodes that touch.
+//! Block principal pivoting (Júdice and Pires 1994): every index on the wrong side changes sides at
+//! once; where that stops helping, only the last of them does (Murty 1974), which ends for every
+//! positive definite D. Dense: its size is the number of nodes that touch.
 
 use crate::LinearError;
 
@@ -12,7 +14,8 @@ const TIE: f64 = 1e-14;
 /// A pivot below this fraction of its diagonal is none.
 const PIVOT: f64 = 1e-13;
 
-/// Solves 0 ≤ z ⊥ D z + b ≥ 0 into `z`; `d` is the square matrix D, row by row, of which the lower triangle is read.
+/// Solves 0 ≤ z ⊥ D z + b ≥ 0 into `z`; `d` is the square matrix D, row by row, of which the lower
+/// triangle is read.
 ///
 /// # Errors
 /// D is not positive definite on the indices that came to be positive.
@@ -64,11 +67,18 @@ pub fn complementarity(d: &[f64], b: &[f64], z: &mut Vec<f64>) -> Result<(), Lin
             positive[last] = !positive[last];
         }
     }
-    Err(LinearError::Engine { size: n, reason: "principal pivoting does not end: the matrix is not definite".into() })
+    Err(LinearError::Engine {
+        size: n,
+        reason: "principal pivoting does not end: the matrix is not definite".into(),
+    })
 }
 
 /// L of the submatrix of the chosen indices, D = L Lᵀ, packed row by row.
-fn cholesky(chosen: &[usize], entry: impl Fn(usize, usize) -> f64, factor: &mut Vec<f64>) -> Result<(), LinearError> {
+fn cholesky(
+    chosen: &[usize],
+    entry: impl Fn(usize, usize) -> f64,
+    factor: &mut Vec<f64>,
+) -> Result<(), LinearError> {
     factor.clear();
     for (r, &i) in chosen.iter().enumerate() {
         let row = factor.len();
@@ -119,7 +129,8 @@ mod tests {
             let mut d = vec![0.0; n * n];
             for i in 0..n {
                 for j in 0..n {
-                    d[i * n + j] = (0..n).map(|k| a[i * n + k] * a[j * n + k]).sum::<f64>() + f64::from(i == j) * 0.1;
+                    d[i * n + j] =
+                        (0..n).map(|k| a[i * n + k] * a[j * n + k]).sum::<f64>() + f64::from(i == j) * 0.1;
                 }
             }
             let b: Vec<f64> = (0..n).map(|k| noise(k + 77 * case)).collect();
@@ -127,7 +138,11 @@ mod tests {
             complementarity(&d, &b, &mut z).unwrap();
             for i in 0..n {
                 let w = (0..n).map(|j| d[i * n + j] * z[j]).sum::<f64>() + b[i];
-                assert!(z[i] >= 0.0 && w >= -1e-12 && (z[i] * w).abs() < 1e-11, "case {case}: z {} w {w}", z[i]);
+                assert!(
+                    z[i] >= 0.0 && w >= -1e-12 && (z[i] * w).abs() < 1e-11,
+                    "case {case}: z {} w {w}",
+                    z[i]
+                );
             }
         }
     }

@@ -1,13 +1,16 @@
-//! Cholesky of a sparse symmetric matrix with chosen unknowns B eliminated last (static condensation),
+//! Cholesky of a sparse symmetric matrix with chosen unknowns B eliminated last (static
+//! condensation),
 //!
 //! ```text
 //! A = L Lᵀ,    S = A_BB − A_BI A_II⁻¹ A_IB = L_BB L_BBᵀ
 //! ```
 //!
-//! so that any change of A on B alone, and any constraint on B alone, is a matter of the small dense S: forward through the inner unknowns, a dense
-//! solve on B, backward. The factor is kept while B's neighbourhood changes as it likes.
+//! so that any change of A on B alone, and any constraint on B alone, is a matter of the small
+//! dense S: forward through the inner unknowns, a dense solve on B, backward. The factor is kept
+//! while B's neighbourhood changes as it likes.
 //!
-//! Where A is not positive definite signs stand between L and Lᵀ (`pivots.rs`). In single precision it is σ²A that is factored, L' = σL with σ a power of two.
+//! Where A is not positive definite signs stand between L and Lᵀ (`pivots.rs`). In single precision
+//! it is σ²A that is factored, L' = σL with σ a power of two.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -63,7 +66,8 @@ impl<T: Entry> Entries<T> {
         }
         let square = self.scale * self.scale;
         let singular = |pivot| LinearError::Singular { size: n, pivot, value: 0.0 };
-        let matrix = Matrix { elimination, value, scale: square, threads, signed, negative: Mutex::default() };
+        let matrix =
+            Matrix { elimination, value, scale: square, threads, signed, negative: Mutex::default() };
         matrix.factor(self.factors.get_mut(), schur).map_err(singular)?;
         schur.iter_mut().for_each(|value| *value /= square);
         for s in 0..elimination.nodes.len() - 1 {
@@ -134,8 +138,12 @@ impl Condensed {
             return Ok(false);
         }
         let mut copy = schur.clone();
-        let size = diagonal_size(copy.iter().step_by(elimination.kept() + 1).copied());
-        let square = MatMut::from_column_major_slice_mut(&mut copy, elimination.kept(), elimination.kept());
+        let size = diagonal_size(copy.iter().step_by(elimination.schur_size() + 1).copied());
+        let square = MatMut::from_column_major_slice_mut(
+            &mut copy,
+            elimination.schur_size(),
+            elimination.schur_size(),
+        );
         Ok(Room::default().cholesky(square, size).is_ok())
     }
 
@@ -144,7 +152,8 @@ impl Condensed {
         &self.schur
     }
 
-    /// Right-hand side into the order of elimination, then forward through the inner unknowns: what is left on the last ones is their right-hand side.
+    /// Right-hand side into the order of elimination, then forward through the inner unknowns: what
+    /// is left on the last ones is their right-hand side.
     pub fn eliminate_into(&mut self, rhs: &[f64], x: &mut Vec<f64>) {
         x.resize(self.elimination.root.length, 0.0);
         if rhs.iter().all(|value| *value == 0.0) {
@@ -155,7 +164,8 @@ impl Condensed {
             Numbers::Double(entries) => self.solver(entries).forward(&self.elimination.root, rhs, x),
             Numbers::Single(entries) => self.solver(entries).forward(&self.elimination.root, rhs, x),
         }
-        for (value, &i) in self.kept_part(x).iter_mut().zip(&self.elimination.order[self.elimination.inner..]) {
+        for (value, &i) in self.kept_part(x).iter_mut().zip(&self.elimination.order[self.elimination.inner..])
+        {
             *value += rhs[i as usize];
         }
     }
@@ -173,7 +183,7 @@ impl Condensed {
 
     /// The last unknowns of a vector in the order of elimination.
     pub fn kept_part<'a>(&self, x: &'a mut [f64]) -> &'a mut [f64] {
-        let first = x.len() - self.elimination.kept();
+        let first = x.len() - self.elimination.schur_size();
         &mut x[first..]
     }
 
@@ -199,7 +209,8 @@ mod tests {
         let mut entries = Vec::new();
         for (a, (row, column)) in (0..m * m).map(|a| (a, (a / m, a % m))) {
             entries.extend([(2 * a, 2 * a, 5.0), (2 * a + 1, 2 * a + 1, 6.0), (2 * a + 1, 2 * a, 0.5)]);
-            for b in [(column + 1 < m).then_some(a + 1), (row + 1 < m).then_some(a + m)].into_iter().flatten() {
+            for b in [(column + 1 < m).then_some(a + 1), (row + 1 < m).then_some(a + m)].into_iter().flatten()
+            {
                 entries.extend([(2 * b, 2 * a, -1.0), (2 * b + 1, 2 * a + 1, -1.2)]);
             }
         }
@@ -213,21 +224,22 @@ mod tests {
 
     #[test]
     fn solves_with_any_choice_of_last_unknowns() {
-        for (m, last) in [(1, vec![0]), (3, vec![]), (9, vec![7, 20, 21, 22, 80, 3]), (9, (0..162).collect())] {
+        for (m, last) in [(1, vec![0]), (3, vec![]), (9, vec![7, 20, 21, 22, 80, 3]), (9, (0..162).collect())]
+        {
             let (pattern, values, groups) = grid(m);
             let n = pattern.size();
             let exact: Vec<f64> = (0..n).map(|i| (i as f64 * 0.7).sin()).collect();
             let mut rhs = vec![0.0; n];
             pattern.multiply_add(&values, &exact, &mut rhs);
             let elimination = Arc::new(Elimination::new(&pattern, &groups, &last).unwrap());
-            assert_eq!(elimination.kept(), last.len());
+            assert_eq!(elimination.schur_size(), last.len());
             for (precision, digits) in [(Precision::Double, 1e-13), (Precision::Single, 1e-5)] {
                 let mut condensed = Condensed::new(&elimination, precision);
                 condensed.factor(|k| values[k]).unwrap();
                 let (mut x, mut out) = (Vec::new(), vec![0.0; n]);
                 condensed.eliminate_into(&rhs, &mut x);
                 let mut saddle = Saddle::default();
-                saddle.begin(condensed.schur(), elimination.kept(), 0);
+                saddle.begin(condensed.schur(), elimination.schur_size(), 0);
                 saddle.factor().unwrap();
                 saddle.solve(condensed.kept_part(&mut x), &mut []);
                 condensed.substitute_into(&mut x, &mut out);
@@ -237,14 +249,16 @@ mod tests {
         }
     }
 
-    /// Of any size, and where mass prevails so much that entries far from the diagonal are none: there one to another falls off a thousandfold.
+    /// Of any size, and where mass prevails so much that entries far from the diagonal are none:
+    /// there one to another falls off a thousandfold.
     #[test]
     fn single_precision_has_the_range_it_needs() {
         for (factor, coupling) in [(1e-42, 1.0), (1e42, 1.0), (1.0, 1e-3)] {
             let (pattern, mut values, groups) = grid(30);
             for j in 0..pattern.size() {
                 let column = pattern.starts[j]..pattern.starts[j + 1];
-                column.for_each(|k| values[k] *= if pattern.rows[k] == j { factor } else { factor * coupling });
+                column
+                    .for_each(|k| values[k] *= if pattern.rows[k] == j { factor } else { factor * coupling });
             }
             let exact: Vec<f64> = (0..pattern.size()).map(|i| (i as f64 * 0.7).sin()).collect();
             let (mut rhs, mut out) = (vec![0.0; exact.len()], vec![0.0; exact.len()]);
@@ -260,7 +274,8 @@ mod tests {
         }
     }
 
-    /// Large enough for parts within parts, of random entries; factor, Schur complement and solution.
+    /// Large enough for parts within parts, of random entries; factor, Schur complement and
+    /// solution.
     #[test]
     fn same_bits_with_any_number_of_threads() {
         let (pattern, mut values, groups) = grid(110);
@@ -284,7 +299,7 @@ mod tests {
                     let (mut x, mut out) = (Vec::new(), vec![0.0; n]);
                     condensed.eliminate_into(&rhs, &mut x);
                     let mut saddle = Saddle::default();
-                    saddle.begin(condensed.schur(), elimination.kept(), 0);
+                    saddle.begin(condensed.schur(), elimination.schur_size(), 0);
                     saddle.factor().unwrap();
                     saddle.solve(condensed.kept_part(&mut x), &mut []);
                     condensed.substitute_into(&mut x, &mut out);
@@ -307,7 +322,9 @@ mod tests {
     /// Negative pivots among the inner unknowns, among the last ones and in both.
     #[test]
     fn an_indefinite_matrix_has_a_factor_with_signs() {
-        for (m, last) in [(4, vec![]), (4, vec![30, 31]), (4, vec![5, 30]), (4, vec![5, 17]), (40, vec![5, 6, 7])] {
+        for (m, last) in
+            [(4, vec![]), (4, vec![30, 31]), (4, vec![5, 30]), (4, vec![5, 17]), (40, vec![5, 6, 7])]
+        {
             let (pattern, mut values, groups) = grid(m);
             for i in [5, 17] {
                 values[pattern.slot(i, i).unwrap()] = -1.0;
@@ -321,7 +338,7 @@ mod tests {
             assert_eq!(condensed.factor(|k| values[k]), Ok(false));
             condensed.eliminate_into(&rhs, &mut x);
             let mut saddle = Saddle::default();
-            saddle.begin(condensed.schur(), elimination.kept(), 0);
+            saddle.begin(condensed.schur(), elimination.schur_size(), 0);
             saddle.factor().unwrap();
             saddle.solve(condensed.kept_part(&mut x), &mut []);
             condensed.substitute_into(&mut x, &mut out);

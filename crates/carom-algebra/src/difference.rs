@@ -1,9 +1,10 @@
 //! Checks of derivatives by central differences, for tests.
 
-/// Largest |analytic − numeric| over all entries of a Jacobian, relative to its largest numeric entry.
+/// Largest |analytic − numeric| over all entries of a Jacobian, relative to its largest numeric
+/// entry.
 ///
-/// `f` maps `x` (n entries) to m entries; `jacobian` is m × n, row-major. Central differences with step `h`, Richardson-extrapolated once
-/// (error O(h⁴)).
+/// `f` maps `x` (n entries) to m entries; `jacobian` is m × n, row-major. Central differences with
+/// step `h`, Richardson-extrapolated once (error O(h⁴)).
 ///
 /// ```
 /// let error = carom_algebra::jacobian_error(&[3.0], 1e-3, |x| vec![x[0].powi(3)], &[27.0]);

@@ -1,7 +1,10 @@
-//! The order in which unknowns are eliminated, chosen ones B last, and the structure of the factor that follows from it. B is one vertex of the graph that is
-//! ordered (approximate minimum degree; P. Amestoy, T. Davis, I. Duff, SIAM J. Matrix Anal. Appl. 17 (1996) 886–905), then moved to the end.
+//! The order in which unknowns are eliminated, chosen ones B last, and the structure of the factor
+//! that follows from it. B is one vertex of the graph that is ordered (approximate minimum degree;
+//! P. Amestoy, T. Davis, I. Duff, SIAM J. Matrix Anal. Appl. 17 (1996) 886–905), then moved to the
+//! end.
 //!
-//! Columns with the same rows below them are a node. The forest of nodes is cut into parts (`forest.rs`) that can be computed at the same time.
+//! Columns with the same rows below them are a node. The forest of nodes is cut into parts
+//! (`forest.rs`) that can be computed at the same time.
 
 use std::ops::Range;
 
@@ -11,7 +14,8 @@ use faer::sparse::linalg::cholesky::simplicial::{
     prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
 };
 use faer::sparse::linalg::cholesky::supernodal::{
-    SymbolicSupernodalCholesky, factorize_supernodal_symbolic_cholesky, factorize_supernodal_symbolic_cholesky_scratch,
+    SymbolicSupernodalCholesky, factorize_supernodal_symbolic_cholesky,
+    factorize_supernodal_symbolic_cholesky_scratch,
 };
 use faer::sparse::linalg::{SymbolicSupernodalParams, amd};
 
@@ -36,11 +40,12 @@ pub struct Elimination {
     pub(crate) below: Vec<u32>,
     /// The same rows, in the numbering of the node's part.
     pub(crate) local: Vec<u32>,
-    /// Entries of the pattern, node by node, those between last unknowns at the end; and where in the node's values (the square of the last) each goes.
+    /// Entries of the pattern, node by node, those between last unknowns at the end; and where in
+    /// the node's values (the square of the last) each goes.
     pub(crate) entries: Vec<u32>,
     pub(crate) slots: Vec<u32>,
     /// The part that holds all others.
-    pub(crate) root: Part,
+    pub(crate) root: Subtree,
     /// The entries of the pattern's diagonal.
     pub(crate) diagonal: Vec<u32>,
 }
@@ -54,7 +59,8 @@ pub(crate) struct Node {
     pub(crate) rows: u32,
     /// Start of its entries in [`Elimination::entries`].
     pub(crate) entries: u32,
-    /// The node that its first row below belongs to; [`LAST`] where that is one of the last unknowns, or where there is none.
+    /// The node that its first row below belongs to; [`LAST`] where that is one of the last
+    /// unknowns, or where there is none.
     pub(crate) parent: u32,
     /// Start of its values, a column of all rows after the other.
     pub(crate) values: usize,
@@ -63,15 +69,17 @@ pub(crate) struct Node {
 /// Not a node: the last unknowns.
 pub(crate) const LAST: u32 = u32::MAX;
 
-/// A part of the forest. Its piece of a vector holds the pieces of the parts below it, its own columns, and the rows outside that they reach; places in the
-/// latter two are what its nodes' rows are numbered by.
+/// A part of the forest. Its piece of a vector holds the pieces of the parts below it, its own
+/// columns, and the rows outside that they reach; places in the latter two are what its nodes' rows
+/// are numbered by.
 #[derive(Debug)]
-pub(crate) struct Part {
-    pub(crate) parts: Option<Box<[Part; 2]>>,
+pub(crate) struct Subtree {
+    pub(crate) parts: Option<Box<[Subtree; 2]>>,
     /// Its own nodes and columns.
     pub(crate) nodes: Range<usize>,
     pub(crate) columns: Range<usize>,
-    /// The rows outside, in the numbering of the part around; the last unknowns, where there is none.
+    /// The rows outside, in the numbering of the part around; the last unknowns, where there is
+    /// none.
     pub(crate) outer: Vec<u32>,
     /// Length of its piece of a vector.
     pub(crate) length: usize,
@@ -84,7 +92,8 @@ pub(crate) struct Part {
 }
 
 impl Elimination {
-    /// Orders and analyses a pattern; unknowns of one group stay together, those in `last` come last.
+    /// Orders and analyses a pattern; unknowns of one group stay together, those in `last` come
+    /// last.
     ///
     /// # Errors
     /// The engine ran out of memory.
@@ -122,7 +131,7 @@ impl Elimination {
             local: Vec::new(),
             entries: Vec::new(),
             slots: Vec::new(),
-            root: Part::default(),
+            root: Subtree::default(),
             diagonal: (0..n).filter_map(|i| pattern.slot(i, i)).map(|k| k as u32).collect(),
         };
         elimination.collect_nodes(&raw);
@@ -134,14 +143,14 @@ impl Elimination {
         elimination.positions = vec![0; n];
         let mut positions = std::mem::take(&mut elimination.positions);
         elimination.locate(&elimination.root, 0, &mut positions);
-        let tail = elimination.root.length - elimination.kept();
+        let tail = elimination.root.length - elimination.schur_size();
         (inner..n).for_each(|k| positions[elimination.order[k] as usize] = (tail + k - inner) as u32);
         elimination.positions = positions;
         Ok(elimination)
     }
 
     /// Number of unknowns eliminated last.
-    pub fn kept(&self) -> usize {
+    pub fn schur_size(&self) -> usize {
         self.place.len() - self.inner
     }
 
@@ -176,7 +185,12 @@ impl Elimination {
             if first >= inner {
                 break;
             }
-            self.nodes.push(Node { first: first as u32, rows: self.below.len() as u32, values, ..Node::default() });
+            self.nodes.push(Node {
+                first: first as u32,
+                rows: self.below.len() as u32,
+                values,
+                ..Node::default()
+            });
             let own = end.min(inner);
             node_of[first..own].fill(s as u32);
             self.below.extend(own as u32..end as u32);
@@ -185,9 +199,15 @@ impl Elimination {
             let below = self.below.len() - self.nodes[s].rows as usize;
             values += (own - first) * (own - first + below);
         }
-        self.nodes.push(Node { first: inner as u32, rows: self.below.len() as u32, values, ..Node::default() });
+        self.nodes.push(Node {
+            first: inner as u32,
+            rows: self.below.len() as u32,
+            values,
+            ..Node::default()
+        });
         for s in 0..self.nodes.len() - 1 {
-            self.nodes[s].parent = self.below[self.rows(s)].first().map_or(LAST, |&row| node_of[row as usize]);
+            self.nodes[s].parent =
+                self.below[self.rows(s)].first().map_or(LAST, |&row| node_of[row as usize]);
         }
     }
 
@@ -236,8 +256,14 @@ impl Elimination {
         (self.entries, self.slots) = (entries, slots);
     }
 
-    /// A part and those below it, its first node and column after `begin`; and the rows outside that it reaches, which may be given.
-    fn part(&mut self, tree: &Cut, begin: &mut (usize, usize), outside: Option<Vec<u32>>) -> (Part, Vec<u32>) {
+    /// A part and those below it, its first node and column after `begin`; and the rows outside
+    /// that it reaches, which may be given.
+    fn part(
+        &mut self,
+        tree: &Cut,
+        begin: &mut (usize, usize),
+        outside: Option<Vec<u32>>,
+    ) -> (Subtree, Vec<u32>) {
         let values = self.nodes[begin.0].values;
         let mut below = tree.parts.as_ref().map(|parts| {
             let [a, b] = &**parts;
@@ -255,7 +281,8 @@ impl Elimination {
         let outside = outside.unwrap_or_else(|| {
             let rows = self.below[self.nodes[first].rows as usize..self.nodes[end].rows as usize].iter();
             let deeper = below.iter().flatten().flat_map(|(_, outer)| outer);
-            let mut outer: Vec<u32> = rows.chain(deeper).copied().filter(|&row| row as usize >= stop).collect();
+            let mut outer: Vec<u32> =
+                rows.chain(deeper).copied().filter(|&row| row as usize >= stop).collect();
             outer.sort_unstable();
             outer.dedup();
             outer
@@ -276,7 +303,10 @@ impl Elimination {
         let room = self.room(first..end);
         let parts = below.map(|[(a, _), (b, _)]| Box::new([a, b]));
         let outer = Vec::new();
-        (Part { parts, nodes: first..end, columns: start..stop, outer, length, values, room, height }, outside)
+        (
+            Subtree { parts, nodes: first..end, columns: start..stop, outer, length, values, room, height },
+            outside,
+        )
     }
 
     /// Most that is left of nodes to each other, one after the other.
@@ -295,7 +325,7 @@ impl Elimination {
     }
 
     /// Where the unknowns of a part are, its piece beginning at `start`.
-    fn locate(&self, part: &Part, start: usize, positions: &mut [u32]) {
+    fn locate(&self, part: &Subtree, start: usize, positions: &mut [u32]) {
         let mut own = start;
         for part in part.parts.iter().flat_map(|parts| parts.iter()) {
             self.locate(part, own, positions);
@@ -307,7 +337,7 @@ impl Elimination {
     }
 }
 
-impl Default for Part {
+impl Default for Subtree {
     fn default() -> Self {
         let outer = Vec::new();
         Self { parts: None, nodes: 0..0, columns: 0..0, outer, length: 0, values: 0, room: 0, height: 0 }
@@ -320,7 +350,8 @@ fn inverse(order: &[u32]) -> Vec<u32> {
     place
 }
 
-/// The upper triangle of a pattern in some order; of the last columns only the rows before them, on which the columns before them depend.
+/// The upper triangle of a pattern in some order; of the last columns only the rows before them, on
+/// which the columns before them depend.
 struct Upper {
     starts: Vec<u32>,
     rows: Vec<u32>,
@@ -354,7 +385,8 @@ impl Upper {
         SymbolicSparseColMatRef::new_unsorted_checked(n, n, &self.starts, None, &self.rows)
     }
 
-    /// Parent of each column in the elimination tree (negative: none), and the entries of each in the factor.
+    /// Parent of each column in the elimination tree (negative: none), and the entries of each in
+    /// the factor.
     fn tree(&self) -> Result<(Vec<i32>, Vec<u32>), String> {
         let n = self.starts.len() - 1;
         let (mut parents, mut counts) = (vec![0; n], vec![0; n]);
@@ -372,21 +404,34 @@ impl Upper {
         )?;
         let stack = MemStack::new(&mut scratch);
         let tree = prefactorize_symbolic_cholesky(&mut parents, &mut counts, self.view(), stack);
-        factorize_supernodal_symbolic_cholesky(self.view(), tree, &counts, stack, SymbolicSupernodalParams::default())
-            .map_err(|e| format!("{e:?}"))
+        factorize_supernodal_symbolic_cholesky(
+            self.view(),
+            tree,
+            &counts,
+            stack,
+            SymbolicSupernodalParams::default(),
+        )
+        .map_err(|e| format!("{e:?}"))
     }
 }
 
 /// Elimination order: AMD on the graph of groups, each group expanded in ascending order.
 fn grouped_ordering(pattern: &Pattern, groups: &[usize]) -> Result<Vec<usize>, String> {
     let count = groups.iter().max().map_or(0, |g| g + 1);
-    let entries = (0..pattern.size()).flat_map(|j| pattern.column(j).iter().map(move |&i| (groups[i], groups[j])));
+    let entries =
+        (0..pattern.size()).flat_map(|j| pattern.column(j).iter().map(move |&i| (groups[i], groups[j])));
     let quotient = Pattern::from_entries(count, entries);
     let graph = SymbolicSparseColMatRef::new_checked(count, count, &quotient.starts, None, &quotient.rows);
     let (mut order, mut inverse) = (vec![0_usize; count], vec![0_usize; count]);
     let mut scratch = memory(amd::order_maybe_unsorted_scratch::<usize>(count, quotient.len()))?;
-    amd::order_maybe_unsorted(&mut order, &mut inverse, graph, amd::Control::default(), MemStack::new(&mut scratch))
-        .map_err(|e| format!("{e:?}"))?;
+    amd::order_maybe_unsorted(
+        &mut order,
+        &mut inverse,
+        graph,
+        amd::Control::default(),
+        MemStack::new(&mut scratch),
+    )
+    .map_err(|e| format!("{e:?}"))?;
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
     for (i, &g) in groups.iter().enumerate() {
         members[g].push(i);

@@ -1,5 +1,6 @@
-//! The elimination forest cut into parts that do not depend on each other: a tree of parts, two below every one that is not a leaf. The cut follows from
-//! the forest alone, never from the number of threads.
+//! The elimination forest cut into parts that do not depend on each other: a tree of parts, two
+//! below every one that is not a leaf. The cut follows from the forest alone, never from the number
+//! of threads.
 
 use std::collections::BinaryHeap;
 
@@ -12,7 +13,8 @@ const BALANCED: f64 = 0.53;
 /// Share of a part that may lie above its two parts.
 const OWN: f64 = 0.4;
 
-/// A part of the forest: the columns before `end` that belong to no part before it, its parts' among them.
+/// A part of the forest: the columns before `end` that belong to no part before it, its parts'
+/// among them.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Cut {
     pub(crate) parts: Option<Box<[Cut; 2]>>,
@@ -33,8 +35,9 @@ struct Forest {
 
 const NONE: u32 = u32::MAX;
 
-/// Orders the nodes of a forest so that each part's are contiguous and after those of its parts. `parent(j)` > j is none for a root; `weight(j)` is a
-/// node's own. The new order, as old numbers, and the parts.
+/// Orders the nodes of a forest so that each part's are contiguous and after those of its parts.
+/// `parent(j)` > j is none for a root; `weight(j)` is a node's own. The new order, as old numbers,
+/// and the parts.
 pub(crate) fn cut(
     count: usize,
     parent: impl Fn(usize) -> Option<usize>,
@@ -116,7 +119,8 @@ impl Forest {
         Cut { parts: None, end: order.len() }
     }
 
-    /// Takes nodes off the heaviest subtrees until what is left falls into balanced halves; none where too much would have to be taken.
+    /// Takes nodes off the heaviest subtrees until what is left falls into balanced halves; none
+    /// where too much would have to be taken.
     fn halves(&self, roots: &[u32]) -> Option<(Vec<u32>, [Vec<u32>; 2])> {
         let total = self.weight(roots) as f64;
         let mut heap: BinaryHeap<(u64, u32)> = roots.iter().map(|&r| (self.weights[r as usize], r)).collect();
@@ -158,7 +162,12 @@ mod tests {
     use super::*;
 
     /// What the parts of `tree` reach is theirs or that of parts around them.
-    fn closed(tree: &Cut, begin: usize, ancestors: &[std::ops::Range<usize>], of: &impl Fn(usize) -> Option<usize>) {
+    fn closed(
+        tree: &Cut,
+        begin: usize,
+        ancestors: &[std::ops::Range<usize>],
+        of: &impl Fn(usize) -> Option<usize>,
+    ) {
         let mut own = begin;
         if let Some(parts) = &tree.parts {
             let [a, b] = &**parts;
@@ -174,7 +183,8 @@ mod tests {
         }
     }
 
-    /// Checks that parts are closed under descendants and follow each other, and that every node comes after its children.
+    /// Checks that parts are closed under descendants and follow each other, and that every node
+    /// comes after its children.
     fn check(count: usize, parent: impl Fn(usize) -> Option<usize>, order: &[u32], tree: &Cut) {
         let mut rank = vec![usize::MAX; count];
         order.iter().enumerate().for_each(|(k, &j)| rank[j as usize] = k);

@@ -1,6 +1,8 @@
-//! The factor, node by node (multifrontal: I. Duff, J. Reid, ACM Trans. Math. Softw. 9 (1983) 302–325): a node's columns are made of the matrix and of what
-//! the nodes below it leave; what they leave in turn, the square on the rows below, goes to the node above. Nodes of parts that do not depend on each other
-//! are factored at the same time, and large nodes in blocks of columns; sums have one order.
+//! The factor, node by node (multifrontal: I. Duff, J. Reid, ACM Trans. Math. Softw. 9 (1983)
+//! 302–325): a node's columns are made of the matrix and of what the nodes below it leave; what
+//! they leave in turn, the square on the rows below, goes to the node above. Nodes of parts that do
+//! not depend on each other are factored at the same time, and large nodes in blocks of columns;
+//! sums have one order.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -10,7 +12,7 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 
-use crate::elimination::{Elimination, Part};
+use crate::elimination::{Elimination, Subtree};
 use crate::pivots::{Room, diagonal_size};
 use crate::precision::Entry;
 use crate::threads::Threads;
@@ -20,7 +22,8 @@ const BLOCK: usize = 128;
 /// Multiplications that are worth another thread.
 const SHARED: usize = 1_000_000;
 
-/// Numbers that begin where a cache line does: how kernels group them then never depends on where memory was to be had.
+/// Numbers that begin where a cache line does: how kernels group them then never depends on where
+/// memory was to be had.
 #[derive(Default)]
 pub(crate) struct Aligned<T> {
     numbers: Vec<T>,
@@ -43,14 +46,16 @@ impl<T: Entry> Aligned<T> {
     }
 }
 
-/// The square that a node leaves to the node above it, or to the last unknowns: column-major, its lower triangle.
+/// The square that a node leaves to the node above it, or to the last unknowns: column-major, its
+/// lower triangle.
 struct Left<T> {
     node: usize,
     squares: Arc<Aligned<T>>,
     begin: usize,
 }
 
-/// A matrix to be factored: `value(k)` for entry k of the pattern, each to be multiplied by `scale`.
+/// A matrix to be factored: `value(k)` for entry k of the pattern, each to be multiplied by
+/// `scale`.
 pub(crate) struct Matrix<'a, F> {
     pub(crate) elimination: &'a Elimination,
     pub(crate) value: F,
@@ -69,14 +74,15 @@ struct Work<T> {
 }
 
 impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
-    /// Factors all columns before the last unknowns; `schur` becomes the lower triangle of what they leave of the last ones' square.
+    /// Factors all columns before the last unknowns; `schur` becomes the lower triangle of what
+    /// they leave of the last ones' square.
     ///
     /// # Errors
     /// The place of a pivot that is not positive, or, with signs, none.
     pub(crate) fn factor<T: Entry>(&self, values: &mut [T], schur: &mut Vec<f64>) -> Result<(), usize> {
         let all = self.elimination;
         let left = self.part(&all.root, values)?;
-        let kept = all.kept();
+        let kept = all.schur_size();
         schur.clear();
         schur.resize(kept * kept, 0.0);
         let first = all.nodes.last().map_or(0, |end| end.entries as usize);
@@ -96,7 +102,7 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
         Ok(())
     }
 
-    fn part<T: Entry>(&self, part: &Part, values: &mut [T]) -> Result<Vec<Left<T>>, usize> {
+    fn part<T: Entry>(&self, part: &Subtree, values: &mut [T]) -> Result<Vec<Left<T>>, usize> {
         let (mut below, mut values) = (Vec::new(), values);
         if let Some(parts) = &part.parts {
             let [a, b] = &**parts;
@@ -112,12 +118,18 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
     }
 
     /// The part's own nodes; `below` is what the parts below it left.
-    fn own<T: Entry>(&self, part: &Part, values: &mut [T], mut below: Vec<Left<T>>) -> Result<Vec<Left<T>>, usize> {
+    fn own<T: Entry>(
+        &self,
+        part: &Subtree,
+        values: &mut [T],
+        mut below: Vec<Left<T>>,
+    ) -> Result<Vec<Left<T>>, usize> {
         let all = self.elimination;
         let parent = |node: usize| all.nodes[node].parent;
         // Last first, so that the next is popped.
         below.sort_by_key(|left| std::cmp::Reverse((parent(left.node), left.node)));
-        let mut work = Work { squares: Aligned::<T>::new(part.room), room: Room::default(), runs: Vec::new() };
+        let mut work =
+            Work { squares: Aligned::<T>::new(part.room), room: Room::default(), runs: Vec::new() };
         let mut waiting: Vec<(usize, usize)> = Vec::new();
         let mut top = 0;
         let mut rest = values;
@@ -136,7 +148,11 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
             let square = &mut free[..count * count];
             square.fill(T::rounded(0.0));
             while let Some(left) = below.pop_if(|left| parent(left.node) as usize == s) {
-                all.extend_add((left.node, &left.squares.get()[left.begin..]), (s, panel, square), &mut work.runs);
+                all.extend_add(
+                    (left.node, &left.squares.get()[left.begin..]),
+                    (s, panel, square),
+                    &mut work.runs,
+                );
             }
             let mut begin = top;
             while let Some((node, start)) = waiting.pop_if(|(node, _)| parent(*node) as usize == s) {
@@ -160,7 +176,11 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
         }
         let squares = Arc::new(work.squares);
         let mut passing: Vec<Left<T>> = below.into_iter().rev().collect();
-        passing.extend(waiting.into_iter().map(|(node, begin)| Left { node, squares: squares.clone(), begin }));
+        passing.extend(waiting.into_iter().map(|(node, begin)| Left {
+            node,
+            squares: squares.clone(),
+            begin,
+        }));
         Ok(passing)
     }
 }
@@ -173,7 +193,8 @@ impl Elimination {
         (s, panel, square): (usize, &mut [T], &mut [T]),
         runs: &mut Vec<[usize; 3]>,
     ) {
-        let (rows, columns, below) = (&self.below[self.rows(node)], self.columns(s), &self.below[self.rows(s)]);
+        let (rows, columns, below) =
+            (&self.below[self.rows(node)], self.columns(s), &self.below[self.rows(s)]);
         // Rows that follow each other in both: place in the one, in the other, and how many.
         runs.clear();
         let mut place = 0;
@@ -215,7 +236,8 @@ impl Elimination {
     }
 }
 
-/// Factors a node's columns and subtracts their product from the square of the rows below. With room for signs pivots may be negative.
+/// Factors a node's columns and subtracts their product from the square of the rows below. With
+/// room for signs pivots may be negative.
 ///
 /// # Errors
 /// The index of a pivot that is not positive, or no number.
@@ -259,16 +281,21 @@ fn eliminate<T: Entry>(
         let other = with_signs.as_ref().map_or(lower, Mat::as_ref);
         let ahead = columns - start - width;
         let (_, trailing) = after.rb_mut().split_at_row_mut(width);
-        threads.for_each(column_blocks(trailing), |k, target| subtract_product(target, [lower, other], k * BLOCK));
+        threads.for_each(column_blocks(trailing), |k, target| {
+            subtract_product(target, [lower, other], k * BLOCK)
+        });
         if square.nrows() > 0 {
             let rows = [lower, other].map(|lower| lower.subrows(ahead, square.nrows()));
-            threads.for_each(column_blocks(square.rb_mut()), |k, target| subtract_product(target, rows, k * BLOCK));
+            threads.for_each(column_blocks(square.rb_mut()), |k, target| {
+                subtract_product(target, rows, k * BLOCK)
+            });
         }
     }
     Ok(())
 }
 
-/// target −= L Mᵀ, symmetric, in the lower triangle of a square, of which the target is some columns from `first`.
+/// target −= L Mᵀ, symmetric, in the lower triangle of a square, of which the target is some
+/// columns from `first`.
 fn subtract_product<T: Entry>(target: MatMut<'_, T>, rows: [MatRef<'_, T>; 2], first: usize) {
     let (height, width) = target.shape();
     let [lower, other] = rows.map(|rows| rows.subrows(first, height - first));

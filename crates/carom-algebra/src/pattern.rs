@@ -1,6 +1,7 @@
 //! Lower triangle of a sparse symmetric matrix, column by column.
 
-/// Places of the stored entries: the lower triangle with its full diagonal, compressed by columns, rows ascending.
+/// Places of the stored entries: the lower triangle with its full diagonal, compressed by columns,
+/// rows ascending.
 ///
 /// ```
 /// use carom_algebra::Pattern;
@@ -17,7 +18,8 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// Builds the pattern of size `n` from entries in any order, either triangle, repeated or not. The diagonal is always there.
+    /// Builds the pattern of size `n` from entries in any order, either triangle, repeated or not.
+    /// The diagonal is always there.
     pub fn from_entries(n: usize, entries: impl IntoIterator<Item = (usize, usize)>) -> Self {
         let mut columns: Vec<Vec<usize>> = (0..n).map(|i| vec![i]).collect();
         for (i, j) in entries {

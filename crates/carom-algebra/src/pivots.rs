@@ -4,8 +4,10 @@
 //! A = L J Lᵀ,   J = diag(±1)
 //! ```
 //!
-//! J is the identity where A is positive definite; else as many of its entries are negative as A has negative eigenvalues (Sylvester). Rows are not exchanged:
-//! a tangent has so few negative pivots that hardly one of the others gets small, and what is lost of the solution is found again by the Krylov method.
+//! J is the identity where A is positive definite; else as many of its entries are negative as A
+//! has negative eigenvalues (Sylvester). Rows are not exchanged: a tangent has so few negative
+//! pivots that hardly one of the others gets small, and what is lost of the solution is found again
+//! by the Krylov method.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::{ldlt, llt};
@@ -36,12 +38,17 @@ impl Room {
         }
         let scratch = self.scratch.get_or_insert_with(|| {
             let one = llt::factor::cholesky_in_place_scratch::<T>(2 * size, Par::Seq, Spec::default());
-            MemBuffer::new(one.or(ldlt::factor::cholesky_in_place_scratch::<T>(2 * size, Par::Seq, Spec::default())))
+            MemBuffer::new(one.or(ldlt::factor::cholesky_in_place_scratch::<T>(
+                2 * size,
+                Par::Seq,
+                Spec::default(),
+            )))
         });
         MemStack::new(scratch)
     }
 
-    /// Overwrites the lower triangle of a positive definite matrix with L; `size` is that of its diagonal before anything was eliminated.
+    /// Overwrites the lower triangle of a positive definite matrix with L; `size` is that of its
+    /// diagonal before anything was eliminated.
     ///
     /// # Errors
     /// The index of a pivot that is not positive.
@@ -50,13 +57,20 @@ impl Room {
         let stack = self.stack::<T>(n);
         let least = (NOTHING * size).sqrt();
         let regularization = llt::factor::LltRegularization::default();
-        match llt::factor::cholesky_in_place(matrix.rb_mut(), regularization, Par::Seq, stack, Spec::default()) {
+        match llt::factor::cholesky_in_place(
+            matrix.rb_mut(),
+            regularization,
+            Par::Seq,
+            stack,
+            Spec::default(),
+        ) {
             Ok(_) => (0..n).find(|&j| matrix[(j, j)].into() <= least).map_or(Ok(()), Err),
             Err(llt::factor::LltError::NonPositivePivot { index }) => Err(index),
         }
     }
 
-    /// Overwrites the lower triangle of an indefinite matrix with L, and `signs` with J. A pivot that is next to nothing is taken for one as large as that.
+    /// Overwrites the lower triangle of an indefinite matrix with L, and `signs` with J. A pivot
+    /// that is next to nothing is taken for one as large as that.
     ///
     /// # Errors
     /// The index of a pivot that is no number, or zero where the whole diagonal is.

@@ -5,9 +5,11 @@
 //! [ G  0  ] [λ] = [c]
 //! ```
 //!
-//! S positive definite and G of full rank make both factors exist; the saddle then has as many negative eigenvalues as rows (Benzi, Golub, Liesen,
-//! Acta Numerica 14 (2005), §3.4). Where S is so only on the kernel of G, S + Σ κ gᵀg with b + Σ κ c g has the same solution and is so everywhere
-//! (ibid., §3.5: the augmented Lagrangian). Where it still is not (a structure that buckles), the whole matrix is factored with rows exchanged (Bunch, Kaufman).
+//! S positive definite and G of full rank make both factors exist; the saddle then has as many
+//! negative eigenvalues as rows (Benzi, Golub, Liesen, Acta Numerica 14 (2005), §3.4). Where S is
+//! so only on the kernel of G, S + Σ κ gᵀg with b + Σ κ c g has the same solution and is so
+//! everywhere (ibid., §3.5: the augmented Lagrangian). Where it still is not (a structure that
+//! buckles), the whole matrix is factored with rows exchanged (Bunch, Kaufman).
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
@@ -53,15 +55,16 @@ impl Saddle {
         self.penalties.resize(count, 0.0);
     }
 
-    /// S += κ gᵀg for every row g of G, `share` times as stiff along g as S is: the solution stays what it is, and an S that is positive definite
-    /// only where G x = 0 becomes so everywhere.
+    /// S += κ gᵀg for every row g of G, `share` times as stiff along g as S is: the solution stays
+    /// what it is, and an S that is positive definite only where G x = 0 becomes so everywhere.
     pub fn augment(&mut self, share: f64) {
         let n = self.size.max(1);
         for (row, penalty) in self.rows.chunks_exact(n).zip(&mut self.penalties) {
             self.nonzeros.clear();
             self.nonzeros.extend((0..n).filter(|&j| row[j] != 0.0));
             let square: f64 = self.nonzeros.iter().map(|&j| row[j] * row[j]).sum();
-            let along: f64 = self.nonzeros.iter().map(|&j| row[j] * row[j] * self.stiffness[j * n + j].abs()).sum();
+            let along: f64 =
+                self.nonzeros.iter().map(|&j| row[j] * row[j] * self.stiffness[j * n + j].abs()).sum();
             if square == 0.0 {
                 continue;
             }
@@ -109,7 +112,17 @@ impl Saddle {
         self.small.resize(m * m, 0.0);
         let product = MatMut::from_column_major_slice_mut(&mut self.small, m, m);
         let (half, whole) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
-        triangular::matmul(product, half, Accum::Replace, t.rb().transpose(), whole, t.rb(), whole, 1.0, Par::Seq);
+        triangular::matmul(
+            product,
+            half,
+            Accum::Replace,
+            t.rb().transpose(),
+            whole,
+            t.rb(),
+            whole,
+            1.0,
+            Par::Seq,
+        );
         let diagonal: Vec<f64> = (0..m).map(|i| self.small[i * m + i]).collect();
         let dependent = |pivot: usize| LinearError::Singular { size: n + m, pivot: n + pivot, value: 0.0 };
         cholesky(&mut self.small, m, &mut self.room).map_err(dependent)?;
@@ -190,7 +203,8 @@ mod tests {
         for r in 0..m {
             assert!(((0..n).map(|j| row(r, j) * x[j]).sum::<f64>() - c[r]).abs() < 1e-13);
         }
-        // Negative along the first row alone: with its share along that row it has a factor, without it the whole has.
+        // Negative along the first row alone: with its share along that row it has a factor,
+        // without it the whole has.
         let push = -30.0;
         let along = |i: usize| if i == 2 { 1.0 } else { 0.0 };
         for share in [0.0, 20.0] {

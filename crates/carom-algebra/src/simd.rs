@@ -1,4 +1,5 @@
-//! Loops in the widest registers the machine has. Lanes never mix across widths: the bits are the same on every machine.
+//! Loops in the widest registers the machine has. Lanes never mix across widths: the bits are the
+//! same on every machine.
 
 /// Lanes of a reduction; fixed, so that its order of summation is.
 const LANES: usize = 8;

@@ -1,7 +1,7 @@
 //! Vectors and matrices of the space a body lives in: `D` is 1, 2 or 3 and known at compile time.
 //!
-//! Global nodal arrays are flat `Vec<f64>`; seen per node they are `&[[f64; D]]` (`slice::as_chunks`). A [`Vector`] is one such
-//! node's copy with arithmetic.
+//! Global nodal arrays are flat `Vec<f64>`; seen per node they are `&[[f64; D]]`
+//! (`slice::as_chunks`). A [`Vector`] is one such node's copy with arithmetic.
 
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
@@ -37,7 +37,8 @@ impl<const D: usize> Vector<D> {
     /// The zero vector.
     pub const ZERO: Self = Self([0.0; D]);
 
-    /// From its components. A loop, because `std::array::from_fn` is not always inlined and the arithmetic here is that of the innermost loops.
+    /// From its components. A loop, because `std::array::from_fn` is not always inlined and the
+    /// arithmetic here is that of the innermost loops.
     #[inline(always)]
     fn of(component: impl Fn(usize) -> f64) -> Self {
         let mut vector = Self::ZERO;
@@ -67,7 +68,8 @@ impl<const D: usize> Vector<D> {
 }
 
 impl Vector<2> {
-    /// The vector turned by −90°: the outward normal of a boundary that is walked with the body on its left.
+    /// The vector turned by −90°: the outward normal of a boundary that is walked with the body on
+    /// its left.
     #[inline(always)]
     pub fn turned_right(&self) -> Self {
         Self([self.0[1], -self.0[0]])

@@ -1,6 +1,7 @@
-//! Triangular solves with the inner part of a factor, L y = b and Lᵀ x = J y, part by part of the elimination: parts that do not touch each other on threads.
+//! Triangular solves with the inner part of a factor, L y = b and Lᵀ x = J y, part by part of the
+//! elimination: parts that do not touch each other on threads.
 
-use crate::elimination::{Elimination, Part};
+use crate::elimination::{Elimination, Subtree};
 use crate::precision::Entry;
 use crate::simd::{dot, subtract, subtract_both, wide};
 use crate::threads::Threads;
@@ -18,7 +19,7 @@ pub(crate) struct Solver<'a, T> {
 }
 
 impl<T: Entry> Solver<'_, T> {
-    pub(crate) fn forward(&self, part: &Part, rhs: &[f64], x: &mut [f64]) {
+    pub(crate) fn forward(&self, part: &Subtree, rhs: &[f64], x: &mut [f64]) {
         let mut x = x;
         if let Some(parts) = &part.parts {
             let [a, b] = &**parts;
@@ -47,7 +48,7 @@ impl<T: Entry> Solver<'_, T> {
     }
 
     /// The right-hand side on a part's own columns; nothing yet on the rows outside.
-    fn take(&self, part: &Part, rhs: &[f64], x: &mut [f64]) {
+    fn take(&self, part: &Subtree, rhs: &[f64], x: &mut [f64]) {
         let (own, outside) = x.split_at_mut(part.columns.len());
         for (value, &i) in own.iter_mut().zip(&self.elimination.order[part.columns.clone()]) {
             *value = rhs[i as usize];
@@ -55,7 +56,7 @@ impl<T: Entry> Solver<'_, T> {
         outside.fill(0.0);
     }
 
-    pub(crate) fn backward(&self, part: &Part, x: &mut [f64]) {
+    pub(crate) fn backward(&self, part: &Subtree, x: &mut [f64]) {
         let deeper = part.parts.iter().flat_map(|parts| parts.iter()).map(|part| part.length).sum();
         let (deeper, x) = x.split_at_mut(deeper);
         wide(
@@ -71,7 +72,7 @@ impl<T: Entry> Solver<'_, T> {
             let [a, b] = &**parts;
             let (of_a, of_b) = deeper.split_at_mut(a.length);
             let known = &*x;
-            let half = |part: &Part, x: &mut [f64]| {
+            let half = |part: &Subtree, x: &mut [f64]| {
                 let first = x.len() - part.outer.len();
                 for (value, &row) in x[first..].iter_mut().zip(&part.outer) {
                     *value = known[row as usize];
@@ -82,7 +83,8 @@ impl<T: Entry> Solver<'_, T> {
         }
     }
 
-    /// First place in the part's numbering, rows below in that numbering, values (column-major, all rows), and a divisor for each column.
+    /// First place in the part's numbering, rows below in that numbering, values (column-major, all
+    /// rows), and a divisor for each column.
     #[inline(always)]
     fn node(&self, s: usize, start: usize) -> (usize, &[u32], &[T], &[f64]) {
         let (columns, all) = (self.elimination.columns(s), self.elimination);

@@ -1,5 +1,5 @@
-//! Threads that the parts of a computation share. What is computed never depends on how many there are: work is cut into pieces by its structure alone, and
-//! every sum has one order.
+//! Threads that the parts of a computation share. What is computed never depends on how many there
+//! are: work is cut into pieces by its structure alone, and every sum has one order.
 
 use std::sync::Arc;
 
@@ -66,15 +66,22 @@ impl Threads {
         match &self.pool {
             Some(pool) => {
                 let items: Vec<T> = items.into_iter().collect();
-                let share = || items.into_par_iter().with_max_len(1).enumerate().for_each(|(k, item)| work(k, item));
+                let share =
+                    || items.into_par_iter().with_max_len(1).enumerate().for_each(|(k, item)| work(k, item));
                 pool.install(share);
             }
             None => items.into_iter().enumerate().for_each(|(k, item)| work(k, item)),
         }
     }
 
-    /// Calls `work(first, block)` for blocks of `size` items, the last one maybe shorter; `first` is the index of a block's first item.
-    pub fn for_each_block<T: Send>(&self, items: &mut [T], size: usize, work: impl Fn(usize, &mut [T]) + Sync) {
+    /// Calls `work(first, block)` for blocks of `size` items, the last one maybe shorter; `first`
+    /// is the index of a block's first item.
+    pub fn for_each_block<T: Send>(
+        &self,
+        items: &mut [T],
+        size: usize,
+        work: impl Fn(usize, &mut [T]) + Sync,
+    ) {
         let size = size.max(1);
         if items.len() <= size {
             return work(0, items);

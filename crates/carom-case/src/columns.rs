@@ -2,9 +2,20 @@
 
 use super::{BodySpec, Case, ContactSpec, ProbeSpec, Quantity, SupportSpec};
 
-const SCALARS: [&str; 10] =
-    ["step", "time", "dt", "kinetic", "strain", "potential", "total", "external_work", "contact_work", "dissipation"];
-const COUNTS: [&str; 7] = ["active", "activations", "releases", "newton", "rejected", "penetration", "min_det_f"];
+const SCALARS: [&str; 10] = [
+    "step",
+    "time",
+    "dt",
+    "kinetic",
+    "strain",
+    "potential",
+    "total",
+    "external_work",
+    "contact_work",
+    "dissipation",
+];
+const COUNTS: [&str; 7] =
+    ["active", "activations", "releases", "newton", "rejected", "penetration", "min_det_f"];
 
 const ERRORS: [&str; 2] = ["error_l2", "error_h1"];
 
@@ -48,8 +59,9 @@ pub(super) fn of(
 ) -> Vec<String> {
     let axes = &["x", "y"][..dimension.clamp(1, 2)];
     let mut columns: Vec<String> = SCALARS.iter().map(ToString::to_string).collect();
-    let vector =
-        |columns: &mut Vec<String>, name: &str| columns.extend(axes.iter().map(|axis| format!("{name}_{axis}")));
+    let vector = |columns: &mut Vec<String>, name: &str| {
+        columns.extend(axes.iter().map(|axis| format!("{name}_{axis}")))
+    };
     vector(&mut columns, "momentum");
     if dimension == 2 {
         columns.push("angular_momentum".to_owned());

@@ -1,4 +1,5 @@
-//! Every key and value of a document against the tables of keys: unknown, missing, of the wrong type, out of range.
+//! Every key and value of a document against the tables of keys: unknown, missing, of the wrong
+//! type, out of range.
 
 use super::document::{Document, joined};
 use super::keys::{self, Default, Key, Kind, Range, Variants};
@@ -33,7 +34,8 @@ pub(super) fn variant(table: &Table, variants: &Variants) -> Vec<Problem> {
 /// The same for one table of fixed keys.
 pub(super) fn table(table: &Table, keys: &keys::Table, path: &str) -> Vec<Problem> {
     let mut check = Check { dimension: None, problems: Vec::new() };
-    let spec = Spec { name: keys.name, tag: None, keys: keys.keys.iter().collect(), later: keys.later.to_vec() };
+    let spec =
+        Spec { name: keys.name, tag: None, keys: keys.keys.iter().collect(), later: keys.later.to_vec() };
     check.keys(table, &spec, path);
     check.problems
 }
@@ -86,7 +88,8 @@ impl Check {
         };
         let help = if key.example.is_empty() { help } else { format!("{help}, for example") };
         let what = format!("{table} has no `{name}`");
-        self.problems.push(Problem::new(path, what, meaning(key), help.trim_end_matches(", for example")).at_key());
+        self.problems
+            .push(Problem::new(path, what, meaning(key), help.trim_end_matches(", for example")).at_key());
     }
 
     fn value(&mut self, node: &Node, key: &Key, path: &str) {
@@ -157,7 +160,9 @@ impl Check {
             (Kind::Table(spec) | Kind::SideOr(spec) | Kind::FormulasOr(_, spec), Value::Table(table)) => {
                 self.table(table, spec, path);
             }
-            (Kind::Tables(spec), Value::List(list)) if !list.is_empty() || matches!(key.default, Default::Absent) => {
+            (Kind::Tables(spec), Value::List(list))
+                if !list.is_empty() || matches!(key.default, Default::Absent) =>
+            {
                 for (i, node) in list.iter().enumerate() {
                     let path = format!("{path}[{i}]");
                     match node.table() {
@@ -172,7 +177,8 @@ impl Check {
     }
 
     fn table(&mut self, table: &Table, spec: &keys::Table, path: &str) {
-        let spec = Spec { name: spec.name, tag: None, keys: spec.keys.iter().collect(), later: spec.later.to_vec() };
+        let spec =
+            Spec { name: spec.name, tag: None, keys: spec.keys.iter().collect(), later: spec.later.to_vec() };
         self.keys(table, &spec, path);
     }
 
@@ -182,10 +188,13 @@ impl Check {
         if let Some(entry) = table.0.iter().find(|e| later.contains(&e.key.as_str())) {
             let what = format!("this version does not have `{}` of {} yet", entry.key, variants.name);
             let here = joined(path, &entry.key);
-            let why = format!("it belongs to a later version of Carom; {} is one of {}", tag, words(variants));
+            let why =
+                format!("it belongs to a later version of Carom; {} is one of {}", tag, words(variants));
             return self.problems.push(Problem::new(here, what, why, "leave it out").at_key());
         }
-        if let Some(spec) = variants.or.filter(|spec| spec.keys.iter().take(1).any(|k| table.get(k.name).is_some())) {
+        if let Some(spec) =
+            variants.or.filter(|spec| spec.keys.iter().take(1).any(|k| table.get(k.name).is_some()))
+        {
             return self.table(table, spec, path);
         }
         let named = table.get(tag).map(|node| node.text().ok_or(node));
@@ -219,8 +228,9 @@ impl Check {
                 .any(|p| meant(p, tag) || or.is_some_and(|t| meant(p, t.keys[0].name))) => {}
             None => {
                 let what = format!("{} has no `{tag}`", variants.name);
-                let or =
-                    or.and_then(|t| t.keys.first()).map_or_else(String::new, |k| format!("; or give `{}`", k.name));
+                let or = or
+                    .and_then(|t| t.keys.first())
+                    .map_or_else(String::new, |k| format!("; or give `{}`", k.name));
                 let help = format!("use one of: {}{or}", words(variants));
                 self.problems.push(Problem::new(path, what, variants.doc, help));
             }
@@ -306,7 +316,8 @@ impl Check {
 
     fn wrong(&mut self, node: &Node, key: &Key, path: &str) {
         let wanted = key.kind.described(self.dimension);
-        let later = !key.later.is_empty() && matches!(node.value, Value::Table(_) | Value::Text(_) | Value::List(_));
+        let later =
+            !key.later.is_empty() && matches!(node.value, Value::Table(_) | Value::Text(_) | Value::List(_));
         let mut what = format!("`{}` must be {wanted}, not {}", key.name, node.described());
         let mut why = meaning(key);
         if later {
@@ -348,7 +359,8 @@ fn unknown<'a>(word: &str, table: &Table, spec: &Spec<'a>, path: String) -> (Pro
     let free = all().filter(|k| table.get(k).is_none() || several(k)).chain(spec.later.iter().copied());
     let mut homes = homes(word);
     homes.dedup();
-    let near = suggest::nearest(word, free).or_else(|| suggest::nearest(word, all()).filter(|_| homes.is_empty()));
+    let near =
+        suggest::nearest(word, free).or_else(|| suggest::nearest(word, all()).filter(|_| homes.is_empty()));
     let elsewhere = format!("`{word}` is a key of {}", homes.join(", "));
     let help = match (near, homes.is_empty()) {
         (Some(near), true) => format!("did you mean `{near}`?"),

@@ -1,4 +1,5 @@
-//! A case file as text: parsed, overridden by `--set`, and able to say where any key path was written.
+//! A case file as text: parsed, overridden by `--set`, and able to say where any key path was
+//! written.
 
 use std::ops::Range;
 use std::path::Path;
@@ -22,17 +23,24 @@ impl Document {
     /// Reads a file and applies overrides `key=value`, in their order.
     pub fn open(path: &Path, sets: &[String]) -> Result<Self, CaseError> {
         let name = path.display().to_string();
-        let wrong =
-            |what: &str, why: &str, help: &str| CaseError::Wrong(vec![Diagnostic::of_file(&name, what, why, help)]);
+        let wrong = |what: &str, why: &str, help: &str| {
+            CaseError::Wrong(vec![Diagnostic::of_file(&name, what, why, help)])
+        };
         let refused = |source: std::io::Error| match source.kind() {
-            std::io::ErrorKind::NotFound => {
-                wrong("there is no such file", "a case is one TOML file", "check the path and the working directory")
-            }
+            std::io::ErrorKind::NotFound => wrong(
+                "there is no such file",
+                "a case is one TOML file",
+                "check the path and the working directory",
+            ),
             _ => CaseError::Refused { path: name.clone(), source },
         };
         let facts = std::fs::metadata(path).map_err(refused)?;
         if facts.is_dir() {
-            return Err(wrong("this is a directory", "a case is one TOML file", "name the .toml file inside it"));
+            return Err(wrong(
+                "this is a directory",
+                "a case is one TOML file",
+                "name the .toml file inside it",
+            ));
         }
         if facts.len() > LARGEST {
             let why = format!("it has {} bytes; a case file has at most {LARGEST}", facts.len());
@@ -47,11 +55,13 @@ impl Document {
         Self::parse(&name, &text, sets)
     }
 
-    /// Parses a text (`name` stands for the file in messages) and applies overrides `key=value`, in their order.
+    /// Parses a text (`name` stands for the file in messages) and applies overrides `key=value`, in
+    /// their order.
     pub fn parse(name: &str, text: &str, sets: &[String]) -> Result<Self, CaseError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let wrong = |diagnostic| CaseError::Wrong(vec![diagnostic]);
-        let parsed = toml_edit::Document::parse(text).map_err(|e| wrong(Diagnostic::of_syntax(name, text, &e)))?;
+        let parsed =
+            toml_edit::Document::parse(text).map_err(|e| wrong(Diagnostic::of_syntax(name, text, &e)))?;
         if parsed.as_table().is_empty() && sets.is_empty() {
             let (what, why) =
                 ("the case is empty", "a case names at least its dimension, a material, a body and [time]");
@@ -97,7 +107,8 @@ impl Document {
         ["case", "arm", "grid"].into_iter().find(|key| self.root().get(key).is_some())
     }
 
-    /// Finds the line a problem is about; a key that was not written is shown at its nearest parent.
+    /// Finds the line a problem is about; a key that was not written is shown at its nearest
+    /// parent.
     pub fn diagnose(&self, problem: &Problem) -> Diagnostic {
         let message = [problem.what.clone(), problem.why.clone(), problem.help.clone()];
         match self.origin(&problem.path, problem.at_key) {
@@ -153,13 +164,15 @@ impl Document {
     }
 }
 
-/// Where bytes of a text value stand in the source that holds it, quotes and all; all of it where escapes may have moved them.
+/// Where bytes of a text value stand in the source that holds it, quotes and all; all of it where
+/// escapes may have moved them.
 fn part_of_text(source: &str, value: &Range<usize>, bytes: &Range<usize>) -> Range<usize> {
     let raw = source.get(value.clone()).unwrap_or_default();
     if raw.contains('\\') || raw.starts_with("\"\"\"") || raw.starts_with("'''") {
         return value.clone();
     }
-    let start = value.start + if raw.starts_with(['"', '\'']) { 1 } else { raw.len() - raw.trim_start().len() };
+    let start =
+        value.start + if raw.starts_with(['"', '\'']) { 1 } else { raw.len() - raw.trim_start().len() };
     start + bytes.start..start + bytes.end
 }
 

@@ -34,8 +34,14 @@ pub(super) enum Exact<'a> {
     Nobody,
 }
 
-/// The expectations of the list `NAME` of the table at `path` (the file's own: empty) in a study file.
-pub fn read_expects(document: &Document, path: &str, asked: Asked, problems: &mut Vec<Problem>) -> Vec<Expect> {
+/// The expectations of the list `NAME` of the table at `path` (the file's own: empty) in a study
+/// file.
+pub fn read_expects(
+    document: &Document,
+    path: &str,
+    asked: Asked,
+    problems: &mut Vec<Problem>,
+) -> Vec<Expect> {
     let Some(list) = document.at(path).and_then(Node::list) else { return Vec::new() };
     let mut found = Vec::new();
     for (i, node) in list.iter().enumerate() {
@@ -59,7 +65,13 @@ pub fn read_expects(document: &Document, path: &str, asked: Asked, problems: &mu
 }
 
 /// One expectation; `None` when it cannot be read, which is then among the problems.
-pub(super) fn one(v: View, path: &str, asked: Asked, exact: Exact, problems: &mut Vec<Problem>) -> Option<Expect> {
+pub(super) fn one(
+    v: View,
+    path: &str,
+    asked: Asked,
+    exact: Exact,
+    problems: &mut Vec<Problem>,
+) -> Option<Expect> {
     let what = v.text("what")?;
     let order = order(v, &what, path, asked, problems).ok()?;
     let norm = v.choice("norm").unwrap_or(if order.is_some() { Norm::Rms } else { Norm::Max });
@@ -98,9 +110,16 @@ pub(super) fn one(v: View, path: &str, asked: Asked, exact: Exact, problems: &mu
 struct Told;
 
 /// The order that is asked for, if one is.
-fn order(v: View, what: &str, path: &str, asked: Asked, problems: &mut Vec<Problem>) -> Result<Option<OrderOf>, Told> {
+fn order(
+    v: View,
+    what: &str,
+    path: &str,
+    asked: Asked,
+    problems: &mut Vec<Problem>,
+) -> Result<Option<OrderOf>, Told> {
     let given: Vec<_> = ["of", "against", "where", "exact"].into_iter().filter(|k| v.has(k)).collect();
-    let mut wrong = |what: String, why: &str, help: &str| problems.push(Problem::new(path, what, why, help).at_key());
+    let mut wrong =
+        |what: String, why: &str, help: &str| problems.push(Problem::new(path, what, why, help).at_key());
     match (what == "order", asked, given.as_slice()) {
         (false, _, []) => Ok(None),
         (false, _, [first, ..]) => {
@@ -143,11 +162,16 @@ fn deviation(
     problems: &mut Vec<Problem>,
 ) -> Result<Option<Deviation>, Told> {
     if !v.has("formula") {
-        if let Some(key) = ["norm", "scale"].into_iter().find(|k| v.has(k) && !(*k == "norm" && v.has("of"))) {
-            let (why, help) =
-                ("it says how the deviation from a formula is measured", "add `formula = \"…\"` or leave it out");
-            problems
-                .push(Problem::new(format!("{path}.{key}"), format!("`{key}` without `formula`"), why, help).at_key());
+        if let Some(key) = ["norm", "scale"].into_iter().find(|k| v.has(k) && !(*k == "norm" && v.has("of")))
+        {
+            let (why, help) = (
+                "it says how the deviation from a formula is measured",
+                "add `formula = \"…\"` or leave it out",
+            );
+            problems.push(
+                Problem::new(format!("{path}.{key}"), format!("`{key}` without `formula`"), why, help)
+                    .at_key(),
+            );
         }
         return Ok(None);
     }
@@ -187,8 +211,12 @@ fn bound(v: View, deviation: bool, path: &str, problems: &mut Vec<Problem>) -> O
     let keys = ["value", "tolerance", "relative", "at_most", "at_least"];
     let given: Vec<_> = keys.into_iter().filter(|k| v.has(k)).collect();
     Some(match given.as_slice() {
-        ["value", "tolerance"] => Bound::Near { value: v.number("value")?, tolerance: v.number("tolerance")? },
-        ["value", "relative"] => Bound::Relative { value: v.number("value")?, relative: v.number("relative")? },
+        ["value", "tolerance"] => {
+            Bound::Near { value: v.number("value")?, tolerance: v.number("tolerance")? }
+        }
+        ["value", "relative"] => {
+            Bound::Relative { value: v.number("value")?, relative: v.number("relative")? }
+        }
         ["tolerance"] if deviation => Bound::AtMost(v.number("tolerance")?),
         ["at_most"] => Bound::AtMost(v.number("at_most")?),
         ["at_least"] => Bound::AtLeast(v.number("at_least")?),
@@ -196,7 +224,8 @@ fn bound(v: View, deviation: bool, path: &str, problems: &mut Vec<Problem>) -> O
             let misspelt = v.table.0.iter().any(|e| !v.keys.iter().any(|k| k.name == e.key));
             if !misspelt {
                 let what = "the expectation does not set one bound";
-                let why = format!("it has {}", if given.is_empty() { "none".into() } else { given.join(", ") });
+                let why =
+                    format!("it has {}", if given.is_empty() { "none".into() } else { given.join(", ") });
                 let help = "give `value` and `tolerance`, or `value` and `relative`, or `at_most`, or `at_least`; with a formula `tolerance` is enough";
                 problems.push(Problem::new(path, what, why, help).at_key());
             }

@@ -1,5 +1,6 @@
-//! A case file read, checked and resolved: text to numbers, every default filled in, every name still a name, every mistake with its
-//! place. What `manifest.json` records and `resume` reads back. Knows nothing of mechanics.
+//! A case file read, checked and resolved: text to numbers, every default filled in, every name
+//! still a name, every mistake with its place. What `manifest.json` records and `resume` reads
+//! back. Knows nothing of mechanics.
 
 mod check;
 mod columns;
@@ -37,7 +38,7 @@ pub use read::{read, read_scheme};
 pub use schema::{changes, expectation, schema};
 pub use spec::{
     ActiveSetRule, BodySpec, Case, ContactLaw, ContactSpec, Detection, Enforcement, ForceTime, FormulaSpec,
-    InitialSpec, Law, LoadKind, LoadSpec, MassKind, MaterialSpec, MeshSpec, NewtonSpec, OutputSpec, Persistency,
-    PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec, Quantity, RefineSpec, SchemeSpec, SupportSpec, TableSpec,
-    TangentRule, TimeSpec, Units, Velocities,
+    InitialSpec, Law, LoadKind, LoadSpec, MassKind, MaterialSpec, MeshSpec, NewtonSpec, OutputSpec,
+    Persistency, PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec, Quantity, RefineSpec, SchemeSpec,
+    SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
 };

@@ -23,8 +23,13 @@ pub(super) fn read(v: View, folder: &Path, path: &str, problems: &mut Vec<Proble
             let what = format!("the load does not say one force and its place: it has {had} and {where_}");
             let help = "give `on` with `traction` or `pressure`, or `body` with `body_force`";
             problems.push(
-                Problem::new(path, what, "a traction and a pressure act on sides, a body force in a body", help)
-                    .at_key(),
+                Problem::new(
+                    path,
+                    what,
+                    "a traction and a pressure act on sides, a body force in a body",
+                    help,
+                )
+                .at_key(),
             );
         }
         return None;
@@ -91,7 +96,10 @@ pub(super) fn velocity(
     let about = numbers("about")?;
     let [u, w, a, b] = [linear[0], linear[1], about[0], about[1]];
     let text = |text: String| FormulaSpec::Text(text);
-    Some(vec![text(format!("{u:?} - {angular:?}*(Y - {b:?})")), text(format!("{w:?} + {angular:?}*(X - {a:?})"))])
+    Some(vec![
+        text(format!("{u:?} - {angular:?}*(Y - {b:?})")),
+        text(format!("{w:?} + {angular:?}*(X - {a:?})")),
+    ])
 }
 
 /// Variables of a load's formulas in a space of this dimension.

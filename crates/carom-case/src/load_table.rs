@@ -1,4 +1,5 @@
-//! A table of amplitudes: a CSV file with the columns `t` and `value`, others ignored. Every mistake is told with its file and line.
+//! A table of amplitudes: a CSV file with the columns `t` and `value`, others ignored. Every
+//! mistake is told with its file and line.
 
 use std::path::Path;
 
@@ -24,8 +25,11 @@ pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, String> {
             _ => format!("{name}{line}: {error}"),
         }
     };
-    let mut reader =
-        csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_path(path).map_err(refused)?;
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_path(path)
+        .map_err(refused)?;
     let headers = reader.headers().map_err(refused)?.clone();
     let column = |wanted: &str| {
         headers.iter().position(|h| h == wanted).ok_or_else(|| {
@@ -90,6 +94,8 @@ mod tests {
         ] {
             assert_eq!(table(text).unwrap_err(), message);
         }
-        assert!(read(Path::new("nowhere/b.csv"), "b.csv").unwrap_err().contains("there is no file nowhere/b.csv"));
+        assert!(
+            read(Path::new("nowhere/b.csv"), "b.csv").unwrap_err().contains("there is no file nowhere/b.csv")
+        );
     }
 }

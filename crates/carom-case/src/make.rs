@@ -1,4 +1,5 @@
-//! The mesh of a body: made by its shape or read from its file, and put where the case has it. A new built-in shape is one line here.
+//! The mesh of a body: made by its shape or read from its file, and put where the case has it. A
+//! new built-in shape is one line here.
 
 use carom_solid::Mesh;
 use carom_solid::generate::{self, Refinement};
@@ -13,12 +14,22 @@ impl BodySpec {
     /// Why there is none, in words.
     pub fn make_mesh(&self, dimension: usize) -> Result<Mesh, String> {
         let mut mesh = match self.mesh {
-            MeshSpec::File { ref file, ref surface, ref hash, .. } => mesh_file::mesh(file, dimension, surface, hash)?,
-            MeshSpec::Interval { .. } if dimension != 1 => return Err("shape \"interval\" needs dimension = 1".into()),
-            MeshSpec::Interval { min, max, cells } => said(generate::interval(self.element, min, max, cells))?,
+            MeshSpec::File { ref file, ref surface, ref hash, .. } => {
+                mesh_file::mesh(file, dimension, surface, hash)?
+            }
+            MeshSpec::Interval { .. } if dimension != 1 => {
+                return Err("shape \"interval\" needs dimension = 1".into());
+            }
+            MeshSpec::Interval { min, max, cells } => {
+                said(generate::interval(self.element, min, max, cells))?
+            }
             _ if dimension != 2 => return Err("this shape needs dimension = 2".into()),
-            MeshSpec::Rectangle { min, max, cells } => said(generate::rectangle(self.element, min, max, cells))?,
-            MeshSpec::Disc { radius, center, size } => said(generate::disc(self.element, radius, center, size))?,
+            MeshSpec::Rectangle { min, max, cells } => {
+                said(generate::rectangle(self.element, min, max, cells))?
+            }
+            MeshSpec::Disc { radius, center, size } => {
+                said(generate::disc(self.element, radius, center, size))?
+            }
             MeshSpec::HalfDisc { radius, center, size } => {
                 said(generate::half_disc(self.element, radius, center, size))?
             }
@@ -27,7 +38,12 @@ impl BodySpec {
             }
             MeshSpec::Polygon { ref points, size, ref refine } => {
                 let place = |r: &RefineSpec| Refinement { near: r.near, radius: r.radius, size: r.size };
-                said(generate::polygon(self.element, points, size, &refine.iter().map(place).collect::<Vec<_>>()))?
+                said(generate::polygon(
+                    self.element,
+                    points,
+                    size,
+                    &refine.iter().map(place).collect::<Vec<_>>(),
+                ))?
             }
         };
         if let Some(place) = &self.place {

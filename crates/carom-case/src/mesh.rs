@@ -31,7 +31,8 @@ pub(super) fn read(
     if wanted != dimension {
         let what = format!("the shape \"{shape}\" is of dimension {wanted}");
         let why = format!("the case has dimension = {dimension}");
-        let help = if dimension == 1 { "use shape = \"interval\"" } else { "use for example shape = \"rectangle\"" };
+        let help =
+            if dimension == 1 { "use shape = \"interval\"" } else { "use for example shape = \"rectangle\"" };
         problems.push(Problem::new(format!("{path}.shape"), what, why, help));
         return None;
     }
@@ -74,7 +75,8 @@ pub(super) fn read(
 
 /// A polygon whose outline can be filled.
 fn polygon(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<MeshSpec> {
-    let pair = |node: &Node| node.list()?.iter().map(Node::number).collect::<Option<Vec<_>>>()?.try_into().ok();
+    let pair =
+        |node: &Node| node.list()?.iter().map(Node::number).collect::<Option<Vec<_>>>()?.try_into().ok();
     let points: Vec<[f64; 2]> = v.value("points")?.list()?.iter().map(pair).collect::<Option<_>>()?;
     let tables = v.table.get("refine").map_or(Some(&[][..]), Node::list)?;
     let refine = tables.iter().map(|node| {
@@ -86,7 +88,12 @@ fn polygon(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<MeshSpec>
     let refine = refine.collect::<Option<_>>()?;
     if let Err(error) = generate::outline(&points) {
         let why = "a polygon is one closed line that does not meet itself";
-        problems.push(Problem::new(format!("{path}.points"), error.to_string(), why, "list its corners in order"));
+        problems.push(Problem::new(
+            format!("{path}.points"),
+            error.to_string(),
+            why,
+            "list its corners in order",
+        ));
         return None;
     }
     Some(MeshSpec::Polygon { points, size: v.number("size")?, refine })
@@ -100,14 +107,17 @@ fn rectangle_cells(
     problems: &mut Vec<Problem>,
 ) -> Option<[usize; 2]> {
     match (v.has("cells"), v.has("size")) {
-        (true, false) => v.value("cells")?.list()?.iter().map(Node::count).collect::<Option<Vec<_>>>()?.try_into().ok(),
+        (true, false) => {
+            v.value("cells")?.list()?.iter().map(Node::count).collect::<Option<Vec<_>>>()?.try_into().ok()
+        }
         (false, true) => {
             let size = v.number("size").filter(|size| *size > 0.0)?;
             fitting(size, ("longer side", (max[0] - min[0]).max(max[1] - min[1])), path, problems)?;
             Some([0, 1].map(|i| ((max[i] - min[i]) / size - 1e-9).ceil().max(1.0) as usize))
         }
         (both, _) => {
-            let misspelt = v.table.0.iter().any(|e| e.key != "shape" && !v.keys.iter().any(|k| k.name == e.key));
+            let misspelt =
+                v.table.0.iter().any(|e| e.key != "shape" && !v.keys.iter().any(|k| k.name == e.key));
             if both || !misspelt {
                 let what = if both {
                     "a rectangle has `cells` or `size`, not both"

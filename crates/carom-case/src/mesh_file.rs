@@ -1,5 +1,6 @@
-//! A mesh from a .msh file. It is read when the case is, so that what is wrong with it stands under the key that named it; the resolved
-//! case keeps its hash, so that a run never goes on with another mesh than it began with.
+//! A mesh from a .msh file. It is read when the case is, so that what is wrong with it stands under
+//! the key that named it; the resolved case keeps its hash, so that a run never goes on with
+//! another mesh than it began with.
 
 use std::path::Path;
 
@@ -29,7 +30,13 @@ struct Facts {
 impl From<Mesh> for Facts {
     fn from(mesh: Mesh) -> Self {
         let (nodes, cells) = (mesh.nodes.len(), mesh.cell_count());
-        Self { element: mesh.element, nodes, cells, sides: mesh.sides.into_keys().collect(), repairs: mesh.repairs }
+        Self {
+            element: mesh.element,
+            nodes,
+            cells,
+            sides: mesh.sides.into_keys().collect(),
+            repairs: mesh.repairs,
+        }
     }
 }
 
@@ -70,8 +77,11 @@ pub(super) fn read(
     };
     if let Some(element) = element.filter(|e| *e != facts.element && e.dimension() == dimension) {
         let what = format!("\"{surface}\" of {name} has {:?} cells, not {element:?}", facts.element);
-        let help =
-            format!("write element = \"{:?}\", or set Mesh.ElementOrder = {} in Gmsh", facts.element, element.degree());
+        let help = format!(
+            "write element = \"{:?}\", or set Mesh.ElementOrder = {} in Gmsh",
+            facts.element,
+            element.degree()
+        );
         return wrong("surface", what, "the element of a body is that of its mesh".into(), &help);
     }
     let hash = blake3::hash(&bytes).to_hex().to_string();
@@ -113,7 +123,8 @@ fn unchanged(file: &Path, hash: &str) -> Result<Vec<u8>, String> {
 }
 
 impl MeshSpec {
-    /// Whether the mesh is still the one the case was resolved with: that its file is there and unchanged.
+    /// Whether the mesh is still the one the case was resolved with: that its file is there and
+    /// unchanged.
     ///
     /// # Errors
     /// In words, with the file's name.

@@ -1,5 +1,6 @@
-//! `--set key=value`: one value of the case replaced before it is read. Keys are dotted paths; a table of a list is addressed by its
-//! name (`body.cylinder.element=T6`); values are TOML, and a bare word that is no TOML is a text.
+//! `--set key=value`: one value of the case replaced before it is read. Keys are dotted paths; a
+//! table of a list is addressed by its name (`body.cylinder.element=T6`); values are TOML, and a
+//! bare word that is no TOML is a text.
 
 use super::problem::Diagnostic;
 use super::suggest;
@@ -16,7 +17,12 @@ pub(super) fn apply(root: &mut Node, set: &str, source: usize) -> Result<(), Box
         return Err(wrong(0..set.len(), "there is no `=`".to_owned(), why, example.to_owned()));
     };
     let keys = toml_edit::Key::parse(key).map_err(|e| {
-        wrong(0..key.len(), "this is not a key".to_owned(), e.message().trim().replace('\n', "; "), example.to_owned())
+        wrong(
+            0..key.len(),
+            "this is not a key".to_owned(),
+            e.message().trim().replace('\n', "; "),
+            example.to_owned(),
+        )
     })?;
     let new = value_of(value, key.len() + 1, set, source)?;
     let here = Origin { source, span: 0..key.len() };
@@ -30,13 +36,18 @@ pub(super) fn apply(root: &mut Node, set: &str, source: usize) -> Result<(), Box
             Value::List(list) => {
                 let names: Vec<String> =
                     list.iter().filter_map(|n| Some(n.table()?.get("name")?.text()?.to_owned())).collect();
-                let found = list.iter_mut().find(|n| n.table().and_then(|t| t.get("name")?.text()) == Some(key));
+                let found =
+                    list.iter_mut().find(|n| n.table().and_then(|t| t.get("name")?.text()) == Some(key));
                 found.ok_or_else(|| {
                     let list = keys[..depth].iter().map(toml_edit::Key::get).collect::<Vec<_>>().join(".");
-                    let why =
-                        format!("the names are: {}", if names.is_empty() { "none".into() } else { names.join(", ") });
-                    let help = suggest::nearest(key, names.iter().map(String::as_str))
-                        .map_or_else(|| "name one of them".to_owned(), |name| format!("did you mean `{list}.{name}`?"));
+                    let why = format!(
+                        "the names are: {}",
+                        if names.is_empty() { "none".into() } else { names.join(", ") }
+                    );
+                    let help = suggest::nearest(key, names.iter().map(String::as_str)).map_or_else(
+                        || "name one of them".to_owned(),
+                        |name| format!("did you mean `{list}.{name}`?"),
+                    );
                     wrong(here.span.clone(), format!("no `{list}` is named `{key}`"), why, help)
                 })?
             }

@@ -1,4 +1,5 @@
-//! Where a body is put: x ↦ about + R(x − about) + shift, read from `place` and applied to the mesh before anything else sees it.
+//! Where a body is put: x ↦ about + R(x − about) + shift, read from `place` and applied to the mesh
+//! before anything else sees it.
 
 use carom_solid::Mesh;
 
@@ -11,7 +12,12 @@ pub(super) fn read(v: View, dimension: usize, path: &str, problems: &mut Vec<Pro
     let rotate = v.number("rotate")?;
     if dimension == 1 && rotate != 0.0 {
         let (what, why) = ("a bar cannot be turned", "the case has dimension = 1");
-        problems.push(Problem::new(format!("{path}.rotate"), what, why, "leave it out, or use `shift` alone"));
+        problems.push(Problem::new(
+            format!("{path}.rotate"),
+            what,
+            why,
+            "leave it out, or use `shift` alone",
+        ));
         return None;
     }
     let vector = |name| if v.has(name) { v.numbers(name) } else { Some(vec![0.0; dimension]) };
@@ -65,14 +71,17 @@ mod tests {
             let r = (mesh.nodes[n][0] - center[0]).hypot(mesh.nodes[n][1] - center[1]);
             assert!((r - 0.5).abs() < 1e-14);
         }
-        let length = |m: &Mesh, a: usize| (m.nodes[a][0] - m.nodes[0][0]).hypot(m.nodes[a][1] - m.nodes[0][1]);
+        let length =
+            |m: &Mesh, a: usize| (m.nodes[a][0] - m.nodes[0][0]).hypot(m.nodes[a][1] - m.nodes[0][1]);
         assert!((1..made.nodes.len()).all(|a| (length(&made, a) - length(&mesh, a)).abs() < 1e-14));
     }
 
     #[test]
     fn right_angles_are_exact() {
         let made = generate::rectangle(Element::T3, [0.0, 0.0], [0.3, 0.1], [3, 1]).unwrap();
-        for (rotate, ends) in [(90.0, [-0.1, 0.3]), (-180.0, [-0.3, -0.1]), (630.0, [0.1, -0.3]), (720.0, [0.3, 0.1])] {
+        for (rotate, ends) in
+            [(90.0, [-0.1, 0.3]), (-180.0, [-0.3, -0.1]), (630.0, [0.1, -0.3]), (720.0, [0.3, 0.1])]
+        {
             let mut mesh = made.clone();
             PlaceSpec { rotate, about: vec![0.0; 2], shift: vec![0.0; 2] }.apply(&mut mesh);
             assert!(mesh.nodes.iter().any(|x| x == ends), "{rotate}");

@@ -27,7 +27,14 @@ impl Problem {
         why: impl Into<String>,
         help: impl Into<String>,
     ) -> Self {
-        Self { path: path.into(), at_key: false, within: None, what: what.into(), why: why.into(), help: help.into() }
+        Self {
+            path: path.into(),
+            at_key: false,
+            within: None,
+            what: what.into(),
+            why: why.into(),
+            help: help.into(),
+        }
     }
 
     /// The same problem, pointing at the key instead of its value.
@@ -66,7 +73,12 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// A diagnostic about a file as a whole.
-    pub fn of_file(file: &str, what: impl Into<String>, why: impl Into<String>, help: impl Into<String>) -> Self {
+    pub fn of_file(
+        file: &str,
+        what: impl Into<String>,
+        why: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Self {
         let (what, why, help) = (what.into(), why.into(), help.into());
         Self { file: file.to_owned(), line: 0, column: 0, quoted: String::new(), length: 1, what, why, help }
     }
@@ -93,8 +105,7 @@ impl Diagnostic {
     /// A diagnostic for text that is not TOML.
     pub(super) fn of_syntax(file: &str, text: &str, error: &toml_edit::TomlError) -> Self {
         let cause = error.message().trim().replace('\n', "; ");
-        let help =
-            "see https://toml.io for how TOML is written: text in quotes, lists in [ ], tables in { } on one line";
+        let help = "see https://toml.io for how TOML is written: text in quotes, lists in [ ], tables in { } on one line";
         let message = ["this is not TOML".to_owned(), cause, help.to_owned()];
         Self::at(file, text, error.span().unwrap_or(0..0), message)
     }
@@ -111,8 +122,12 @@ impl fmt::Display for Diagnostic {
             write!(f, "{}: {}", self.file, self.what)?;
         } else {
             // Tabs keep their width under the caret.
-            let pad: String =
-                self.quoted.chars().take(self.column - 1).map(|c| if c == '\t' { '\t' } else { ' ' }).collect();
+            let pad: String = self
+                .quoted
+                .chars()
+                .take(self.column - 1)
+                .map(|c| if c == '\t' { '\t' } else { ' ' })
+                .collect();
             writeln!(f, "{}:{}:{}: {}", self.file, self.line, self.column, self.what)?;
             writeln!(f, "  {}", self.quoted)?;
             write!(f, "  {pad}{}", "^".repeat(self.length))?;

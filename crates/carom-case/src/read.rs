@@ -1,4 +1,5 @@
-//! Document → case: every table read with its defaults; what concerns one table alone is checked here, the rest in `check`.
+//! Document → case: every table read with its defaults; what concerns one table alone is checked
+//! here, the rest in `check`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,8 +20,8 @@ use super::suggest;
 use super::tree::{Entry, Node, Table};
 use super::view::{View, word};
 use super::{
-    BodySpec, Case, ContactSpec, InitialSpec, MaterialSpec, NewtonSpec, OutputSpec, Persistency, Preset, PrimarySpec,
-    ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
+    BodySpec, Case, ContactSpec, InitialSpec, MaterialSpec, NewtonSpec, OutputSpec, Persistency, Preset,
+    PrimarySpec, ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
 };
 
 /// Reads a case; on failure all problems that can be found in one pass.
@@ -47,8 +48,9 @@ pub fn read(document: &Document) -> Result<Case, Vec<Problem>> {
     let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
     draft.bodies = reader.each("body", |v, path| body(v, reader.dimension?, folder, path, &mut problems));
     draft.loads = reader.each("load", |v, path| load::read(v, folder, path, &mut problems));
-    draft.expects =
-        reader.each("expect", |v, path| expect::one(v, path, Asked::OfARun, Exact::Of(&draft.exact), &mut problems));
+    draft.expects = reader.each("expect", |v, path| {
+        expect::one(v, path, Asked::OfARun, Exact::Of(&draft.exact), &mut problems)
+    });
     check::problems(document, &draft, &mut problems);
     if !problems.is_empty() {
         return Err(problems);
@@ -68,7 +70,10 @@ impl<'a> Reader<'a> {
     fn of(document: &'a Document) -> Self {
         let root = View { table: document.root(), keys: keys::CASE.keys, preset: Preset::Default };
         let preset = root.choice("preset").unwrap_or(Preset::Default);
-        Self { root: View { preset, ..root }, dimension: root.count("dimension").filter(|d| (1..=2).contains(d)) }
+        Self {
+            root: View { preset, ..root },
+            dimension: root.count("dimension").filter(|d| (1..=2).contains(d)),
+        }
     }
 
     fn spec(name: &str) -> &'static [keys::Key] {
@@ -87,8 +92,9 @@ impl<'a> Reader<'a> {
 
     fn each<T>(&self, name: &str, mut read: impl FnMut(View<'a>, &str) -> Option<T>) -> Vec<Option<T>> {
         let list = self.root.table.get(name).and_then(Node::list).unwrap_or(&[]);
-        let view =
-            |node: &'a Node| Some(View { table: node.table()?, keys: Self::spec(name), preset: self.root.preset });
+        let view = |node: &'a Node| {
+            Some(View { table: node.table()?, keys: Self::spec(name), preset: self.root.preset })
+        };
         list.iter().enumerate().map(|(i, node)| read(view(node)?, &format!("{name}[{i}]"))).collect()
     }
 
@@ -97,14 +103,18 @@ impl<'a> Reader<'a> {
         let table = self.root.table.get("exact").and_then(Node::table);
         let formula = |entry: &Entry| {
             let node = &entry.node;
-            Some((entry.key.clone(), node.text().map(str::to_owned).or_else(|| Some(node.number()?.to_string()))?))
+            Some((
+                entry.key.clone(),
+                node.text().map(str::to_owned).or_else(|| Some(node.number()?.to_string()))?,
+            ))
         };
         table.into_iter().flat_map(|t| &t.0).filter_map(formula).collect()
     }
 
     fn case(&self, document: &Document, draft: Draft, folder: &Path) -> Option<Case> {
         let dimension = draft.dimension?;
-        let stem = std::path::Path::new(document.name()).file_stem().map(|s| s.to_string_lossy().into_owned());
+        let stem =
+            std::path::Path::new(document.name()).file_stem().map(|s| s.to_string_lossy().into_owned());
         let units = self.one("units")?;
         let mut bodies: Vec<BodySpec> = all(draft.bodies)?;
         for body in &mut bodies {
@@ -124,14 +134,22 @@ impl<'a> Reader<'a> {
             dimension,
             plane: self.root.choice("plane")?,
             thickness: self.root.number("thickness")?,
-            units: Units { length: units.text("length")?, time: units.text("time")?, mass: units.text("mass")? },
+            units: Units {
+                length: units.text("length")?,
+                time: units.text("time")?,
+                mass: units.text("mass")?,
+            },
             preset: self.root.preset,
             materials: all(draft.materials)?,
             bodies,
             supports: all(draft.supports)?,
             loads: all(draft.loads)?,
             initial: self.root.has("initial").then(|| initial(self.one("initial")?, folder)).flatten(),
-            manufactured: self.root.has("manufactured").then(|| self.one("manufactured")?.formulas("y")).flatten(),
+            manufactured: self
+                .root
+                .has("manufactured")
+                .then(|| self.one("manufactured")?.formulas("y"))
+                .flatten(),
             contacts,
             time,
             newton: newton(self.one("newton")?)?,
@@ -163,8 +181,10 @@ fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<Material
                 let had = if given.is_empty() { "none of them".to_owned() } else { given.join(", ") };
                 let what = format!("the elastic constants are not one pair: {had}");
                 let help = "give `lambda` and `mu`, or `young` and `poisson`";
-                problems
-                    .push(Problem::new(path, what, "an isotropic material has two elastic constants", help).at_key());
+                problems.push(
+                    Problem::new(path, what, "an isotropic material has two elastic constants", help)
+                        .at_key(),
+                );
             }
             return None;
         }
@@ -178,7 +198,13 @@ fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<Material
     Some(MaterialSpec { name: name?, law: law?, density: density?, lambda, mu })
 }
 
-fn body(v: View, dimension: usize, folder: &Path, path: &str, problems: &mut Vec<Problem>) -> Option<BodySpec> {
+fn body(
+    v: View,
+    dimension: usize,
+    folder: &Path,
+    path: &str,
+    problems: &mut Vec<Problem>,
+) -> Option<BodySpec> {
     let shape = v.value("mesh")?;
     let mesh = mesh::read(
         shape.table()?,
@@ -196,7 +222,8 @@ fn body(v: View, dimension: usize, folder: &Path, path: &str, problems: &mut Vec
         mesh,
         place: match v.table.get("place") {
             Some(node) => {
-                let Some(Kind::Table(spec)) = v.keys.iter().find(|k| k.name == "place").map(|k| k.kind) else {
+                let Some(Kind::Table(spec)) = v.keys.iter().find(|k| k.name == "place").map(|k| k.kind)
+                else {
                     return None;
                 };
                 let v = View { table: node.table()?, keys: spec.keys, preset: v.preset };
@@ -267,8 +294,11 @@ fn scheme(table: &Table, preset: Preset, path: &str, problems: &mut Vec<Problem>
     let v = View { table, keys: keys::schemes().table(kind)?.keys, preset };
     let numbers = v.keys.iter().filter(|k| matches!(k.kind, Kind::Number(_)));
     let parameters = numbers.filter_map(|k| Some((k.name.to_owned(), v.number(k.name)?))).collect();
-    let forces =
-        if v.keys.iter().any(|k| k.name == "forces") { v.choice("forces")? } else { carom_time::ForceRule::default() };
+    let forces = if v.keys.iter().any(|k| k.name == "forces") {
+        v.choice("forces")?
+    } else {
+        carom_time::ForceRule::default()
+    };
     let spec = SchemeSpec { kind: kind.to_owned(), parameters, forces };
     if let Err(error) = spec.integrator()
         && !problems.iter().any(|p| p.path.starts_with(path))
@@ -289,7 +319,8 @@ fn scheme(table: &Table, preset: Preset, path: &str, problems: &mut Vec<Problem>
 /// A scheme by its kind and parameters `key=value`, as `carom explain` takes them.
 pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, CaseError> {
     let line = |parameter: &String| {
-        let (key, value) = parameter.split_once('=').map_or((parameter.trim(), ""), |(k, v)| (k.trim(), v.trim()));
+        let (key, value) =
+            parameter.split_once('=').map_or((parameter.trim(), ""), |(k, v)| (k.trim(), v.trim()));
         let word = key == "forces" && !value.starts_with('"');
         if word { format!("{key} = {}", toml_edit::Value::from(value)) } else { format!("{key} = {value}") }
     };

@@ -12,7 +12,8 @@ pub fn schema() -> Value {
     Value::Object(schema)
 }
 
-/// Schemas of the values that an override may set, by a pattern of its key: `time.step`, `body.NAME.element`.
+/// Schemas of the values that an override may set, by a pattern of its key: `time.step`,
+/// `body.NAME.element`.
 pub fn changes() -> Map<String, Value> {
     let mut found = Vec::new();
     paths(&CASE, "^", &mut found);
@@ -99,16 +100,21 @@ fn values(kind: &Kind) -> Map<String, Value> {
         Kind::Choices(words) => json!({ "type": "array", "minItems": 1, "items": { "enum": words } }),
         Kind::Number(range) => Value::Object(number(range)),
         Kind::NumberOrFalse(range) => json!({ "oneOf": [number(range), { "const": false }] }),
-        Kind::ByColumn => json!({ "type": "object", "additionalProperties": { "type": ["number", "string"] } }),
+        Kind::ByColumn => {
+            json!({ "type": "object", "additionalProperties": { "type": ["number", "string"] } })
+        }
         Kind::Truth => json!({ "type": "boolean" }),
         Kind::Count(least) => json!({ "type": "integer", "minimum": least }),
         Kind::Counts(least) => {
             json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "integer", "minimum": least } })
         }
-        Kind::Vector => json!({ "type": "array", "minItems": 1, "maxItems": 2, "items": { "type": "number" } }),
+        Kind::Vector => {
+            json!({ "type": "array", "minItems": 1, "maxItems": 2, "items": { "type": "number" } })
+        }
         Kind::Numbers => json!({ "type": "array", "items": { "type": "number" } }),
         Kind::Points(least) => {
-            let point = json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "number" } });
+            let point =
+                json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "number" } });
             json!({ "type": "array", "minItems": least, "items": point })
         }
         Kind::Formula(_) => formula(),
@@ -161,9 +167,9 @@ fn json_of(toml: &str) -> Option<Value> {
             Toml::Flag(flag) => json!(flag),
             Toml::Date(date) => json!(date),
             Toml::List(list) => Value::Array(list.iter().map(value).collect::<Option<_>>()?),
-            Toml::Table(table) => {
-                Value::Object(table.0.iter().map(|e| Some((e.key.clone(), value(&e.node)?))).collect::<Option<_>>()?)
-            }
+            Toml::Table(table) => Value::Object(
+                table.0.iter().map(|e| Some((e.key.clone(), value(&e.node)?))).collect::<Option<_>>()?,
+            ),
         })
     }
     let parsed = toml_edit::Document::parse(format!("v = {toml}")).ok()?;
@@ -196,7 +202,13 @@ mod tests {
     fn defaults_and_examples_are_toml() {
         visit(&CASE, &mut |spec, key| {
             let nested = matches!(key.kind, Kind::Table(_) | Kind::Tables(_));
-            assert!(nested || json_of(key.example).is_some(), "{} {}: {:?}", spec.name, key.name, key.example);
+            assert!(
+                nested || json_of(key.example).is_some(),
+                "{} {}: {:?}",
+                spec.name,
+                key.name,
+                key.example
+            );
             assert!(key.paper.is_none_or(|toml| json_of(toml).is_some()), "{} {}", spec.name, key.name);
             assert!(key.doc.ends_with('.'), "{} {}", spec.name, key.name);
         });
@@ -210,12 +222,19 @@ mod tests {
         assert_eq!(schema["additionalProperties"], json!(false));
         assert_eq!(schema["required"], json!(["dimension", "material", "body", "time"]));
         let scheme = &schema["properties"]["time"]["properties"]["scheme"];
-        let kinds: Vec<_> =
-            scheme["oneOf"].as_array().unwrap().iter().map(|s| s["properties"]["kind"]["const"].clone()).collect();
+        let kinds: Vec<_> = scheme["oneOf"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|s| s["properties"]["kind"]["const"].clone())
+            .collect();
         assert_eq!(kinds.len(), carom_time::KINDS.len());
         assert_eq!(scheme["oneOf"][4]["properties"]["rho_inf"]["maximum"], json!(1.0));
         let density = &schema["properties"]["material"]["items"]["properties"]["density"];
         assert_eq!(density["minimum"], json!(0.0));
-        assert_eq!(schema["properties"]["contact"]["items"]["properties"]["persistency"]["default"], json!("project"));
+        assert_eq!(
+            schema["properties"]["contact"]["items"]["properties"]["persistency"]["default"],
+            json!("project")
+        );
     }
 }

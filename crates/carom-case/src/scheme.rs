@@ -1,4 +1,5 @@
-//! A scheme by its name in the case: a kernel of implicit stages, or a scheme with a contact law of its own.
+//! A scheme by its name in the case: a kernel of implicit stages, or a scheme with a contact law of
+//! its own.
 
 use carom_time::{Integrator, Kernel, Nonsmooth, STATIC, SchemeError};
 
@@ -34,7 +35,8 @@ impl SchemeSpec {
         self.integrator().is_ok_and(|integrator| integrator.alpha().is_some())
     }
 
-    /// Whether its internal forces are a discrete gradient that conserves energy: springs of contact then do so too.
+    /// Whether its internal forces are a discrete gradient that conserves energy: springs of
+    /// contact then do so too.
     pub fn conserves(&self) -> bool {
         self.kind == ENERGY_MOMENTUM
     }
@@ -52,7 +54,8 @@ impl SchemeSpec {
         matches!(self.nonsmooth(), Some(Nonsmooth::Explicit(_)))
     }
 
-    /// The scheme as a list of implicit stages; `None` where it cannot be used or contact is not a force in their balance.
+    /// The scheme as a list of implicit stages; `None` where it cannot be used or contact is not a
+    /// force in their balance.
     pub fn kernel(&self) -> Option<Box<dyn Kernel>> {
         self.integrator().ok()?.into_kernel()
     }

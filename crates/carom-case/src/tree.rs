@@ -1,4 +1,5 @@
-//! A TOML value that knows where each of its parts was written: byte spans into one of the document's sources.
+//! A TOML value that knows where each of its parts was written: byte spans into one of the
+//! document's sources.
 
 use std::ops::Range;
 
@@ -108,7 +109,8 @@ impl Node {
     }
 }
 
-/// Takes over what `toml_edit` parsed; `shift` is subtracted from its spans (text put in front of an override's value).
+/// Takes over what `toml_edit` parsed; `shift` is subtracted from its spans (text put in front of
+/// an override's value).
 pub(super) fn node(item: &Item, source: usize, shift: isize, fallback: &Range<usize>) -> Node {
     let span = item.span().map_or_else(|| fallback.clone(), |span| shifted(&span, shift));
     let value = match item {
@@ -117,7 +119,10 @@ pub(super) fn node(item: &Item, source: usize, shift: isize, fallback: &Range<us
         Item::ArrayOfTables(tables) => {
             let one = |table: &toml_edit::Table| {
                 let span = table.span().map_or_else(|| span.clone(), |span| shifted(&span, shift));
-                Node { value: Value::Table(self::table(table, source, shift, &span)), origin: Origin { source, span } }
+                Node {
+                    value: Value::Table(self::table(table, source, shift, &span)),
+                    origin: Origin { source, span },
+                }
             };
             Value::List(tables.iter().map(one).collect())
         }

@@ -1,4 +1,5 @@
-//! Typed values of one table, its defaults filled in. A value that is absent or of the wrong type is `None`: `conform` has said so.
+//! Typed values of one table, its defaults filled in. A value that is absent or of the wrong type
+//! is `None`: `conform` has said so.
 
 use std::borrow::Cow;
 
@@ -77,5 +78,7 @@ pub(super) fn word<T: DeserializeOwned>(word: &str) -> Option<T> {
 
 /// A number or a text as a formula.
 pub(super) fn formula(node: &Node) -> Option<FormulaSpec> {
-    node.number().map(FormulaSpec::Number).or_else(|| node.text().map(|text| FormulaSpec::Text(text.to_owned())))
+    node.number()
+        .map(FormulaSpec::Number)
+        .or_else(|| node.text().map(|text| FormulaSpec::Text(text.to_owned())))
 }

@@ -1,10 +1,12 @@
-//! What a case may do but is seldom meant: said by `check` and `run`, in the manifest, in the log and on the page; nothing is refused.
+//! What a case may do but is seldom meant: said by `check` and `run`, in the manifest, in the log
+//! and on the page; nothing is refused.
 
 use carom_solid::Element;
 
 use super::{Case, Plane};
 
-/// Poisson's ratio above which straight triangles of degree 1 lock: at 0.45 the bulk modulus is ten times the shear modulus.
+/// Poisson's ratio above which straight triangles of degree 1 lock: at 0.45 the bulk modulus is ten
+/// times the shear modulus.
 const LOCKING: f64 = 0.45;
 
 impl Case {

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use crate::exit::Failure;
 
-/// The directory of a new run, not made yet: `--out`, or `runs/NAME`, `runs/NAME-2`, … after the case file's name.
+/// The directory of a new run, not made yet: `--out`, or `runs/NAME`, `runs/NAME-2`, … after the
+/// case file's name.
 pub(crate) fn of_run(case: &Path, out: Option<&Path>) -> Result<PathBuf, Failure> {
     if let Some(out) = out {
         return if out.exists() {

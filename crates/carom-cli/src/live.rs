@@ -1,4 +1,5 @@
-//! What is seen while a simulation runs: a line on a terminal's standard error, or events on standard output. And Ctrl-C.
+//! What is seen while a simulation runs: a line on a terminal's standard error, or events on
+//! standard output. And Ctrl-C.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::Arc;

@@ -193,7 +193,12 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
         wall: done.wall,
         extremes: extremes(&run),
         expectations: expectations
-            .map(|e| Expectation { what: e.what.clone(), wanted: e.expected.clone(), got: e.got, met: e.pass })
+            .map(|e| Expectation {
+                what: e.what.clone(),
+                wanted: e.expected.clone(),
+                got: e.got,
+                met: e.pass,
+            })
             .collect(),
         profile: if options.profile { profile(&run.manifest) } else { Vec::new() },
         report: page,
@@ -204,7 +209,8 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
 /// Wall seconds by phase in the order of a step, then all of them, and processor time.
 fn profile(manifest: &carom_record::Manifest) -> Vec<(String, f64)> {
     let phases = manifest.phases().into_iter().map(|(name, _, seconds)| (name.to_owned(), seconds));
-    let sums = ["total", "cpu"].into_iter().filter_map(|name| Some((name.to_owned(), *manifest.timings.get(name)?)));
+    let sums =
+        ["total", "cpu"].into_iter().filter_map(|name| Some((name.to_owned(), *manifest.timings.get(name)?)));
     phases.chain(sums).collect()
 }
 
@@ -228,7 +234,8 @@ fn stopped_help(reason: &carom::Stopped) -> String {
 /// Smallest and largest value of every probe's column.
 fn extremes(run: &carom_record::Run) -> Vec<Extreme> {
     let probes = run.manifest.case["probes"].as_array().cloned().unwrap_or_default();
-    let names: Vec<String> = probes.iter().filter_map(|p| Some(format!("{}.", p["name"].as_str()?))).collect();
+    let names: Vec<String> =
+        probes.iter().filter_map(|p| Some(format!("{}.", p["name"].as_str()?))).collect();
     let of_probe = |name: &str| names.iter().any(|n| name.starts_with(n.as_str()));
     let columns = run.manifest.columns.iter().filter(|c| of_probe(&c.name));
     columns
@@ -260,7 +267,8 @@ fn model_facts(case: &Case) -> Result<Facts, Vec<carom::case::Problem>> {
         return Err(problems);
     }
     let explicit = case.time.scheme.is_explicit();
-    let stable_step = explicit.then(|| carom::stability::stable_step(&model)).flatten().map(|stable| stable.power);
+    let stable_step =
+        explicit.then(|| carom::stability::stable_step(&model)).flatten().map(|stable| stable.power);
     let mut transit = f64::INFINITY;
     let mut bodies = Vec::new();
     for (part, spec) in model.parts.iter().zip(&case.bodies) {

@@ -14,7 +14,8 @@ struct Event<'a> {
     outcome: &'a Outcome,
 }
 
-/// Tells the outcome on standard output; a missed expectation is told, not punished. A run that stopped is an event, too.
+/// Tells the outcome on standard output; a missed expectation is told, not punished. A run that
+/// stopped is an event, too.
 pub(crate) fn tell(done: Result<Outcome, Failure>, json: bool) -> Result<Exit, Failure> {
     if json && let Err(Failure::Stopped { reason, directory, .. }) = &done {
         out::event(&serde_json::json!({ "event": "stopped", "reason": reason, "directory": directory }))?;
@@ -58,7 +59,9 @@ fn text(outcome: &Outcome) -> String {
     if outcome.interrupted {
         lines.push(format!("stopped by Ctrl-C; go on with: carom resume {directory}"));
     }
-    lines.push(outcome.report.as_ref().map_or_else(|| directory.to_string(), |page| page.display().to_string()));
+    lines.push(
+        outcome.report.as_ref().map_or_else(|| directory.to_string(), |page| page.display().to_string()),
+    );
     lines.join("\n")
 }
 

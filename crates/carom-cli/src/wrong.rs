@@ -17,7 +17,9 @@ pub(crate) fn tell(failure: &Failure) -> Exit {
             let kept = format!("the last good state is kept in {}", directory.display());
             plain(&failure.to_string(), &[("note", &kept), ("try", help)])
         }
-        Failure::Case(CaseError::Refused { .. }) | Failure::Refused { .. } => plain(&failure.to_string(), &[]),
+        Failure::Case(CaseError::Refused { .. }) | Failure::Refused { .. } => {
+            plain(&failure.to_string(), &[])
+        }
     };
     // Nobody is left to tell if standard error is closed.
     let _ = writeln!(io::stderr().lock(), "{text}");
@@ -33,10 +35,15 @@ fn rendered(found: &Diagnostic) -> String {
     let place: Element = if found.line == 0 {
         Origin::path(found.file.as_str()).into()
     } else {
-        let byte = |column: usize| found.quoted.char_indices().nth(column).map_or(found.quoted.len(), |(i, _)| i);
+        let byte =
+            |column: usize| found.quoted.char_indices().nth(column).map_or(found.quoted.len(), |(i, _)| i);
         let span = byte(found.column - 1)..byte(found.column - 1 + found.length);
         let here = AnnotationKind::Primary.span(span);
-        Snippet::source(found.quoted.as_str()).path(found.file.as_str()).line_start(found.line).annotation(here).into()
+        Snippet::source(found.quoted.as_str())
+            .path(found.file.as_str())
+            .line_start(found.line)
+            .annotation(here)
+            .into()
     };
     let mut group = Group::with_title(Level::ERROR.primary_title(found.what.as_str())).element(place);
     for (level, text) in

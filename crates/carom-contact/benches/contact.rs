@@ -1,5 +1,5 @@
-//! Search and gaps of contact with facets: an arc of secondary nodes, a part of which has just come through a flat side of linear, quadratic or
-//! cubic facets.
+//! Search and gaps of contact with facets: an arc of secondary nodes, a part of which has just come
+//! through a flat side of linear, quadratic or cubic facets.
 //!
 //!     cargo bench -p carom-contact            times
 //!     bench/instructions.py carom-contact     instructions

@@ -1,8 +1,10 @@
 //! Which pairs hold their gap at zero: g ≥ 0, λ ≤ 0, λ g = 0 (eq. 12 as a complementarity).
 //!
-//! Primal–dual active set: a pair is active in the next iteration where λ + c g < 0. With λ = 0 on open pairs and g = 0 on closed ones this is
-//! "activate where g < 0, release where λ > 0", whatever c > 0. Sets that were visited before are remembered: when the iteration comes back to one, changes
-//! wait until Newton has converged, and when it comes back again, only the worst pair changes at a time.
+//! Primal–dual active set: a pair is active in the next iteration where λ + c g < 0. With λ = 0 on
+//! open pairs and g = 0 on closed ones this is "activate where g < 0, release where λ > 0",
+//! whatever c > 0. Sets that were visited before are remembered: when the iteration comes back to
+//! one, changes wait until Newton has converged, and when it comes back again, only the worst pair
+//! changes at a time.
 
 use std::collections::HashSet;
 
@@ -18,7 +20,8 @@ pub struct Contender {
     pub gap: f64,
     /// Multiplier.
     pub lambda: f64,
-    /// Force that stands for one unit of gap (diagonal of the stage's tangent): makes gaps and multipliers comparable.
+    /// Force that stands for one unit of gap (diagonal of the stage's tangent): makes gaps and
+    /// multipliers comparable.
     pub stiffness: f64,
 }
 
@@ -47,7 +50,8 @@ pub struct Cycle {
 }
 
 impl ActiveSet {
-    /// `gap_tolerance`: penetration that still counts as touching. `within`: changes are allowed before Newton has converged.
+    /// `gap_tolerance`: penetration that still counts as touching. `within`: changes are allowed
+    /// before Newton has converged.
     pub fn new(gap_tolerance: f64, within: bool) -> Self {
         let caution = if within { Caution::EveryIteration } else { Caution::AfterConvergence };
         Self { visited: HashSet::new(), caution, gap_tolerance }
@@ -58,7 +62,8 @@ impl ActiveSet {
         self.caution == Caution::OneAtATime
     }
 
-    /// Places of the pairs that are to change, given the state of an iteration. Empty where the set holds, or must not change yet.
+    /// Places of the pairs that are to change, given the state of an iteration. Empty where the set
+    /// holds, or must not change yet.
     pub fn changes(&mut self, pairs: &[Contender], converged: bool) -> Result<Vec<usize>, Cycle> {
         if self.caution > Caution::EveryIteration && !converged {
             return Ok(Vec::new());

@@ -1,4 +1,5 @@
-//! Contact: surfaces, search, gaps and their derivatives, laws, active sets. A function of positions; time and matrices are elsewhere.
+//! Contact: surfaces, search, gaps and their derivatives, laws, active sets. A function of
+//! positions; time and matrices are elsewhere.
 
 mod active_set;
 pub mod interface;

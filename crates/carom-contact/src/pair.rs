@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-/// One secondary node against one facet of the primary side: where it touches, and with what history.
+/// One secondary node against one facet of the primary side: where it touches, and with what
+/// history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
     /// Place of the secondary node in [`Kinematics::secondary`](crate::Kinematics::secondary).
@@ -17,7 +18,8 @@ pub struct Pair {
     pub active: bool,
     /// Multiplier λ ≤ 0; zero unless active.
     pub lambda: f64,
-    /// Gap at the step's start as an energy-conserving penalty counts it: carried, since Δg = ∇g·Δy at the middle holds to second order only.
+    /// Gap at the step's start as an energy-conserving penalty counts it: carried, since Δg = ∇g·Δy
+    /// at the middle holds to second order only.
     pub start: Option<f64>,
 }
 
@@ -28,7 +30,8 @@ impl Pair {
     }
 }
 
-/// How far around a facet's path a node is watched, as a share of the path's size: before it touches, and as far as facets are extrapolated.
+/// How far around a facet's path a node is watched, as a share of the path's size: before it
+/// touches, and as far as facets are extrapolated.
 const WATCHED: f64 = 0.35;
 /// The same for who asks only what touches within the step.
 const NEAR: f64 = 0.01;
@@ -50,12 +53,14 @@ impl Pairing {
         Self { pairs, margin: WATCHED, left: BTreeMap::new() }
     }
 
-    /// The same for an explicit step, which cannot go further than it looks: only nodes that may touch within it are watched.
+    /// The same for an explicit step, which cannot go further than it looks: only nodes that may
+    /// touch within it are watched.
     pub fn near(pairs: Vec<Pair>) -> Self {
         Self { margin: NEAR, ..Self::new(pairs) }
     }
 
-    /// Forgets the open pairs and which facets were left: what is found afresh depends on positions alone.
+    /// Forgets the open pairs and which facets were left: what is found afresh depends on positions
+    /// alone.
     pub fn restart(&mut self) {
         self.pairs.retain(|pair| pair.active);
         self.left.clear();
@@ -100,7 +105,8 @@ pub enum PairEvent {
 /// Why a gap has no usable value.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ContactError {
-    /// The node is as far behind the facet as the facet's radius of curvature: no unique closest point.
+    /// The node is as far behind the facet as the facet's radius of curvature: no unique closest
+    /// point.
     #[error(
         "secondary node {node} has no unique closest point on primary facet {facet}: a = J² − gκ = {a:.3e} ≤ 0 at ξ = {xi:.3}"
     )]

@@ -1,5 +1,5 @@
-//! Positions of all nodes as contact reads them: padded with zeros to the plane, so that the end of a bar and a
-//! curved side are one code.
+//! Positions of all nodes as contact reads them: padded with zeros to the plane, so that the end of
+//! a bar and a curved side are one code.
 
 use carom_algebra::Vector;
 

@@ -1,7 +1,8 @@
-//! Gaps with their gradients: one row per constraint over the nodes it depends on, in compressed rows.
+//! Gaps with their gradients: one row per constraint over the nodes it depends on, in compressed
+//! rows.
 //!
-//! A gap g(y) is a frame-indifferent scalar, g < 0 penetrates. The force of a traction λ ≤ 0 on it is λ ∇g:
-//! balance of force and moment follows from that alone.
+//! A gap g(y) is a frame-indifferent scalar, g < 0 penetrates. The force of a traction λ ≤ 0 on it
+//! is λ ∇g: balance of force and moment follows from that alone.
 
 /// Rows of constraints, all of one dimension.
 #[derive(Clone, Debug)]
@@ -50,7 +51,8 @@ impl Rows {
         self.gradients.clear();
     }
 
-    /// Adds a row from its nodes with their ∂g/∂y, of which as many components count as there are dimensions.
+    /// Adds a row from its nodes with their ∂g/∂y, of which as many components count as there are
+    /// dimensions.
     pub fn push<const P: usize>(&mut self, gap: f64, nodes: impl IntoIterator<Item = (usize, [f64; P])>) {
         self.gaps.push(gap);
         for (node, gradient) in nodes {

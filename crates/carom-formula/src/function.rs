@@ -1,4 +1,5 @@
-//! The functions and constants a formula may name, and their derivatives. A new one is one line in [`Function::NAMES`] and one in each `match`.
+//! The functions and constants a formula may name, and their derivatives. A new one is one line in
+//! [`Function::NAMES`] and one in each `match`.
 
 use crate::jet::Number;
 
@@ -56,7 +57,8 @@ impl Function {
         ("if", Self::If, 3),
     ];
 
-    /// A function of one argument. At a kink (|0|, a jump of sign or floor) the derivative is that of the right-hand branch.
+    /// A function of one argument. At a kink (|0|, a jump of sign or floor) the derivative is that
+    /// of the right-hand branch.
     pub(crate) fn of<N: Number>(self, argument: N) -> N {
         let x = argument.value();
         let jumps = |value| argument.map(value, || [0.0; 2]);
@@ -94,7 +96,8 @@ impl Function {
         }
     }
 
-    /// A function of two arguments. `mod(a, b)` = a − b⌊a/b⌋ has the sign of b; `atan2(y, x)` is the angle of (x, y).
+    /// A function of two arguments. `mod(a, b)` = a − b⌊a/b⌋ has the sign of b; `atan2(y, x)` is
+    /// the angle of (x, y).
     pub(crate) fn of_two<N: Number>(self, a: N, b: N) -> N {
         let (x, y) = (a.value(), b.value());
         match self {
@@ -112,14 +115,17 @@ fn inverse_sine(x: f64) -> [f64; 2] {
     [s, x * s * s * s]
 }
 
-/// The angle of (x, y): away from the axis at hand it differs by a constant from an arctangent, which has the derivatives.
+/// The angle of (x, y): away from the axis at hand it differs by a constant from an arctangent,
+/// which has the derivatives.
 fn angle<N: Number>(y: N, x: N) -> N {
     let value = y.value().atan2(x.value());
-    let branch = if x.value().abs() > y.value().abs() { Function::Atan.of(y / x) } else { -Function::Atan.of(x / y) };
+    let branch =
+        if x.value().abs() > y.value().abs() { Function::Atan.of(y / x) } else { -Function::Atan.of(x / y) };
     branch.map(value, || [1.0, 0.0])
 }
 
-/// Base to the power of exponent. A constant exponent allows a negative base (where it is whole), and 0⁰ = 1.
+/// Base to the power of exponent. A constant exponent allows a negative base (where it is whole),
+/// and 0⁰ = 1.
 pub(crate) fn power<N: Number>(base: N, exponent: N) -> N {
     let (x, n) = (base.value(), exponent.value());
     let value = if n.fract() == 0.0 && n.abs() <= 64.0 { x.powi(n as i32) } else { x.powf(n) };

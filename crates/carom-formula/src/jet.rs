@@ -1,10 +1,12 @@
-//! Numbers a formula is evaluated in: plain ones, and second-order jets (x, ẋ, ẍ) that carry their derivatives along,
+//! Numbers a formula is evaluated in: plain ones, and second-order jets (x, ẋ, ẍ) that carry their
+//! derivatives along,
 //!
 //! ```text
 //! h(x)˙ = h′ẋ,   h(x)¨ = h″ẋ² + h′ẍ,   (xy)¨ = ẍy + 2ẋẏ + xÿ
 //! ```
 //!
-//! exact to round-off: forward-mode differentiation (A. Griewank, A. Walther, *Evaluating Derivatives*, 2nd ed., SIAM 2008, ch. 13).
+//! exact to round-off: forward-mode differentiation (A. Griewank, A. Walther, *Evaluating
+//! Derivatives*, 2nd ed., SIAM 2008, ch. 13).
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -12,11 +12,14 @@
 //! # Ok::<(), carom_formula::FormulaError>(())
 //! ```
 //!
-//! Operators, weakest first: `||`, `&&`, `< <= > >= == !=` (1 if true, 0 if not), `+ -`, `* /`, signs, `^` (from the right: `-2^2` is −4,
-//! `2^-1` is ½). Functions: sin cos tan asin acos atan sinh cosh tanh exp ln sqrt abs sign floor, `min(a, b)`, `max(a, b)`, `mod(a, b)` =
-//! a − b⌊a/b⌋, `atan2(y, x)`, `if(condition, then, else)`, of which only the branch taken is evaluated. Constant: `pi`.
+//! Operators, weakest first: `||`, `&&`, `< <= > >= == !=` (1 if true, 0 if not), `+ -`, `* /`,
+//! signs, `^` (from the right: `-2^2` is −4, `2^-1` is ½). Functions: sin cos tan asin acos atan
+//! sinh cosh tanh exp ln sqrt abs sign floor, `min(a, b)`, `max(a, b)`, `mod(a, b)` = a − b⌊a/b⌋,
+//! `atan2(y, x)`, `if(condition, then, else)`, of which only the branch taken is evaluated.
+//! Constant: `pi`.
 //!
-//! A value may be infinite or not a number (`1/t` at 0): whoever evaluates knows the place and the time, and refuses it with them.
+//! A value may be infinite or not a number (`1/t` at 0): whoever evaluates knows the place and the
+//! time, and refuses it with them.
 
 mod error;
 mod function;
@@ -42,7 +45,8 @@ impl Formula {
     /// Reads a formula in these variables.
     ///
     /// # Errors
-    /// Anything that is no formula, unknown names, wrong numbers of arguments: with the place in the text.
+    /// Anything that is no formula, unknown names, wrong numbers of arguments: with the place in
+    /// the text.
     pub fn parse(text: &str, variables: &[&str]) -> Result<Self, FormulaError> {
         let tree = parse::tree(text, variables)?;
         Ok(Self { text: text.to_owned(), variables: variables.iter().map(|&v| v.to_owned()).collect(), tree })
@@ -63,7 +67,8 @@ impl Formula {
         self.variables.iter().position(|v| v == variable).is_some_and(|k| self.tree.mentions(k))
     }
 
-    /// Value where the variables, in the order they were given to [`Self::parse`], have these values.
+    /// Value where the variables, in the order they were given to [`Self::parse`], have these
+    /// values.
     ///
     /// # Panics
     /// With fewer values than variables.
@@ -71,8 +76,8 @@ impl Formula {
         self.tree.evaluate(&|k| values[k])
     }
 
-    /// Value, first and second derivative with respect to variable number `variable`. At a kink (`min`, `abs`, `if`) the derivatives are those of
-    /// the branch taken.
+    /// Value, first and second derivative with respect to variable number `variable`. At a kink
+    /// (`min`, `abs`, `if`) the derivatives are those of the branch taken.
     ///
     /// # Panics
     /// With fewer values than variables.
@@ -81,8 +86,8 @@ impl Formula {
         self.tree.evaluate(&|k| Jet([values[k], slope(k), 0.0])).0
     }
 
-    /// Value, gradient and second derivatives (row-major) with respect to the first `n` variables, by derivatives along directions:
-    /// ∂²f/∂x∂y = ½ (f″ along (1, 1) − ∂²f/∂x² − ∂²f/∂y²).
+    /// Value, gradient and second derivatives (row-major) with respect to the first `n` variables,
+    /// by derivatives along directions: ∂²f/∂x∂y = ½ (f″ along (1, 1) − ∂²f/∂x² − ∂²f/∂y²).
     ///
     /// ```
     /// let f = carom_formula::Formula::parse("X^2*Y + 3*X*t", &["X", "Y", "t"])?;

@@ -1,4 +1,5 @@
-//! From text to a formula's operations: the grammar `formula.pest` by pest, precedences by its Pratt parser, names and arguments here.
+//! From text to a formula's operations: the grammar `formula.pest` by pest, precedences by its
+//! Pratt parser, names and arguments here.
 
 use pest::Parser;
 use pest::error::{ErrorVariant, InputLocation};
@@ -38,7 +39,8 @@ pub(crate) fn tree(text: &str, variables: &[&str]) -> Result<Tree, FormulaError>
     refuse_deep(text)?;
     let mut pairs = Grammar::parse(Rule::formula, text).map_err(|error| syntax(text, &error))?;
     let formula = pairs.next().and_then(|formula| formula.into_inner().next());
-    formula.map_or_else(|| Err(wrong("the formula is empty", 0..text.len())), |pair| expression(pair, variables))
+    formula
+        .map_or_else(|| Err(wrong("the formula is empty", 0..text.len())), |pair| expression(pair, variables))
 }
 
 fn wrong(message: impl Into<String>, at: std::ops::Range<usize>) -> FormulaError {
@@ -73,7 +75,8 @@ fn syntax(text: &str, error: &pest::error::Error<Rule>) -> FormulaError {
         ErrorVariant::ParsingError { positives, .. } => positives,
         ErrorVariant::CustomError { .. } => &[],
     };
-    let operand = expected.iter().any(|r| matches!(r, Rule::number | Rule::name | Rule::expression | Rule::call));
+    let operand =
+        expected.iter().any(|r| matches!(r, Rule::number | Rule::name | Rule::expression | Rule::call));
     let wanted = if operand { "a number, a variable or a function" } else { "an operator" };
     let unclosed = text[..at].matches('(').count() > text[..at].matches(')').count();
     let or_parenthesis = if unclosed && !operand { " or a closing parenthesis" } else { "" };
@@ -81,8 +84,12 @@ fn syntax(text: &str, error: &pest::error::Error<Rule>) -> FormulaError {
         None if text.trim().is_empty() => wrong("the formula is empty", 0..text.len()),
         None => wrong(format!("the formula ends where {wanted}{or_parenthesis} is expected"), at..at),
         Some(')') if !operand && !unclosed => wrong("this parenthesis was never opened", at..at + 1),
-        Some('*') if operand && text[..at].ends_with('*') => wrong("a power is written ^, not **", at - 1..at + 1),
-        Some(c) => wrong(format!("`{c}` stands where {wanted}{or_parenthesis} is expected"), at..at + c.len_utf8()),
+        Some('*') if operand && text[..at].ends_with('*') => {
+            wrong("a power is written ^, not **", at - 1..at + 1)
+        }
+        Some(c) => {
+            wrong(format!("`{c}` stands where {wanted}{or_parenthesis} is expected"), at..at + c.len_utf8())
+        }
     }
 }
 
@@ -164,8 +171,10 @@ fn call(pair: Pair<Rule>, variables: &[&str]) -> Result<Tree, FormulaError> {
             return Err(wrong(format!("`{name}` is not a function: write `{name}*(`"), at));
         }
         let names: Vec<&str> = Function::NAMES.iter().map(|(name, ..)| *name).collect();
-        let hint = nearest(name, &names)
-            .map_or_else(|| format!("known are {}", names.join(", ")), |near| format!("did you mean `{near}`?"));
+        let hint = nearest(name, &names).map_or_else(
+            || format!("known are {}", names.join(", ")),
+            |near| format!("did you mean `{near}`?"),
+        );
         return Err(wrong(format!("there is no function `{name}`: {hint}"), at));
     };
     let arguments = inner.map(|a| expression(a, variables)).collect::<Result<Vec<_>, _>>()?;
@@ -175,7 +184,9 @@ fn call(pair: Pair<Rule>, variables: &[&str]) -> Result<Tree, FormulaError> {
         wrong(format!("`{name}` takes {count} argument{s}, not {got}"), whole.clone())
     };
     match count {
-        1 => <[Tree; 1]>::try_from(arguments).map_err(arguments_wrong).map(|[a]| Tree::One(function, Box::new(a))),
+        1 => <[Tree; 1]>::try_from(arguments)
+            .map_err(arguments_wrong)
+            .map(|[a]| Tree::One(function, Box::new(a))),
         2 => arguments.try_into().map_err(arguments_wrong).map(|pair| Tree::Two(function, Box::new(pair))),
         _ => arguments.try_into().map_err(arguments_wrong).map(|three| Tree::Choice(Box::new(three))),
     }
@@ -184,5 +195,9 @@ fn call(pair: Pair<Rule>, variables: &[&str]) -> Result<Tree, FormulaError> {
 /// The known name nearest to a misspelt one, if near enough to be meant.
 fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     let distance = |known: &str| strsim::damerau_levenshtein(name, known);
-    known.iter().copied().filter(|k| k.len() > 1 && distance(k) <= 1 + k.len() / 4).min_by_key(|k| distance(k))
+    known
+        .iter()
+        .copied()
+        .filter(|k| k.len() > 1 && distance(k) <= 1 + k.len() / 4)
+        .min_by_key(|k| distance(k))
 }

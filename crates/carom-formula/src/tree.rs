@@ -39,7 +39,9 @@ impl Tree {
             Self::Number(value) => N::constant(*value),
             Self::Variable(k) => variable(*k),
             Self::Negative(a) => -a.evaluate(variable),
-            Self::Binary(operator, operands) => operator.of(operands.each_ref().map(|a| a.evaluate(variable))),
+            Self::Binary(operator, operands) => {
+                operator.of(operands.each_ref().map(|a| a.evaluate(variable)))
+            }
             Self::One(function, a) => function.of(a.evaluate(variable)),
             Self::Two(function, operands) => {
                 let [a, b] = operands.each_ref().map(|a| a.evaluate(variable));

@@ -5,13 +5,15 @@
 //!          + b.mass M a_s  + b.internal f_int,s + b.contact f_cont,s − b.external f_ext,s
 //! ```
 //!
-//! with y = y_s + d, a(d) and the weights w (now), b (before) from the stage. The unknown is the increment d: formed from rounded positions, the
-//! acceleration would carry their last digit divided by Δt². A dof without mass has no inertia to average with: its balance holds at s + 1 alone.
-//! f_ext is gravity and the loads at the same time (and, of pressures, positions) as f_int. The residual of a held dof is what its support must
-//! exert.
+//! with y = y_s + d, a(d) and the weights w (now), b (before) from the stage. The unknown is the
+//! increment d: formed from rounded positions, the acceleration would carry their last digit
+//! divided by Δt². A dof without mass has no inertia to average with: its balance holds at s + 1
+//! alone. f_ext is gravity and the loads at the same time (and, of pressures, positions) as f_int.
+//! The residual of a held dof is what its support must exert.
 //!
-//! At dofs that move as a formula says, the acceleration ü is known, and M ü acts on the neighbours like an external force, averaged with α_f. The scheme's
-//! own a is another quantity, late by (α_f − α_m)Δt (Erlicher, Bonaventura, Bursi 2002): ü averaged with α_m in its place costs an order.
+//! At dofs that move as a formula says, the acceleration ü is known, and M ü acts on the neighbours
+//! like an external force, averaged with α_f. The scheme's own a is another quantity, late by (α_f
+//! − α_m)Δt (Erlicher, Bonaventura, Bursi 2002): ü averaged with α_m in its place costs an order.
 
 use carom_time::{Stage, Weights};
 
@@ -36,7 +38,8 @@ pub(crate) fn contact_weights(stage: &Stage, at_the_end: bool) -> (f64, f64) {
     if at_the_end { (1.0, 0.0) } else { (stage.weights.contact, stage.before.contact) }
 }
 
-/// Mean over the step of the known acceleration of a moved dof: the weights are those of external forces.
+/// Mean over the step of the known acceleration of a moved dof: the weights are those of external
+/// forces.
 pub(crate) fn mean_acceleration(stage: &Stage, now: f64, before: f64) -> f64 {
     let (weight, known) = (stage.weights.external, stage.before.external);
     weight * (1.0 - stage.average) * now + (known + weight * stage.average) * before
@@ -61,7 +64,8 @@ pub(crate) fn known_into(model: &Model, stage: &Stage, state: &State, known: &mu
     }
 }
 
-/// r over all dofs. Its norm over the free ones is returned, and the sum of the norms of its terms, the scale it is small against.
+/// r over all dofs. Its norm over the free ones is returned, and the sum of the norms of its terms,
+/// the scale it is small against.
 pub(crate) fn residual_into(
     model: &Model,
     stage: &Stage,

@@ -1,18 +1,19 @@
-//! What the cells of a body contribute: computed by any number of threads, handed over one by one in the order of the cells, so that sums have the same bits
-//! whatever the number of threads.
+//! What the cells of a body contribute: computed by any number of threads, handed over one by one
+//! in the order of the cells, so that sums have the same bits whatever the number of threads.
 
 use carom_algebra::Threads;
 use carom_solid::Inverted;
 
-/// Cells that are computed before they are handed over: enough to share among threads, few enough for their caches.
+/// Cells that are computed before they are handed over: enough to share among threads, few enough
+/// for their caches.
 const BLOCK: usize = 1024;
 /// Cells that a thread takes at once.
 const SHARE: usize = 64;
 /// Cells below which one thread has computed them before another has woken up.
 const FEW: usize = 512;
 
-/// Calls `compute(cell, numbers)` for `count` cells, on all threads, and `add(cell, numbers)` with its results in the order of the cells; what `compute`
-/// returns is added up in that order.
+/// Calls `compute(cell, numbers)` for `count` cells, on all threads, and `add(cell, numbers)` with
+/// its results in the order of the cells; what `compute` returns is added up in that order.
 ///
 /// # Errors
 /// The first cell that is inverted.
@@ -37,7 +38,8 @@ pub(crate) fn for_each(
     let (mut results, mut locals) = (vec![Ok(0.0); size], vec![0.0; size * numbers]);
     for first in (0..count).step_by(BLOCK) {
         let here = BLOCK.min(count - first);
-        let shares = results[..here].chunks_mut(SHARE).zip(locals[..here * numbers].chunks_mut(SHARE * numbers));
+        let shares =
+            results[..here].chunks_mut(SHARE).zip(locals[..here * numbers].chunks_mut(SHARE * numbers));
         threads.for_each(shares, |share, (results, locals)| {
             for (k, (result, local)) in results.iter_mut().zip(locals.chunks_exact_mut(numbers)).enumerate() {
                 *result = compute(first + share * SHARE + k, local);

@@ -1,8 +1,10 @@
 //! The rows of the linear system that pressing contacts give, with what the system needs of them.
 //!
-//! Not every pressing pair is a row: a redundant one would make the system singular, and its residual would not tell. A row counts where its gradient
-//! on free dofs, less what the rows before it say already, leaves something: a node on a symmetry axis keeps both its support and its contact, a corner
-//! node in two contacts at one facet keeps one, whichever contacts and nodes they belong to (Gaussian elimination of the sparse rows).
+//! Not every pressing pair is a row: a redundant one would make the system singular, and its
+//! residual would not tell. A row counts where its gradient on free dofs, less what the rows before
+//! it say already, leaves something: a node on a symmetry axis keeps both its support and its
+//! contact, a corner node in two contacts at one facet keeps one, whichever contacts and nodes they
+//! belong to (Gaussian elimination of the sparse rows).
 
 use std::collections::BTreeMap;
 
@@ -12,7 +14,8 @@ use crate::balance::contact_weights;
 use crate::equations::{Equations, Evaluation};
 use crate::model::Model;
 
-/// What elimination leaves of a row (gradients are of order one) that says nothing new about free dofs.
+/// What elimination leaves of a row (gradients are of order one) that says nothing new about free
+/// dofs.
 const DEPENDENT: f64 = 1e-8;
 
 /// Rows of a linear system.
@@ -44,8 +47,12 @@ impl Constraints {
         }
     }
 
-    /// Rows as constraints of weight 1, without second derivatives: where velocities or accelerations are solved for.
-    pub(crate) fn plain<'a>(dimension: usize, rows: impl IntoIterator<Item = ((usize, usize), Row<'a>)>) -> Self {
+    /// Rows as constraints of weight 1, without second derivatives: where velocities or
+    /// accelerations are solved for.
+    pub(crate) fn plain<'a>(
+        dimension: usize,
+        rows: impl IntoIterator<Item = ((usize, usize), Row<'a>)>,
+    ) -> Self {
         let mut plain = Self::none(dimension);
         for (place, row) in rows {
             plain.places.push(place);
@@ -116,7 +123,9 @@ impl Constraints {
             let stiffness = self.weights[r] / self.compliances[r];
             let slopes = || row.entries().filter_map(|(dof, slope)| Some((model.unknown(dof)?, slope)));
             for (a, slope) in slopes() {
-                slopes().filter(|(b, _)| a >= *b).for_each(|(b, other)| visit(a, b, stiffness * slope * other));
+                slopes()
+                    .filter(|(b, _)| a >= *b)
+                    .for_each(|(b, other)| visit(a, b, stiffness * slope * other));
             }
         }
     }
@@ -160,7 +169,8 @@ pub(crate) fn independent_rows(
     // Which kept row was eliminated by which dof.
     let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
     let independent = |&(k, p): &(usize, usize)| {
-        let mut row: Vec<(usize, f64)> = rows[k].row(p).entries().filter(|(dof, _)| !model.fixed[*dof]).collect();
+        let mut row: Vec<(usize, f64)> =
+            rows[k].row(p).entries().filter(|(dof, _)| !model.fixed[*dof]).collect();
         let mut from = 0;
         // A kept row holds pivots of later ones only: in ascending order each is met once.
         while let Some((r, factor)) = row
@@ -177,8 +187,9 @@ pub(crate) fn independent_rows(
             }
             from = r + 1;
         }
-        let largest =
-            row.iter().fold((0, 0.0_f64), |most, &(dof, x)| if x.abs() > most.1.abs() { (dof, x) } else { most });
+        let largest = row
+            .iter()
+            .fold((0, 0.0_f64), |most, &(dof, x)| if x.abs() > most.1.abs() { (dof, x) } else { most });
         if largest.1.abs() <= DEPENDENT {
             return false;
         }

@@ -1,4 +1,5 @@
-//! Who touches whom in an iterate: pairs found and handed over, the active set of each contact, pairs that nothing can hold.
+//! Who touches whom in an iterate: pairs found and handed over, the active set of each contact,
+//! pairs that nothing can hold.
 
 use carom_contact::{ActiveSet, Contender, Pair, PairEvent, Pairing, Row};
 
@@ -17,14 +18,22 @@ const TOUCHING: f64 = 1e-9;
 
 /// Below this correction, relative to L, facets are handed over before the iteration has converged.
 const CLOSE: f64 = 1e-5;
-/// How often in a solve pairs are handed over as they slide, before corrections are as small as that.
+/// How often in a solve pairs are handed over as they slide, before corrections are as small as
+/// that.
 const FOLLOWS: u32 = 12;
 
 /// Events of pairs, with the place of their contact.
 pub(crate) type Events = Vec<(usize, PairEvent)>;
 
-/// Brings the pairs up to date with motion from `before` to `now`; whether that asks for another solve.
-pub(crate) fn search(model: &Model, before: &[f64], now: &[f64], pairings: &mut [Pairing], found: &mut Events) -> bool {
+/// Brings the pairs up to date with motion from `before` to `now`; whether that asks for another
+/// solve.
+pub(crate) fn search(
+    model: &Model,
+    before: &[f64],
+    now: &[f64],
+    pairings: &mut [Pairing],
+    found: &mut Events,
+) -> bool {
     let (mut changed, mut events) = (false, Vec::new());
     for (k, (contact, pairing)) in model.contacts.iter().zip(pairings).enumerate() {
         changed |= contact.kinematics.search(before, now, pairing, &mut events);
@@ -33,14 +42,16 @@ pub(crate) fn search(model: &Model, before: &[f64], now: &[f64], pairings: &mut 
     changed
 }
 
-/// Before the first load step, lets bodies that supports leave free hold on to what they touch. Whether that is anything.
+/// Before the first load step, lets bodies that supports leave free hold on to what they touch.
+/// Whether that is anything.
 pub(crate) fn hold_on(model: &Model, evaluation: &mut Evaluation) -> bool {
-    if model.unheld.is_empty() || evaluation.pressing().next().is_some() {
+    if model.unconstrained.is_empty() || evaluation.pressing().next().is_some() {
         return false;
     }
     let mut changed = false;
     // A spring holds nothing before it is pressed.
-    let constraints = model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.is_constraint());
+    let constraints =
+        model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.is_constraint());
     for (k, _) in constraints {
         for (pair, row) in evaluation.at.pairings[k].pairs.iter_mut().zip(evaluation.rows[k].iter()) {
             if row.gap <= TOUCHING * model.scale {
@@ -70,7 +81,8 @@ impl ContactUpdate {
         self.sets.iter_mut().for_each(ActiveSet::restart);
     }
 
-    /// Brings active sets and pairs up to date with an iterate; whether one changed. `settled`: all that is left is this question; `step`: the last correction.
+    /// Brings active sets and pairs up to date with an iterate; whether one changed. `settled`: all
+    /// that is left is this question; `step`: the last correction.
     ///
     /// # Errors
     /// A set keeps returning to one visited before.
@@ -88,7 +100,7 @@ impl ContactUpdate {
         let model = equations.model;
         let mut changed = self.change_sets(equations, now, &work.system, settled)?;
         let mut handed_over = false;
-        if !settled && self.follows > 0 && follow(model, now, events) {
+        if !settled && self.follows > 0 && update_facets(model, now, events) {
             self.follows -= 1;
             handed_over = true;
         }
@@ -105,7 +117,8 @@ impl ContactUpdate {
         Ok(changed)
     }
 
-    /// Lets each contact's active set change; a released pair loses its multiplier. Whether one did.
+    /// Lets each contact's active set change; a released pair loses its multiplier. Whether one
+    /// did.
     fn change_sets(
         &mut self,
         equations: &Equations,
@@ -115,7 +128,8 @@ impl ContactUpdate {
     ) -> Result<bool, Rejected> {
         let (model, mut changed) = (equations.model, false);
         // A spring presses or does not by its gap alone.
-        let constraints = model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.is_constraint());
+        let constraints =
+            model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.is_constraint());
         for (k, contact) in constraints {
             let stiffness = system.mean_stiffness(equations);
             let pairs = &mut evaluation.at.pairings[k].pairs;
@@ -125,7 +139,8 @@ impl ContactUpdate {
                 lambda: pair.lambda,
                 stiffness,
             };
-            let contenders: Vec<Contender> = pairs.iter().zip(evaluation.rows[k].iter()).map(contender).collect();
+            let contenders: Vec<Contender> =
+                pairs.iter().zip(evaluation.rows[k].iter()).map(contender).collect();
             let changes = self.sets[k].changes(&contenders, settled).map_err(|cycle| Rejected::Cycle {
                 contact: contact.name.clone(),
                 nodes: cycle.pairs.iter().map(|&p| contact.kinematics.secondary()[pairs[p].node]).collect(),
@@ -138,8 +153,9 @@ impl ContactUpdate {
     }
 }
 
-/// The same for an evaluated iterate: where nothing asks for another solve its pairs stay as they are. Open ones may have come and gone, and the rows at
-/// hand, of which the forces are made, belong to the pairs in their old order.
+/// The same for an evaluated iterate: where nothing asks for another solve its pairs stay as they
+/// are. Open ones may have come and gone, and the rows at hand, of which the forces are made,
+/// belong to the pairs in their old order.
 fn search_again(model: &Model, before: &[f64], evaluation: &mut Evaluation, found: &mut Events) -> bool {
     let pairings = evaluation.at.pairings.clone();
     let changed = search(model, before, &evaluation.y, &mut evaluation.at.pairings, found);
@@ -150,10 +166,10 @@ fn search_again(model: &Model, before: &[f64], evaluation: &mut Evaluation, foun
 }
 
 /// Hands over pairs that slid well past the end of their facet; whether there was one.
-fn follow(model: &Model, evaluation: &mut Evaluation, found: &mut Events) -> bool {
+fn update_facets(model: &Model, evaluation: &mut Evaluation, found: &mut Events) -> bool {
     let (mut changed, mut events) = (false, Vec::new());
     for (k, (contact, pairing)) in model.contacts.iter().zip(&mut evaluation.at.pairings).enumerate() {
-        changed |= contact.kinematics.follow(&evaluation.y, pairing, &mut events);
+        changed |= contact.kinematics.update_facets(&evaluation.y, pairing, &mut events);
         found.extend(events.drain(..).map(|event| (k, event)));
     }
     changed
@@ -174,8 +190,9 @@ pub(crate) fn check_stuck(equations: &Equations, evaluation: &Evaluation) -> Res
 }
 
 impl Iterate {
-    /// The guess of a stage from where the iterate is: positions if the acceleration stayed for `dt`, multipliers as they are, each pair free to change
-    /// facets again. Open pairs are found afresh, so that they depend on positions alone.
+    /// The guess of a stage from where the iterate is: positions if the acceleration stayed for
+    /// `dt`, multipliers as they are, each pair free to change facets again. Open pairs are found
+    /// afresh, so that they depend on positions alone.
     pub(crate) fn predict(&mut self, v: &[f64], a: &[f64], dt: f64) {
         for (increment, (v, a)) in self.increment.iter_mut().zip(v.iter().zip(a)) {
             *increment += dt * (v + 0.5 * dt * a);

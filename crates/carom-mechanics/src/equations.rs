@@ -1,4 +1,5 @@
-//! A stage as a system of equations: the balance of forces and the conditions of the contacts, evaluated at an iterate.
+//! A stage as a system of equations: the balance of forces and the conditions of the contacts,
+//! evaluated at an iterate.
 //!
 //! ```text
 //! r(d, λ) = 0   (balance.rs),   c(d, λ) = 0 for each pressing pair   (carom_contact::Interface)
@@ -36,11 +37,13 @@ impl Iterate {
 /// What an iterate gives.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Evaluation {
-    /// The iterate; contact points are moved to where its positions have them, springs press or do not.
+    /// The iterate; contact points are moved to where its positions have them, springs press or do
+    /// not.
     pub at: Iterate,
     /// y = y_s + d.
     pub y: Vec<f64>,
-    /// Positions that internal forces and loads are taken at; of a discrete gradient, the middle of the step.
+    /// Positions that internal forces and loads are taken at; of a discrete gradient, the middle of
+    /// the step.
     pub place: Vec<f64>,
     /// Forces over all dofs.
     pub forces: Forces,
@@ -125,8 +128,15 @@ impl<'a> Equations<'a> {
     pub(crate) fn new(model: &'a Model, state: &'a State, stage: Stage, to: f64) -> Result<Self, Rejected> {
         let average = stage.average;
         let time = if average == 0.0 { to } else { (1.0 - average) * to + average * state.time };
-        let mut equations =
-            Self { model, state, stage, time, loads: LoadsAt::default(), motions: Vec::new(), known: Vec::new() };
+        let mut equations = Self {
+            model,
+            state,
+            stage,
+            time,
+            loads: LoadsAt::default(),
+            motions: Vec::new(),
+            known: Vec::new(),
+        };
         if !model.loads.is_empty() {
             model.loads.at(&model.parts, model.dofs(), time, &mut equations.loads)?;
         }
@@ -154,7 +164,8 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// Factor of the internal tangent at one position: of a discrete gradient, the end has half of that at the middle.
+    /// Factor of the internal tangent at one position: of a discrete gradient, the end has half of
+    /// that at the middle.
     pub(crate) fn factor_stiffness(&self) -> f64 {
         if self.between() { 0.5 * self.stiffness_factor() } else { self.stiffness_factor() }
     }
@@ -170,8 +181,8 @@ impl<'a> Equations<'a> {
             at: at.to_vec(),
             mass: self.mass_factor(),
             stiffness: self.factor_stiffness(),
-            follower: if self.model.loads.follow() { self.follower_factor() } else { 0.0 },
-            time: if self.model.loads.follow() { self.time } else { 0.0 },
+            follower: if self.model.loads.follow_sides() { self.follower_factor() } else { 0.0 },
+            time: if self.model.loads.follow_sides() { self.time } else { 0.0 },
             boundary: boundary.to_vec(),
         })
     }
@@ -187,7 +198,8 @@ impl<'a> Equations<'a> {
     /// Puts moved dofs where they are to be, to the last digit.
     pub(crate) fn arrive(&self, increment: &mut [f64]) {
         for moved in &self.motions {
-            increment[moved.dof] = self.model.reference[moved.dof] + moved.motion[0] - self.state.y[moved.dof];
+            increment[moved.dof] =
+                self.model.reference[moved.dof] + moved.motion[0] - self.state.y[moved.dof];
         }
     }
 
@@ -239,7 +251,8 @@ impl<'a> Equations<'a> {
         stage.acceleration.value_into(&at.increment, acceleration);
         if !stage.is_static() {
             for moved in &self.motions {
-                // What makes the balance, whose averages are those of the scheme's a, take this mean.
+                // What makes the balance, whose averages are those of the scheme's a, take this
+                // mean.
                 let before = state.a[moved.dof];
                 let mean = mean_acceleration(stage, moved.motion[2], before);
                 acceleration[moved.dof] = (mean - stage.before.mass * before) / stage.weights.mass;
@@ -287,7 +300,8 @@ impl<'a> Equations<'a> {
                     *rows.gap_mut(p) = start + rows.row(p).along(&at.increment);
                 }
                 let row = rows.row(p);
-                let point = Point { node: pair.node, gap: row.gap, start, lambda: pair.lambda, active: pair.active };
+                let point =
+                    Point { node: pair.node, gap: row.gap, start, lambda: pair.lambda, active: pair.active };
                 let answer = contact.interface.respond(&point);
                 (pair.active, pair.lambda) = (answer.active, answer.lambda);
                 if answer.active {
@@ -301,7 +315,8 @@ impl<'a> Equations<'a> {
         Ok(())
     }
 
-    /// ∂r/∂y · `change` of bodies and loads at an iterate, contact apart; exact and not symmetrised.
+    /// ∂r/∂y · `change` of bodies and loads at an iterate, contact apart; exact and not
+    /// symmetrised.
     ///
     /// # Errors
     /// A cell is inverted.
@@ -318,12 +333,13 @@ impl<'a> Equations<'a> {
             .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
         let (mass, stiffness, d) = (self.mass_factor(), self.stiffness_factor(), model.dimension);
         model.mass.add_product(change, mass, stiffness, product);
-        if model.loads.follow() {
+        if model.loads.follow_sides() {
             let factor = self.follower_factor();
             model.loads.each_facet_tangent(d, Some(&self.loads), |nodes, tangent| {
                 let dofs: Vec<usize> = nodes.iter().flat_map(|n| (0..d).map(move |i| n * d + i)).collect();
                 for (dof, row) in dofs.iter().zip(tangent.chunks_exact(dofs.len())) {
-                    product[*dof] -= factor * row.iter().zip(&dofs).map(|(k, other)| k * change[*other]).sum::<f64>();
+                    product[*dof] -=
+                        factor * row.iter().zip(&dofs).map(|(k, other)| k * change[*other]).sum::<f64>();
                 }
             });
         }

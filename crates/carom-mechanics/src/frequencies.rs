@@ -1,12 +1,15 @@
-//! Natural frequencies of a model on its initial tangent: ω² of K x = ω² M x, the lowest that deform it and the highest.
+//! Natural frequencies of a model on its initial tangent: ω² of K x = ω² M x, the lowest that
+//! deform it and the highest.
 //!
 //! ```text
 //! lowest    x ← (K + σM)⁻¹ M x, vector after vector, each kept M-orthogonal to those before (inverse iteration with deflation); σ = 1e-6 ω²_max
 //! highest   x ← M⁻¹ K x (power iteration)
 //! ```
 //!
-//! Rigid motions have ω² below 1e-9 of the highest and are left out. Rayleigh's quotient xᵀKx/xᵀMx gives ω² to twice the digits of x. Where a node has no
-//! mass the highest is infinite; σ then refers to the mean eigenvalue trace(K)/trace(M). Contact is open (Bathe, "Finite element procedures", §11.2).
+//! Rigid motions have ω² below 1e-9 of the highest and are left out. Rayleigh's quotient xᵀKx/xᵀMx
+//! gives ω² to twice the digits of x. Where a node has no mass the highest is infinite; σ then
+//! refers to the mean eigenvalue trace(K)/trace(M). Contact is open (Bathe, "Finite element
+//! procedures", §11.2).
 //!
 //! The spring of a penalty on its node alone, the other side at rest:
 //!
@@ -45,7 +48,8 @@ pub fn frequencies(model: &Model) -> Option<Frequencies> {
     system.assemble(model, &model.reference).ok()?;
     let n = model.free.len();
     let massless = model.free.iter().any(|dof| model.massless[*dof]);
-    let start = |seed: f64| -> Vec<f64> { (0..n).map(|i| ((12.9898 + seed) * (i as f64 + 1.0)).sin()).collect() };
+    let start =
+        |seed: f64| -> Vec<f64> { (0..n).map(|i| ((12.9898 + seed) * (i as f64 + 1.0)).sin()).collect() };
     let highest = if massless { None } else { Some(power(model, &mut system, start(0.0))?) };
     let scale = highest.unwrap_or_else(|| {
         let stiffness: f64 = system.diagonal(0.0, 1.0).sum();
@@ -54,7 +58,7 @@ pub fn frequencies(model: &Model) -> Option<Frequencies> {
     let point = Arc::new(Point { mass: 1e-6 * scale, stiffness: 1.0, ..Point::default() });
     let none = Constraints::none(model.dimension);
     system.factor(model, &point, true).ok()?;
-    system.kept.prepare(model, &none).ok()?;
+    system.factor.prepare(model, &none).ok()?;
     let mut found: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
     let mut lowest = Vec::new();
     for k in 0..VECTORS.min(n) {
@@ -87,9 +91,12 @@ pub fn frequencies(model: &Model) -> Option<Frequencies> {
     Some(Frequencies { lowest, highest: highest.map(f64::sqrt) })
 }
 
-/// Frequency of the stiffest contact spring on its node; none without springs, or where a node has no mass.
+/// Frequency of the stiffest contact spring on its node; none without springs, or where a node has
+/// no mass.
 pub fn spring(model: &Model) -> Option<f64> {
-    if model.contacts.iter().all(|c| c.interface.is_constraint()) || model.free.iter().any(|dof| model.massless[*dof]) {
+    if model.contacts.iter().all(|c| c.interface.is_constraint())
+        || model.free.iter().any(|dof| model.massless[*dof])
+    {
         return None;
     }
     let mut system = System::new(model);
@@ -131,7 +138,7 @@ fn power(model: &Model, system: &mut System, mut x: Vec<f64>) -> Option<f64> {
 fn solved(model: &Model, system: &mut System, right: &[f64]) -> Option<Vec<f64>> {
     let (mut forces, mut answer) = (vec![0.0; model.dofs()], vec![0.0; model.dofs()]);
     model.free.iter().zip(right).for_each(|(dof, f)| forces[*dof] = *f);
-    system.kept.solve(model, &forces, &[], &mut answer, &mut Vec::new()).ok()?;
+    system.factor.solve(model, &forces, &[], &mut answer, &mut Vec::new()).ok()?;
     Some(model.free.iter().map(|dof| answer[*dof]).collect())
 }
 

@@ -1,16 +1,19 @@
-//! Where the energy of a step went (design.md §5): exact for eq. (15), because it uses the same averaged forces.
+//! Where the energy of a step went (design.md §5): exact for eq. (15), because it uses the same
+//! averaged forces.
 //!
 //! ```text
 //! F̄ = (1−α_f) F_{s+1} + α_f F_s,   Δy = y_{s+1} − y_s                    F̄ of other kernels: the mean their velocity update makes, `Stage::mean`
 //! external_work += Δy·F̄_ext (beyond the potential) + Δy_moved·R̄ + Δy/Δt·M J        contact_work += −Δy·F̄_cont
 //! ```
 //!
-//! R̄ is the mean residual of the balance at moved dofs, the force of their supports. J = v_{s+1} − v_s − Δt ā at moved dofs is what their velocities
-//! change beyond their mean acceleration ā: where a motion's velocity jumps, the impulse M J is the support's too, and its work is that of the mean
-//! velocity. Load steps without inertia take the mean of both ends, F̄ = (F_{s+1} + F_s)/2: exact where forces are linear in the displacements.
+//! R̄ is the mean residual of the balance at moved dofs, the force of their supports. J = v_{s+1} −
+//! v_s − Δt ā at moved dofs is what their velocities change beyond their mean acceleration ā: where
+//! a motion's velocity jumps, the impulse M J is the support's too, and its work is that of the
+//! mean velocity. Load steps without inertia take the mean of both ends, F̄ = (F_{s+1} + F_s)/2:
+//! exact where forces are linear in the displacements.
 //!
-//! The increment of the dissipation of the α family then equals (Δy·F̄_int − ΔU) − (γ+α_m−1) Δy·MΔa + Δt² (β−γ/2) Δa·M(a_s + γΔa) to round-off
-//! (Krenk 2006).
+//! The increment of the dissipation of the α family then equals (Δy·F̄_int − ΔU) − (γ+α_m−1) Δy·MΔa
+//! + Δt² (β−γ/2) Δa·M(a_s + γΔa) to round-off (Krenk 2006).
 
 use carom_contact::{Pair, Row, Rows};
 use carom_time::{Stage, Weights};
@@ -21,7 +24,8 @@ use crate::model::Model;
 use crate::state::{Means, Previous, State};
 use crate::sums::dot;
 
-/// Adds what a solved stage gives to the means over the step (cleared before the first stage). `previous`: the step before of a two-step scheme.
+/// Adds what a solved stage gives to the means over the step (cleared before the first stage).
+/// `previous`: the step before of a two-step scheme.
 pub(crate) fn add_stage(
     equations: &Equations,
     solved: &Evaluation,
@@ -32,7 +36,8 @@ pub(crate) fn add_stage(
     let Equations { model, state, stage, .. } = equations;
     let [old, start, now] = stage.mean;
     let before = previous.map(|previous| (old, &previous.means));
-    let contact = Shares { now: now / stage.weights.contact, start, massless: stage.weights.external.recip() };
+    let contact =
+        Shares { now: now / stage.weights.contact, start, massless: stage.weights.external.recip() };
     contact.add(model, stage, &solved.forces.contact, &state.f_contact, &mut means.contact);
     for (k, contact) in model.contacts.iter().enumerate() {
         let (now, start) = if contact.at_the_end { (1.0, 0.0) } else { (now, start) };
@@ -45,7 +50,9 @@ pub(crate) fn add_stage(
         let loads = match averaging(stage) {
             Averaging::BothEnds => Shares { now: 0.5, start: 0.5, massless: 0.5 },
             Averaging::Ends => Shares { now, start, massless: 1.0 },
-            Averaging::Within => Shares { now: stage.weights.external, start: stage.before.external, massless: 1.0 },
+            Averaging::Within => {
+                Shares { now: stage.weights.external, start: stage.before.external, massless: 1.0 }
+            }
         };
         loads.add(model, stage, &solved.forces.loads, &state.f_external, &mut means.loads);
     }
@@ -89,8 +96,8 @@ fn averaging(stage: &Stage) -> Averaging {
     }
 }
 
-/// Shares of a force at the stage's end and at the step's start; at dofs without inertia, where there is nothing to average with, of that at the
-/// step's end.
+/// Shares of a force at the stage's end and at the step's start; at dofs without inertia, where
+/// there is nothing to average with, of that at the step's end.
 struct Shares {
     now: f64,
     start: f64,
@@ -119,7 +126,12 @@ fn add_old(model: &Model, old: f64, before: &Means, means: &mut Means) {
 }
 
 /// Forces and accelerations of the supports that move.
-fn add_supports(equations: &Equations, solved: &Evaluation, before: Option<(f64, &Means)>, means: &mut Means) {
+fn add_supports(
+    equations: &Equations,
+    solved: &Evaluation,
+    before: Option<(f64, &Means)>,
+    means: &mut Means,
+) {
     let Equations { model, state, stage, .. } = equations;
     let (now, start) = match averaging(stage) {
         Averaging::BothEnds => (0.5, 0.5),
@@ -153,8 +165,16 @@ fn add_supports(equations: &Equations, solved: &Evaluation, before: Option<(f64,
     }
 }
 
-/// Books a step into `next`, before any projection: `last` is its last stage, `strain` the bodies' energy at its end.
-pub(crate) fn account(equations: &Equations, last: &Evaluation, next: &mut State, strain: f64, dt: f64, means: &Means) {
+/// Books a step into `next`, before any projection: `last` is its last stage, `strain` the bodies'
+/// energy at its end.
+pub(crate) fn account(
+    equations: &Equations,
+    last: &Evaluation,
+    next: &mut State,
+    strain: f64,
+    dt: f64,
+    means: &Means,
+) {
     let Equations { model, state, .. } = equations;
     let increment = &last.at.increment;
     for (moved, force) in increment.iter().zip(&means.contact) {
@@ -203,8 +223,9 @@ pub fn secondary_force<'a>(pairs: &[Pair], rows: impl Iterator<Item = Row<'a>>) 
     force
 }
 
-/// Δy·ΔF of the loads: the work of the loads at the step's end less that of those at its start. A scheme's mean lies between the two; that of eq. (15)
-/// misses the trapezoidal work by (½ − α_f) Δy·ΔF, though nothing is created. The guard leaves the sum of it open.
+/// Δy·ΔF of the loads: the work of the loads at the step's end less that of those at its start. A
+/// scheme's mean lies between the two; that of eq. (15) misses the trapezoidal work by (½ − α_f)
+/// Δy·ΔF, though nothing is created. The guard leaves the sum of it open.
 pub(crate) fn open_work(state: &State, next: &State, increment: &[f64]) -> f64 {
     let forces = state.f_external.iter().zip(&next.f_external);
     increment.iter().zip(forces).map(|(moved, (before, now))| moved * (now - before)).sum()

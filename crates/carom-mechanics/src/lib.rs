@@ -1,5 +1,6 @@
-//! The mechanics of Carom: a model of bodies, loads and contacts as plain numbers, the balance of forces, and the steppers that
-//! take its state from one time to the next. Knows no case file; the crate `carom` builds models from cases.
+//! The mechanics of Carom: a model of bodies, loads and contacts as plain numbers, the balance of
+//! forces, and the steppers that take its state from one time to the next. Knows no case file; the
+//! crate `carom` builds models from cases.
 
 mod balance;
 mod cells;
@@ -8,7 +9,6 @@ mod contact_update;
 mod equations;
 mod factor;
 pub mod frequencies;
-mod kept_factor;
 mod ledger;
 mod linear_problem;
 mod mixing;
@@ -25,6 +25,7 @@ mod state;
 mod stepper;
 mod sums;
 mod system;
+mod tangent_factor;
 #[cfg(test)]
 mod tangent_tests;
 #[cfg(test)]
@@ -34,11 +35,11 @@ mod workspace;
 
 pub use ledger::secondary_force;
 pub use rejected::Rejected;
-pub use renewal::{Kept, Point};
+pub use renewal::{FrozenTangent, Point};
 pub use settings::{Settings, Tangent};
 pub use simulation::{Grid, GridReport, LogEvent, Simulation, Stopped};
 pub use start::Before;
-pub use state::{Ahead, Halved, Ledger, Means, Previous, State};
+pub use state::{Bisection, HalfStepVelocity, Ledger, Means, Previous, State};
 pub use stepper::{Accepted, Explicit, Implicit, Impulsive, StepReport, Stepper};
 pub use sums::dot;
 pub use timings::Timings;

@@ -1,24 +1,27 @@
-//! The linear problem of a Newton iteration: the tangent applied cell by cell and never formed, the kept factor as preconditioner.
+//! The linear problem of a Newton iteration: the tangent applied cell by cell and never formed, the
+//! kept factor as preconditioner.
 //!
 //! ```text
 //! [ K  Gᵀ ] [Δy]   [−r]       K = w.mass a' M + w.internal K_int − w.external K_ext + Σ w.contact λ∇²g   at the iterate
 //! [ G  −C ] [Δλ] = [−c]
 //! ```
 //!
-//! Each correction is that of the factor for what the ones before leave over; mixed (`mixing.rs`) they are the iterates of GMRES preconditioned from the
-//! left, and the first is the correction that an iteration with the kept factor alone would take: where that is enough, nothing is applied. As long as factor
-//! and rows stay and full steps are taken, what has been learnt serves the next iteration too. K need not be symmetric (pressures that follow, discrete
-//! gradients), nor positive definite.
+//! Each correction is that of the factor for what the ones before leave over; mixed (`mixing.rs`)
+//! they are the iterates of GMRES preconditioned from the left, and the first is the correction
+//! that an iteration with the kept factor alone would take: where that is enough, nothing is
+//! applied. As long as factor and rows stay and full steps are taken, what has been learnt serves
+//! the next iteration too. K need not be symmetric (pressures that follow, discrete gradients), nor
+//! positive definite.
 
 use carom_algebra::LinearError;
 
 use crate::constraints::Constraints;
 use crate::equations::{Equations, Evaluation};
-use crate::kept_factor::KeptFactor;
 use crate::mixing::Mixing;
 use crate::rejected::Rejected;
 use crate::renewal::Renewal;
 use crate::sums::max_abs;
+use crate::tangent_factor::TangentFactor;
 use crate::timings::{Timings, timed};
 
 /// Solves of one linear problem; then what has been found is taken as it is.
@@ -66,13 +69,15 @@ pub(crate) struct LinearProblem {
 }
 
 impl LinearProblem {
-    /// With another factor, other rows, or after a shortened step, the corrections so far say nothing.
+    /// With another factor, other rows, or after a shortened step, the corrections so far say
+    /// nothing.
     pub(crate) fn restart(&mut self) {
         self.comparable = None;
         self.mixing.restart();
     }
 
-    /// Solves to the goal, or until a new factor is due; `depth` earlier corrections are remembered.
+    /// Solves to the goal, or until a new factor is due; `depth` earlier corrections are
+    /// remembered.
     ///
     /// # Errors
     /// A cell is inverted where the tangent is applied, or a solve failed.
@@ -81,7 +86,7 @@ impl LinearProblem {
         equations: &Equations,
         now: &Evaluation,
         rows: &Constraints,
-        factor: &mut KeptFactor,
+        factor: &mut TangentFactor,
         renewal: &mut Renewal,
         goal: Goal,
         depth: usize,
@@ -111,7 +116,8 @@ impl LinearProblem {
         }
     }
 
-    /// Right-hand sides, less what the way that moved supports still have to go brings; that way is in `increment`.
+    /// Right-hand sides, less what the way that moved supports still have to go brings; that way is
+    /// in `increment`.
     fn begin(
         &mut self,
         equations: &Equations,
@@ -139,13 +145,19 @@ impl LinearProblem {
     fn correct(
         &mut self,
         equations: &Equations,
-        factor: &mut KeptFactor,
+        factor: &mut TangentFactor,
         depth: usize,
         total: &mut Correction,
         timings: &mut Timings,
     ) -> Result<(), LinearError> {
         timed(&mut timings.solve, || {
-            factor.solve(equations.model, &self.forces, &self.gaps, &mut self.increment, &mut self.multipliers)
+            factor.solve(
+                equations.model,
+                &self.forces,
+                &self.gaps,
+                &mut self.increment,
+                &mut self.multipliers,
+            )
         })?;
         total.last = max_abs(&self.increment);
         if total.solves == 0 {
@@ -195,7 +207,8 @@ impl LinearProblem {
             row.add_to(-weight * multiplier, &mut self.forces);
             let curvature = rows.curvatures[r].chunks_exact(row.gradient.len());
             for ((dof, _), curved) in row.entries().zip(curvature) {
-                let bent: f64 = curved.iter().zip(row.entries()).map(|(c, (other, _))| c * self.increment[other]).sum();
+                let bent: f64 =
+                    curved.iter().zip(row.entries()).map(|(c, (other, _))| c * self.increment[other]).sum();
                 self.forces[dof] -= weight * bent;
             }
         }

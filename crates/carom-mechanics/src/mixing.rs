@@ -1,12 +1,14 @@
-//! Corrections with an old tangent, accelerated: Anderson's mixing (D. G. Anderson, J. ACM 12 (1965) 547–560; H. F. Walker, P. Ni, SIAM J. Numer. Anal. 49
-//! (2011) 1715–1735). With corrections c(z) at iterates z = (y, λ),
+//! Corrections with an old tangent, accelerated: Anderson's mixing (D. G. Anderson, J. ACM 12
+//! (1965) 547–560; H. F. Walker, P. Ni, SIAM J. Numer. Anal. 49 (2011) 1715–1735). With corrections
+//! c(z) at iterates z = (y, λ),
 //!
 //! ```text
 //! γ = argmin ‖c_k − ΔC γ‖,    z_{k+1} = z_k + c_k − (ΔZ + ΔC) γ
 //! ```
 //!
-//! where the columns of ΔZ and ΔC are the last changes of z and c: what the old tangent gets wrong in the directions gone along is known from them. On a
-//! linear problem this is GMRES preconditioned with the old tangent. The norm is that of the positions.
+//! where the columns of ΔZ and ΔC are the last changes of z and c: what the old tangent gets wrong
+//! in the directions gone along is known from them. On a linear problem this is GMRES
+//! preconditioned with the old tangent. The norm is that of the positions.
 
 use std::collections::VecDeque;
 
@@ -64,14 +66,17 @@ impl Mixing {
             for range in blocks(step.len()) {
                 let step = &mut step[range.clone()];
                 for (share, change) in right.iter().zip(&self.changes) {
-                    step.iter_mut().zip(&change.both[k][range.clone()]).for_each(|(step, both)| *step -= share * both);
+                    step.iter_mut()
+                        .zip(&change.both[k][range.clone()])
+                        .for_each(|(step, both)| *step -= share * both);
                 }
                 self.taken[k][range].copy_from_slice(step);
             }
         }
     }
 
-    /// Remembers a correction and what has changed since the last one; products of the changes with it.
+    /// Remembers a correction and what has changed since the last one; products of the changes with
+    /// it.
     fn take_up(&mut self, correction: &[&mut [f64]; 2], depth: usize) -> Vec<f64> {
         let full = self.changes.len() == depth;
         let oldest = if self.begun && full { self.changes.pop_back() } else { self.spare.pop() };
@@ -123,7 +128,8 @@ fn add(sums: &mut [f64; 2], a: &[f64], b: &[f64], c: &[f64]) {
     sums[1] += dot(a, c);
 }
 
-/// Overwrites the right-hand side of normal equations with their solution, by elimination; unknowns whose direction repeats the earlier ones are zero.
+/// Overwrites the right-hand side of normal equations with their solution, by elimination; unknowns
+/// whose direction repeats the earlier ones are zero.
 fn least_squares(product: impl Fn(usize, usize) -> f64, right: &mut [f64]) {
     let n = right.len();
     let mut matrix: Vec<f64> = (0..n * n).map(|k| product(k / n, k % n)).collect();
@@ -149,8 +155,9 @@ fn least_squares(product: impl Fn(usize, usize) -> f64, right: &mut [f64]) {
 mod tests {
     use super::*;
 
-    /// y = b − Ay with a matrix that contracts by 0.9 at worst: with as many directions as unknowns the solution is reached in one step more (Walker, Ni,
-    /// theorem 2.2), without any hardly a digit is.
+    /// y = b − Ay with a matrix that contracts by 0.9 at worst: with as many directions as unknowns
+    /// the solution is reached in one step more (Walker, Ni, theorem 2.2), without any hardly a
+    /// digit is.
     #[test]
     fn linear_problems_end_after_as_many_steps_as_there_are_unknowns() {
         let old = [[0.9, 0.1, 0.0], [0.0, -0.4, 0.2], [0.1, 0.0, 0.5]];

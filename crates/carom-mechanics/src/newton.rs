@@ -1,8 +1,10 @@
-//! One stage solved: inexact Newton on positions and multipliers (R. S. Dembo, S. C. Eisenstat, T. Steihaug, SIAM J. Numer. Anal. 19 (1982) 400–408; forcing in the
-//! manner of S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16–32), with the primal–dual active set inside.
+//! One stage solved: inexact Newton on positions and multipliers (R. S. Dembo, S. C. Eisenstat, T.
+//! Steihaug, SIAM J. Numer. Anal. 19 (1982) 400–408; forcing in the manner of S. C. Eisenstat, H.
+//! F. Walker, SIAM J. Sci. Comput. 17 (1996) 16–32), with the primal–dual active set inside.
 //!
-//! Converged means, all at once: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus the round-off the system's diagonal stands for); |g| ≤ 1e-12·L on every pressing
-//! constraint; no pair penetrates, pulls, or has slid off its facet. Nothing less is accepted.
+//! Converged means, all at once: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus the round-off the system's
+//! diagonal stands for); |g| ≤ 1e-12·L on every pressing constraint; no pair penetrates, pulls, or
+//! has slid off its facet. Nothing less is accepted.
 
 use crate::constraints::Constraints;
 use crate::contact_update::{ContactUpdate, Events, GAP_TOLERANCE, check_stuck, hold_on, search};
@@ -10,22 +12,25 @@ use crate::equations::{Equations, Evaluation, Iterate, Measure};
 use crate::linear_problem::{Correction, Goal};
 use crate::model::check_held;
 use crate::rejected::Rejected;
-use crate::renewal::{Kept, Renewal};
+use crate::renewal::{FrozenTangent, Renewal};
 use crate::settings::{Settings, Tangent};
 use crate::sums::max_abs;
 use crate::timings::timed;
 use crate::workspace::Workspace;
 
-/// How much smaller than the tolerance the residual gets where linear problems are not solved to the end.
+/// How much smaller than the tolerance the residual gets where linear problems are not solved to
+/// the end.
 const DIGITS: f64 = 1e-3;
-/// Loosest share of its first correction that a linear problem is solved to, and share of what the iteration before left of its residual.
+/// Loosest share of its first correction that a linear problem is solved to, and share of what the
+/// iteration before left of its residual.
 const FORCING: f64 = 0.1;
 const FORCING_RATIO: f64 = 0.9;
 /// Corrections with a kept factor that may be larger than the one before with the same contacts.
 const PATIENCE: u32 = 2;
 /// Halvings of a Newton step that inverts a cell or makes the residual much worse.
 const HALVINGS: usize = 8;
-/// Share of the predicted motion that its first correction may have: a predictor that needs more is discarded.
+/// Share of the predicted motion that its first correction may have: a predictor that needs more is
+/// discarded.
 const TRUST: f64 = 0.5;
 
 /// What a solve cost and what happened in it.
@@ -36,13 +41,14 @@ pub(crate) struct Effort {
     /// Events of the pairs.
     pub events: Events,
     /// The kept factor's point.
-    pub kept: Kept,
+    pub frozen: FrozenTangent,
 }
 
-/// Solves a stage from a guess. `kept`: the factor of the stage before; `before`: positions at its end, for trajectories.
+/// Solves a stage from a guess. `kept`: the factor of the stage before; `before`: positions at its
+/// end, for trajectories.
 pub(crate) fn solve_stage(
     equations: &Equations,
-    kept: &Kept,
+    frozen: &FrozenTangent,
     before: &[f64],
     settings: &Settings,
     guess: Iterate,
@@ -51,12 +57,14 @@ pub(crate) fn solve_stage(
     let (model, state, tolerance) = (equations.model, equations.state, settings.tolerance);
     let mut effort = Effort::default();
     let (mass, stiffness) = (equations.mass_factor(), equations.factor_stiffness());
-    let mut renewal = Renewal::new(kept, mass, stiffness, settings.tangent != Tangent::Kept);
-    // Without inertia corrections may well grow before they shrink, and what is enough is mostly round-off of positions: reactions would show what is left over.
+    let mut renewal = Renewal::new(frozen, mass, stiffness, settings.tangent != Tangent::Frozen);
+    // Without inertia corrections may well grow before they shrink, and what is enough is mostly
+    // round-off of positions: reactions would show what is left over.
     let (anew, free) = (settings.tangent == Tangent::Full, equations.stage.is_static());
     work.linear.restart();
-    // Where contact begins, velocities and accelerations jump from node to node. That motion, predicted for a step, tears cells that the balance
-    // holds together or turns them over, and Newton's method begins better from rest.
+    // Where contact begins, velocities and accelerations jump from node to node. That motion,
+    // predicted for a step, tears cells that the balance holds together or turns them over, and
+    // Newton's method begins better from rest.
     let predicted = max_abs(&guess.increment);
     let mut rest = Some(Iterate {
         increment: before.iter().zip(&state.y).map(|(start, old)| start - old).collect(),
@@ -77,14 +85,15 @@ pub(crate) fn solve_stage(
     let mut contact = ContactUpdate::new(model);
     let (mut step, mut ratio, mut grown, mut iteration) = (f64::INFINITY, 1.0_f64, 0, 0);
     loop {
-        // What a linear problem leaves over shrinks with the residual: the balance is taken further where it is not solved to the end.
+        // What a linear problem leaves over shrinks with the residual: the balance is taken further
+        // where it is not solved to the end.
         let enough = DIGITS * tolerance * now.measure.forces + work.system.round_off(equations);
         let settled = step * if free { 1.0 } else { ratio.min(1.0) } <= tolerance * model.scale
             && now.measure.residual <= enough
             && now.measure.gap <= GAP_TOLERANCE * model.scale;
         let changed = contact.update(equations, before, &mut now, &mut effort.events, settled, step, work)?;
         if settled && !changed {
-            effort.kept = renewal.finish();
+            effort.frozen = renewal.finish();
             return Ok((now, effort));
         }
         if changed {
@@ -102,7 +111,7 @@ pub(crate) fn solve_stage(
         }
         let rows = Constraints::of(equations, &now);
         if free {
-            check_held(&model.parts, &model.unheld, &now.place, rows.rows.iter())?;
+            check_held(&model.parts, &model.unconstrained, &now.place, rows.rows.iter())?;
         }
         let made = renewal.made;
         renewal.due |= anew;
@@ -113,8 +122,16 @@ pub(crate) fn solve_stage(
         let forcing = digits * FORCING.min(FORCING_RATIO * pace).max(enough / now.measure.residual);
         let goal = Goal { forcing, step: tolerance * model.scale, fresh: renewal.made != made, trust };
         let Workspace { linear, system, timings, .. } = work;
-        let correction =
-            linear.solve(equations, &now, &rows, &mut system.kept, &mut renewal, goal, settings.mixing, timings)?;
+        let correction = linear.solve(
+            equations,
+            &now,
+            &rows,
+            &mut system.factor,
+            &mut renewal,
+            goal,
+            settings.mixing,
+            timings,
+        )?;
         (iteration, effort.iterations) = (iteration + 1, effort.iterations + correction.solves);
         if let Some(rest) = rest.take()
             && correction.first > trust
@@ -149,13 +166,18 @@ fn begin(
 }
 
 /// Evaluates an iterate again: its pairs have changed.
-fn again(equations: &Equations, mut evaluation: Evaluation, work: &mut Workspace) -> Result<Evaluation, Rejected> {
+fn again(
+    equations: &Equations,
+    mut evaluation: Evaluation,
+    work: &mut Workspace,
+) -> Result<Evaluation, Rejected> {
     let at = std::mem::take(&mut evaluation.at);
     work.spare.put(evaluation);
     equations.evaluate(at, &mut work.spare, &mut work.timings)
 }
 
-/// Takes the Newton step, shortened where it inverts a cell or, with unchanged contacts, makes the residual much worse.
+/// Takes the Newton step, shortened where it inverts a cell or, with unchanged contacts, makes the
+/// residual much worse.
 fn advance(
     equations: &Equations,
     now: Evaluation,
@@ -164,7 +186,8 @@ fn advance(
     compare: bool,
     work: &mut Workspace,
 ) -> Result<Evaluation, Rejected> {
-    let merit = |m: &Measure| (m.residual / m.forces.max(f64::MIN_POSITIVE)).max(m.gap / equations.model.scale);
+    let merit =
+        |m: &Measure| (m.residual / m.forces.max(f64::MIN_POSITIVE)).max(m.gap / equations.model.scale);
     // Before moved supports have arrived, the balance is that of another problem.
     let compare = compare && equations.remaining(&now.at).all(|(_, left)| left == 0.0);
     let worse = |next: &Measure| compare && merit(next) > 2.0 * merit(&now.measure) && merit(next) > 1e-6;
@@ -193,7 +216,8 @@ fn advance(
         outcome = take(length, work);
     }
     if outcome.is_ok() {
-        // Where shortening does not help, the full step is as good as any: contact forces come and go.
+        // Where shortening does not help, the full step is as good as any: contact forces come and
+        // go.
         outcome = take(1.0, work).or(outcome);
     }
     work.spare.put(now);

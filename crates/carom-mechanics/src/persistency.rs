@@ -1,11 +1,13 @@
-//! Where contact begins: velocities and accelerations made to agree with the constraints that now hold (persistency, g ġ = 0).
+//! Where contact begins: velocities and accelerations made to agree with the constraints that now
+//! hold (persistency, g ġ = 0).
 //!
 //! ```text
 //! M Δv + Gᵀp = 0,   G (v + Δv) = 0            then       M a + Gᵀλ = f_ext − f_int,   G a = −v·∇²g·v
 //! ```
 //!
-//! with all active rows as equalities. Projecting v alone leaves the accelerations of the impact behind and cures nothing (theory.md §5.3).
-//! Dofs without mass keep their velocity: they follow what the massive side does.
+//! with all active rows as equalities. Projecting v alone leaves the accelerations of the impact
+//! behind and cures nothing (theory.md §5.3). Dofs without mass keep their velocity: they follow
+//! what the massive side does.
 
 use carom_contact::{Row, Rows};
 
@@ -16,7 +18,8 @@ use crate::rejected::Rejected;
 use crate::state::State;
 use crate::system::System;
 
-/// Projects `state` if one of the new contacts (contact, node) asks for it. The jump of kinetic energy is booked as contact work and returned.
+/// Projects `state` if one of the new contacts (contact, node) asks for it. The jump of kinetic
+/// energy is booked as contact work and returned.
 pub(crate) fn project(
     model: &Model,
     state: &mut State,
@@ -36,7 +39,7 @@ pub(crate) fn project(
     let (mut change, mut multipliers) = (vec![0.0; dofs], Vec::new());
 
     let closing: Vec<f64> = rows.rows.iter().map(|row| -row.along(&state.v)).collect();
-    system.kept.solve(model, &vec![0.0; dofs], &closing, &mut change, &mut multipliers)?;
+    system.factor.solve(model, &vec![0.0; dofs], &closing, &mut change, &mut multipliers)?;
     for i in 0..dofs {
         state.v[i] += if model.massless[i] { 0.0 } else { change[i] };
     }
@@ -46,7 +49,7 @@ pub(crate) fn project(
     }
 
     let (forces, bending) = drive(model, state, &gaps, &rows);
-    system.kept.solve(model, &forces, &bending, &mut change, &mut multipliers)?;
+    system.factor.solve(model, &forces, &bending, &mut change, &mut multipliers)?;
     take_accelerations(model, state, &change);
     for (&(k, p), lambda) in places.iter().zip(&multipliers) {
         state.pairs[k][p].lambda = *lambda;
@@ -67,9 +70,15 @@ pub(crate) fn pressing(state: &State) -> impl Iterator<Item = (usize, usize)> + 
     pairs.flat_map(|(k, pairs)| (0..pairs.len()).filter(|&p| pairs[p].active).map(move |p| (k, p)))
 }
 
-/// Right-hand sides of M a + Gᵀλ = f_ext − f_int, G a = −v·∇²g·v for these constraints, less what the accelerations of moving supports, in `state`,
-/// and the forces of all other pressing pairs, springs among them, contribute.
-pub(crate) fn drive(model: &Model, state: &State, gaps: &[Rows], constraints: &Constraints) -> (Vec<f64>, Vec<f64>) {
+/// Right-hand sides of M a + Gᵀλ = f_ext − f_int, G a = −v·∇²g·v for these constraints, less what
+/// the accelerations of moving supports, in `state`, and the forces of all other pressing pairs,
+/// springs among them, contribute.
+pub(crate) fn drive(
+    model: &Model,
+    state: &State,
+    gaps: &[Rows],
+    constraints: &Constraints,
+) -> (Vec<f64>, Vec<f64>) {
     let dofs = model.dofs();
     let (mut moved, mut carried) = (vec![0.0; dofs], vec![0.0; dofs]);
     if !model.motions.is_empty() {

@@ -4,7 +4,7 @@ use carom_algebra::LinearError;
 use carom_contact::ContactError;
 use carom_solid::Inverted;
 
-use crate::model::{NoValue, Unheld};
+use crate::model::{NoValue, Unconstrained};
 
 /// A step that was not accepted; it is bisected, or ends the run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -59,14 +59,16 @@ pub enum Rejected {
         depth: f64,
     },
     /// The mass matrix does not make every motion cost energy.
-    #[error("the mass matrix is not positive definite: redistributed mass needs more nodes behind the contact")]
+    #[error(
+        "the mass matrix is not positive definite: redistributed mass needs more nodes behind the contact"
+    )]
     NegativeMass,
     /// A load or a motion has no value.
     #[error(transparent)]
     NoValue(#[from] NoValue),
     /// Without inertia, nothing holds a body.
     #[error(transparent)]
-    Unheld(#[from] Unheld),
+    Unconstrained(#[from] Unconstrained),
     /// A moved support is not where its formula has it at the start.
     #[error(
         "a moved support would jump: node {node} is {distance:.3e} away from where its `move` has it at t = 0; let the formula begin where the node is"
@@ -88,7 +90,9 @@ pub enum Rejected {
         gap: f64,
     },
     /// Deeper than the scheme's law allows in one step.
-    #[error("a node penetrates by {depth:.3e}, more than the {bound:.3e} that the contact law explains in this step")]
+    #[error(
+        "a node penetrates by {depth:.3e}, more than the {bound:.3e} that the contact law explains in this step"
+    )]
     Deep {
         /// Deepest node.
         depth: f64,
@@ -115,7 +119,7 @@ impl Rejected {
             Self::Stuck { .. } => "stuck-contact",
             Self::NegativeMass => "negative-mass",
             Self::NoValue(_) => "no-value",
-            Self::Unheld(_) => "unheld-body",
+            Self::Unconstrained(_) => "unconstrained-body",
             Self::Jump { .. } => "jump",
             Self::Deep { .. } => "penetration",
             Self::NotFinite { .. } => "not-finite",

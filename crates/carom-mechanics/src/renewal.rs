@@ -1,23 +1,27 @@
-//! When the kept factor is made anew: the one rule.
+//! When the frozen factor is made anew: the one rule.
 //!
-//! A solve with the factor shrinks what is left by θ on average and costs about as much as a residual; a new factor costs as much as [`COST`] solves
-//! (Deuflhard, Newton Methods for Nonlinear Problems, §2.1.1). It is made anew within a step where θ promises that more solves are left to the end of the stage
-//! than that, and at the beginning of a step where the last one took more than the mean cost since it was made: the rule that makes this mean least when
-//! solves become more and more.
+//! A solve with the factor shrinks what is left by θ on average and costs about as much as a
+//! residual; a new factor costs as much as [`COST`] solves (Deuflhard, Newton Methods for Nonlinear
+//! Problems, §2.1.1). It is made anew within a step where θ promises that more solves are left to
+//! the end of the stage than that, and at the beginning of a step where the last one took more than
+//! the mean cost since it was made: the rule that makes this mean least when solves become more and
+//! more.
 //!
-//! The factor is a function of the [`Point`] in the state alone, so a resumed run goes on with the same bits.
+//! The factor is a function of the [`Point`] in the state alone, so a resumed run goes on with the
+//! same bits.
 
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-/// Cost of forming and factoring a tangent, in solves with the kept one.
+/// Cost of forming and factoring a tangent, in solves with the frozen one.
 const COST: f64 = 6.0;
 /// Shrinking by a solve that is expected of a factor nothing is known of.
 const EXPECTED: f64 = 0.1;
 /// ln of what a step is to shrink its first correction by.
 const DIGITS: f64 = 18.0;
-/// Stages whose factors of mass and stiffness agree to this, relatively, have the same matrix: both of a step of Bathe's rule do, but for round-off.
+/// Stages whose factors of mass and stiffness agree to this, relatively, have the same matrix: both
+/// of a step of Bathe's rule do, but for round-off.
 const SAME: f64 = 1e-12;
 
 /// All that the factor is made of.
@@ -36,9 +40,9 @@ pub struct Point {
     pub(crate) boundary: Vec<usize>,
 }
 
-/// The point of the kept factor and what has been spent since it was made.
+/// The point of the frozen factor and what has been spent since it was made.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Kept {
+pub struct FrozenTangent {
     pub(crate) point: Option<Arc<Point>>,
     steps: u32,
     /// Solves, in all and in the last step.
@@ -49,7 +53,7 @@ pub struct Kept {
 /// What one stage shows of the factor.
 #[derive(Debug)]
 pub(crate) struct Renewal {
-    pub(crate) kept: Kept,
+    pub(crate) frozen: FrozenTangent,
     /// A new factor is wanted before the next solve.
     pub(crate) due: bool,
     /// Its numbers are to have all of their digits.
@@ -62,16 +66,17 @@ pub(crate) struct Renewal {
 
 impl Renewal {
     /// At the beginning of a stage with these factors of mass and stiffness.
-    pub(crate) fn new(kept: &Kept, mass: f64, stiffness: f64, double: bool) -> Self {
+    pub(crate) fn new(frozen: &FrozenTangent, mass: f64, stiffness: f64, double: bool) -> Self {
         let same = |a: f64, b: f64| (a - b).abs() <= SAME * b.abs();
-        let fits = kept.point.as_ref().is_some_and(|p| same(p.mass, mass) && same(p.stiffness, stiffness));
-        let due = !fits || (kept.steps > 0 && kept.last > (COST + kept.spent) / f64::from(kept.steps));
-        Self { kept: kept.clone(), due, double, made: 0, shrunk: (0.0, 0.0) }
+        let fits = frozen.point.as_ref().is_some_and(|p| same(p.mass, mass) && same(p.stiffness, stiffness));
+        let due =
+            !fits || (frozen.steps > 0 && frozen.last > (COST + frozen.spent) / f64::from(frozen.steps));
+        Self { frozen: frozen.clone(), due, double, made: 0, shrunk: (0.0, 0.0) }
     }
 
     /// A new factor was made.
     pub(crate) fn renewed(&mut self, point: Arc<Point>) {
-        self.kept = Kept { point: Some(point), ..Kept::default() };
+        self.frozen = FrozenTangent { point: Some(point), ..FrozenTangent::default() };
         (self.due, self.shrunk) = (false, (0.0, 0.0));
         self.made += 1;
     }
@@ -98,13 +103,13 @@ impl Renewal {
     }
 
     /// What the next step is to know.
-    pub(crate) fn finish(mut self) -> Kept {
-        self.kept.steps += 1;
+    pub(crate) fn finish(mut self) -> FrozenTangent {
+        self.frozen.steps += 1;
         // A step of one solve has shown nothing slower than that.
         let rate = if self.shrunk.0 > 0.0 { self.rate() } else { EXPECTED * EXPECTED };
-        self.kept.last = DIGITS / -rate.ln();
-        self.kept.spent += self.kept.last;
-        self.kept
+        self.frozen.last = DIGITS / -rate.ln();
+        self.frozen.spent += self.frozen.last;
+        self.frozen
     }
 }
 
@@ -114,7 +119,7 @@ mod tests {
 
     #[test]
     fn a_factor_is_made_anew_where_more_solves_are_left_than_it_costs() {
-        let mut renewal = Renewal::new(&Kept::default(), 1.0, 1.0, true);
+        let mut renewal = Renewal::new(&FrozenTangent::default(), 1.0, 1.0, true);
         assert!(renewal.due, "there is none");
         renewal.renewed(Arc::default());
         assert!(!renewal.pays(1.0, 1e-9), "nothing has been seen of it yet");
@@ -127,22 +132,22 @@ mod tests {
     #[test]
     fn steps_that_take_longer_than_the_mean_end_the_life_of_a_factor() {
         let point = Arc::new(Point { mass: 1.0, stiffness: 1.0, ..Point::default() });
-        let mut kept = {
-            let mut renewal = Renewal::new(&Kept::default(), 1.0, 1.0, true);
+        let mut frozen = {
+            let mut renewal = Renewal::new(&FrozenTangent::default(), 1.0, 1.0, true);
             renewal.renewed(point);
             renewal.observe(0.01);
             renewal.finish()
         };
         // ln 1e-2 takes 3.9 solves a step and the factor 6: the mean after n steps is 3.9 + 6/n.
         for _ in 0..5 {
-            let mut renewal = Renewal::new(&kept, 1.0, 1.0, true);
+            let mut renewal = Renewal::new(&frozen, 1.0, 1.0, true);
             assert!(!renewal.due);
             renewal.observe(0.01);
-            kept = renewal.finish();
+            frozen = renewal.finish();
         }
-        let mut slow = Renewal::new(&kept, 1.0, 1.0, true);
+        let mut slow = Renewal::new(&frozen, 1.0, 1.0, true);
         slow.observe(0.1);
         assert!(Renewal::new(&slow.finish(), 1.0, 1.0, true).due);
-        assert!(Renewal::new(&kept, 2.0, 1.0, true).due, "another step has another matrix");
+        assert!(Renewal::new(&frozen, 2.0, 1.0, true).due, "another step has another matrix");
     }
 }

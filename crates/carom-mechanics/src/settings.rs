@@ -17,9 +17,9 @@ pub struct Settings {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tangent {
     /// When the kept one no longer pays; large factors in single precision.
-    Kept,
+    Frozen,
     /// The same, every factor in double precision.
-    KeptDouble,
+    FrozenDouble,
     /// In every iteration.
     Full,
 }

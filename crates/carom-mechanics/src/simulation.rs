@@ -1,4 +1,5 @@
-//! The loop: steps on the grid of times n·Δt, bisected where one is rejected and brought back to the grid, watched by the energy guard.
+//! The loop: steps on the grid of times n·Δt, bisected where one is rejected and brought back to
+//! the grid, watched by the energy guard.
 
 use carom_contact::PairEvent;
 
@@ -17,7 +18,9 @@ const MOST_HALVINGS: u32 = 12;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Stopped {
     /// No step from here, however small, is accepted.
-    #[error("no step from t = {time:.6} is accepted, not even Δt = {dt:.3e} ({halvings} halvings): {rejected}")]
+    #[error(
+        "no step from t = {time:.6} is accepted, not even Δt = {dt:.3e} ({halvings} halvings): {rejected}"
+    )]
     NoStep {
         /// Time of the last accepted state.
         time: f64,
@@ -107,7 +110,8 @@ pub struct Grid {
     pub dt: f64,
     /// Steps to the end.
     pub steps: u64,
-    /// Share of the largest energy so far that may be created before the run stops; none: it is not watched.
+    /// Share of the largest energy so far that may be created before the run stops; none: it is not
+    /// watched.
     pub guard: Option<f64>,
 }
 
@@ -127,8 +131,8 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// A model at t = 0, with inertia or without, in its initial positions or where another run ended. Cells are computed by this many threads; the result does
-    /// not depend on it.
+    /// A model at t = 0, with inertia or without, in its initial positions or where another run
+    /// ended. Cells are computed by this many threads; the result does not depend on it.
     ///
     /// # Errors
     /// The start has no forces or no accelerations.
@@ -175,7 +179,8 @@ impl Simulation {
         self.work.system.factorisations
     }
 
-    /// The tangent of the internal forces, assembled where the simulation is, as for every factor. For measurements.
+    /// The tangent of the internal forces, assembled where the simulation is, as for every factor.
+    /// For measurements.
     ///
     /// # Errors
     /// A cell is inverted.
@@ -186,9 +191,11 @@ impl Simulation {
     /// Advances to the next grid time.
     ///
     /// # Errors
-    /// Why it cannot; `state` is then still that of the last grid time. The report tells what was tried.
+    /// Why it cannot; `state` is then still that of the last grid time. The report tells what was
+    /// tried.
     pub fn advance(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
-        // On one of the threads: what a step hands out to the others from there costs no change of threads.
+        // On one of the threads: what a step hands out to the others from there costs no change of
+        // threads.
         let threads = self.model.threads.clone();
         threads.within(|| self.advance_here(report))
     }
@@ -199,12 +206,18 @@ impl Simulation {
         let mut reached: Option<State> = None;
         // Progress through the grid step in units of Δt/2^level.
         let rejected = report.rejected;
-        let (mut level, mut done) = (self.state.halved.level(), 0_u64);
+        let (mut level, mut done) = (self.state.bisection.level(), 0_u64);
         while done < 1 << level {
             let dt = self.dt / f64::from(1_u32 << level);
             let time = start + done as f64 * dt;
             let to = start + (done + 1) as f64 * dt;
-            match self.stepper.step(&self.model, reached.as_ref().unwrap_or(&self.state), dt, to, &mut self.work) {
+            match self.stepper.step(
+                &self.model,
+                reached.as_ref().unwrap_or(&self.state),
+                dt,
+                to,
+                &mut self.work,
+            ) {
                 Ok(accepted) => {
                     let (next, step) = accepted.into_parts();
                     if let Some(before) = reached.replace(next) {
@@ -224,7 +237,11 @@ impl Simulation {
                         }));
                     }
                     let pairs = step.events.into_iter();
-                    report.events.extend(pairs.map(|(contact, event)| LogEvent::Pair { time: now, contact, event }));
+                    report.events.extend(pairs.map(|(contact, event)| LogEvent::Pair {
+                        time: now,
+                        contact,
+                        event,
+                    }));
                     if step.projection != 0.0 {
                         report.events.push(LogEvent::Projection { time: now, jump: step.projection });
                     }
@@ -245,7 +262,7 @@ impl Simulation {
             }
         }
         let Some(mut state) = reached else { return Ok(()) };
-        state.halved = self.state.halved.after(report.rejected > rejected);
+        state.bisection = self.state.bisection.after(report.rejected > rejected);
         state.step += 1;
         state.time = state.step as f64 * self.dt;
         self.watch(&state)?;
@@ -259,8 +276,8 @@ impl Simulation {
         let ledger = &state.ledger;
         let created = ledger.created();
         // Round-off of the energies themselves is not creation.
-        let noise =
-            1e-12 * (ledger.kinetic + ledger.strain.abs() + ledger.potential.abs() + ledger.total_at_start.abs());
+        let noise = 1e-12
+            * (ledger.kinetic + ledger.strain.abs() + ledger.potential.abs() + ledger.total_at_start.abs());
         if created > share * ledger.largest + ledger.open.abs() + noise {
             return Err(Stopped::EnergyGuard { time: state.time, created, share, largest: ledger.largest });
         }

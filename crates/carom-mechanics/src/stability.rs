@@ -1,9 +1,11 @@
-//! The longest stable step of an explicit scheme: Δt ≤ 2/ω_max, with ω_max² the largest eigenvalue of M⁻¹K on the initial tangent.
+//! The longest stable step of an explicit scheme: Δt ≤ 2/ω_max, with ω_max² the largest eigenvalue
+//! of M⁻¹K on the initial tangent.
 //!
-//! The power iteration x ← M⁻¹K x gives it from below, by Rayleigh's quotient (for the cluster at the end of a mesh's spectrum within a percent in some hundred
-//! products). The largest eigenvalue of any cell alone bounds it from above (Irons, Treharne 1971), and ‖M_e^{-½} K_e M_e^{-½}‖_F bounds that one.
-//! [`SAFETY`] covers the first percent and some stiffening; a body that stiffens much more in compression needs a shorter step still, and the energy
-//! guard tells.
+//! The power iteration x ← M⁻¹K x gives it from below, by Rayleigh's quotient (for the cluster at
+//! the end of a mesh's spectrum within a percent in some hundred products). The largest eigenvalue
+//! of any cell alone bounds it from above (Irons, Treharne 1971), and ‖M_e^{-½} K_e M_e^{-½}‖_F
+//! bounds that one. [`SAFETY`] covers the first percent and some stiffening; a body that stiffens
+//! much more in compression needs a shorter step still, and the energy guard tells.
 
 use carom_solid::cell_lumped_mass;
 
@@ -13,7 +15,8 @@ use crate::system::System;
 
 /// Share of 2/ω_max that is accepted as a step.
 pub const SAFETY: f64 = 0.95;
-/// Products with M⁻¹K at most, and the relative change of the quotient at which the iteration stops.
+/// Products with M⁻¹K at most, and the relative change of the quotient at which the iteration
+/// stops.
 const PRODUCTS: usize = 500;
 const SETTLED: f64 = 1e-6;
 
@@ -26,7 +29,8 @@ pub struct StableStep {
     pub cell: f64,
 }
 
-/// Stable step of a model with lumped masses at its initial tangent; `None` where a cell is inverted or a free node has no mass.
+/// Stable step of a model with lumped masses at its initial tangent; `None` where a cell is
+/// inverted or a free node has no mass.
 pub fn stable_step(model: &Model) -> Option<StableStep> {
     let mut system = System::new(model);
     system.assemble(model, &model.initial_position).ok()?;
@@ -72,7 +76,8 @@ fn largest_of_cells(model: &Model) -> Option<f64> {
         for cell in 0..mesh.cell_count() {
             cell_lumped_mass(&*part.body, cell, &mut work, &mut mass);
             part.body.cell_tangent(cell, part.of(&model.reference), &mut force, &mut tangent).ok()?;
-            let scaled = tangent.iter().enumerate().map(|(k, t)| t * t / (mass[k / dofs / d] * mass[k % dofs / d]));
+            let scaled =
+                tangent.iter().enumerate().map(|(k, t)| t * t / (mass[k / dofs / d] * mass[k % dofs / d]));
             largest = largest.max(scaled.sum::<f64>().sqrt());
         }
     }

@@ -4,8 +4,9 @@
 //! M a₀ + Gᵀλ₀ = f_ext − f_int,   G a₀ = −v₀·∇²g·v₀        at t = 0
 //! ```
 //!
-//! Contacts that were closed at the end of the other run stay closed; in the reference positions none is (λ₀ = 0). A moved support has its own v₀, a₀
-//! and must begin where the bodies are. Without inertia v₀ and a₀ are zero, and the first load step finds the equilibrium.
+//! Contacts that were closed at the end of the other run stay closed; in the reference positions
+//! none is (λ₀ = 0). A moved support has its own v₀, a₀ and must begin where the bodies are.
+//! Without inertia v₀ and a₀ are zero, and the first load step finds the equilibrium.
 
 use carom_contact::{Pair, Point, Rows};
 
@@ -34,7 +35,8 @@ const NEAR: f64 = 1e-9;
 /// The state before the first step, with inertia or without.
 ///
 /// # Errors
-/// A cell is inverted, a load or a motion has no value at t = 0, a moved support would jump, or the mass matrix is singular.
+/// A cell is inverted, a load or a motion has no value at t = 0, a moved support would jump, or the
+/// mass matrix is singular.
 pub(crate) fn start(
     model: &Model,
     inertia: bool,
@@ -91,11 +93,19 @@ pub(crate) fn start(
 /// Springs of penalties take the forces of their gaps; their energy is returned.
 fn press(model: &Model, state: &mut State, gaps: &[Rows]) -> f64 {
     let mut energy = 0.0;
-    for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| !contact.interface.is_constraint()) {
+    for (k, contact) in
+        model.contacts.iter().enumerate().filter(|(_, contact)| !contact.interface.is_constraint())
+    {
         for (pair, row) in state.pairs[k].iter_mut().zip(gaps[k].iter()) {
             // The gap an energy-conserving spring has counted is of the other run.
             pair.start = None;
-            let at = Point { node: pair.node, gap: row.gap, start: row.gap, lambda: pair.lambda, active: pair.active };
+            let at = Point {
+                node: pair.node,
+                gap: row.gap,
+                start: row.gap,
+                lambda: pair.lambda,
+                active: pair.active,
+            };
             let answer = contact.interface.respond(&at);
             (pair.active, pair.lambda) = (answer.active, answer.lambda);
             energy += answer.energy;
@@ -106,7 +116,8 @@ fn press(model: &Model, state: &mut State, gaps: &[Rows]) -> f64 {
 
 /// Accelerations, and multipliers of what is closed.
 fn accelerate(model: &Model, state: &mut State, gaps: &[Rows], system: &mut System) -> Result<(), Rejected> {
-    // A spring has the force of its gap. A row without mass has no acceleration to ask for: its contact keeps the force it had.
+    // A spring has the force of its gap. A row without mass has no acceleration to ask for: its
+    // contact keeps the force it had.
     let asks = |&(k, p): &(usize, usize)| {
         let has_mass = |n: &usize| !model.massless[n * model.dimension];
         model.contacts[k].interface.is_constraint() && gaps[k].row(p).nodes.iter().any(has_mass)
@@ -117,7 +128,7 @@ fn accelerate(model: &Model, state: &mut State, gaps: &[Rows], system: &mut Syst
     system.factor_mass(model, &rows)?;
     let (forces, bending) = drive(model, state, gaps, &rows);
     let (mut solved, mut multipliers) = (vec![0.0; model.dofs()], Vec::new());
-    system.kept.solve(model, &forces, &bending, &mut solved, &mut multipliers)?;
+    system.factor.solve(model, &forces, &bending, &mut solved, &mut multipliers)?;
     take_accelerations(model, state, &solved);
     for (&(k, p), lambda) in places.iter().zip(&multipliers) {
         state.pairs[k][p].lambda = *lambda;

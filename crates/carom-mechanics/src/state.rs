@@ -3,7 +3,7 @@
 use carom_contact::{Pair, Pairing};
 use serde::{Deserialize, Serialize};
 
-use crate::renewal::Kept;
+use crate::renewal::FrozenTangent;
 
 /// Energies and works, design.md §5: cumulative from the start of the run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -20,10 +20,12 @@ pub struct Ledger {
     pub total_at_start: f64,
     /// Work of loads that are not in the potential, of supports and of moving primaries.
     pub external_work: f64,
-    /// Σ Δy·ΔF of the loads: their work as they are at the ends of steps less that as they are at the starts, the scale of what no scheme knows better.
-    /// Where a load has only begun it is as large as the work itself.
+    /// Σ Δy·ΔF of the loads: their work as they are at the ends of steps less that as they are at
+    /// the starts, the scale of what no scheme knows better. Where a load has only begun it is as
+    /// large as the work itself.
     pub open: f64,
-    /// Work of the contact forces on the bodies, and the jump of kinetic energy where contact begins.
+    /// Work of the contact forces on the bodies, and the jump of kinetic energy where contact
+    /// begins.
     pub contact_work: f64,
     /// Largest kinetic + strain energy so far.
     pub largest: f64,
@@ -96,7 +98,7 @@ impl Means {
 
 /// What an explicit scheme knows beyond the state's time: the step it has looked ahead with.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Ahead {
+pub struct HalfStepVelocity {
     /// v_{n+½}, of which y_{n+1} = y_n + Δt v_{n+½} is admissible.
     pub velocity: Vec<f64>,
     /// Its Δt; 0 where nothing is known yet. Another step begins anew from v_n.
@@ -131,11 +133,11 @@ pub struct State {
     /// The step before, for a two-step scheme; none at the start and where contact has just begun.
     pub previous: Option<Previous>,
     /// Of an explicit scheme.
-    pub ahead: Ahead,
+    pub half_step: HalfStepVelocity,
     /// What the kept factor was made of.
-    pub kept: Kept,
+    pub frozen: FrozenTangent,
     /// How grid steps went of late.
-    pub halved: Halved,
+    pub bisection: Bisection,
 }
 
 impl State {
@@ -151,10 +153,10 @@ impl State {
         pairs.clone_from(&other.pairs);
         self.ledger = other.ledger.clone();
         self.previous.clone_from(&other.previous);
-        self.ahead.velocity.clone_from(&other.ahead.velocity);
-        self.ahead.dt = other.ahead.dt;
-        self.kept = other.kept.clone();
-        self.halved = other.halved;
+        self.half_step.velocity.clone_from(&other.half_step.velocity);
+        self.half_step.dt = other.half_step.dt;
+        self.frozen = other.frozen.clone();
+        self.bisection = other.bisection;
     }
 
     /// Takes the pairs that a solve ended with.
@@ -163,16 +165,17 @@ impl State {
     }
 }
 
-/// Grid steps that had to be bisected: after several in a row the next ones begin with half the step, 1, 3, 7, … of them.
+/// Grid steps that had to be bisected: after several in a row the next ones begin with half the
+/// step, 1, 3, 7, … of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Halved {
+pub struct Bisection {
     /// Grid steps left that begin with half the step.
     left: u32,
     /// How many after the next one that is bisected.
     next: u32,
 }
 
-impl Halved {
+impl Bisection {
     /// Most grid steps that begin with half the step before the whole one is tried again.
     const MOST: u32 = 63;
 

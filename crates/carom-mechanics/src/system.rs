@@ -1,7 +1,10 @@
-//! The matrices of the bodies over free dofs, in one pattern: the mass M, made once, the tangent K = ∂f_int/∂y at given positions, and the symmetric part of
-//! K_ext = ∂f_ext/∂y of follower pressures (all of it where the side is closed or its ends are held and the pressure is uniform); and the factors made of them.
+//! The matrices of the bodies over free dofs, in one pattern: the mass M, made once, the tangent K
+//! = ∂f_int/∂y at given positions, and the symmetric part of K_ext = ∂f_ext/∂y of follower
+//! pressures (all of it where the side is closed or its ends are held and the pressure is uniform);
+//! and the factors made of them.
 //!
-//! The pattern is made once, with the slots of every cell. Contact is no part of it: its rows act on the last unknowns of a factor (`kept_factor.rs`).
+//! The pattern is made once, with the slots of every cell. Contact is no part of it: its rows act
+//! on the last unknowns of a factor (`tangent_factor.rs`).
 
 use std::sync::Arc;
 
@@ -10,10 +13,10 @@ use carom_algebra::{LinearError, Pattern};
 use crate::cells;
 use crate::constraints::Constraints;
 use crate::equations::Equations;
-use crate::kept_factor::KeptFactor;
 use crate::model::{LoadsAt, Model};
 use crate::rejected::Rejected;
 use crate::renewal::Point;
+use crate::tangent_factor::TangentFactor;
 
 /// Slot of an entry that is not stored: that of a held dof, or of a facet's upper triangle.
 const SKIP: u32 = u32::MAX;
@@ -27,12 +30,13 @@ pub(crate) struct System {
     follower: Vec<f64>,
     /// Diagonals of both: read far more often than they are made.
     diagonals: [Vec<f64>; 2],
-    /// Slots of each cell's pairs of dofs, the lower triangle by rows, cell after cell through all bodies.
+    /// Slots of each cell's pairs of dofs, the lower triangle by rows, cell after cell through all
+    /// bodies.
     slots: Vec<u32>,
     /// Slots of every two dofs of the facets under pressure.
     facet_slots: Vec<u32>,
     /// The kept factor, and that of the mass.
-    pub(crate) kept: KeptFactor,
+    pub(crate) factor: TangentFactor,
     /// Factorisations so far.
     pub factorisations: u64,
 }
@@ -60,7 +64,8 @@ impl System {
         }
         let mut facet_slots = Vec::new();
         model.loads.each_facet_tangent(d, None, |nodes, _| {
-            let dofs = || nodes.iter().flat_map(|n| (0..d).map(move |i| n * d + i)).map(|dof| model.unknown(dof));
+            let dofs =
+                || nodes.iter().flat_map(|n| (0..d).map(move |i| n * d + i)).map(|dof| model.unknown(dof));
             for a in dofs() {
                 for b in dofs() {
                     let slot = a.zip(b).filter(|(a, b)| a >= b).and_then(|(a, b)| pattern.slot(a, b));
@@ -68,7 +73,7 @@ impl System {
                 }
             }
         });
-        let follower = vec![0.0; if model.loads.follow() { pattern.len() } else { 0 }];
+        let follower = vec![0.0; if model.loads.follow_sides() { pattern.len() } else { 0 }];
         let diagonals = [diagonal_of(&pattern, &mass), vec![0.0; model.free.len()]];
         let stiffness = vec![0.0; pattern.len()];
         Self {
@@ -79,7 +84,7 @@ impl System {
             diagonals,
             slots,
             facet_slots,
-            kept: KeptFactor::default(),
+            factor: TangentFactor::default(),
             factorisations: 0,
         }
     }
@@ -114,7 +119,8 @@ impl System {
         Ok(())
     }
 
-    /// The symmetric part of the tangent of the loads at a time; it does not depend on the positions.
+    /// The symmetric part of the tangent of the loads at a time; it does not depend on the
+    /// positions.
     fn assemble_loads(&mut self, model: &Model, time: f64) -> Result<(), Rejected> {
         let (mut at, mut slots) = (LoadsAt::default(), self.facet_slots.iter());
         model.loads.at(&model.parts, model.dofs(), time, &mut at)?;
@@ -131,7 +137,8 @@ impl System {
         Ok(())
     }
 
-    /// Diagonal of `mass_factor` M + `stiffness_factor` K over the free dofs: the force that stands for one unit of displacement.
+    /// Diagonal of `mass_factor` M + `stiffness_factor` K over the free dofs: the force that stands
+    /// for one unit of displacement.
     pub(crate) fn diagonal(&self, mass_factor: f64, stiffness_factor: f64) -> impl Iterator<Item = f64> + '_ {
         let [mass, stiffness] = &self.diagonals;
         mass.iter().zip(stiffness).map(move |(m, k)| mass_factor * m + stiffness_factor * k)
@@ -155,12 +162,18 @@ impl System {
         self.pattern.multiply_add(&self.stiffness, x, out);
     }
 
-    /// Makes the kept factor that of a point, unless it is already; `double`: with all its digits. Whether it is positive definite.
+    /// Makes the kept factor that of a point, unless it is already; `double`: with all its digits.
+    /// Whether it is positive definite.
     ///
     /// # Errors
     /// A cell is inverted there, or a load has no value.
-    pub(crate) fn hold(&mut self, model: &Model, point: &Arc<Point>, double: bool) -> Result<bool, Rejected> {
-        if let Some(positive) = self.kept.of(point) {
+    pub(crate) fn factor_at(
+        &mut self,
+        model: &Model,
+        point: &Arc<Point>,
+        double: bool,
+    ) -> Result<bool, Rejected> {
+        if let Some(positive) = self.factor.of(point) {
             return Ok(positive);
         }
         self.assemble(model, &point.at)?;
@@ -170,13 +183,19 @@ impl System {
         Ok(self.factor(model, point, double)?)
     }
 
-    /// Makes the kept factor that of the last tangent, by the factors of a point; whether it is positive definite.
+    /// Makes the kept factor that of the last tangent, by the factors of a point; whether it is
+    /// positive definite.
     ///
     /// # Errors
     /// A number is none.
-    pub(crate) fn factor(&mut self, model: &Model, point: &Arc<Point>, double: bool) -> Result<bool, LinearError> {
+    pub(crate) fn factor(
+        &mut self,
+        model: &Model,
+        point: &Arc<Point>,
+        double: bool,
+    ) -> Result<bool, LinearError> {
         self.factorisations += 1;
-        self.kept.factor(model, &self.pattern, point, double, [&self.mass, &self.stiffness, &self.follower])
+        self.factor.factor(model, &self.pattern, point, double, [&self.mass, &self.stiffness, &self.follower])
     }
 
     /// Factors [M Gᵀ; G 0] over the free dofs that have mass.
@@ -185,7 +204,7 @@ impl System {
     /// M is not positive definite there, or the rows depend on each other.
     pub(crate) fn factor_mass(&mut self, model: &Model, rows: &Constraints) -> Result<(), Rejected> {
         self.factorisations += 1;
-        self.kept.factor_mass(model, &self.pattern, &self.mass, rows)
+        self.factor.factor_mass(model, &self.pattern, &self.mass, rows)
     }
 }
 
@@ -194,7 +213,8 @@ fn diagonal_of(pattern: &Pattern, values: &[f64]) -> Vec<f64> {
     pattern.starts[..pattern.size()].iter().map(|&slot| values[slot]).collect()
 }
 
-/// The pattern of the bodies: unknowns of every two nodes that share a cell. Nodes are paired first, so that no list of all pairs of dofs is made.
+/// The pattern of the bodies: unknowns of every two nodes that share a cell. Nodes are paired
+/// first, so that no list of all pairs of dofs is made.
 fn pattern(model: &Model) -> Pattern {
     let (d, mut neighbours) = (model.dimension, vec![Vec::new(); model.dofs() / model.dimension]);
     for part in &model.parts {
@@ -216,8 +236,8 @@ fn pattern(model: &Model) -> Pattern {
     Pattern::from_entries(model.free.len(), unknowns)
 }
 
-/// Calls `visit` with the unknowns of every two dofs of every cell, the larger first, in the order of the lower triangles of the cells' tangents; with none
-/// where one is held.
+/// Calls `visit` with the unknowns of every two dofs of every cell, the larger first, in the order
+/// of the lower triangles of the cells' tangents; with none where one is held.
 fn for_each_cell_pair(model: &Model, mut visit: impl FnMut(Option<(usize, usize)>)) {
     let mut unknowns = Vec::new();
     for part in &model.parts {

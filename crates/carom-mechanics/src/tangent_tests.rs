@@ -60,11 +60,13 @@ impl<'a> Tangent<'a> {
             at.pairings[k].pairs[p].lambda += e * u;
         }
         let now = equations.evaluate(at, &mut work.spare, &mut work.timings).unwrap();
-        let gaps = rows.places.iter().zip(&rows.weights).map(|(&(k, p), weight)| weight * now.rows[k].row(p).gap);
+        let gaps =
+            rows.places.iter().zip(&rows.weights).map(|(&(k, p), weight)| weight * now.rows[k].row(p).gap);
         free.iter().map(|&dof| now.residual[dof]).chain(gaps).collect()
     }
 
-    /// Derivative of those along the direction, by central differences with steps `h` and 2`h`, extrapolated.
+    /// Derivative of those along the direction, by central differences with steps `h` and 2`h`,
+    /// extrapolated.
     fn derivative(&mut self, u: &[f64], h: f64) -> Vec<f64> {
         let mut slope = |h: f64| -> Vec<f64> {
             let (plus, minus) = (self.residual(u, h), self.residual(u, -h));
@@ -95,7 +97,8 @@ fn strike() -> Model {
     let block = generate::rectangle(Element::T10, [0.0, -0.5], [1.0, 0.0], [4, 2]).unwrap();
     let parts = parts([disc, block], Law::NeoHookean { lambda: 200.0, mu: 15.0 }, 0.25);
     let bottom = nodes(&parts[1], "bottom").into_iter().flat_map(|node| [2 * node, 2 * node + 1]);
-    let symmetry = [nodes(&parts[0], "axis"), nodes(&parts[1], "left")].concat().into_iter().map(|node| 2 * node);
+    let symmetry =
+        [nodes(&parts[0], "axis"), nodes(&parts[1], "left")].concat().into_iter().map(|node| 2 * node);
     let fixed: Vec<usize> = bottom.chain(symmetry).collect();
     let strike = contact(&parts, (0, "arc"), (1, "top"));
     let mut model = model(parts, &fixed, Motions::default(), Loads::default(), vec![strike]);
@@ -129,7 +132,8 @@ fn pressed(on: &str, pressure: &str) -> Model {
     let block = generate::rectangle(Element::T6, [0.0, 0.0], [1.0, 1.0], [3, 2]).unwrap();
     let parts = parts([block], Law::NeoHookean { lambda: 20.0, mu: 10.0 }, 1.0);
     let read = |text: &str| Formula::parse(text, &["X", "Y", "t"]).unwrap();
-    let fixed: Vec<usize> = nodes(&parts[0], "left").into_iter().flat_map(|node| [2 * node, 2 * node + 1]).collect();
+    let fixed: Vec<usize> =
+        nodes(&parts[0], "left").into_iter().flat_map(|node| [2 * node, 2 * node + 1]).collect();
     let mut right = nodes(&parts[0], "right");
     right.sort_unstable();
     let place = |node: usize| parts[0].body.mesh().nodes[node].to_vec();
@@ -142,11 +146,14 @@ fn pressed(on: &str, pressure: &str) -> Model {
     model(parts, &fixed, motions, loads, Vec::new())
 }
 
-/// Follower pressure with open, free ends and a moving side: the matrix is symmetric only where the ends are held and the pressure is uniform.
+/// Follower pressure with open, free ends and a moving side: the matrix is symmetric only where the
+/// ends are held and the pressure is uniform.
 #[test]
 fn the_tangent_under_pressure_is_the_derivative_of_the_residual() {
     let scheme = Scheme::chung_hulbert(0.5).unwrap();
-    for (on, pressure, symmetric) in [("top", "3", true), ("top", "3*(1 + X^2)", false), ("bottom", "-2", true)] {
+    for (on, pressure, symmetric) in
+        [("top", "3", true), ("top", "3*(1 + X^2)", false), ("bottom", "-2", true)]
+    {
         let sim = simulation(pressed(on, pressure), scheme, 0.1);
         // Without inertia and with soft springs the pressure is a good part of the tangent.
         let equations = equations(&sim.model, &sim.state, &scheme, 1e3, 0.1);
@@ -169,7 +176,8 @@ fn the_product_of_a_discrete_gradient_is_the_derivative_of_its_force() {
     let at = |size: f64, seed: f64| -> Vec<f64> {
         sim.state.y.iter().enumerate().map(|(i, y)| y + size * wave(i, seed)).collect()
     };
-    let (before, y, u) = (at(0.02, 0.3), at(0.03, 0.9), (0..model.dofs()).map(|i| wave(i, 0.1)).collect::<Vec<_>>());
+    let (before, y, u) =
+        (at(0.02, 0.3), at(0.03, 0.9), (0..model.dofs()).map(|i| wave(i, 0.1)).collect::<Vec<_>>());
     let mut product = vec![0.0; model.dofs()];
     model.internal_product(Some(&before), &y, &u, &mut product).unwrap();
     let force = |e: f64| {

@@ -4,17 +4,17 @@ use carom_contact::{Detection, NodeToFacet, Surface, Unilateral};
 use carom_solid::{Law, LoadedSide, Mesh, body};
 use carom_time::Scheme;
 
-use crate::model::{Contact, Loads, Mass, Model, Motions, Part};
+use crate::model::{BodyInstance, Contact, Loads, Mass, Model, Motions};
 use crate::settings::{Settings, Tangent};
 use crate::simulation::{Grid, Simulation};
 use crate::stepper::Implicit;
 
 /// Bodies of one material, nodes numbered through.
-pub(crate) fn parts(meshes: impl IntoIterator<Item = Mesh>, law: Law, density: f64) -> Vec<Part> {
+pub(crate) fn parts(meshes: impl IntoIterator<Item = Mesh>, law: Law, density: f64) -> Vec<BodyInstance> {
     let mut first_node = 0;
     let part = |(k, mesh): (usize, Mesh)| {
         let body = body(mesh, law, density, 1.0).unwrap();
-        let part = Part::new(format!("body {k}"), first_node, body);
+        let part = BodyInstance::new(format!("body {k}"), first_node, body);
         first_node = part.nodes().end;
         part
     };
@@ -22,20 +22,21 @@ pub(crate) fn parts(meshes: impl IntoIterator<Item = Mesh>, law: Law, density: f
 }
 
 /// Nodes of a side.
-pub(crate) fn nodes(part: &Part, side: &str) -> Vec<usize> {
+pub(crate) fn nodes(part: &BodyInstance, side: &str) -> Vec<usize> {
     part.body.mesh().side_nodes(side).unwrap().into_iter().map(|node| part.first_node + node).collect()
 }
 
 /// A side under loads.
-pub(crate) fn loaded(part: &Part, side: &str) -> LoadedSide {
+pub(crate) fn loaded(part: &BodyInstance, side: &str) -> LoadedSide {
     let mesh = part.body.mesh();
     LoadedSide::new(mesh, &mesh.sides[side], part.first_node, 1.0).unwrap()
 }
 
 /// A side of one body kept out of a side of another, by multipliers.
-pub(crate) fn contact(parts: &[Part], secondary: (usize, &str), primary: (usize, &str)) -> Contact {
+pub(crate) fn contact(parts: &[BodyInstance], secondary: (usize, &str), primary: (usize, &str)) -> Contact {
     let facets = |(k, side): (usize, &str)| -> Vec<Vec<usize>> {
-        let of = |facet: &carom_solid::Facet| facet.nodes.iter().map(|node| parts[k].first_node + node).collect();
+        let of =
+            |facet: &carom_solid::Facet| facet.nodes.iter().map(|node| parts[k].first_node + node).collect();
         parts[k].body.mesh().sides[side].iter().map(of).collect()
     };
     let shape = |k: usize| parts[k].body.mesh().element.facet_shape().unwrap();
@@ -59,9 +60,10 @@ pub(crate) fn contact(parts: &[Part], secondary: (usize, &str), primary: (usize,
     }
 }
 
-/// A model with consistent masses, at rest in its reference positions; dofs that are fixed or move are held.
+/// A model with consistent masses, at rest in its reference positions; dofs that are fixed or move
+/// are held.
 pub(crate) fn model(
-    mut parts: Vec<Part>,
+    mut parts: Vec<BodyInstance>,
     fixed: &[usize],
     motions: Motions,
     loads: Loads,
@@ -90,7 +92,7 @@ pub(crate) fn model(
         gravity: vec![0.0; dofs],
         loads,
         motions,
-        unheld: Vec::new(),
+        unconstrained: Vec::new(),
         contacts,
         supports: Vec::new(),
         probes: Vec::new(),

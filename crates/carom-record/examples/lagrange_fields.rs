@@ -1,5 +1,6 @@
-//! Writes fields of one cell of every kind with a cubic sampled at its nodes, for `tests/vtk_reads.py` to read with VTK itself: as
-//! `cells.vtu`, and twenty instants of it, growing with time, as `run/fields.vtkhdf`.
+//! Writes fields of one cell of every kind with a cubic sampled at its nodes, for
+//! `tests/vtk_reads.py` to read with VTK itself: as `cells.vtu`, and twenty instants of it, growing
+//! with time, as `run/fields.vtkhdf`.
 
 use std::path::Path;
 

@@ -1,10 +1,12 @@
-//! Two generations of a checkpoint, written in turn, so that one of them is whole whenever the machine stops.
+//! Two generations of a checkpoint, written in turn, so that one of them is whole whenever the
+//! machine stops.
 //!
 //! ```text
 //! "CAROMCKP" | version u32 | header length u32 | header (postcard) | payload | blake3 of all before (32 bytes)
 //! ```
 //!
-//! The header holds what the other files of the directory were when the payload was taken: their lengths, and the field files.
+//! The header holds what the other files of the directory were when the payload was taken: their
+//! lengths, and the field files.
 
 use std::path::{Path, PathBuf};
 
@@ -36,9 +38,15 @@ pub(crate) fn path(directory: &Path, generation: usize) -> PathBuf {
 }
 
 /// Replaces one generation.
-pub(crate) fn write(directory: &Path, generation: usize, header: &Header, payload: &[u8]) -> Result<(), RecordError> {
+pub(crate) fn write(
+    directory: &Path,
+    generation: usize,
+    header: &Header,
+    payload: &[u8],
+) -> Result<(), RecordError> {
     let path = path(directory, generation);
-    let header = postcard::to_stdvec(header).map_err(|e| RecordError::io("write", &path)(std::io::Error::other(e)))?;
+    let header =
+        postcard::to_stdvec(header).map_err(|e| RecordError::io("write", &path)(std::io::Error::other(e)))?;
     let mut head = MAGIC.to_vec();
     head.extend(VERSION.to_le_bytes());
     head.extend((header.len() as u32).to_le_bytes());

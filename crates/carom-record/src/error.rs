@@ -1,4 +1,5 @@
-//! What can go wrong with a run directory: the machine refused, the record is damaged, or the directory is not what it should be.
+//! What can go wrong with a run directory: the machine refused, the record is damaged, or the
+//! directory is not what it should be.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -73,7 +74,12 @@ impl RecordError {
         move |source| Self::Io { action, path, source }
     }
 
-    pub(crate) fn corrupt(path: &Path, line: Option<u64>, what: impl Into<String>, hint: &'static str) -> Self {
+    pub(crate) fn corrupt(
+        path: &Path,
+        line: Option<u64>,
+        what: impl Into<String>,
+        hint: &'static str,
+    ) -> Self {
         Self::Corrupt { path: path.to_path_buf(), line, what: what.into(), hint }
     }
 }

@@ -126,9 +126,10 @@ impl Bound {
     /// The expected value; that of a bound is the bound.
     pub fn value(self) -> f64 {
         match self {
-            Self::Near { value, .. } | Self::Relative { value, .. } | Self::AtMost(value) | Self::AtLeast(value) => {
-                value
-            }
+            Self::Near { value, .. }
+            | Self::Relative { value, .. }
+            | Self::AtMost(value)
+            | Self::AtLeast(value) => value,
         }
     }
 
@@ -168,7 +169,11 @@ impl Deviation {
         let formula = Formula::parse(text, &["t"]).map_err(|e| format!("`{text}`: {e}"))?;
         let difference = |(t, c): (&f64, &f64)| {
             let expected = formula.value(&[*t]);
-            if expected.is_finite() { Ok(c - expected) } else { Err(format!("`{text}` is {expected} at t = {t}")) }
+            if expected.is_finite() {
+                Ok(c - expected)
+            } else {
+                Err(format!("`{text}` is {expected} at t = {t}"))
+            }
         };
         let differences = times.iter().zip(values).map(difference).collect::<Result<Vec<_>, _>>()?;
         Ok(self.norm.of(&differences) / self.scale)
@@ -240,7 +245,8 @@ impl Expect {
     }
 }
 
-/// A record held against expectations. Half a run is judged only where one of them asks whether it stopped.
+/// A record held against expectations. Half a run is judged only where one of them asks whether it
+/// stopped.
 pub fn judge(run: &Run, expects: &[Expect]) -> Vec<Expectation> {
     let whole = run.manifest.status == Status::Finished || expects.iter().any(Expect::asks_whether_stopped);
     let reason = || run.manifest.reason.clone().unwrap_or_else(|| "it has not ended".to_owned());

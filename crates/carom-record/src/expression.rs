@@ -5,8 +5,8 @@
 //! factor  := NUMBER | QUANTITY | ( sum )          blanks around every sign and bracket, since names may contain them
 //! ```
 //!
-//! A quantity is a row of words, of texts in quotes (names of arms) and of what stands in square brackets, which may hold signs. What it
-//! means is its own business: [`crate::question`].
+//! A quantity is a row of words, of texts in quotes (names of arms) and of what stands in square
+//! brackets, which may hold signs. What it means is its own business: [`crate::question`].
 
 /// An expression in quantities `Q`.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,7 +59,9 @@ impl<Q> Expression<Q> {
         match self {
             Self::Number(value) => Expression::Number(*value),
             Self::Quantity(quantity) => Expression::Quantity(of(quantity)),
-            Self::Binary(sign, sides) => Expression::Binary(*sign, Box::new([sides[0].map(of), sides[1].map(of)])),
+            Self::Binary(sign, sides) => {
+                Expression::Binary(*sign, Box::new([sides[0].map(of), sides[1].map(of)]))
+            }
         }
     }
 

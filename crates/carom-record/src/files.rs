@@ -1,4 +1,5 @@
-//! Files that are either the old ones or the new ones, never half of both: write beside, flush to the disk, rename.
+//! Files that are either the old ones or the new ones, never half of both: write beside, flush to
+//! the disk, rename.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -6,13 +7,17 @@ use std::path::{Path, PathBuf};
 
 use crate::RecordError;
 
-/// Replaces `path` by the given parts, one after the other. After a crash the file is the old one or the new one.
+/// Replaces `path` by the given parts, one after the other. After a crash the file is the old one
+/// or the new one.
 pub(crate) fn write_atomically(path: &Path, parts: &[&[u8]]) -> Result<(), RecordError> {
     replace(path, |file| parts.iter().try_for_each(|part| file.write_all(part)))
 }
 
 /// Replaces `path` by what is written into an empty file open for reading and writing.
-pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> Result<(), RecordError> {
+pub(crate) fn replace(
+    path: &Path,
+    write: impl FnOnce(&mut File) -> io::Result<()>,
+) -> Result<(), RecordError> {
     let partial = partial(path);
     let created = File::options().read(true).write(true).create(true).truncate(true).open(&partial);
     let mut file = created.map_err(RecordError::io("create", &partial))?;
@@ -22,8 +27,8 @@ pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut File) -> io::Result<(
     sync_directory(path.parent().unwrap_or(Path::new(".")))
 }
 
-/// What a file is written to before it is whole. A fixed name: what a kill leaves behind is overwritten by the next write instead of
-/// piling up.
+/// What a file is written to before it is whole. A fixed name: what a kill leaves behind is
+/// overwritten by the next write instead of piling up.
 pub(crate) fn partial(path: &Path) -> PathBuf {
     let mut name = std::ffi::OsString::from(".");
     name.push(path.file_name().unwrap_or_default());

@@ -1,4 +1,5 @@
-//! The run directory of a Carom simulation, written and read, and metrics as pure functions of what was read.
+//! The run directory of a Carom simulation, written and read, and metrics as pure functions of what
+//! was read.
 //!
 //! ```text
 //! runs/impact/manifest.json          what was run, with which result
@@ -9,8 +10,8 @@
 //!             checkpoint/            two generations of what a run needs to go on
 //! ```
 //!
-//! This crate knows no model and no solver. A run that produces the same numbers produces the same bytes, and a run that is
-//! killed and reopened continues to the same bytes as one that was not.
+//! This crate knows no model and no solver. A run that produces the same numbers produces the same
+//! bytes, and a run that is killed and reopened continues to the same bytes as one that was not.
 
 mod checkpoint;
 mod error;

@@ -46,7 +46,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// blake3 of the case text and the options, in hexadecimal. Every part carries its length, so none runs into the next.
+    /// blake3 of the case text and the options, in hexadecimal. Every part carries its length, so
+    /// none runs into the next.
     pub fn hash(&self) -> String {
         let mut hasher = blake3::Hasher::new();
         for part in std::iter::once(&self.text).chain(&self.sets) {
@@ -126,8 +127,9 @@ pub struct Manifest {
     pub threads: usize,
     /// Columns of `history.csv`, in order.
     pub columns: Vec<Column>,
-    /// Named sides, `body.side`: chains of point numbers of the field files in the order in which the boundary is walked, facet after
-    /// facet with the facets' interior points between their ends.
+    /// Named sides, `body.side`: chains of point numbers of the field files in the order in which
+    /// the boundary is walked, facet after facet with the facets' interior points between their
+    /// ends.
     #[serde(default)]
     pub sides: BTreeMap<String, Vec<Vec<usize>>>,
     /// What was said about the case before it ran, as sentences.
@@ -156,7 +158,13 @@ pub const PHASES: [(&str, &str); 5] = [
 
 impl Manifest {
     /// A manifest of a run that starts now on this machine.
-    pub fn new(version: &str, case: serde_json::Value, source: Source, columns: Vec<Column>, threads: usize) -> Self {
+    pub fn new(
+        version: &str,
+        case: serde_json::Value,
+        source: Source,
+        columns: Vec<Column>,
+        threads: usize,
+    ) -> Self {
         let (input_hash, started) = (source.hash(), now());
         Self {
             status: Status::Running,
@@ -178,7 +186,8 @@ impl Manifest {
         }
     }
 
-    /// Wall seconds of each phase that was measured and what it is; the last is the rest of the total. Empty before a run has ended.
+    /// Wall seconds of each phase that was measured and what it is; the last is the rest of the
+    /// total. Empty before a run has ended.
     pub fn phases(&self) -> Vec<(&'static str, &'static str, f64)> {
         let Some(total) = self.timings.get("total") else { return Vec::new() };
         let known = PHASES.iter().filter_map(|&(name, what)| Some((name, what, *self.timings.get(name)?)));

@@ -6,9 +6,10 @@
 //!                     f₀ = f₃ − (f₂ − f₃)·h₃ᵖ/(h₂ᵖ − h₃ᵖ)                  Richardson; band 1.25·|f₃ − f₀|
 //! ```
 //!
-//! The band is Roache's grid convergence index with the safety factor 1.25 of studies with more than two grids (P. J. Roache, "Perspective:
-//! a method for uniform reporting of grid refinement studies", J. Fluids Eng. 116, 1994). An order counts as established when the estimates
-//! of two successive triples of steps agree within [`MARGIN`].
+//! The band is Roache's grid convergence index with the safety factor 1.25 of studies with more
+//! than two grids (P. J. Roache, "Perspective: a method for uniform reporting of grid refinement
+//! studies", J. Fluids Eng. 116, 1994). An order counts as established when the estimates of two
+//! successive triples of steps agree within [`MARGIN`].
 
 /// Two successive estimates of an order that is established differ by at most this.
 pub const MARGIN: f64 = 0.3;
@@ -30,12 +31,16 @@ pub struct Extrapolation {
 /// Order from the differences f₁ − f₂ and f₂ − f₃ (or their sizes) at three falling steps.
 ///
 /// # Errors
-/// In words, why there is none: steps that do not fall, differences of opposite signs, a difference of zero.
+/// In words, why there is none: steps that do not fall, differences of opposite signs, a difference
+/// of zero.
 pub fn from_differences(steps: [f64; 3], differences: [f64; 2]) -> Result<f64, String> {
     falling(&steps)?;
     let quotient = differences[0] / differences[1];
     if differences.contains(&0.0) || !quotient.is_finite() {
-        return Err(format!("the differences {:.3e} and {:.3e} have no quotient", differences[0], differences[1]));
+        return Err(format!(
+            "the differences {:.3e} and {:.3e} have no quotient",
+            differences[0], differences[1]
+        ));
     }
     if quotient < 0.0 {
         return Err(format!(
@@ -50,7 +55,10 @@ pub fn from_differences(steps: [f64; 3], differences: [f64; 2]) -> Result<f64, S
     };
     let (mut low, mut high) = (-20.0, 40.0);
     if ratio(low) > quotient || ratio(high) < quotient {
-        return Err(format!("the differences {:.3e} and {:.3e} fit no order", differences[0], differences[1]));
+        return Err(format!(
+            "the differences {:.3e} and {:.3e} fit no order",
+            differences[0], differences[1]
+        ));
     }
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
@@ -103,7 +111,9 @@ pub fn extrapolated(steps: &[f64], values: &[f64]) -> Result<Extrapolation, Stri
     };
     let (before, order) = (before.clone()?, order.clone()?);
     if (order - before).abs() > MARGIN {
-        return Err(format!("the last two estimates, {before:.2} and {order:.2}, differ by more than {MARGIN}"));
+        return Err(format!(
+            "the last two estimates, {before:.2} and {order:.2}, differ by more than {MARGIN}"
+        ));
     }
     if order <= 0.0 {
         return Err(format!("the differences grow as the step falls: estimate {order:.2}"));
@@ -151,7 +161,8 @@ mod tests {
         }
     }
 
-    /// f = h + h²: p from a triple of halved steps is log₂((h₁ − h₂ + h₁² − h₂²)/(h₂ − h₃ + h₂² − h₃²)).
+    /// f = h + h²: p from a triple of halved steps is log₂((h₁ − h₂ + h₁² − h₂²)/(h₂ − h₃ + h₂² −
+    /// h₃²)).
     #[test]
     fn mixed_powers_by_hand() {
         let f = values(&EVEN, |h| h + h * h);

@@ -41,7 +41,8 @@ pub(crate) fn write(directory: &Path, entries: &[FieldEntry]) -> Result<(), Reco
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n <Collection>\n",
     );
     for entry in entries {
-        let _ = writeln!(text, "  <DataSet timestep=\"{:?}\" part=\"0\" file=\"{}\"/>", entry.time, entry.file());
+        let _ =
+            writeln!(text, "  <DataSet timestep=\"{:?}\" part=\"0\" file=\"{}\"/>", entry.time, entry.file());
     }
     text.push_str(" </Collection>\n</VTKFile>\n");
     files::write_atomically(&directory.join("fields.pvd"), &[text.as_bytes()])
@@ -68,8 +69,8 @@ pub(crate) fn read(directory: &Path) -> Result<Vec<FieldEntry>, RecordError> {
             Event::Empty(tag) if tag.name().as_ref() == "DataSet" => {
                 let attribute = |name| Some(tag.try_get_attribute(name).ok()??.value);
                 let time = attribute("timestep").and_then(|t| t.parse().ok());
-                let step =
-                    attribute("file").and_then(|f| f.strip_prefix("fields/")?.strip_suffix(".vtu")?.parse().ok());
+                let step = attribute("file")
+                    .and_then(|f| f.strip_prefix("fields/")?.strip_suffix(".vtu")?.parse().ok());
                 let (Some(time), Some(step)) = (time, step) else {
                     return Err(damaged("a DataSet without a time or a file of ours".into()));
                 };

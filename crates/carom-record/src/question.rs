@@ -9,8 +9,9 @@
 //! NAME     := a metric of `metrics`, COLUMN:min and the like, energy_lost:N, or `stopped` (1 if the run could not go on, 0 if it ended)
 //! ```
 //!
-//! An expression in columns of several arms has the rows whose times all of them recorded (to 1e-9 of the span); `by step` takes rows with
-//! the same step number, where times are in other units. `after < time < before`, strictly, are the rows a question sees.
+//! An expression in columns of several arms has the rows whose times all of them recorded (to 1e-9
+//! of the span); `by step` takes rows with the same step number, where times are in other units.
+//! `after < time < before`, strictly, are the rows a question sees.
 
 use std::borrow::Cow;
 
@@ -140,7 +141,9 @@ impl Question {
     /// The same of an arm, where none is named.
     pub(crate) fn of_arm(&self, arm: &str) -> Self {
         self.map(&|quantity| match quantity {
-            Quantity::Metric(name, of) => Quantity::Metric(name.clone(), of.clone().or_else(|| Some(arm.to_owned()))),
+            Quantity::Metric(name, of) => {
+                Quantity::Metric(name.clone(), of.clone().or_else(|| Some(arm.to_owned())))
+            }
             Quantity::Reduced(form, series) => Quantity::Reduced(*form, series.of_arm(arm)),
         })
     }
@@ -185,16 +188,24 @@ impl Series {
 
     /// The same of an arm, where none is named.
     pub(crate) fn of_arm(&self, arm: &str) -> Self {
-        let named = |a: &Asked| Asked { column: a.column.clone(), arm: a.arm.clone().or_else(|| Some(arm.to_owned())) };
+        let named = |a: &Asked| Asked {
+            column: a.column.clone(),
+            arm: a.arm.clone().or_else(|| Some(arm.to_owned())),
+        };
         Self { columns: self.columns.map(&named), by_step: self.by_step }
     }
 }
 
-/// Times, and values of each series, of the rows that all their columns have. Rows are matched by step if the first series says so.
+/// Times, and values of each series, of the rows that all their columns have. Rows are matched by
+/// step if the first series says so.
 ///
 /// # Errors
 /// In words: what is not there.
-pub fn common(series: &[Series], records: &dyn Records, window: Window) -> Result<(Vec<f64>, Vec<Vec<f64>>), String> {
+pub fn common(
+    series: &[Series],
+    records: &dyn Records,
+    window: Window,
+) -> Result<(Vec<f64>, Vec<Vec<f64>>), String> {
     let asked: Vec<&Asked> = series.iter().flat_map(|s| s.columns.quantities()).collect();
     let columns = asked.iter().map(|a| records.column(a)).collect::<Result<Vec<_>, _>>()?;
     let Some(first) = columns.first() else { return Err("no column is named".to_owned()) };
@@ -327,7 +338,8 @@ fn asked(tokens: &[Token]) -> Result<Asked, String> {
 }
 
 fn difference(form: Form, tokens: &[Token]) -> Result<Quantity, String> {
-    let [Token::Word(column), Token::Word(of), Token::Quoted(one), Token::Word(and), Token::Quoted(other)] = tokens
+    let [Token::Word(column), Token::Word(of), Token::Quoted(one), Token::Word(and), Token::Quoted(other)] =
+        tokens
     else {
         return Err(format!("`difference {}` is not difference COLUMN of \"ARM\" and \"ARM\"", said(tokens)));
     };
@@ -373,14 +385,17 @@ fn no_arms(arm: Option<&str>) -> Result<(), String> {
 /// A metric of the history, or of one of its columns.
 pub(crate) fn metric(history: &History, name: &str) -> Result<f64, String> {
     if let Some(n) = name.strip_prefix("energy_lost:") {
-        let n =
-            n.parse().map_err(|_| format!("`{n}` is no number of an impact: energy_lost:1 is that of the first"))?;
-        return metrics::energy_lost_at(history, n).ok_or_else(|| format!("this record has no impact {n} that ended"));
+        let n = n
+            .parse()
+            .map_err(|_| format!("`{n}` is no number of an impact: energy_lost:1 is that of the first"))?;
+        return metrics::energy_lost_at(history, n)
+            .ok_or_else(|| format!("this record has no impact {n} that ended"));
     }
     if let Some((column, what)) = name.rsplit_once(':') {
         history.column(column).ok_or_else(|| no_column(column))?;
-        let (_, value) = metrics::of_column(history, column, what)
-            .ok_or_else(|| format!("`{what}` is no metric of a column: {}", column_metric_names().join(", ")))?;
+        let (_, value) = metrics::of_column(history, column, what).ok_or_else(|| {
+            format!("`{what}` is no metric of a column: {}", column_metric_names().join(", "))
+        })?;
         return value.ok_or_else(|| format!("this record has no {what} of `{column}`"));
     }
     match metrics::all(history).into_iter().find(|m| m.name == name) {

@@ -1,6 +1,7 @@
 //! Rows of `history.csv` and `contact.csv` and lines of `log.jsonl`.
 //!
-//! Numbers are the shortest decimals that read back to the same bits, with an exponent when tiny or huge.
+//! Numbers are the shortest decimals that read back to the same bits, with an exponent when tiny or
+//! huge.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -39,8 +40,13 @@ pub struct ContactRow<'a> {
 /// Header of `contact.csv` with this many axes.
 pub(crate) fn contact_columns(axes: usize) -> Vec<&'static str> {
     let (places, normals) = (&["x", "y", "z"][..axes], &["normal_x", "normal_y", "normal_z"][..axes]);
-    [&["step", "time", "contact", "node"][..], places, &["facet", "xi", "gap", "multiplier", "pressure"], normals]
-        .concat()
+    [
+        &["step", "time", "contact", "node"][..],
+        places,
+        &["facet", "xi", "gap", "multiplier", "pressure"],
+        normals,
+    ]
+    .concat()
 }
 
 /// Axes that the rows of a case's contacts have: z in space alone.

@@ -1,10 +1,13 @@
-//! Reading a run directory: finished, stopped, or still being written (a row or line that is not complete yet is left out).
+//! Reading a run directory: finished, stopped, or still being written (a row or line that is not
+//! complete yet is left out).
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::rows::{contact_axes, contact_columns};
-use crate::{Column, ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, pvd, vtkhdf};
+use crate::{
+    Column, ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, pvd, vtkhdf,
+};
 
 const HINT: &str = "`carom resume` goes back to the last checkpoint; or run the case again";
 
@@ -90,7 +93,8 @@ impl Run {
         self.history.times()
     }
 
-    /// Whether a contact was active in a motion: not where the time is the parameter of a static load.
+    /// Whether a contact was active in a motion: not where the time is the parameter of a static
+    /// load.
     pub fn had_dynamic_contact(&self) -> bool {
         let kind = self.manifest.case.pointer("/time/scheme/kind").and_then(|k| k.as_str());
         kind != Some("static") && self.column("active").is_some_and(|active| active.iter().any(|n| *n > 0.0))
@@ -123,7 +127,8 @@ fn lines(path: &Path) -> Result<Vec<u8>, RecordError> {
     Ok(bytes)
 }
 
-/// Reads a CSV file whose header must be `names`, and hands over row after row with its line number.
+/// Reads a CSV file whose header must be `names`, and hands over row after row with its line
+/// number.
 fn rows(
     path: &Path,
     names: &[&str],

@@ -133,7 +133,12 @@ impl Verification {
         let path = directory.join("verify.json");
         let text = std::fs::read(&path).map_err(RecordError::io("read", &path))?;
         serde_json::from_slice(&text).map_err(|error| {
-            RecordError::corrupt(&path, Some(error.line() as u64), error.to_string(), "run carom verify again")
+            RecordError::corrupt(
+                &path,
+                Some(error.line() as u64),
+                error.to_string(),
+                "run carom verify again",
+            )
         })
     }
 

@@ -1,7 +1,8 @@
 //! Writing a run directory so that it can be killed at any moment and continued to the same bytes.
 //!
-//! A directory comes into being by one rename, with a checkpoint in it. A checkpoint first forces the row files to the disk, then
-//! records their lengths; reopening cuts them back to those lengths and drops later fields.
+//! A directory comes into being by one rename, with a checkpoint in it. A checkpoint first forces
+//! the row files to the disk, then records their lengths; reopening cuts them back to those lengths
+//! and drops later fields.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, Seek, SeekFrom, Write};
@@ -9,7 +10,9 @@ use std::path::{Path, PathBuf};
 
 use crate::checkpoint::{self, Header};
 use crate::rows::{Table, contact_axes, contact_columns};
-use crate::{ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, files, pvd, vtkhdf};
+use crate::{
+    ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, files, pvd, vtkhdf,
+};
 
 const ROW_FILES: [&str; 3] = ["history.csv", "contact.csv", "log.jsonl"];
 
@@ -50,8 +53,13 @@ pub struct Reopened {
 }
 
 impl RunWriter {
-    /// Makes the directory, complete with a first checkpoint, and its parents. Refuses one that exists.
-    pub fn create(directory: &Path, manifest: &Manifest, first_checkpoint: &[u8]) -> Result<Self, RecordError> {
+    /// Makes the directory, complete with a first checkpoint, and its parents. Refuses one that
+    /// exists.
+    pub fn create(
+        directory: &Path,
+        manifest: &Manifest,
+        first_checkpoint: &[u8],
+    ) -> Result<Self, RecordError> {
         if directory.symlink_metadata().is_ok() {
             return Err(RecordError::Exists { path: directory.to_path_buf() });
         }
@@ -294,7 +302,8 @@ fn missing(error: &RecordError) -> bool {
     matches!(error, RecordError::Io { source, .. } if source.kind() == std::io::ErrorKind::NotFound)
 }
 
-/// Two processes must not append to one record. The system releases the lock when the process ends, however it ends.
+/// Two processes must not append to one record. The system releases the lock when the process ends,
+/// however it ends.
 fn lock(directory: &Path) -> Result<File, RecordError> {
     let path = directory.join("checkpoint").join("lock");
     let file = File::create(&path).map_err(RecordError::io("open", &path))?;

@@ -7,15 +7,19 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use carom_record::{
-    Block, Cell, Column, ContactRow, Event, FieldFormat, FieldSet, Manifest, PointArray, RecordError, Run, RunWriter,
-    Source, Status,
+    Block, Cell, Column, ContactRow, Event, FieldFormat, FieldSet, Manifest, PointArray, RecordError, Run,
+    RunWriter, Source, Status,
 };
 
 const STEPS: u64 = 40;
 
 fn manifest() -> Manifest {
-    let column =
-        |name: &str, integer| Column { name: name.into(), unit: "s".into(), description: String::new(), integer };
+    let column = |name: &str, integer| Column {
+        name: name.into(),
+        unit: "s".into(),
+        description: String::new(),
+        integer,
+    };
     let columns = vec![column("step", true), column("time", false), column("A.uy, \"odd\"", false)];
     Manifest::new("0.1.0", serde_json::json!({"title": "t"}), Source::default(), columns, 1)
 }
@@ -142,7 +146,8 @@ fn killed_anywhere(format: FieldFormat) {
             let mut got = all_bytes(&directory);
             let mut expected = expected.clone();
             if generation.is_some() {
-                // Which of the two files holds which step, and how often was counted, depends on where one went on.
+                // Which of the two files holds which step, and how often was counted, depends on
+                // where one went on.
                 got.retain(|path, _| !path.starts_with("checkpoint"));
                 expected.retain(|path, _| !path.starts_with("checkpoint"));
             }
@@ -188,7 +193,8 @@ fn what_is_read_is_what_was_written() {
     let scratch = tempfile::tempdir().unwrap();
     let directory = scratch.path().join("deep/er/run");
     let mut writer = RunWriter::create(&directory, &manifest(), b"").unwrap();
-    let awkward = [0.1 + 0.2, -0.0, f64::MIN_POSITIVE, 5e-324, f64::MAX, 1e16, 123456789.125, f64::INFINITY, 1.0];
+    let awkward =
+        [0.1 + 0.2, -0.0, f64::MIN_POSITIVE, 5e-324, f64::MAX, 1e16, 123456789.125, f64::INFINITY, 1.0];
     for (i, &x) in awkward.iter().enumerate() {
         writer.history(&[i as f64, x, -x]).unwrap();
     }
@@ -245,7 +251,10 @@ fn refusals_say_why() {
     drop(writer);
     fs::write(directory.join("history.csv"), "step,time,\"A.uy, \"\"odd\"\"\"\n0,0,0\n1,x,0\n2,tor").unwrap();
     let (code, text) = refused(Run::open(&directory).unwrap_err());
-    assert!(code == 2 && text.contains("history.csv:3 is damaged: `x` in column time is not a number"), "{text}");
+    assert!(
+        code == 2 && text.contains("history.csv:3 is damaged: `x` in column time is not a number"),
+        "{text}"
+    );
     fs::write(directory.join("history.csv"), "step").unwrap();
     let text = refused(RunWriter::reopen(&directory).err().unwrap()).1;
     assert!(text.contains("history.csv") && text.contains("4 bytes"), "{text}");

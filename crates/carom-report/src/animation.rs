@@ -1,8 +1,9 @@
-//! The motion, to be played offline: deformed bodies with the stress in colour and contact forces as arrows, frame by frame beside the
-//! time histories.
+//! The motion, to be played offline: deformed bodies with the stress in colour and contact forces
+//! as arrows, frame by frame beside the time histories.
 //!
-//! Frames are the field files and nothing between them. Positions and stresses travel as 16-bit integers over their range (a
-//! 65 000th of the picture's width), the mesh once; `animation.js` draws them with the colours of the figure `bodies`.
+//! Frames are the field files and nothing between them. Positions and stresses travel as 16-bit
+//! integers over their range (a 65 000th of the picture's width), the mesh once; `animation.js`
+//! draws them with the colours of the figure `bodies`.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -66,7 +67,8 @@ fn strip(fields: &FieldSet, time: String) -> Option<Instant> {
 /// Integers over a range; what is not finite becomes the smallest one.
 fn packed<'a>(values: impl Iterator<Item = &'a f64>, (low, high): (f64, f64)) -> String {
     let scale = if high > low { 65534.0 / (high - low) } else { 0.0 };
-    let integer = |x: &f64| if x.is_finite() { ((x - low) * scale - 32767.0).round() as i16 } else { i16::MIN };
+    let integer =
+        |x: &f64| if x.is_finite() { ((x - low) * scale - 32767.0).round() as i16 } else { i16::MIN };
     STANDARD.encode(values.flat_map(|x| integer(x).to_le_bytes()).collect::<Vec<u8>>())
 }
 
@@ -146,7 +148,9 @@ fn planes(run: &Run, flat: bool) -> Vec<[Point; 2]> {
         let list = v.get(key).and_then(|v| v.as_array()).cloned().unwrap_or_default();
         [0, 1].map(|i| list.get(i).and_then(serde_json::Value::as_f64).unwrap_or(0.0))
     };
-    let plane = |c: &serde_json::Value| c.pointer("/primary/plane").map(|p| [vector(p, "point"), vector(p, "normal")]);
+    let plane = |c: &serde_json::Value| {
+        c.pointer("/primary/plane").map(|p| [vector(p, "point"), vector(p, "normal")])
+    };
     contacts.filter_map(plane).map(|[p, n]| if flat { [[p[0], 0.0], [n[0], 0.0]] } else { [p, n] }).collect()
 }
 
@@ -158,7 +162,8 @@ fn chosen(run: &Run, points: usize) -> Vec<&FieldEntry> {
     run.fields.iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last).map(|(_, e)| e).collect()
 }
 
-/// The animation as a part of the page, hidden until its script runs; nothing for fewer than two field files.
+/// The animation as a part of the page, hidden until its script runs; nothing for fewer than two
+/// field files.
 pub(crate) fn html_of(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<String> {
     let first = run.field(run.fields.first()?).ok()?;
     let flat = first.blocks.iter().all(|b| b.cell == Cell::Curve);
@@ -187,7 +192,8 @@ pub(crate) fn html_of(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         let rounded: Vec<f64> = list.iter().map(|x| format!("{x:.5e}").parse().unwrap_or(0.0)).collect();
         json!({ "time": entry.time, "step": entry.step, "file": run.field_file(entry), "forces": rounded })
     };
-    let numbers: Vec<u8> = cells.iter().flat_map(|(_, n)| n.iter().flat_map(|k| (*k as u32).to_le_bytes())).collect();
+    let numbers: Vec<u8> =
+        cells.iter().flat_map(|(_, n)| n.iter().flat_map(|k| (*k as u32).to_le_bytes())).collect();
     let data = json!({
         "unit": run.history.unit("time"), "box": [x0, x1, y0, y1], "range": [range.0, range.1],
         "points": frames[0].1.points.len(), "frames": frames.iter().map(frame_of).collect::<Vec<_>>(),

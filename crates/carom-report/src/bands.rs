@@ -1,13 +1,14 @@
 //! Bands of equal colour inside a Lagrange triangle.
 //!
-//! A small triangle, on which the quantity is taken as linear, is cut along the levels between bands: every band's part is a convex
-//! polygon and together they are the triangle.
+//! A small triangle, on which the quantity is taken as linear, is cut along the levels between
+//! bands: every band's part is a convex polygon and together they are the triangle.
 
 use crate::axis::round_step;
 use crate::palette::diverging;
 use crate::pen::{Pen, Point};
 
-/// Shape functions of a Lagrange triangle in VTK's node order at barycentric (a, b, c) of its corners.
+/// Shape functions of a Lagrange triangle in VTK's node order at barycentric (a, b, c) of its
+/// corners.
 pub(crate) fn shape(degree: usize, [a, b, c]: [f64; 3], out: &mut Vec<f64>) {
     out.clear();
     match degree {
@@ -43,7 +44,8 @@ fn clip(polygon: &[(Point, f64)], level: f64, sign: f64) -> Vec<(Point, f64)> {
     out
 }
 
-/// Colour bands: `count` of equal width between `low` and `high`, zero in the middle of one; everything beyond takes the last colour.
+/// Colour bands: `count` of equal width between `low` and `high`, zero in the middle of one;
+/// everything beyond takes the last colour.
 pub(crate) struct Bands {
     pub(crate) low: f64,
     pub(crate) high: f64,
@@ -66,7 +68,8 @@ impl Bands {
     }
 }
 
-/// Colour bands of all values but the outermost half per cent on either side; and whether any were cut off.
+/// Colour bands of all values but the outermost half per cent on either side; and whether any were
+/// cut off.
 pub(crate) fn color_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool; 2]) {
     let mut values: Vec<f64> = values.filter(|x| x.is_finite()).collect();
     values.sort_unstable_by(f64::total_cmp);
@@ -156,7 +159,8 @@ mod tests {
                     corners.push(at);
                 }
                 let next = |i: usize| corners[(i + 1) % corners.len()];
-                let twice = (0..corners.len()).map(|i| corners[i][0] * next(i)[1] - next(i)[0] * corners[i][1]);
+                let twice =
+                    (0..corners.len()).map(|i| corners[i][0] * next(i)[1] - next(i)[0] * corners[i][1]);
                 twice.sum::<f64>() / (2.0 * GRID * GRID)
             };
             pen.data().split_terminator('z').map(polygon).sum()

@@ -1,7 +1,8 @@
 //! Deformed bodies with a nodal quantity in colour, several instants at one scale.
 //!
-//! A cell's geometry and quantity are its own Lagrange polynomials: filled in bands of equal colour on a fine subdivision, its edges
-//! drawn as exact Bézier curves (a Lagrange edge of degree ≤ 3 is one).
+//! A cell's geometry and quantity are its own Lagrange polynomials: filled in bands of equal colour
+//! on a fine subdivision, its edges drawn as exact Bézier curves (a Lagrange edge of degree ≤ 3 is
+//! one).
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -24,7 +25,8 @@ pub(crate) struct Instant {
 }
 
 impl Instant {
-    /// Triangles of a field set at reference position + displacement, coloured by one component of an array.
+    /// Triangles of a field set at reference position + displacement, coloured by one component of
+    /// an array.
     pub(crate) fn new(fields: &FieldSet, array: &str, component: usize, time: String) -> Option<Self> {
         let quantity = fields.array(array).filter(|a| component < a.components)?;
         let triangles = fields.blocks.iter().filter(|b| b.cell == Cell::Triangle);
@@ -76,7 +78,8 @@ fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -
         // A cell of one colour is drawn whole, inside its exact edges.
         let band = bands.of(corner[0].1);
         if corner.iter().all(|(_, f)| f.is_finite() && bands.of(*f) == band) {
-            let edge = |e: usize| edge_nodes(*degree, nodes, e).map(|k| to(instant.points[k])).collect::<Vec<_>>();
+            let edge =
+                |e: usize| edge_nodes(*degree, nodes, e).map(|k| to(instant.points[k])).collect::<Vec<_>>();
             (0..3).for_each(|e| bezier(&mut paths[band], &edge(e), e == 0));
             paths[band].close();
             continue;
@@ -116,7 +119,9 @@ pub(crate) fn bezier(pen: &mut Pen, nodes: &[Point], moved: bool) {
     let controls: &[&[f64]] = match nodes.len() {
         2 => &[&[0.0, 1.0]],
         3 => &[&[-0.5, 2.0, -0.5], &[0.0, 0.0, 1.0]],
-        _ => &[&[-5.0 / 6.0, 3.0, -1.5, 1.0 / 3.0], &[1.0 / 3.0, -1.5, 3.0, -5.0 / 6.0], &[0.0, 0.0, 0.0, 1.0]],
+        _ => {
+            &[&[-5.0 / 6.0, 3.0, -1.5, 1.0 / 3.0], &[1.0 / 3.0, -1.5, 3.0, -5.0 / 6.0], &[0.0, 0.0, 0.0, 1.0]]
+        }
     };
     if moved {
         pen.go(nodes[0]);
@@ -160,8 +165,9 @@ pub(crate) fn frame<'a>(instants: impl IntoIterator<Item = &'a Instant>) -> [f64
 
 /// Colours for the values of some instants.
 pub(crate) fn colors(instants: &[Instant]) -> (Bands, [bool; 2]) {
-    let used =
-        |i: &Instant| i.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| i.values[k])).collect::<Vec<_>>();
+    let used = |i: &Instant| {
+        i.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| i.values[k])).collect::<Vec<_>>()
+    };
     color_bands(instants.iter().flat_map(used))
 }
 
@@ -269,7 +275,8 @@ pub(crate) fn color_bar(
     let axis = Axis::new((bands.low, bands.high), 6.0, true);
     for (value, tick) in &axis.ticks {
         let y = bottom - (bottom - top) * axis.position(*value);
-        let _ = writeln!(out, "<path d=\"M{:.1} {y:.1}h4\" stroke=\"#222\" stroke-width=\"0.8\"/>", x + width);
+        let _ =
+            writeln!(out, "<path d=\"M{:.1} {y:.1}h4\" stroke=\"#222\" stroke-width=\"0.8\"/>", x + width);
         write_text(out, x + width + 7.0, y + 4.3, "", tick);
     }
     write_text(out, x - 2.0, top - 20.0, "", &with_unit(label, &scaled(unit, axis.exponent)));
@@ -279,7 +286,8 @@ pub(crate) fn color_bar(
 mod tests {
     use super::*;
 
-    /// A cubic edge through four points of a parabola is the parabola: its Bézier's middle is the parabola's.
+    /// A cubic edge through four points of a parabola is the parabola: its Bézier's middle is the
+    /// parabola's.
     #[test]
     fn beziers_pass_through_the_nodes() {
         let on = |s: f64| [s * 30.0, s * s * 90.0];

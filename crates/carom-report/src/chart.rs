@@ -87,7 +87,8 @@ impl Chart<'_> {
         let width = options.width;
         let plot = width - LEFT - RIGHT;
         let below = if options.tracks.is_empty() { 0.0 } else { 10.0 + ROW * options.tracks.len() as f64 };
-        let x_axis = Axis::new(range(self.panels.iter().flat_map(|p| &p.series).flat_map(|s| s.x)), plot / 78.0, true);
+        let x_axis =
+            Axis::new(range(self.panels.iter().flat_map(|p| &p.series).flat_map(|s| s.x)), plot / 78.0, true);
         let rows: Vec<Vec<Vec<usize>>> = self.panels.iter().map(|p| legend_rows(p, plot)).collect();
         let tops = rows.iter().map(|r| GAP + r.len() as f64 * 18.0);
         let height = tops.zip(&self.panels).map(|(top, p)| top + p.height).sum::<f64>() + 48.0 + below;
@@ -116,13 +117,17 @@ impl Chart<'_> {
             for (value, label) in &y_axis.ticks {
                 let y = to_y(*value);
                 let colour = if *value == 0.0 { "#999" } else { "#d8d8d8" };
-                let _ = writeln!(out, "<path d=\"M{LEFT} {y:.1}h{plot}\" stroke=\"{colour}\" stroke-width=\"0.6\"/>");
+                let _ = writeln!(
+                    out,
+                    "<path d=\"M{LEFT} {y:.1}h{plot}\" stroke=\"{colour}\" stroke-width=\"0.6\"/>"
+                );
                 write_text(&mut out, LEFT - 8.0, y + 4.3, "text-anchor=\"end\"", label);
             }
             let bottom = y0 + h;
             for (value, label) in &x_axis.ticks {
                 let x = to_x(*value);
-                let _ = writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v5\" stroke=\"#222\" stroke-width=\"0.8\"/>");
+                let _ =
+                    writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v5\" stroke=\"#222\" stroke-width=\"0.8\"/>");
                 if i + 1 == self.panels.len() {
                     write_text(&mut out, x, bottom + 19.0, "text-anchor=\"middle\"", label);
                 }
@@ -174,8 +179,11 @@ impl Chart<'_> {
             );
         }
         let exponent = x_axis.exponent;
-        let x_label =
-            if exponent == 0 { self.x_label.clone() } else { format!("{} × 10^{{{exponent}}}", self.x_label) };
+        let x_label = if exponent == 0 {
+            self.x_label.clone()
+        } else {
+            format!("{} × 10^{{{exponent}}}", self.x_label)
+        };
         write_text(&mut out, LEFT + 0.5 * plot, y0 + 16.0, "text-anchor=\"middle\"", &x_label);
         out.push_str("</svg>\n");
         out
@@ -217,7 +225,11 @@ fn write_legend(out: &mut String, panel: &Panel, rows: &[Vec<usize>], top: f64) 
     for (line, row) in rows.iter().enumerate() {
         let (mut x, y) = (LEFT + 6.0, top + 18.0 * line as f64 + 5.0);
         for series in row.iter().map(|&i| &panel.series[i]) {
-            let _ = writeln!(out, "<path d=\"M{x:.1} {y:.1}h22\" stroke=\"{}\" stroke-width=\"2\"/>", series.color);
+            let _ = writeln!(
+                out,
+                "<path d=\"M{x:.1} {y:.1}h22\" stroke=\"{}\" stroke-width=\"2\"/>",
+                series.color
+            );
             write_text(out, x + 27.0, y + 4.3, "", &series.label);
             x += entry_width(series);
         }

@@ -1,4 +1,5 @@
-//! What the page of a study keeps of the records of its arms: columns, thinned, and how each record came about.
+//! What the page of a study keeps of the records of its arms: columns, thinned, and how each record
+//! came about.
 
 use carom_record::Run;
 use carom_record::metrics::{contact_force, probe_columns};
@@ -39,9 +40,11 @@ pub(crate) struct Origin {
 impl Origin {
     /// From the record of an arm.
     pub(crate) fn of(arm: usize, run: &Run) -> Self {
-        let told = run.log.iter().filter(|e| ["fallback", "cycle", "no-stress"].contains(&e.kind.as_str())).count();
+        let told =
+            run.log.iter().filter(|e| ["fallback", "cycle", "no-stress"].contains(&e.kind.as_str())).count();
         let rejected = run.manifest.counters.get("rejected").copied().unwrap_or_default();
-        let (input, record) = (run.manifest.input_hash.clone(), fingerprint(&run.directory).unwrap_or_default());
+        let (input, record) =
+            (run.manifest.input_hash.clone(), fingerprint(&run.directory).unwrap_or_default());
         Self { arm, input, record, rejected, told }
     }
 }
@@ -76,7 +79,8 @@ fn put(columns: &mut Vec<Column>, name: &str, unit: &str, curve: (usize, Vec<f64
     }
 }
 
-/// A curve thinned to the first, lowest, highest and last point of each of 1600 spans of time, more than a figure has pixels.
+/// A curve thinned to the first, lowest, highest and last point of each of 1600 spans of time, more
+/// than a figure has pixels.
 fn thinned(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
     const SPANS: usize = 1600;
     if times.len() <= 4 * SPANS {
@@ -85,8 +89,12 @@ fn thinned(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let keep = (0..SPANS).flat_map(|k| {
         let rows = k * times.len() / SPANS..(k + 1) * times.len() / SPANS;
         let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
-        let mut keep =
-            [Some(rows.start), rows.clone().min_by(by_value), rows.clone().max_by(by_value), Some(rows.end - 1)];
+        let mut keep = [
+            Some(rows.start),
+            rows.clone().min_by(by_value),
+            rows.clone().max_by(by_value),
+            Some(rows.end - 1),
+        ];
         keep.sort_unstable();
         keep.into_iter().flatten()
     });

@@ -1,5 +1,5 @@
-//! Convergence in a study: for every key in which arms differ by numbers alone, each metric by step, its observed order, and the limit where
-//! an order is established ([`carom_record::order`]).
+//! Convergence in a study: for every key in which arms differ by numbers alone, each metric by
+//! step, its observed order, and the limit where an order is established ([`carom_record::order`]).
 
 use std::fmt::Write as _;
 
@@ -36,17 +36,24 @@ pub(crate) fn show(out: &mut String, study: &Study) {
 }
 
 fn table(out: &mut String, study: &Study, key: &str, group: &Refinement) {
-    let common =
-        if group.common.is_empty() { String::new() } else { format!(", <code>{}</code>", escape(&group.common)) };
+    let common = if group.common.is_empty() {
+        String::new()
+    } else {
+        format!(", <code>{}</code>", escape(&group.common))
+    };
     let counted = if key.ends_with("cells") { " (step: 1/cells)" } else { "" };
     let _ = writeln!(out, "<h3>Against <code>{}</code>{counted}{common}</h3>", escape(key));
-    let steps = group.steps.iter().fold(String::new(), |row, h| row + &format!("<th class=\"n\">{}</th>", number(*h)));
+    let steps = group
+        .steps
+        .iter()
+        .fold(String::new(), |row, h| row + &format!("<th class=\"n\">{}</th>", number(*h)));
     let _ = writeln!(
         out,
         "<table class=\"metrics\">\n<thead><tr><th>Metric</th><th>Unit</th>{steps}<th class=\"n\">Order</th><th class=\"n\">Limit</th></tr></thead>"
     );
     for metric in study.metrics().into_iter().filter(|m| !WORK.contains(&m.name.as_ref())) {
-        let values: Vec<Option<f64>> = group.arms.iter().map(|i| study.rows[*i].value(&metric.name)).collect();
+        let values: Vec<Option<f64>> =
+            group.arms.iter().map(|i| study.rows[*i].value(&metric.name)).collect();
         if values.iter().all(Option::is_none) {
             continue;
         }
@@ -57,7 +64,11 @@ fn table(out: &mut String, study: &Study, key: &str, group: &Refinement) {
             None => no("not every run has it"),
         };
         let (name, unit) = (escape(&metric.name), html(&metric.unit));
-        let _ = writeln!(out, "<tr><td><code>{name}</code></td><td>{unit}</td>{}{end}</tr>", cells.collect::<String>());
+        let _ = writeln!(
+            out,
+            "<tr><td><code>{name}</code></td><td>{unit}</td>{}{end}</tr>",
+            cells.collect::<String>()
+        );
     }
     out.push_str("</table>\n");
 }

@@ -18,14 +18,19 @@ pub(crate) fn show(out: &mut String, study: &Study) {
     }
     match study.manifest.design.as_ref().map(|d| (d.kind, &d.cost_of)) {
         None => {
-            out.push_str("<p>The arms are as written: neither their steps nor their costs were made equal.</p>\n");
+            out.push_str(
+                "<p>The arms are as written: neither their steps nor their costs were made equal.</p>\n",
+            );
         }
         Some((Kind::MatchedStep, _)) => {
-            let _ =
-                writeln!(out, "<p>Matched step: at a level every method has the same step ({}).</p>", levels(study));
+            let _ = writeln!(
+                out,
+                "<p>Matched step: at a level every method has the same step ({}).</p>",
+                levels(study)
+            );
             let by_cost = study.manifest.methods().into_iter().filter(|method| {
                 let mut arms = study.manifest.arms.iter();
-                arms.any(|arm| arm.part.method.as_deref() == Some(method) && study.manifest.by_cost(arm))
+                arms.any(|arm| arm.role.method.as_deref() == Some(method) && study.manifest.by_cost(arm))
             });
             let by_cost: Vec<String> = by_cost.map(escape).collect();
             if let Some(design) = study.manifest.design.as_ref().filter(|_| !by_cost.is_empty()) {
@@ -54,20 +59,22 @@ pub(crate) fn show(out: &mut String, study: &Study) {
 /// The steps of the levels, in words.
 fn levels(study: &Study) -> String {
     let steps = study.manifest.design.iter().flat_map(|d| &d.steps);
-    let steps: Vec<String> = steps.enumerate().map(|(i, h)| format!("level {} Δt = {}", i + 1, five(*h))).collect();
+    let steps: Vec<String> =
+        steps.enumerate().map(|(i, h)| format!("level {} Δt = {}", i + 1, five(*h))).collect();
     steps.join(", ")
 }
 
 /// Whether costs were matched within the tenth that is claimed, and of which arms not.
 pub(crate) fn unmatched(study: &Study) -> String {
-    let off = |arm: &&Arm| arm.part.cost.is_none_or(|share| (share - 1.0).abs() > OFF_BUDGET);
+    let off = |arm: &&Arm| arm.role.cost.is_none_or(|share| (share - 1.0).abs() > OFF_BUDGET);
     let matched: Vec<&Arm> = study.manifest.arms.iter().filter(|a| study.manifest.by_cost(a)).collect();
     let missed: Vec<&Arm> = matched.iter().copied().filter(off).collect();
     if missed.is_empty() {
-        return "<p>The counted cost of every arm whose cost is matched is within 10 % of its budget.</p>\n".to_owned();
+        return "<p>The counted cost of every arm whose cost is matched is within 10 % of its budget.</p>\n"
+            .to_owned();
     }
     let told = |arm: &&Arm| {
-        let share = arm.part.cost.map_or("none".to_owned(), three);
+        let share = arm.role.cost.map_or("none".to_owned(), three);
         format!("{} ({share} of the budget)", escape(&arm.name))
     };
     format!(

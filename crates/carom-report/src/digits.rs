@@ -1,4 +1,5 @@
-//! Numbers on the page of a study: in five digits, and in three where a table beside it has them all.
+//! Numbers on the page of a study: in five digits, and in three where a table beside it has them
+//! all.
 
 /// A number in five digits, an exponent when far from one.
 pub(crate) fn five(x: f64) -> String {

@@ -72,13 +72,18 @@ fn chart<'a>(run: &Run, title: &'a str, panels: Vec<Panel<'a>>) -> Option<String
     })
 }
 
-/// Curves of columns with their labels; those without a column, or zero throughout compared with `size`, are left out.
+/// Curves of columns with their labels; those without a column, or zero throughout compared with
+/// `size`, are left out.
 fn curves<'a>(run: &'a Run, columns: &[(&str, &str)], size: f64) -> Vec<Series<'a>> {
     let found = columns.iter().enumerate().filter_map(|(i, (name, label))| {
         let y = run.column(name)?;
         let shown = size == 0.0 || y.iter().any(|y| y.abs() > 1e-9 * size);
-        let series =
-            |y: &[f64]| Series { label: (*label).into(), color: LINES[i % LINES.len()], x: run.times(), y: y.to_vec() };
+        let series = |y: &[f64]| Series {
+            label: (*label).into(),
+            color: LINES[i % LINES.len()],
+            x: run.times(),
+            y: y.to_vec(),
+        };
         shown.then(|| series(y))
     });
     found.collect()
@@ -139,16 +144,29 @@ fn force(run: &Run) -> Option<Figure> {
     let caption = "Contact force on the secondary side at the end of each step, and its impulse so far. Shaded: contact. \
                    Single peaks of the force depend on the time step; impulse, duration and restitution do not. \
                    Data: history.csv, columns contact_force_… and contact_impulse_….";
-    Some(Figure { name: "force", caption: caption.into(), svg: chart(run, "Contact force and impulse", panels)? })
+    Some(Figure {
+        name: "force",
+        caption: caption.into(),
+        svg: chart(run, "Contact force and impulse", panels)?,
+    })
 }
 
 /// The energy ledger.
 fn energy(run: &Run) -> Option<Figure> {
     let unit = run.history.unit("total");
-    let size =
-        run.column("total").into_iter().chain(run.column("kinetic")).flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
-    let energies = [("total", "total"), ("kinetic", "kinetic"), ("strain", "strain"), ("potential", "potential")];
-    let works = [("dissipation", "dissipation"), ("external_work", "external work"), ("contact_work", "contact work")];
+    let size = run
+        .column("total")
+        .into_iter()
+        .chain(run.column("kinetic"))
+        .flatten()
+        .fold(0.0, |m: f64, x| m.max(x.abs()));
+    let energies =
+        [("total", "total"), ("kinetic", "kinetic"), ("strain", "strain"), ("potential", "potential")];
+    let works = [
+        ("dissipation", "dissipation"),
+        ("external_work", "external work"),
+        ("contact_work", "contact work"),
+    ];
     let panels = vec![
         panel("energy", unit, 200.0, curves(run, &energies, size)),
         panel("work, dissipation", unit, 150.0, curves(run, &works, 1e-3 * size)),
@@ -174,7 +192,8 @@ fn solver(run: &Run) -> Option<Figure> {
     Some(Figure { name: "solver", caption, svg: chart(run, "Solver", panels)? })
 }
 
-/// Field files nearest to five instants spread evenly over the first contact (or the run, without contact).
+/// Field files nearest to five instants spread evenly over the first contact (or the run, without
+/// contact).
 fn five(run: &Run) -> (Vec<&FieldEntry>, bool) {
     let t = run.times();
     let contact = metrics::first_episode(&run.history).map(|e| (t[e.start], t[e.end.unwrap_or(t.len()) - 1]));
@@ -210,7 +229,8 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
     let during = if contact { "of the first contact" } else { "of the run, which had no contact" };
     let unit = run.history.unit("time");
     if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
-        let strips: Vec<Instant> = sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
+        let strips: Vec<Instant> =
+            sets.iter().filter_map(|(_, set)| animation::instant(set, String::new())).collect();
         return Some((bars(run, &sets, during), bodies::colors(&strips).0));
     }
     let stress = first.array("stress")?.unit.clone();
@@ -235,27 +255,29 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
 /// Dimension 1: displacement and stress along the bars at the instants.
 fn bars(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Figure {
     // Places and values of an array's component along the bars, with a gap after each.
-    let along = |set: &carom_record::FieldSet, array: &str, component: usize| -> Option<(Vec<f64>, Vec<f64>)> {
-        let values = set.array(array).filter(|a| component < a.components)?;
-        let (mut x, mut y) = (Vec::new(), Vec::new());
-        for block in &set.blocks {
-            let mut nodes = block.connectivity.clone();
-            nodes.sort_by(|&a, &b| set.points[a][0].total_cmp(&set.points[b][0]));
-            nodes.dedup();
-            x.extend(nodes.iter().map(|&k| set.points[k][0]));
-            y.extend(nodes.iter().map(|&k| values.values[values.components * k + component]));
-            x.push(set.points[*nodes.last()?][0]);
-            y.push(f64::NAN);
-        }
-        Some((x, y))
-    };
+    let along =
+        |set: &carom_record::FieldSet, array: &str, component: usize| -> Option<(Vec<f64>, Vec<f64>)> {
+            let values = set.array(array).filter(|a| component < a.components)?;
+            let (mut x, mut y) = (Vec::new(), Vec::new());
+            for block in &set.blocks {
+                let mut nodes = block.connectivity.clone();
+                nodes.sort_by(|&a, &b| set.points[a][0].total_cmp(&set.points[b][0]));
+                nodes.dedup();
+                x.extend(nodes.iter().map(|&k| set.points[k][0]));
+                y.extend(nodes.iter().map(|&k| values.values[values.components * k + component]));
+                x.push(set.points[*nodes.last()?][0]);
+                y.push(f64::NAN);
+            }
+            Some((x, y))
+        };
     let lines = |array: &str, component| -> Vec<_> {
         let line = |(t, set): &(f64, _)| along(set, array, component).map(|(x, y)| (*t, x, y));
         sets.iter().filter_map(line).collect()
     };
     let (u, stress) = (lines("displacement", 0), lines("stress", 0));
     let time = run.history.unit("time");
-    let unit = |array: &str| sets.first().and_then(|s| s.1.array(array)).map(|a| a.unit.clone()).unwrap_or_default();
+    let unit =
+        |array: &str| sets.first().and_then(|s| s.1.array(array)).map(|a| a.unit.clone()).unwrap_or_default();
     let mut panels = Vec::new();
     for (label, array, lines) in [("u_{x}", "displacement", &u), ("σ_{xx}", "stress", &stress)] {
         let series = lines.iter().enumerate().map(|(i, (t, x, y))| Series {
@@ -271,7 +293,8 @@ fn bars(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Figu
         }
     }
     let x_label = with_unit("reference position X", &unit("displacement"));
-    let svg = Chart { title: "Displacement and stress along the bars", x_label, shades: Vec::new(), panels }.svg();
+    let svg =
+        Chart { title: "Displacement and stress along the bars", x_label, shades: Vec::new(), panels }.svg();
     let caption = format!(
         "Displacement u_{{x}} and Cauchy stress σ_{{xx}} (nodal means) along the bars at instants {during}. \
          Data: displacement and stress of the field files."

@@ -1,4 +1,5 @@
-//! What can be said for the numbers of a study: how each arm ended, the fingerprints by which a repetition is known to be one, and what was tried on one arm.
+//! What can be said for the numbers of a study: how each arm ended, the fingerprints by which a
+//! repetition is known to be one, and what was tried on one arm.
 
 use std::fmt::Write as _;
 
@@ -42,7 +43,9 @@ pub(crate) fn show(out: &mut String, study: &Study, origins: &Origins) {
 /// Whether an arm, computed again, came to the same bits.
 fn tried(out: &mut String, study: &Study) {
     let Some(checks) = &study.checks else {
-        out.push_str("<p>No arm of this study was computed again with more threads, or stopped and resumed.</p>\n");
+        out.push_str(
+            "<p>No arm of this study was computed again with more threads, or stopped and resumed.</p>\n",
+        );
         return;
     };
     let word = |hash: &str| {
@@ -52,14 +55,14 @@ fn tried(out: &mut String, study: &Study) {
             "<b class=\"miss\">other bits</b> (kept in <code>checks/</code>)"
         }
     };
-    let touching = match checks.touching {
-        0 => "nothing touching".to_owned(),
-        1 => "one pair touching".to_owned(),
-        n => format!("{n} pairs touching"),
+    let active_pairs = match checks.active_pairs {
+        0 => "no pair active".to_owned(),
+        1 => "one pair active".to_owned(),
+        n => format!("{n} pairs active"),
     };
     let _ = writeln!(
         out,
-        "<p>Tried on the arm with the fewest steps and iterations, {}, record <code>{}</code>: with {} threads {}; stopped after step {}, with {touching}, and resumed from its files {}.</p>",
+        "<p>Tried on the arm with the fewest steps and iterations, {}, record <code>{}</code>: with {} threads {}; stopped after step {}, with {active_pairs}, and resumed from its files {}.</p>",
         escape(&checks.arm),
         checks.fingerprint.get(..DIGITS).unwrap_or_default(),
         checks.threads.0,

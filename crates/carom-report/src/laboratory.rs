@@ -1,5 +1,6 @@
-//! The figures of the integrator laboratory: what accuracy costs, what smoothness costs, each method's histories over the reference's band, and the theory
-//! of the schemes at the model's own frequencies.
+//! The figures of the integrator laboratory: what accuracy costs, what smoothness costs, each
+//! method's histories over the reference's band, and the theory of the schemes at the model's own
+//! frequencies.
 
 use carom_record::Status;
 use carom_record::study::compared::{established, is_trajectory};
@@ -19,7 +20,8 @@ pub(crate) fn plots(study: &Study, columns: &[Column], time: &str) -> Vec<Plot> 
     if study.manifest.goal.is_none() {
         return Vec::new();
     }
-    let mut plots: Vec<Plot> = [error_cost(study), roughness_dissipation(study)].into_iter().flatten().collect();
+    let mut plots: Vec<Plot> =
+        [error_cost(study), roughness_dissipation(study)].into_iter().flatten().collect();
     plots.extend(columns.iter().filter_map(|c| multiples(study, c, time)));
     plots.extend(theory(study));
     plots
@@ -28,7 +30,7 @@ pub(crate) fn plots(study: &Study, columns: &[Column], time: &str) -> Vec<Plot> 
 /// What an arm is called where its level is not meant.
 fn method(study: &Study, arm: usize) -> &str {
     let arm = &study.manifest.arms[arm];
-    arm.part.method.as_deref().unwrap_or(&arm.name)
+    arm.role.method.as_deref().unwrap_or(&arm.name)
 }
 
 /// Methods with their finished arms, the coarsest first; arms of the reference are none.
@@ -36,7 +38,7 @@ pub(crate) fn methods(study: &Study) -> Vec<(&str, Vec<usize>)> {
     let mut found: Vec<(&str, Vec<usize>)> = Vec::new();
     for (i, row) in study.rows.iter().enumerate() {
         let arm = &study.manifest.arms[i];
-        let reference = arm.part.fine || study.manifest.reference.as_ref() == Some(&arm.name);
+        let reference = arm.role.fine || study.manifest.reference.as_ref() == Some(&arm.name);
         if reference || row.status != Some(Status::Finished) {
             continue;
         }
@@ -52,7 +54,8 @@ pub(crate) fn methods(study: &Study) -> Vec<(&str, Vec<usize>)> {
 /// One marked curve per method through the points of its arms.
 fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Vec<Curve> {
     let curve = |(style, (name, arms)): (usize, (&str, Vec<usize>))| {
-        let points: Vec<(f64, f64)> = arms.into_iter().filter_map(&point).filter(|p| p.0 > 0.0 && p.1 > 0.0).collect();
+        let points: Vec<(f64, f64)> =
+            arms.into_iter().filter_map(&point).filter(|p| p.0 > 0.0 && p.1 > 0.0).collect();
         let (x, y) = points.into_iter().unzip();
         Curve { label: name.to_owned(), style, x, y, marked: true }
     };
@@ -73,7 +76,8 @@ fn error_cost(study: &Study) -> Option<Plot> {
         let columns = established(reference, is_trajectory);
         let error = |arm: usize| Some((cost(arm)?, study.compared.get(arm)?.as_ref()?.mean(&columns)?));
         let curves = scatter(study, error);
-        let squares = columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
+        let squares =
+            columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
         let uncertainty = (squares.sum::<f64>() / columns.len().max(1) as f64).sqrt();
         let floor = (uncertainty > 0.0).then(|| (uncertainty, "uncertainty of the reference".to_owned()));
         panes.push(Pane {
@@ -114,7 +118,8 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
         .filter(|v| *v > 0.0);
     let variation = |arm: usize| {
         let value = study.rows[arm].value("force_variation")?;
-        // Without an established reference: over twice the peak mean force, what one rise and one fall of it need.
+        // Without an established reference: over twice the peak mean force, what one rise and one
+        // fall of it need.
         Some(value / right.or_else(|| Some(2.0 * study.rows[arm].value("peak_mean_force")?))?)
     };
     let high = |arm: usize| study.rows[arm].value("force_high_frequency");
@@ -127,7 +132,11 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
     };
     let mut panes = vec![
         pane("variation of the contact force", over, scatter(study, |a| Some((lost(a)?, variation(a)?)))),
-        pane("power above 16 cycles per contact", "share of the power", scatter(study, |a| Some((lost(a)?, high(a)?)))),
+        pane(
+            "power above 16 cycles per contact",
+            "share of the power",
+            scatter(study, |a| Some((lost(a)?, high(a)?))),
+        ),
     ];
     panes.retain(|p| !p.curves.is_empty());
     (!panes.is_empty()).then(|| Plot {
@@ -153,7 +162,8 @@ fn band(reference: &Reference, column: &str) -> Option<[Vec<f64>; 3]> {
     Some([rows.clone().map(|i| x[i]).collect(), edge(-1.0), edge(1.0)])
 }
 
-/// A column of every method at its finest level, or of every arm where there are no methods, each in its own pane.
+/// A column of every method at its finest level, or of every arm where there are no methods, each
+/// in its own pane.
 fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
     let band = study.reference.as_ref().and_then(|r| band(r, &column.name));
     let (label, what) = named(&column.name);
@@ -161,7 +171,8 @@ fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
     for (style, (name, arms)) in methods(study).into_iter().enumerate().take(MULTIPLES) {
         let Some(finest) = arms.last() else { continue };
         let Some((_, x, y)) = column.curves.iter().find(|(arm, ..)| arm == finest) else { continue };
-        let curve = Curve { label: String::new(), style: style % 8, x: x.clone(), y: y.clone(), marked: false };
+        let curve =
+            Curve { label: String::new(), style: style % 8, x: x.clone(), y: y.clone(), marked: false };
         let y_label = if panes.len() % 3 == 0 { with_unit(&label, &column.unit) } else { String::new() };
         panes.push(Pane {
             title: name.to_owned(),
@@ -177,7 +188,8 @@ fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
     }
     let grey = if band.is_some() { "Grey: the reference, wide as it is uncertain. " } else { "" };
     let name = if column.name == FORCE { "contact-force".to_owned() } else { column.name.clone() };
-    let name: String = name.chars().map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' }).collect();
+    let name: String =
+        name.chars().map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' }).collect();
     let first: String = what.chars().next().map_or(String::new(), |c| c.to_uppercase().collect());
     Some(Plot {
         name: format!("each-{name}"),
@@ -193,13 +205,14 @@ fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
     })
 }
 
-/// Spectral radius, damping and period error of every scheme, from `theory.csv`; the model's frequencies from `frequencies.csv`.
+/// Spectral radius, damping and period error of every scheme, from `theory.csv`; the model's
+/// frequencies from `frequencies.csv`.
 fn theory(study: &Study) -> Option<Plot> {
     let rows = |name: &str| -> Option<Vec<csv::StringRecord>> {
         csv::Reader::from_path(study.directory.join(name)).ok()?.records().collect::<Result<_, _>>().ok()
     };
     let table = rows("theory.csv")?;
-    let steps = study.manifest.arms.iter().filter(|a| !a.part.fine).filter_map(|a| step(a, "time.step"));
+    let steps = study.manifest.arms.iter().filter(|a| !a.role.fine).filter_map(|a| step(a, "time.step"));
     let (short, long) = steps.fold((f64::INFINITY, 0.0_f64), |(a, b), h| (a.min(h), b.max(h)));
     let mut marks: Vec<(f64, String)> = Vec::new();
     for row in rows("frequencies.csv").unwrap_or_default() {

@@ -1,7 +1,8 @@
 //! Figures and a page from a run directory alone; nothing here runs anything.
 //!
-//! `report` writes `figures/*.svg` and a self-contained `report.html` beside the record: no request to anywhere, every text that came
-//! from a user escaped, one small script for the animation without which, as on paper, the figures remain.
+//! `report` writes `figures/*.svg` and a self-contained `report.html` beside the record: no request
+//! to anywhere, every text that came from a user escaped, one small script for the animation
+//! without which, as on paper, the figures remain.
 
 mod animation;
 mod axis;

@@ -92,14 +92,18 @@ fn header(out: &mut String, run: &Run) {
             Some(text) => format!("{k} {text}"),
             None => format!("{k} = {v}"),
         };
-        let step = m.case.pointer("/time/step").and_then(serde_json::Value::as_f64).map_or(String::new(), number);
+        let step =
+            m.case.pointer("/time/step").and_then(serde_json::Value::as_f64).map_or(String::new(), number);
         row(
             "Time integration",
             escape(&format!("{}; Δt = {step}", scheme.iter().map(part).collect::<Vec<_>>().join(", "))),
         );
     }
     let machine = &m.machine;
-    row("Machine", escape(&format!("{} cores, {} {}; threads: {}", machine.cpus, machine.os, machine.arch, m.threads)));
+    row(
+        "Machine",
+        escape(&format!("{} cores, {} {}; threads: {}", machine.cpus, machine.os, machine.arch, m.threads)),
+    );
     row("Wall time", format!("{} s", number(wall)));
     row("Started", escape(&m.started));
     out.push_str("</table>\n<p class=\"small\">From manifest.json: version, input_hash, case, machine, threads, timings.total, started. The hash is BLAKE3 of the case file and the options given with it. Rows and times: history.csv.</p>\n");
@@ -183,7 +187,8 @@ fn events(out: &mut String, run: &Run) {
 fn reproduce(out: &mut String, run: &Run) {
     let source = &run.manifest.source;
     // A quote inside single quotes of a shell ends them, is escaped, and begins them anew.
-    let sets: String = source.sets.iter().map(|s| [" --set '", &s.replace('\'', r"'\''"), "'"].concat()).collect();
+    let sets: String =
+        source.sets.iter().map(|s| [" --set '", &s.replace('\'', r"'\''"), "'"].concat()).collect();
     let _ = writeln!(
         out,
         "<h2>To reproduce</h2>\n<p>Save the case as <code>case.toml</code>, then with Carom {}:</p>\n<pre>carom run case.toml{}</pre>\n\

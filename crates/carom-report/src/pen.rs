@@ -1,6 +1,8 @@
-//! SVG path data on a grid of a twentieth of a pixel: relative whole numbers, short and without drift.
+//! SVG path data on a grid of a twentieth of a pixel: relative whole numbers, short and without
+//! drift.
 //!
-//! Such data belong into a group that [`open_grid`] opens; widths of strokes there are in units of the grid.
+//! Such data belong into a group that [`open_grid`] opens; widths of strokes there are in units of
+//! the grid.
 
 /// A place in pixels, or in the units of what is drawn.
 pub(crate) type Point = [f64; 2];

@@ -1,7 +1,8 @@
 //! Plots in panels. [`crate::redraw`] gives each its table and a script that draws it again.
 //!
-//! Axes are linear or logarithmic; on a logarithmic axis what is not positive is left out and counted. Curves of one label have one style in all panels and
-//! one entry in the legend below them.
+//! Axes are linear or logarithmic; on a logarithmic axis what is not positive is left out and
+//! counted. Curves of one label have one style in all panels and one entry in the legend below
+//! them.
 
 use std::fmt::Write as _;
 
@@ -57,7 +58,8 @@ pub(crate) struct Plot {
     pub(crate) panes: Vec<Pane>,
 }
 
-/// Colour, dashes and number of the marker of a style: seven colours of Okabe and Ito and grey; with five markers forty styles differ.
+/// Colour, dashes and number of the marker of a style: seven colours of Okabe and Ito and grey;
+/// with five markers forty styles differ.
 pub(crate) fn style(i: usize) -> (&'static str, &'static str, usize) {
     const DASHES: [&str; 8] = ["", "9 3", "3 2", "9 3 2 3", "14 4", "5 2 1.5 2 1.5 2", "1.5 2.5", "6 6"];
     (LINES.get(i % 8).copied().unwrap_or("#777777"), DASHES[(i + i / 8) % 8], i % 5)
@@ -74,7 +76,8 @@ impl Scale {
         if !log {
             return Self { axis: Axis::new(values, count, tight), log };
         }
-        let (low, high) = if values.0.is_finite() { (values.0.log10(), values.1.log10()) } else { (0.0, 1.0) };
+        let (low, high) =
+            if values.0.is_finite() { (values.0.log10(), values.1.log10()) } else { (0.0, 1.0) };
         let air = if tight { 0.0 } else { 0.06 * (high - low).max(0.3) };
         let (low, high) = (low - air, high + air);
         let (low, high) = if high - low < 0.2 { (low - 0.15, high + 0.15) } else { (low, high) };
@@ -94,8 +97,9 @@ impl Scale {
             };
             (d as f64 + f.log10(), label)
         };
-        let ticks =
-            decades.flat_map(|d| factors.iter().map(move |f| tick(d, f))).filter(|(x, _)| (low..=high).contains(x));
+        let ticks = decades
+            .flat_map(|d| factors.iter().map(move |f| tick(d, f)))
+            .filter(|(x, _)| (low..=high).contains(x));
         Self { axis: Axis { low, high, ticks: ticks.collect(), exponent: 0 }, log }
     }
 
@@ -123,17 +127,23 @@ impl Plot {
 
     fn y_range(&self, pane: &Pane) -> (f64, f64) {
         let of = |pane: &Pane| {
-            // Of the band its middle: where the reference is most uncertain its edges would hide the rest.
-            let band = pane.band.iter().flat_map(|b| b[1].iter().zip(&b[2]).map(|(low, high)| 0.5 * (low + high)));
+            // Of the band its middle: where the reference is most uncertain its edges would hide
+            // the rest.
+            let band =
+                pane.band.iter().flat_map(|b| b[1].iter().zip(&b[2]).map(|(low, high)| 0.5 * (low + high)));
             let middle: Vec<f64> = band.collect();
             let floor = pane.floor.as_ref().map(|f| f.0);
-            pane.limits
-                .unwrap_or_else(|| self.shown(pane.curves.iter().flat_map(|c| &c.y).chain(&middle).chain(&floor), 1))
+            pane.limits.unwrap_or_else(|| {
+                self.shown(pane.curves.iter().flat_map(|c| &c.y).chain(&middle).chain(&floor), 1)
+            })
         };
         if !self.same {
             return of(pane);
         }
-        self.panes.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (c, d)| (a.min(c), b.max(d)))
+        self.panes
+            .iter()
+            .map(of)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (c, d)| (a.min(c), b.max(d)))
     }
 
     /// Labels with their styles, each once.
@@ -195,14 +205,17 @@ impl Plot {
             }
             for (value, label) in &y_axis.axis.ticks {
                 let y = y0 + high * (1.0 - y_axis.axis.position(*value));
-                let _ =
-                    writeln!(out, "<path d=\"M{x0:.1} {y:.1}h{wide:.1}\" stroke=\"#dddddd\" stroke-width=\"0.6\"/>");
+                let _ = writeln!(
+                    out,
+                    "<path d=\"M{x0:.1} {y:.1}h{wide:.1}\" stroke=\"#dddddd\" stroke-width=\"0.6\"/>"
+                );
                 write_text(&mut out, x0 - 6.0, y + 4.0, "text-anchor=\"end\" font-size=\"11\"", label);
             }
             let bottom = y0 + high;
             for (value, label) in &x_axis.axis.ticks {
                 let x = x0 + wide * x_axis.axis.position(*value);
-                let _ = writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v4\" stroke=\"#222\" stroke-width=\"0.8\"/>");
+                let _ =
+                    writeln!(out, "<path d=\"M{x:.1} {bottom:.1}v4\" stroke=\"#222\" stroke-width=\"0.8\"/>");
                 write_text(&mut out, x, bottom + 16.0, "text-anchor=\"middle\" font-size=\"11\"", label);
             }
             if let Some((value, word)) = &pane.floor {
@@ -242,7 +255,11 @@ impl Plot {
         }
         let end = rows as f64 * (TOP + high + BELOW);
         let exponent = x_axis.axis.exponent;
-        let label = if exponent == 0 { self.x_label.clone() } else { format!("{} × 10^{{{exponent}}}", self.x_label) };
+        let label = if exponent == 0 {
+            self.x_label.clone()
+        } else {
+            format!("{} × 10^{{{exponent}}}", self.x_label)
+        };
         write_text(&mut out, 0.5 * WIDTH, end + 6.0, "text-anchor=\"middle\"", &label);
         for (row, line) in lines.iter().enumerate() {
             let (mut x, y) = (LEFT, end + 24.0 + 18.0 * row as f64);
@@ -368,8 +385,13 @@ pub(crate) mod tests {
     use super::*;
 
     pub(crate) fn plot() -> Plot {
-        let curve =
-            Curve { label: "Hu, \"a\"".into(), style: 9, x: vec![1e-3, 1e-2], y: vec![0.0, 2e-4], marked: true };
+        let curve = Curve {
+            label: "Hu, \"a\"".into(),
+            style: 9,
+            x: vec![1e-3, 1e-2],
+            y: vec![0.0, 2e-4],
+            marked: true,
+        };
         Plot {
             name: "error-cost".into(),
             caption: String::new(),
@@ -377,7 +399,12 @@ pub(crate) mod tests {
             log: [true, true],
             across: 2,
             same: false,
-            panes: vec![Pane { title: "one".into(), y_label: "E".into(), curves: vec![curve], ..Pane::default() }],
+            panes: vec![Pane {
+                title: "one".into(),
+                y_label: "E".into(),
+                curves: vec![curve],
+                ..Pane::default()
+            }],
         }
     }
 

@@ -1,5 +1,6 @@
-//! The arms of a study in the order of its ranking, in three tables narrow enough to be printed: errors and cost; energy and the contact force; contact,
-//! stresses and orders. What no arm has a value of has no column.
+//! The arms of a study in the order of its ranking, in three tables narrow enough to be printed:
+//! errors and cost; energy and the contact force; contact, stresses and orders. What no arm has a
+//! value of has no column.
 
 use std::fmt::Write as _;
 
@@ -38,14 +39,20 @@ impl Ranked<'_> {
         self.column(head, |arm| self.study.rows[arm].value(metric).map(three))
     }
 
-    /// Error of a metric against the reference, where a refinement establishes it and it is not zero.
+    /// Error of a metric against the reference, where a refinement establishes it and it is not
+    /// zero.
     fn error(&self, head: &str, metric: &str) -> Column {
         let known = standing(self.study.reference.as_ref(), metric);
-        let Standing::Established { value: right, uncertainty } = known else { return self.column(head, |_| None) };
+        let Standing::Established { value: right, uncertainty } = known else {
+            return self.column(head, |_| None);
+        };
         let relative = if right == 0.0 { f64::INFINITY } else { uncertainty / right.abs() };
         let head = if relative > 0.0 { format!("{head} ± {}", three(relative)) } else { head.to_owned() };
         self.column(&head, |arm| {
-            self.study.rows[arm].value(metric).filter(|_| relative.is_finite()).map(|v| three(error(v, right)))
+            self.study.rows[arm]
+                .value(metric)
+                .filter(|_| relative.is_finite())
+                .map(|v| three(error(v, right)))
         })
     }
 
@@ -53,7 +60,9 @@ impl Ranked<'_> {
     fn beyond(&self) -> Column {
         let right = standing(self.study.reference.as_ref(), "force_variation").established();
         let right = right.map(|known| known.0).filter(|right| *right > 0.0);
-        self.column("TV beyond", |arm| Some(three(self.study.rows[arm].value("force_variation")? / right? - 1.0)))
+        self.column("TV beyond", |arm| {
+            Some(three(self.study.rows[arm].value("force_variation")? / right? - 1.0))
+        })
     }
 
     fn late(&self) -> Column {
@@ -66,17 +75,23 @@ impl Ranked<'_> {
             let mark = if (share - 1.0).abs() <= OFF_BUDGET { "" } else { " !" };
             format!("{}{mark}", three(share))
         };
-        let parts = |arm: usize| &self.study.manifest.arms[arm].part;
+        let parts = |arm: usize| &self.study.manifest.arms[arm].role;
         let measured = |arm: usize| {
             let level = parts(arm).level;
-            if design.kind == Kind::MatchedStep && !self.study.manifest.by_cost(&self.study.manifest.arms[arm]) {
+            if design.kind == Kind::MatchedStep
+                && !self.study.manifest.by_cost(&self.study.manifest.arms[arm])
+            {
                 return None;
             }
             let mut arms = self.study.manifest.arms.iter();
-            let anchor = arms.position(|a| a.part.level == level && a.part.method.as_ref() == Some(&design.cost_of))?;
+            let anchor =
+                arms.position(|a| a.role.level == level && a.role.method.as_ref() == Some(&design.cost_of))?;
             Some(share(self.study.rows[arm].value("cpu_time")? / self.study.rows[anchor].value("cpu_time")?))
         };
-        [self.column("Counted / budget", |arm| parts(arm).cost.map(share)), self.column("CPU / budget", measured)]
+        [
+            self.column("Counted / budget", |arm| parts(arm).cost.map(share)),
+            self.column("CPU / budget", measured),
+        ]
     }
 
     /// Errors of the stresses' mean peaks, each probe's by itself.
@@ -86,16 +101,18 @@ impl Ranked<'_> {
         peaks.take(STRESSES).map(|c| self.error(&format!("{c} peak"), &format!("{c}:peak_mean"))).collect()
     }
 
-    /// Observed orders of the first displacement that has them, before the first contact and after it.
+    /// Observed orders of the first displacement that has them, before the first contact and after
+    /// it.
     fn orders(&self) -> [Column; 2] {
         let orders = &self.study.phase_orders;
         let named = orders.iter().find(|o| o.across.is_ok() || o.smooth.is_ok()).map(|o| o.column.clone());
         let of = |arm: usize| {
             let arm = &self.study.manifest.arms[arm];
-            let method = arm.part.method.as_ref().unwrap_or(&arm.name);
+            let method = arm.role.method.as_ref().unwrap_or(&arm.name);
             orders.iter().find(|o| o.method == *method && Some(&o.column) == named.as_ref())
         };
-        let cell = |order: &Result<f64, String>| order.as_ref().ok().map(|p| format!("{p:.2}").replace('-', "−"));
+        let cell =
+            |order: &Result<f64, String>| order.as_ref().ok().map(|p| format!("{p:.2}").replace('-', "−"));
         let what = named.clone().unwrap_or_default();
         [
             self.column(&format!("{what} order before"), |arm| cell(&of(arm)?.smooth)),
@@ -109,8 +126,11 @@ pub(crate) fn tables(out: &mut String, study: &Study, ranking: &Ranking) {
     let ranked = Ranked { study, arms: ranking.levels.iter().flatten().map(|r| r.arm).collect() };
     let errors: Vec<f64> = ranking.levels.iter().flatten().map(|r| r.error).collect();
     let place = |arm: usize| ranked.arms.iter().position(|a| *a == arm);
-    let matched =
-        study.manifest.design.as_ref().filter(|_| study.manifest.arms.iter().any(|a| study.manifest.by_cost(a)));
+    let matched = study
+        .manifest
+        .design
+        .as_ref()
+        .filter(|_| study.manifest.arms.iter().any(|a| study.manifest.by_cost(a)));
     let mut first = vec![
         ranked.column("Δt", |arm| step(&study.manifest.arms[arm], "time.step").map(five)),
         ranked.column("Error", |arm| place(arm).map(|i| three(errors[i]))),
@@ -152,7 +172,8 @@ fn table(out: &mut String, title: &str, ranking: &Ranking, study: &Study, column
     if shown.is_empty() {
         return;
     }
-    let heads = shown.iter().fold(String::new(), |row, c| row + &format!("<th class=\"n\">{}</th>", html(&c.head)));
+    let heads =
+        shown.iter().fold(String::new(), |row, c| row + &format!("<th class=\"n\">{}</th>", html(&c.head)));
     let _ = writeln!(
         out,
         "<h3>{title}</h3>\n<table class=\"metrics ranking\"><thead><tr><th class=\"n\">Place</th><th>Method</th>{heads}</tr></thead>"
@@ -160,14 +181,20 @@ fn table(out: &mut String, title: &str, ranking: &Ranking, study: &Study, column
     let mut row = 0;
     for (level, ranked) in ranking.levels.iter().enumerate() {
         if ranking.levels.len() > 1 {
-            let _ = writeln!(out, "<tr><td colspan=\"{}\"><b>Level {}</b></td></tr>", shown.len() + 2, level + 1);
+            let _ =
+                writeln!(out, "<tr><td colspan=\"{}\"><b>Level {}</b></td></tr>", shown.len() + 2, level + 1);
         }
         for r in ranked {
             let arm = &study.manifest.arms[r.arm];
-            let cell = |c: &&Column| format!("<td class=\"n\">{}</td>", c.cells[row].as_deref().unwrap_or("–"));
+            let cell =
+                |c: &&Column| format!("<td class=\"n\">{}</td>", c.cells[row].as_deref().unwrap_or("–"));
             let cells: String = shown.iter().map(cell).collect();
-            let name = escape(arm.part.method.as_ref().unwrap_or(&arm.name));
-            let _ = writeln!(out, "<tr><td class=\"n\">{}</td><td class=\"method\">{name}</td>{cells}</tr>", r.place);
+            let name = escape(arm.role.method.as_ref().unwrap_or(&arm.name));
+            let _ = writeln!(
+                out,
+                "<tr><td class=\"n\">{}</td><td class=\"method\">{name}</td>{cells}</tr>",
+                r.place
+            );
             row += 1;
         }
     }

@@ -1,4 +1,5 @@
-//! What lies beside a figure: its numbers as a table, and a short script that draws them again with matplotlib, panes, axes, marks and styles alike.
+//! What lies beside a figure: its numbers as a table, and a short script that draws them again with
+//! matplotlib, panes, axes, marks and styles alike.
 
 use std::fmt::Write as _;
 
@@ -108,8 +109,12 @@ impl Plot {
             ("ACROSS", self.across.max(1).to_string()),
             (
                 "HIGH",
-                if self.panes.len() == 1 { "4.0" } else { ["2.2", "3.0", "1.9"][self.across.clamp(1, 3) - 1] }
-                    .to_owned(),
+                if self.panes.len() == 1 {
+                    "4.0"
+                } else {
+                    ["2.2", "3.0", "1.9"][self.across.clamp(1, 3) - 1]
+                }
+                .to_owned(),
             ),
             ("SAME", truth(self.same)),
             ("X_SCALE", scale(0)),
@@ -160,7 +165,8 @@ mod tests {
     fn nothing_of_the_script_is_left_open() {
         let script = plot().script();
         assert!(
-            script.contains("time t$_{\\\\mathrm{c}}$ (s)") && script.contains(r#"styles = {"Hu, \"a\"": 9}"#),
+            script.contains("time t$_{\\\\mathrm{c}}$ (s)")
+                && script.contains(r#"styles = {"Hu, \"a\"": 9}"#),
             "{script}"
         );
         assert!(!script.contains('@'), "{script}");

@@ -1,6 +1,8 @@
-//! The case drawn: bodies with their mesh, supports, loads, gravity, initial velocities, contact sides, probes and what it is made of.
+//! The case drawn: bodies with their mesh, supports, loads, gravity, initial velocities, contact
+//! sides, probes and what it is made of.
 //!
-//! From the record alone: positions and cells from the first field file, the rest from `manifest.json` (`case`, `sides`).
+//! From the record alone: positions and cells from the first field file, the rest from
+//! `manifest.json` (`case`, `sides`).
 
 mod drawing;
 mod forces;
@@ -36,7 +38,8 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
         frame = [frame[0].min(p[0]), frame[1].max(p[0]), frame[2].min(p[1]), frame[3].max(p[1])];
     }
     // A wall in dimension 1 belongs into the picture.
-    for point in list(&run.manifest.case, "contacts").iter().filter_map(|c| c.pointer("/primary/plane/point")) {
+    for point in list(&run.manifest.case, "contacts").iter().filter_map(|c| c.pointer("/primary/plane/point"))
+    {
         let x = vector(Some(point)).first().copied().filter(|_| flat).unwrap_or(frame[0]);
         (frame[0], frame[1]) = (frame[0].min(x), frame[1].max(x));
     }
@@ -79,7 +82,8 @@ impl Setup<'_> {
     fn axes(&self, out: &mut String, [left, right, top, bottom]: [f64; 4]) {
         let length = self.case().pointer("/units/length").and_then(Value::as_str).unwrap_or_default();
         let axis = |low: f64, high: f64, pixels: f64| Axis::new((low, high), (pixels / 80.0).max(2.0), true);
-        let x = axis((left - self.origin[0]) / self.scale, (right - self.origin[0]) / self.scale, right - left);
+        let x =
+            axis((left - self.origin[0]) / self.scale, (right - self.origin[0]) / self.scale, right - left);
         let frame = if self.flat {
             format!("M{left:.1} {bottom:.1}H{right:.1}")
         } else {
@@ -88,7 +92,8 @@ impl Setup<'_> {
         let _ = writeln!(out, "<path d=\"{frame}\" fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\"/>");
         for (value, label) in &x.ticks {
             let at = self.to([*value, 0.0])[0];
-            let _ = writeln!(out, "<path d=\"M{at:.1} {bottom:.1}v5\" stroke=\"#888\" stroke-width=\"0.8\"/>");
+            let _ =
+                writeln!(out, "<path d=\"M{at:.1} {bottom:.1}v5\" stroke=\"#888\" stroke-width=\"0.8\"/>");
             write_text(out, at, bottom + 19.0, "text-anchor=\"middle\"", label);
         }
         let power = |label: &str, axis: &Axis| with_unit(label, &crate::chart::scaled(length, axis.exponent));
@@ -96,15 +101,18 @@ impl Setup<'_> {
         if self.flat {
             return;
         }
-        let y = axis((self.origin[1] - bottom) / self.scale, (self.origin[1] - top) / self.scale, bottom - top);
+        let y =
+            axis((self.origin[1] - bottom) / self.scale, (self.origin[1] - top) / self.scale, bottom - top);
         for (value, label) in &y.ticks {
             let at = self.to([0.0, *value])[1];
             let _ = writeln!(out, "<path d=\"M{left:.1} {at:.1}h-5\" stroke=\"#888\" stroke-width=\"0.8\"/>");
             write_text(out, left - 8.0, at + 4.3, "text-anchor=\"end\"", label);
         }
         let middle = 0.5 * (top + bottom);
-        let turned =
-            format!("text-anchor=\"middle\" transform=\"translate({:.1} {middle:.1}) rotate(-90)\"", left - 42.0);
+        let turned = format!(
+            "text-anchor=\"middle\" transform=\"translate({:.1} {middle:.1}) rotate(-90)\"",
+            left - 42.0
+        );
         write_text(out, 0.0, 0.0, &turned, &power("y", &y));
     }
 
@@ -136,7 +144,8 @@ impl Setup<'_> {
             let mut cells = Pen::default();
             for (degree, nodes) in &instant.cells {
                 for e in 0..3 {
-                    let edge: Vec<Point> = crate::bodies::edge_nodes(*degree, nodes, e).map(|n| self.node(n)).collect();
+                    let edge: Vec<Point> =
+                        crate::bodies::edge_nodes(*degree, nodes, e).map(|n| self.node(n)).collect();
                     bezier(&mut cells, &edge, e == 0);
                 }
                 cells.close();
@@ -172,7 +181,9 @@ impl Setup<'_> {
     fn contacts(&self, out: &mut String) {
         for contact in list(self.case(), "contacts") {
             let primary = contact.pointer("/primary/side").and_then(Value::as_str);
-            for (side, color) in [(primary, PRIMARY), (contact.get("secondary").and_then(Value::as_str), SECONDARY)] {
+            for (side, color) in
+                [(primary, PRIMARY), (contact.get("secondary").and_then(Value::as_str), SECONDARY)]
+            {
                 let Some(side) = side else { continue };
                 let step = if self.flat { 1 } else { self.degree(side) };
                 for walk in self.walks(side) {
@@ -191,15 +202,24 @@ impl Setup<'_> {
     fn loads(&self, out: &mut String) {
         for body in list(self.case(), "bodies") {
             let Some(center) = self.center(text(body, "name")) else { continue };
-            let [x, y] =
-                if self.flat { [center[0], center[1] + 0.5 * BAR + 20.0] } else { [center[0], center[1] - 24.0] };
+            let [x, y] = if self.flat {
+                [center[0], center[1] + 0.5 * BAR + 20.0]
+            } else {
+                [center[0], center[1] - 24.0]
+            };
             let halo = "text-anchor=\"middle\" font-style=\"italic\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
             write_text(out, x, y, halo, text(body, "name"));
-            let mut at =
-                if self.flat { [center[0], center[1] - 0.5 * BAR - 30.0] } else { plus(center, 8.0, [0.0, 1.0]) };
+            let mut at = if self.flat {
+                [center[0], center[1] - 0.5 * BAR - 30.0]
+            } else {
+                plus(center, 8.0, [0.0, 1.0])
+            };
             for (key, symbol) in [("gravity", "g"), ("velocity", "v_{0}")] {
                 let v = vector(body.get(key));
-                let d = direction([0.0; 2], [v.first().copied().unwrap_or(0.0), -v.get(1).copied().unwrap_or(0.0)]);
+                let d = direction(
+                    [0.0; 2],
+                    [v.first().copied().unwrap_or(0.0), -v.get(1).copied().unwrap_or(0.0)],
+                );
                 if d == [0.0; 2] {
                     continue;
                 }
@@ -219,14 +239,16 @@ impl Setup<'_> {
     fn probes(&self, out: &mut String) {
         for probe in list(self.case(), "probes") {
             let at = vector(probe.get("at"));
-            let p = self.to(self.moved([at.first().copied().unwrap_or(0.0), at.get(1).copied().unwrap_or(0.0)]));
+            let p =
+                self.to(self.moved([at.first().copied().unwrap_or(0.0), at.get(1).copied().unwrap_or(0.0)]));
             let _ = writeln!(
                 out,
                 "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.8\"/>",
                 p[0], p[1]
             );
             let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
-            let [x, y] = if self.flat { [p[0] - 4.0, p[1] - 0.5 * BAR - 7.0] } else { [p[0] + 8.0, p[1] - 7.0] };
+            let [x, y] =
+                if self.flat { [p[0] - 4.0, p[1] - 0.5 * BAR - 7.0] } else { [p[0] + 8.0, p[1] - 7.0] };
             write_text(out, x, y, bold, text(probe, "name"));
         }
     }

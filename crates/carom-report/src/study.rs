@@ -1,4 +1,5 @@
-//! The page of a study: its tables and, for every probe's column, one figure with the curves of all arms.
+//! The page of a study: its tables and, for every probe's column, one figure with the curves of all
+//! arms.
 
 use std::path::Path;
 
@@ -13,7 +14,8 @@ use crate::{laboratory, setup, study_page};
 /// Curves of one figure; more arms make more figures.
 const MOST: usize = 8;
 
-/// Makes figures, tables and page of a study directory, from the records alone; arm by arm, so that long histories do not add up.
+/// Makes figures, tables and page of a study directory, from the records alone; arm by arm, so that
+/// long histories do not add up.
 ///
 /// # Errors
 /// What cannot be read or written.
@@ -33,9 +35,15 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     plots.extend(columns.iter().flat_map(|column| overlays(column, &study, &time)));
     let page = study_page::page(&study, picture.as_deref(), &plots, &origins);
     let drawn = plots.iter().map(|p| (p.name.clone(), p.svg()));
-    let all: Vec<(String, String)> = picture.into_iter().map(|svg| ("setup".to_owned(), svg)).chain(drawn).collect();
-    let summary =
-        publish(directory, "study.html", &page, all.iter().map(|(n, s)| (n.as_str(), s.as_str())), Vec::new())?;
+    let all: Vec<(String, String)> =
+        picture.into_iter().map(|svg| ("setup".to_owned(), svg)).chain(drawn).collect();
+    let summary = publish(
+        directory,
+        "study.html",
+        &page,
+        all.iter().map(|(n, s)| (n.as_str(), s.as_str())),
+        Vec::new(),
+    )?;
     for plot in &plots {
         write_beside(directory, plot)?;
     }
@@ -77,8 +85,11 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
         if curves.is_empty() {
             return None;
         }
-        let file: String =
-            column.name.chars().map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' }).collect();
+        let file: String = column
+            .name
+            .chars()
+            .map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' })
+            .collect();
         let (name, part) = match (groups.len(), &members[..]) {
             (2.., [first, .., last]) => {
                 (format!("{file}-{}", group + 1), format!(", arms {} to {}", first + 1, last + 1))

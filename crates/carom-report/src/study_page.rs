@@ -50,7 +50,8 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
     out.push_str("<h2>Figures</h2>\n");
     for (i, plot) in plots.iter().enumerate() {
         let (caption, name) = (html(&plot.caption), escape(&plot.name));
-        let link = ["svg", "csv", "py"].map(|e| format!("<a href=\"figures/{name}.{e}\">figures/{name}.{e}</a>"));
+        let link =
+            ["svg", "csv", "py"].map(|e| format!("<a href=\"figures/{name}.{e}\">figures/{name}.{e}</a>"));
         let _ = writeln!(
             out,
             "<figure>\n{}<figcaption><b>Figure {}.</b> {caption} <span class=\"small\">({})</span></figcaption>\n</figure>",
@@ -80,7 +81,7 @@ fn setup(out: &mut String, study: &Study, picture: Option<&str>) {
         );
     }
     let mut varied: Vec<(&str, Vec<&str>)> = Vec::new();
-    let sets = study.manifest.arms.iter().filter(|a| !a.part.fine).flat_map(|a| &a.sets);
+    let sets = study.manifest.arms.iter().filter(|a| !a.role.fine).flat_map(|a| &a.sets);
     for (key, value) in sets.filter_map(|set| set.split_once('=')) {
         let (key, value) = (key.trim(), value.trim());
         match varied.iter_mut().find(|(k, _)| *k == key) {
@@ -109,8 +110,11 @@ fn setup(out: &mut String, study: &Study, picture: Option<&str>) {
 fn arms(out: &mut String, study: &Study) {
     // A long list stands in the way of what was found.
     let open = if study.rows.len() > MANY { "" } else { " open" };
-    let _ =
-        writeln!(out, "<h2>Arms</h2>\n<details{open}><summary>{} arms, and what each sets</summary>", study.rows.len());
+    let _ = writeln!(
+        out,
+        "<h2>Arms</h2>\n<details{open}><summary>{} arms, and what each sets</summary>",
+        study.rows.len()
+    );
     out.push_str("<table>\n<thead><tr><th></th><th></th><th>Arm</th><th>Sets</th><th class=\"n\">Steps</th><th></th></tr></thead>\n");
     for (i, (row, arm)) in study.rows.iter().zip(&study.manifest.arms).enumerate() {
         let (color, dashes, _) = style(i);
@@ -121,7 +125,8 @@ fn arms(out: &mut String, study: &Study) {
             None => ("undecided", "not begun"),
         };
         let reason = row.reason.as_ref().map(|r| format!("<br><span class=\"small\">{}</span>", escape(r)));
-        let reference = if study.manifest.reference.as_ref() == Some(&row.name) { " (reference)" } else { "" };
+        let reference =
+            if study.manifest.reference.as_ref() == Some(&row.name) { " (reference)" } else { "" };
         let _ = writeln!(
             out,
             "<tr><td class=\"n\">{}</td><td><svg class=\"line\" width=\"44\" height=\"10\"><path d=\"M1 5h42\" stroke=\"{color}\" \
@@ -185,8 +190,10 @@ fn expectations(out: &mut String, study: &Study) {
     out.push_str("<table>\n<thead><tr><th>What</th><th>Arm</th><th>Expected</th><th class=\"n\">Got</th><th></th><th>Source</th></tr></thead>\n");
     for (arm, e) in all {
         let (class, word) = if e.pass { ("pass", "met") } else { ("miss", "missed") };
-        let why =
-            e.why.as_ref().map_or_else(String::new, |w| format!("<br><span class=\"small\">{}</span>", escape(w)));
+        let why = e
+            .why
+            .as_ref()
+            .map_or_else(String::new, |w| format!("<br><span class=\"small\">{}</span>", escape(w)));
         let _ = writeln!(
             out,
             "<tr><td><code>{}</code>{why}</td><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"{class}\">{word}</td><td>{}</td></tr>",
@@ -203,7 +210,8 @@ fn expectations(out: &mut String, study: &Study) {
 /// Most columns that stand side by side.
 const COLUMNS: usize = 8;
 
-/// What is expected of several arms, a row per arm and a column per question: what it got over what was expected. Whether there is such a table.
+/// What is expected of several arms, a row per arm and a column per question: what it got over what
+/// was expected. Whether there is such a table.
 fn side_by_side(out: &mut String, study: &Study) -> bool {
     let mut questions: Vec<&str> = Vec::new();
     for e in study.rows.iter().flat_map(|row| &row.expectations) {
@@ -240,12 +248,16 @@ fn side_by_side(out: &mut String, study: &Study) -> bool {
 fn metrics(out: &mut String, study: &Study) {
     out.push_str("<h2>Metrics</h2>\n");
     let all = study.metrics();
-    let shown: Vec<_> = all.iter().filter(|m| study.rows.iter().any(|r| r.value(&m.name).is_some())).collect();
+    let shown: Vec<_> =
+        all.iter().filter(|m| study.rows.iter().any(|r| r.value(&m.name).is_some())).collect();
     for first in (0..study.rows.len()).step_by(ACROSS) {
         let rows = &study.rows[first..study.rows.len().min(first + ACROSS)];
-        let heads =
-            (0..rows.len()).fold(String::new(), |row, i| row + &format!("<th class=\"n\">{}</th>", first + i + 1));
-        let _ = writeln!(out, "<table class=\"metrics\">\n<thead><tr><th>Metric</th><th>Unit</th>{heads}</tr></thead>");
+        let heads = (0..rows.len())
+            .fold(String::new(), |row, i| row + &format!("<th class=\"n\">{}</th>", first + i + 1));
+        let _ = writeln!(
+            out,
+            "<table class=\"metrics\">\n<thead><tr><th>Metric</th><th>Unit</th>{heads}</tr></thead>"
+        );
         for metric in &shown {
             let cells = rows.iter().map(|r| r.value(&metric.name).map_or("–".into(), five));
             let cells = cells.fold(String::new(), |row, c| row + &format!("<td class=\"n\">{c}</td>"));
@@ -324,6 +336,7 @@ fn reproduce(out: &mut String, study: &Study) {
     let _ = writeln!(out, "<h2>To cite</h2>\n<pre>{}</pre>", escape(&bibtex(study)));
     for (path, text) in &m.source.others {
         let (path, text) = (escape(path), escape(text));
-        let _ = writeln!(out, "<details><summary>The case file {path}</summary>\n<pre>{text}</pre></details>");
+        let _ =
+            writeln!(out, "<details><summary>The case file {path}</summary>\n<pre>{text}</pre></details>");
     }
 }

@@ -35,9 +35,11 @@ pub(crate) fn arrow(out: &mut String, from: Point, to: Point, color: &str) {
     );
 }
 
-/// Points at about equal distances along a polyline, with the outward direction there; ends included.
+/// Points at about equal distances along a polyline, with the outward direction there; ends
+/// included.
 pub(crate) fn along(line: &[(Point, Point)], spacing: f64) -> Vec<(Point, Point)> {
-    let lengths: Vec<f64> = line.windows(2).map(|w| (w[1].0[0] - w[0].0[0]).hypot(w[1].0[1] - w[0].0[1])).collect();
+    let lengths: Vec<f64> =
+        line.windows(2).map(|w| (w[1].0[0] - w[0].0[0]).hypot(w[1].0[1] - w[0].0[1])).collect();
     let total: f64 = lengths.iter().sum();
     let count = (total / spacing).round().max(1.0);
     let mut places = Vec::new();
@@ -54,7 +56,8 @@ pub(crate) fn along(line: &[(Point, Point)], spacing: f64) -> Vec<(Point, Point)
     places
 }
 
-/// A line with hatching on its outer side, `offset` away from `line`: points with outward unit vectors.
+/// A line with hatching on its outer side, `offset` away from `line`: points with outward unit
+/// vectors.
 pub(crate) fn wall(out: &mut String, line: &[(Point, Point)], offset: f64) {
     let shifted: Vec<(Point, Point)> = line.iter().map(|&(p, n)| (plus(p, offset, n), n)).collect();
     let mut d = String::new();

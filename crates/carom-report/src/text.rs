@@ -1,4 +1,5 @@
-//! Text in SVG and HTML: escaping, and labels with subscripts and superscripts, `σ_{yy}` and `kg·m/s^2`.
+//! Text in SVG and HTML: escaping, and labels with subscripts and superscripts, `σ_{yy}` and
+//! `kg·m/s^2`.
 
 use std::fmt::Write as _;
 
@@ -28,14 +29,16 @@ enum Level {
     Super,
 }
 
-/// Pieces of a label. A `_` or `^` takes the group in braces; `^` without braces takes the sign and digits that follow.
+/// Pieces of a label. A `_` or `^` takes the group in braces; `^` without braces takes the sign and
+/// digits that follow.
 fn pieces(label: &str) -> Vec<(Level, String)> {
     let mut pieces = vec![(Level::Base, String::new())];
     let mut rest = label;
     while let Some(c) = rest.chars().next() {
         rest = &rest[c.len_utf8()..];
         let group = rest.strip_prefix('{').and_then(|r| r.split_once('}'));
-        let digits = rest.len() - rest.trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '-' | '−')).len();
+        let digits = rest.len()
+            - rest.trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '-' | '−')).len();
         match (c, group) {
             ('_' | '^', Some((inside, after))) => {
                 let level = if c == '_' { Level::Sub } else { Level::Super };
@@ -67,7 +70,8 @@ pub(crate) fn svg(label: &str) -> String {
             Level::Sub => (0.28, " font-size=\"75%\""),
             Level::Super => (-0.36, " font-size=\"75%\""),
         };
-        // `dy` moves the pen for good, in units of the tspan's own size: 0.75 of the label's for the small ones.
+        // `dy` moves the pen for good, in units of the tspan's own size: 0.75 of the label's for
+        // the small ones.
         let scale = if size.is_empty() { 1.0 } else { 0.75 };
         let dy = (to - raised) / scale;
         raised = to;
@@ -112,11 +116,17 @@ mod tests {
         assert_eq!(html("kg·m/s^2"), "kg·m/s<sup>2</sup>");
         assert_eq!(html("10^-3 a_b ^ {x"), "10<sup>-3</sup> a_b ^ {x");
         let text = svg("σ_{yy} (Pa)");
-        assert_eq!(text, "σ<tspan dy=\"0.373em\" font-size=\"75%\">yy</tspan><tspan dy=\"-0.280em\"> (Pa)</tspan>");
+        assert_eq!(
+            text,
+            "σ<tspan dy=\"0.373em\" font-size=\"75%\">yy</tspan><tspan dy=\"-0.280em\"> (Pa)</tspan>"
+        );
     }
 
     #[test]
     fn escapes() {
-        assert_eq!(escape("<a href='x' b=\"y\">&\u{0}"), "&lt;a href=&#39;x&#39; b=&quot;y&quot;&gt;&amp;\u{fffd}");
+        assert_eq!(
+            escape("<a href='x' b=\"y\">&\u{0}"),
+            "&lt;a href=&#39;x&#39; b=&quot;y&quot;&gt;&amp;\u{fffd}"
+        );
     }
 }

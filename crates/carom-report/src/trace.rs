@@ -1,9 +1,12 @@
 //! A curve as SVG path data, with no more points than a picture shows.
 //!
-//! Two rules, one after the other; what both leave out is within 0.6 pixels of what is drawn, and within 0.1 where no column of half a pixel has more than four
-//! points. In each such column the first, lowest, highest and last point stay: what is left out of it is within half a pixel of what stays. Of these, points go that are within a tenth of a pixel of the line between two others that stay (D. H. Douglas, T. K. Peucker,
-//! Cartographica 10, 1973); the lowest and the highest of all, the first and the last always stay. What remains is written in tenths of a pixel, each from the
-//! point before as written, so that nothing drifts.
+//! Two rules, one after the other; what both leave out is within 0.6 pixels of what is drawn, and
+//! within 0.1 where no column of half a pixel has more than four points. In each such column the
+//! first, lowest, highest and last point stay: what is left out of it is within half a pixel of
+//! what stays. Of these, points go that are within a tenth of a pixel of the line between two
+//! others that stay (D. H. Douglas, T. K. Peucker, Cartographica 10, 1973); the lowest and the
+//! highest of all, the first and the last always stay. What remains is written in tenths of a
+//! pixel, each from the point before as written, so that nothing drifts.
 
 use crate::pen::Point;
 
@@ -25,7 +28,10 @@ pub(crate) fn path(points: impl Iterator<Item = (f64, f64)>) -> String {
 }
 
 /// Path data of the area between two edges in pixels, both from left to right.
-pub(crate) fn area(upper: impl Iterator<Item = (f64, f64)>, lower: impl Iterator<Item = (f64, f64)>) -> String {
+pub(crate) fn area(
+    upper: impl Iterator<Item = (f64, f64)>,
+    lower: impl Iterator<Item = (f64, f64)>,
+) -> String {
     let edge = |points: &mut dyn Iterator<Item = (f64, f64)>| {
         thinned(&points.filter(|p| p.0.is_finite() && p.1.is_finite()).collect::<Vec<_>>())
     };
@@ -70,7 +76,8 @@ fn columns(points: &[(f64, f64)]) -> Vec<Point> {
     for column in points.chunk_by(same) {
         let by_height = |a: &usize, b: &usize| column[*a].1.total_cmp(&column[*b].1);
         let all = 0..column.len();
-        let mut keep = [Some(0), all.clone().min_by(by_height), all.max_by(by_height), column.len().checked_sub(1)];
+        let mut keep =
+            [Some(0), all.clone().min_by(by_height), all.max_by(by_height), column.len().checked_sub(1)];
         keep.sort_unstable();
         let mut last = None;
         for i in keep.into_iter().flatten() {
@@ -133,7 +140,8 @@ mod tests {
         let mut parts = Vec::new();
         let mut at = [0.0; 2];
         for part in d.trim_end_matches('z').split('m').filter(|p| !p.is_empty()) {
-            let numbers: Vec<f64> = part.replace('-', " -").split_whitespace().map(|n| n.parse().unwrap()).collect();
+            let numbers: Vec<f64> =
+                part.replace('-', " -").split_whitespace().map(|n| n.parse().unwrap()).collect();
             let mut points = Vec::new();
             for by in numbers.chunks(2) {
                 at = [at[0] + by[0], at[1] + by[1]];
@@ -165,7 +173,8 @@ mod tests {
         assert!(d.len() < 2000, "{}", d.len());
     }
 
-    /// Every point of the curve is near the line drawn: within the bound and half the diagonal of the grid of a tenth.
+    /// Every point of the curve is near the line drawn: within the bound and half the diagonal of
+    /// the grid of a tenth.
     #[test]
     fn what_is_left_out_is_near_what_is_drawn() {
         let grid = 0.05 * f64::sqrt(2.0);

@@ -1,4 +1,5 @@
-//! The verdict of a study and what stands behind it: ranking, what cannot be ranked on, orders by phase.
+//! The verdict of a study and what stands behind it: ranking, what cannot be ranked on, orders by
+//! phase.
 
 use std::fmt::Write as _;
 
@@ -55,10 +56,13 @@ pub(crate) fn show(out: &mut String, study: &Study) {
         return;
     };
     let arm = &study.manifest.arms[verdict.arm];
-    let name = arm.part.method.as_ref().unwrap_or(&arm.name);
+    let name = arm.role.method.as_ref().unwrap_or(&arm.name);
     let at = step(arm, "time.step").map_or_else(String::new, |h| format!(", Δt = {}", five(h)));
-    let _ =
-        writeln!(out, "<section class=\"verdict\"><h2>Recommended: {}{at}</h2>\n<p>{goal}.</p>\n<dl>", escape(name));
+    let _ = writeln!(
+        out,
+        "<section class=\"verdict\"><h2>Recommended: {}{at}</h2>\n<p>{goal}.</p>\n<dl>",
+        escape(name)
+    );
     let sets = arm.sets.iter().filter(|set| !set.trim_start().starts_with("time.step"));
     let sets: Vec<String> = sets.map(|set| format!("<code>{}</code>", escape(set))).collect();
     if !sets.is_empty() {
@@ -83,9 +87,11 @@ pub(crate) fn show(out: &mut String, study: &Study) {
 
 fn costs(study: &Study, arm: usize) -> String {
     let cost = |i: usize| study.rows[i].value("cpu_time");
-    let level = study.manifest.arms[arm].part.level;
-    let same =
-        methods(study).into_iter().flat_map(|(_, arms)| arms).filter(|i| study.manifest.arms[*i].part.level == level);
+    let level = study.manifest.arms[arm].role.level;
+    let same = methods(study)
+        .into_iter()
+        .flat_map(|(_, arms)| arms)
+        .filter(|i| study.manifest.arms[*i].role.level == level);
     let least = same.filter_map(cost).fold(f64::INFINITY, f64::min);
     let of = |name: &str| study.rows[arm].value(name).map_or("–".into(), three);
     let against = cost(arm)
@@ -103,15 +109,17 @@ fn costs(study: &Study, arm: usize) -> String {
 
 /// Side effects that can be told, each with the least of its level.
 fn distorts(study: &Study, arm: usize) -> Vec<String> {
-    let level = study.manifest.arms[arm].part.level;
+    let level = study.manifest.arms[arm].role.level;
     let same: Vec<usize> = methods(study)
         .into_iter()
         .flat_map(|(_, arms)| arms)
-        .filter(|i| study.manifest.arms[*i].part.level == level)
+        .filter(|i| study.manifest.arms[*i].role.level == level)
         .collect();
     let mut lines = Vec::new();
     for (metric, words) in SIDE {
-        let Standing::Established { value: right, .. } = standing(study.reference.as_ref(), metric) else { continue };
+        let Standing::Established { value: right, .. } = standing(study.reference.as_ref(), metric) else {
+            continue;
+        };
         // An error that is relative to nothing says nothing.
         if right == 0.0 && !metric.starts_with("energy") && !metric.starts_with("dissipated") {
             continue;
@@ -122,8 +130,14 @@ fn distorts(study: &Study, arm: usize) -> Vec<String> {
         let shown = if right == 0.0 { mine } else { error(mine, right) };
         lines.push(format!("{words}: {} (least of its level {})", three(shown), three(least)));
     }
-    if let Some((column, late)) = study.compared.get(arm).and_then(Option::as_ref).and_then(|c| c.late.clone()) {
-        lines.push(format!("{column} is {} by {}", if late < 0.0 { "early" } else { "late" }, three(late.abs())));
+    if let Some((column, late)) =
+        study.compared.get(arm).and_then(Option::as_ref).and_then(|c| c.late.clone())
+    {
+        lines.push(format!(
+            "{column} is {} by {}",
+            if late < 0.0 { "early" } else { "late" },
+            three(late.abs())
+        ));
     }
     lines
 }
@@ -187,7 +201,7 @@ fn other_goals(out: &mut String, study: &Study) {
         let cells = match (&ranking.verdict, &ranking.measure) {
             (Some(verdict), Ok(measure)) => {
                 let arm = &study.manifest.arms[verdict.arm];
-                let mut name = escape(arm.part.method.as_ref().unwrap_or(&arm.name));
+                let mut name = escape(arm.role.method.as_ref().unwrap_or(&arm.name));
                 if !verdict.alike.is_empty() {
                     let alike = escape(&verdict.alike.join(" · "));
                     let _ = write!(name, "<br><span class=\"small\">not told apart: {alike}</span>");
@@ -200,7 +214,10 @@ fn other_goals(out: &mut String, study: &Study) {
                 )
             }
             (_, Err(why)) => {
-                format!("<td colspan=\"4\">nothing can be ranked: <span class=\"small\">{}</span></td>", escape(why))
+                format!(
+                    "<td colspan=\"4\">nothing can be ranked: <span class=\"small\">{}</span></td>",
+                    escape(why)
+                )
             }
             (None, Ok(measure)) => format!(
                 "<td colspan=\"4\">no arm has a value of: <span class=\"small\">{}</span></td>",
@@ -218,7 +235,8 @@ fn ranked_table(out: &mut String, study: &Study, ranking: &Ranking) {
     let without = methods(study).into_iter().flat_map(|(_, arms)| arms).filter(|arm| !placed(arm));
     let without: Vec<String> = without.map(|arm| escape(&study.rows[arm].name)).collect();
     if !without.is_empty() {
-        let why = if ranking.goal == Goal::Cost { "not accurate enough" } else { "without a value of the measure" };
+        let why =
+            if ranking.goal == Goal::Cost { "not accurate enough" } else { "without a value of the measure" };
         let _ = writeln!(out, "<p class=\"small\">In no place, because {why}: {}.</p>", without.join("; "));
     }
     out.push_str("<p class=\"small\">Arms that share a place are not told apart: their errors differ by no more than the uncertainty of the reference, or 5 %.");

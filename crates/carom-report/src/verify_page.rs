@@ -1,4 +1,5 @@
-//! `verify.html`: what was verified, family by family, in one page that needs nothing but itself; and the same as Markdown.
+//! `verify.html`: what was verified, family by family, in one page that needs nothing but itself;
+//! and the same as Markdown.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -53,7 +54,9 @@ fn page(v: &Verification, directory: &Path) -> String {
     let (class, word) = match (missed, stopped) {
         (0, 0) => ("finished", "every expectation is met".to_owned()),
         (_, 0) => ("failed", format!("{missed} of {rows} expectations missed")),
-        _ => ("failed", format!("{missed} of {rows} expectations missed, {stopped} runs stopped unexpectedly")),
+        _ => {
+            ("failed", format!("{missed} of {rows} expectations missed, {stopped} runs stopped unexpectedly"))
+        }
     };
     let _ = writeln!(out, "<p><span class=\"status {class}\">{word}</span></p>\n<table class=\"summary\">");
     let line = |name: &str, value: String| format!("<tr><th>{name}</th><td>{}</td></tr>\n", escape(&value));

@@ -1,4 +1,5 @@
-//! A report is made of a made-up run: whole, self-contained, well-formed, and safe from what a user wrote.
+//! A report is made of a made-up run: whole, self-contained, well-formed, and safe from what a user
+//! wrote.
 
 #![allow(clippy::unwrap_used)]
 
@@ -41,7 +42,8 @@ fn figures_and_page() {
     let directory = scratch.path().join("run");
     common::write(&directory, "</title><script>alert(1)</script> & \"more\"", Some("energy <created>: 3 %"));
     let summary = report(&directory).unwrap();
-    let names: Vec<_> = summary.figures.iter().map(|f| f.file_stem().unwrap().to_str().unwrap().to_string()).collect();
+    let names: Vec<_> =
+        summary.figures.iter().map(|f| f.file_stem().unwrap().to_str().unwrap().to_string()).collect();
     assert_eq!(names, ["setup", "bodies", "probes", "force", "energy", "solver"]);
     assert!(summary.notes.is_empty());
     for figure in &summary.figures {
@@ -91,11 +93,14 @@ fn bar(directory: &Path, rows: usize, with_fields: bool) {
         description: String::new(),
         integer: false,
     });
-    let manifest = Manifest::new("0.1.0", serde_json::json!({"dimension": 1}), Source::default(), columns.to_vec(), 1);
+    let manifest =
+        Manifest::new("0.1.0", serde_json::json!({"dimension": 1}), Source::default(), columns.to_vec(), 1);
     let mut writer = RunWriter::create(directory, &manifest, b"").unwrap();
     for i in 0..rows {
         let t = i as f64 * 0.1;
-        writer.history(&[i as f64, t, f64::from((3..6).contains(&i)), if i == 2 { f64::NAN } else { t }]).unwrap();
+        writer
+            .history(&[i as f64, t, f64::from((3..6).contains(&i)), if i == 2 { f64::NAN } else { t }])
+            .unwrap();
         if with_fields {
             let displacement = (0..4).flat_map(|k| [t * f64::from(k), 0.0, 0.0]).collect();
             let (name, unit) = ("displacement".into(), "m".into());

@@ -1,4 +1,5 @@
-//! Kernels of one cell, deformed by a few per cent: force, tangent and discrete gradient for every shape, the tangent for every law.
+//! Kernels of one cell, deformed by a few per cent: force, tangent and discrete gradient for every
+//! shape, the tangent for every law.
 //!
 //!     cargo bench -p carom-solid              times
 //!     bench/instructions.py carom-solid       instructions
@@ -10,8 +11,11 @@ use divan::Bencher;
 
 const SHAPES: [Element; 3] = [Element::T3, Element::T6, Element::T10];
 const RUBBER: Law = Law::NeoHookean { lambda: 200.0, mu: 15.0 };
-const LAWS: [Law; 3] =
-    [RUBBER, Law::SaintVenantKirchhoff { lambda: 200.0, mu: 15.0 }, Law::LinearElastic { lambda: 200.0, mu: 15.0 }];
+const LAWS: [Law; 3] = [
+    RUBBER,
+    Law::SaintVenantKirchhoff { lambda: 200.0, mu: 15.0 },
+    Law::LinearElastic { lambda: 200.0, mu: 15.0 },
+];
 /// An inner cell.
 const CELL: usize = 5;
 

@@ -1,5 +1,6 @@
-//! The hierarchy of boxes over 10³ to 10⁵ facets of a closed chain in the plane and of a sphere: what a facet costs to take in, and what a query costs.
-//! Times per box grow with the logarithm; those of all boxes one by one grow with their number.
+//! The hierarchy of boxes over 10³ to 10⁵ facets of a closed chain in the plane and of a sphere:
+//! what a facet costs to take in, and what a query costs. Times per box grow with the logarithm;
+//! those of all boxes one by one grow with their number.
 //!
 //!     cargo bench -p carom-solid --bench tree     times, and boxes or queries per second
 //!     bench/instructions.py carom-solid           instructions

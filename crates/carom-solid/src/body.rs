@@ -1,4 +1,5 @@
-//! What the rest of Carom sees of a body: forces, tangents, masses and stresses at positions, cell by cell.
+//! What the rest of Carom sees of a body: forces, tangents, masses and stresses at positions, cell
+//! by cell.
 
 use crate::bounds::Bounds;
 use crate::mesh::Mesh;
@@ -22,11 +23,11 @@ pub struct PointState {
     pub cauchy: [[f64; 3]; 3],
 }
 
-/// A deformable body: a mesh with one material. Node numbers are the body's own; D stands for the dimension of
-/// its mesh and N for the nodes of a cell.
+/// A deformable body: a mesh with one material. Node numbers are the body's own; D stands for the
+/// dimension of its mesh and N for the nodes of a cell.
 ///
-/// Units follow the case: forces per unit thickness × thickness. `y` always holds the positions of all nodes of
-/// the body, flat and node-major, as every vector over nodes.
+/// Units follow the case: forces per unit thickness × thickness. `y` always holds the positions of
+/// all nodes of the body, flat and node-major, as every vector over nodes.
 pub trait Body: Send + Sync {
     /// Mesh with reference positions.
     fn mesh(&self) -> &Mesh;
@@ -34,15 +35,28 @@ pub trait Body: Send + Sync {
     /// Strain energy of a cell; adds nothing, overwrites `force` (`N·D`, node-major) with ∂U/∂y.
     fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted>;
 
-    /// As [`Self::cell_force`], and overwrites `tangent` (`(N·D)²`, row-major, symmetric, both halves) with ∂²U/∂y².
-    fn cell_tangent(&self, cell: usize, y: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Result<f64, Inverted>;
+    /// As [`Self::cell_force`], and overwrites `tangent` (`(N·D)²`, row-major, symmetric, both
+    /// halves) with ∂²U/∂y².
+    fn cell_tangent(
+        &self,
+        cell: usize,
+        y: &[f64],
+        force: &mut [f64],
+        tangent: &mut [f64],
+    ) -> Result<f64, Inverted>;
 
-    /// Discrete gradient of the strain energy between `before` and `now`: overwrites `force` with f such that f·(now − before) = U(now) − U(before) to
-    /// round-off. U(now) is returned.
-    fn cell_between(&self, cell: usize, before: &[f64], now: &[f64], force: &mut [f64]) -> Result<f64, Inverted>;
+    /// Discrete gradient of the strain energy between `before` and `now`: overwrites `force` with f
+    /// such that f·(now − before) = U(now) − U(before) to round-off. U(now) is returned.
+    fn cell_between(
+        &self,
+        cell: usize,
+        before: &[f64],
+        now: &[f64],
+        force: &mut [f64],
+    ) -> Result<f64, Inverted>;
 
-    /// Overwrites `product` (`N·D`) with ∂f/∂y · `change`, f that of [`Self::cell_force`] or, with `before`, of [`Self::cell_between`]; nothing of it is
-    /// symmetrised.
+    /// Overwrites `product` (`N·D`) with ∂f/∂y · `change`, f that of [`Self::cell_force`] or, with
+    /// `before`, of [`Self::cell_between`]; nothing of it is symmetrised.
     fn cell_product(
         &self,
         cell: usize,
@@ -58,15 +72,16 @@ pub trait Body: Send + Sync {
     /// Nodal volumes of a cell (`N`): ∫φᵃ dΩ₀, what a unit body force per volume gives.
     fn cell_volumes(&self, cell: usize, volumes: &mut [f64]);
 
-    /// Visits the quadrature points of a cell for volume integrals: shape functions (`N`), reference position, reference volume (× thickness).
+    /// Visits the quadrature points of a cell for volume integrals: shape functions (`N`),
+    /// reference position, reference volume (× thickness).
     fn each_volume_point(&self, cell: usize, visit: &mut dyn FnMut(&[f64], &[f64], f64));
 
-    /// Visits the same points with the reference position, the position and H = ∂y/∂X − 1 there (`D²`, row-major), and
-    /// the reference volume (× thickness).
+    /// Visits the same points with the reference position, the position and H = ∂y/∂X − 1 there
+    /// (`D²`, row-major), and the reference volume (× thickness).
     fn each_moved_point(&self, cell: usize, y: &[f64], visit: &mut dyn FnMut(&[f64], &[f64], &[f64], f64));
 
-    /// Divergence ∂Pᵢᴶ/∂Xᴶ of the first Piola–Kirchhoff stress of a motion with H = ∂y/∂X − 1 (`D²`, row-major) and second
-    /// derivatives ∂²yₖ/∂Xᴶ∂Xᴸ (`D³`, k first), into `out` (`D`).
+    /// Divergence ∂Pᵢᴶ/∂Xᴶ of the first Piola–Kirchhoff stress of a motion with H = ∂y/∂X − 1
+    /// (`D²`, row-major) and second derivatives ∂²yₖ/∂Xᴶ∂Xᴸ (`D³`, k first), into `out` (`D`).
     ///
     /// # Errors
     /// The determinant J if it is not positive.
@@ -84,14 +99,16 @@ pub trait Body: Send + Sync {
     /// Reference coordinates of a cell's nodes (`N`).
     fn reference_nodes(&self) -> Vec<Vec<f64>>;
 
-    /// Cells and reference coordinates at a reference point: one inside a cell, all cells that share it where it is a node or lies on an edge;
-    /// empty outside the body.
+    /// Cells and reference coordinates at a reference point: one inside a cell, all cells that
+    /// share it where it is a node or lies on an edge; empty outside the body.
     fn locate(&self, point: &[f64]) -> Vec<(usize, Vec<f64>)>;
 
-    /// Box around a cell whose nodes are at `y`, wide enough for every point that [`Self::invert`] finds in it.
+    /// Box around a cell whose nodes are at `y`, wide enough for every point that [`Self::invert`]
+    /// finds in it.
     fn cell_bounds(&self, cell: usize, y: &[f64]) -> Bounds;
 
-    /// Reference coordinates of a point of a cell, its boundary included, whose nodes are at `y`; `None` if it lies outside.
+    /// Reference coordinates of a point of a cell, its boundary included, whose nodes are at `y`;
+    /// `None` if it lies outside.
     fn invert(&self, cell: usize, y: &[f64], point: &[f64]) -> Option<Vec<f64>>;
 
     /// Density ρ₀.

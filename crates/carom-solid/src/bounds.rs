@@ -1,6 +1,7 @@
 //! Axis-parallel boxes in up to three dimensions; axes that a point does not have are 0..0.
 
-/// Axis-parallel box. It is never too small: a coordinate that is not finite makes it boundless along its axis.
+/// Axis-parallel box. It is never too small: a coordinate that is not finite makes it boundless
+/// along its axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
     // NaN where the box is empty: comparisons with it are false, and `min` and `max` pass over it.
@@ -52,14 +53,16 @@ impl Bounds {
         self
     }
 
-    /// Whether the boxes have a point in common, be it on their boundaries. An empty box meets nothing.
+    /// Whether the boxes have a point in common, be it on their boundaries. An empty box meets
+    /// nothing.
     #[must_use]
     #[inline]
     pub fn meets(&self, other: &Self) -> bool {
         (0..3).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
     }
 
-    /// Whether a point of one to three coordinates lies in the box, its boundary included; one that is not finite lies in no box with bounds.
+    /// Whether a point of one to three coordinates lies in the box, its boundary included; one that
+    /// is not finite lies in no box with bounds.
     #[must_use]
     pub fn contains(&self, point: &[f64]) -> bool {
         (0..3).all(|i| {
@@ -161,7 +164,9 @@ mod tests {
     fn nothing_is_in_an_empty_box() {
         let a = Bounds::of(&[1.0, 2.0]);
         for b in [Bounds::EMPTY, Bounds::EMPTY.grown(2.0), Bounds::EMPTY.grown(f64::INFINITY)] {
-            assert!(!b.meets(&a) && !a.meets(&b) && !b.meets(&Bounds::of(&[f64::NAN])) && !b.contains(&[0.0]));
+            assert!(
+                !b.meets(&a) && !a.meets(&b) && !b.meets(&Bounds::of(&[f64::NAN])) && !b.contains(&[0.0])
+            );
             assert!(!b.meets(&b) && b.size() == 0.0 && b.distance(&[0.0]).is_nan());
             assert_eq!(a.union(&b).low(), a.low());
             assert_eq!(b.union(&a).high(), a.high());

@@ -1,4 +1,5 @@
-//! Which points a body covers, for many points at one position of its nodes: O(log cells) each, after O(cells log cells).
+//! Which points a body covers, for many points at one position of its nodes: O(log cells) each,
+//! after O(cells log cells).
 
 use crate::body::Body;
 use crate::bounds::Bounds;

@@ -1,23 +1,30 @@
-//! Discrete gradient of a strain energy between two deformations (O. Gonzalez, Comput. Methods Appl. Mech. Engrg. 190 (2000) 1763–1783):
+//! Discrete gradient of a strain energy between two deformations (O. Gonzalez, Comput. Methods
+//! Appl. Mech. Engrg. 190 (2000) 1763–1783):
 //!
 //! ```text
 //! P = F_m S,   S = S(E_m) + φ ΔE,   φ = [W₁ − W₀ − S(E_m):ΔE] / (ΔE:ΔE),   F_m = (F₀ + F₁)/2,   E_m = (E₀ + E₁)/2,   ΔE = E₁ − E₀ = sym(F_mᵀ ΔF)
 //! ```
 //!
-//! so that P:ΔF = S:ΔE = W₁ − W₀ exactly, S is symmetric (moment of momentum) and turns with the body. S(E_m) comes from the law itself, S = F̂⁻¹ P(F̂)
-//! with the triangular F̂ᵀF̂ = I + 2E_m, and so does its derivative: dF̂ = F̂⁻ᵀ dE has sym(F̂ᵀ dF̂) = dE, and dS = F̂⁻¹ (dP − dF̂ S).
-//! A law of the small strain has a quadratic energy in H: its stress at the middle is such a gradient as it stands.
+//! so that P:ΔF = S:ΔE = W₁ − W₀ exactly, S is symmetric (moment of momentum) and turns with the
+//! body. S(E_m) comes from the law itself, S = F̂⁻¹ P(F̂) with the triangular F̂ᵀF̂ = I + 2E_m, and
+//! so does its derivative: dF̂ = F̂⁻ᵀ dE has sym(F̂ᵀ dF̂) = dE, and dS = F̂⁻¹ (dP − dF̂ S). A law
+//! of the small strain has a quadratic energy in H: its stress at the middle is such a gradient as
+//! it stands.
 
 use carom_algebra::Mat;
 
 use crate::material::{Material, NotPositive};
 
-/// Below this ΔE:ΔE the correction is left out: it is of third order in ΔE and would be the rounding of W divided by ‖ΔE‖.
+/// Below this ΔE:ΔE the correction is left out: it is of third order in ΔE and would be the
+/// rounding of W divided by ‖ΔE‖.
 const NO_STRAIN: f64 = 1e-12;
 
 /// W₁ and P. Compiled once for a law, not into every loop: what a call costs is little beside it.
 #[inline(never)]
-pub(crate) fn between<const D: usize, L: Material<D>>(law: &L, h: [&Mat<D>; 2]) -> Result<(f64, Mat<D>), NotPositive> {
+pub(crate) fn between<const D: usize, L: Material<D>>(
+    law: &L,
+    h: [&Mat<D>; 2],
+) -> Result<(f64, Mat<D>), NotPositive> {
     if L::OBJECTIVE {
         return Middle::new(law, h).map(|middle| (middle.energy, middle.f * middle.s));
     }
@@ -95,7 +102,8 @@ fn strain<const D: usize>(h: &Mat<D>) -> Mat<D> {
     (*h + h.transposed() + h.transposed() * *h) * 0.5
 }
 
-/// F̂ − I with F̂ upper triangular and F̂ᵀF̂ = I + 2E (Cholesky); √(1 + x) − 1 = x/(1 + √(1 + x)) keeps the digits of a small E.
+/// F̂ − I with F̂ upper triangular and F̂ᵀF̂ = I + 2E (Cholesky); √(1 + x) − 1 = x/(1 + √(1 + x))
+/// keeps the digits of a small E.
 #[inline(always)]
 fn root<const D: usize>(e: &Mat<D>) -> Option<Mat<D>> {
     let mut h = Mat::ZERO;
@@ -152,7 +160,12 @@ mod tests {
             let mut unit = Mat::ZERO;
             unit.0[column / 2][column % 2] = 1.0;
             let change = change_between(law, [&h0, &h1], &unit).unwrap();
-            change.0.as_flattened().iter().enumerate().for_each(|(row, value)| jacobian[row * 4 + column] = *value);
+            change
+                .0
+                .as_flattened()
+                .iter()
+                .enumerate()
+                .for_each(|(row, value)| jacobian[row * 4 + column] = *value);
         }
         let stress = |x: &[f64]| {
             let (_, p) = between(law, [&h0, &Mat([[x[0], x[1]], [x[2], x[3]]])]).unwrap();

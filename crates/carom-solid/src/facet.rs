@@ -1,7 +1,9 @@
-//! Shapes of facets, the pieces of a body's boundary: a point at the end of a bar, a curve in the plane.
+//! Shapes of facets, the pieces of a body's boundary: a point at the end of a bar, a curve in the
+//! plane.
 //!
-//! A facet of dimension D has D − 1 coordinates ξ, and D − 1 tangents. Its normal, with the length of its
-//! measure, is ±1 for a point and the tangent turned right for a curve that is walked with the body on its left.
+//! A facet of dimension D has D − 1 coordinates ξ, and D − 1 tangents. Its normal, with the length
+//! of its measure, is ±1 for a point and the tangent turned right for a curve that is walked with
+//! the body on its left.
 
 use crate::quadrature;
 use crate::shape::{LineShape, line_shape};
@@ -46,16 +48,20 @@ impl FacetShape {
         line_shape(self.nodes(), xi)
     }
 
-    /// Quadrature points and weights that are exact for polynomials of a degree; a point counts once.
+    /// Quadrature points and weights that are exact for polynomials of a degree; a point counts
+    /// once.
     pub fn rule(self, degree: usize) -> Vec<(f64, f64)> {
         match self {
             Self::Point => vec![(0.0, 1.0)],
-            Self::L2 | Self::L3 | Self::L4 => quadrature::line(degree).iter().map(|(xi, w)| (xi[0], w)).collect(),
+            Self::L2 | Self::L3 | Self::L4 => {
+                quadrature::line(degree).iter().map(|(xi, w)| (xi[0], w)).collect()
+            }
         }
     }
 
-    /// Outward normal with the length of the facet's measure per ξ, from the derivative y′ of its positions.
-    /// `orientation`: see [`Mesh::orientation`](crate::Mesh::orientation). Components beyond the dimension are zero.
+    /// Outward normal with the length of the facet's measure per ξ, from the derivative y′ of its
+    /// positions. `orientation`: see [`Mesh::orientation`](crate::Mesh::orientation). Components
+    /// beyond the dimension are zero.
     #[inline]
     pub fn normal(self, tangent: [f64; 2], orientation: f64) -> [f64; 2] {
         match self {

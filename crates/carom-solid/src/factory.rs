@@ -1,4 +1,5 @@
-//! From a mesh and a law, known when a case has been read, to a body whose shape and law were known when Carom was compiled.
+//! From a mesh and a law, known when a case has been read, to a body whose shape and law were known
+//! when Carom was compiled.
 
 use crate::body::Body;
 use crate::material::{Law, LinearElastic, Material, NeoHookean, PlaneStress, SaintVenantKirchhoff};
@@ -6,8 +7,8 @@ use crate::mesh::{Element, Mesh};
 use crate::shape::{Line2, Line3, Line4, Shape, Tri3, Tri6, Tri10};
 use crate::solid::{Solid, SolidError};
 
-/// Body of a mesh, of any dimension; in the plane of plane strain. `thickness` is the area of the cross-section in
-/// dimension 1.
+/// Body of a mesh, of any dimension; in the plane of plane strain. `thickness` is the area of the
+/// cross-section in dimension 1.
 ///
 /// ```
 /// use carom_solid::{Element, Law, body, generate};
@@ -18,11 +19,14 @@ use crate::solid::{Solid, SolidError};
 /// ```
 ///
 /// # Errors
-/// If a number is out of its range, a cell is degenerate, or the element has another dimension than the mesh.
+/// If a number is out of its range, a cell is degenerate, or the element has another dimension than
+/// the mesh.
 pub fn body(mesh: Mesh, law: Law, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError> {
     match law {
         Law::NeoHookean { lambda, mu } => any(mesh, NeoHookean { lambda, mu }, density, thickness),
-        Law::SaintVenantKirchhoff { lambda, mu } => any(mesh, SaintVenantKirchhoff { lambda, mu }, density, thickness),
+        Law::SaintVenantKirchhoff { lambda, mu } => {
+            any(mesh, SaintVenantKirchhoff { lambda, mu }, density, thickness)
+        }
         Law::LinearElastic { lambda, mu } => any(mesh, LinearElastic { lambda, mu }, density, thickness),
     }
 }
@@ -31,13 +35,22 @@ pub fn body(mesh: Mesh, law: Law, density: f64, thickness: f64) -> Result<Box<dy
 ///
 /// # Errors
 /// As [`body`], and for a mesh that is not plane.
-pub fn plane_stress_body(mesh: Mesh, law: Law, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError> {
+pub fn plane_stress_body(
+    mesh: Mesh,
+    law: Law,
+    density: f64,
+    thickness: f64,
+) -> Result<Box<dyn Body>, SolidError> {
     match law {
-        Law::NeoHookean { lambda, mu } => plane(mesh, PlaneStress(NeoHookean { lambda, mu }), density, thickness),
+        Law::NeoHookean { lambda, mu } => {
+            plane(mesh, PlaneStress(NeoHookean { lambda, mu }), density, thickness)
+        }
         Law::SaintVenantKirchhoff { lambda, mu } => {
             plane(mesh, PlaneStress(SaintVenantKirchhoff { lambda, mu }), density, thickness)
         }
-        Law::LinearElastic { lambda, mu } => plane(mesh, PlaneStress(LinearElastic { lambda, mu }), density, thickness),
+        Law::LinearElastic { lambda, mu } => {
+            plane(mesh, PlaneStress(LinearElastic { lambda, mu }), density, thickness)
+        }
     }
 }
 
@@ -57,7 +70,12 @@ where
 }
 
 /// Body of a law of the plane.
-fn plane<L: Material<2>>(mesh: Mesh, law: L, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError> {
+fn plane<L: Material<2>>(
+    mesh: Mesh,
+    law: L,
+    density: f64,
+    thickness: f64,
+) -> Result<Box<dyn Body>, SolidError> {
     match mesh.element {
         Element::T3 => solid::<2, 3, Tri3, L>(mesh, law, density, thickness),
         Element::T6 => solid::<2, 6, Tri6, L>(mesh, law, density, thickness),

@@ -1,4 +1,5 @@
-//! Bodies: meshes, shapes, quadrature, materials and cell forces of the positional finite element method.
+//! Bodies: meshes, shapes, quadrature, materials and cell forces of the positional finite element
+//! method.
 
 mod body;
 mod bounds;

@@ -1,13 +1,16 @@
-//! What loads on a side put on its nodes, by quadrature over its facets (P. Wriggers, *Nonlinear Finite Element Methods*, Springer 2008, §4.2.5):
+//! What loads on a side put on its nodes, by quadrature over its facets (P. Wriggers, *Nonlinear
+//! Finite Element Methods*, Springer 2008, §4.2.5):
 //!
 //! ```text
 //! dead traction t̄ per reference area    fᵃ = Σ w φᵃ t̄ |X′|
 //! follower pressure p                    fᵃ = −Σ w φᵃ p R y′,     ∂fᵃ/∂yᵇ = −Σ w φᵃ p φᵇ′ R,     R = [0 1; −1 0]
 //! ```
 //!
-//! R turns the tangent y′ right, out of the body, so R y′ dξ is the current area with its normal, and the force is linear in the positions. The
-//! tangent is exact and not symmetric: ∫ (φᵃ φᵇ′ + φᵃ′ φᵇ) p dξ leaves what happens at the ends of the side and where p changes along it. At
-//! the end of a bar the facet is a point, its normal ±1 and its measure the cross-section; the tangent is zero.
+//! R turns the tangent y′ right, out of the body, so R y′ dξ is the current area with its normal,
+//! and the force is linear in the positions. The tangent is exact and not symmetric: ∫ (φᵃ φᵇ′ +
+//! φᵃ′ φᵇ) p dξ leaves what happens at the ends of the side and where p changes along it. At the
+//! end of a bar the facet is a point, its normal ±1 and its measure the cross-section; the tangent
+//! is zero.
 
 use crate::facet::FacetShape;
 use crate::mesh::{Facet, Mesh};
@@ -33,12 +36,13 @@ struct Point {
 }
 
 impl LoadedSide {
-    /// Points of the facets of a side; none where the mesh has no facets to load. `thickness` is the area of the
-    /// cross-section in dimension 1.
+    /// Points of the facets of a side; none where the mesh has no facets to load. `thickness` is
+    /// the area of the cross-section in dimension 1.
     pub fn new(mesh: &Mesh, facets: &[Facet], first_node: usize, thickness: f64) -> Option<Self> {
         let shape = mesh.element.facet_shape()?;
         let dimension = mesh.dimension();
-        // A curved facet's |X′| is no polynomial, and neither is a load's formula: twice the degree of the shape functions' products.
+        // A curved facet's |X′| is no polynomial, and neither is a load's formula: twice the degree
+        // of the shape functions' products.
         let rule = shape.rule(4 * mesh.element.degree() + 2);
         let orientations: Vec<f64> = facets.iter().map(|facet| mesh.orientation(facet)).collect();
         let mut points = Vec::new();
@@ -48,7 +52,13 @@ impl LoadedSide {
                 let functions = shape.at(xi);
                 let [x, y] = shape.normal(at(&functions.first), orientations[k]);
                 let area = weight * (x * x + y * y).sqrt() * thickness;
-                points.push(Point { facet: k, position: at(&functions.values), weight, area, shape: functions });
+                points.push(Point {
+                    facet: k,
+                    position: at(&functions.values),
+                    weight,
+                    area,
+                    shape: functions,
+                });
             }
         }
         let facets = facets.iter().map(|f| f.nodes.iter().map(|n| n + first_node).collect()).collect();
@@ -65,14 +75,16 @@ impl LoadedSide {
         self.points.iter().map(|p| &p.position[..self.dimension])
     }
 
-    /// Adds the nodal forces of a dead traction, given at the quadrature points per reference area, to `force`, flat over nodes.
+    /// Adds the nodal forces of a dead traction, given at the quadrature points per reference area,
+    /// to `force`, flat over nodes.
     pub fn add_traction<'a>(&self, traction: impl IntoIterator<Item = &'a [f64]>, force: &mut [f64]) {
         for (point, traction) in self.points.iter().zip(traction) {
             self.add(point, traction, point.area, force);
         }
     }
 
-    /// Adds the nodal forces of a pressure, given at the quadrature points per current area, at positions `y` to `force`.
+    /// Adds the nodal forces of a pressure, given at the quadrature points per current area, at
+    /// positions `y` to `force`.
     pub fn add_pressure(&self, pressure: &[f64], y: &[f64], force: &mut [f64]) {
         for (point, pressure) in self.points.iter().zip(pressure) {
             let tangent = interpolated(&self.facets[point.facet], &point.shape.first, y, self.dimension);
@@ -90,8 +102,8 @@ impl LoadedSide {
         }
     }
 
-    /// Overwrites `tangent` (`(n·D)²`, row-major, n nodes of the facet) with ∂f/∂y of a facet under a pressure given at all quadrature points of
-    /// the side. It does not depend on the positions.
+    /// Overwrites `tangent` (`(n·D)²`, row-major, n nodes of the facet) with ∂f/∂y of a facet under
+    /// a pressure given at all quadrature points of the side. It does not depend on the positions.
     pub fn facet_tangent(&self, facet: usize, pressure: &[f64], tangent: &mut [f64]) {
         tangent.fill(0.0);
         let (n, d) = (self.facets[facet].len(), self.dimension);
@@ -167,7 +179,8 @@ mod tests {
     fn a_uniform_pressure_on_a_closed_side_is_balanced_and_points_inwards() {
         let mesh = generate::disc(Element::T6, 1.0, [0.3, -0.2], 0.4).unwrap();
         let arc = side(&mesh, "arc");
-        let y: Vec<f64> = mesh.nodes.iter().flat_map(|x| [x[0] + 0.1 * x[1] * x[1], x[1] - 0.2 * x[0]]).collect();
+        let y: Vec<f64> =
+            mesh.nodes.iter().flat_map(|x| [x[0] + 0.1 * x[1] * x[1], x[1] - 0.2 * x[0]]).collect();
         let mut force = vec![0.0; 2 * mesh.nodes.len()];
         arc.add_pressure(&vec![3.0; arc.positions().len()], &y, &mut force);
         let [fx, fy] = total(&force);
@@ -183,14 +196,16 @@ mod tests {
             let mesh = generate::half_disc(element, 1.0, [0.0, 0.0], 0.5).unwrap();
             let arc = side(&mesh, "arc");
             let pressure: Vec<f64> = arc.positions().map(|x| 1.0 + x[1] * x[0]).collect();
-            let y: Vec<f64> = mesh.nodes.iter().flat_map(|x| [x[0] + 0.2 * x[1].sin(), x[1] + 0.1 * x[0]]).collect();
+            let y: Vec<f64> =
+                mesh.nodes.iter().flat_map(|x| [x[0] + 0.2 * x[1].sin(), x[1] + 0.1 * x[0]]).collect();
             let at = |y: &[f64]| {
                 let mut force = vec![0.0; y.len()];
                 arc.add_pressure(&pressure, y, &mut force);
                 force
             };
             let direction = |dof: usize| (dof as f64 * 12.9898).sin();
-            let moved = |h: f64| -> Vec<f64> { y.iter().enumerate().map(|(k, y)| y + h * direction(k)).collect() };
+            let moved =
+                |h: f64| -> Vec<f64> { y.iter().enumerate().map(|(k, y)| y + h * direction(k)).collect() };
             let (plus, minus) = (at(&moved(0.5)), at(&moved(-0.5)));
             let mut product = vec![0.0; y.len()];
             for (f, nodes) in arc.facets().iter().enumerate() {

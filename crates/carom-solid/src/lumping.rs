@@ -1,5 +1,6 @@
-//! Lumped mass by diagonal scaling: the diagonal of the consistent mass, scaled to the mass of the cell (E. Hinton, T. Rock,
-//! O. C. Zienkiewicz, Earthquake Eng. Struct. Dyn. 4 (1976) 245–249). Row sums would give the corners of a T6 no mass.
+//! Lumped mass by diagonal scaling: the diagonal of the consistent mass, scaled to the mass of the
+//! cell (E. Hinton, T. Rock, O. C. Zienkiewicz, Earthquake Eng. Struct. Dyn. 4 (1976) 245–249). Row
+//! sums would give the corners of a T6 no mass.
 
 use crate::body::Body;
 

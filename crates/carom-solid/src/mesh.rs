@@ -1,8 +1,8 @@
 //! A mesh of one element type with named sides.
 //!
-//! Node order inside a cell and a facet is Gmsh's (and VTK's): corners, then the nodes of each edge in the
-//! direction of the edge, then the interior. In the plane a boundary is walked with the body on its left, so
-//! a facet's outward normal is its tangent turned right.
+//! Node order inside a cell and a facet is Gmsh's (and VTK's): corners, then the nodes of each edge
+//! in the direction of the edge, then the interior. In the plane a boundary is walked with the body
+//! on its left, so a facet's outward normal is its tangent turned right.
 
 use std::collections::BTreeMap;
 
@@ -67,7 +67,8 @@ impl Element {
         }
     }
 
-    /// Facets of a cell: places of their nodes in the cell, corners first, each walked with the body on its left.
+    /// Facets of a cell: places of their nodes in the cell, corners first, each walked with the
+    /// body on its left.
     pub fn facets(self) -> &'static [&'static [usize]] {
         match self {
             Self::L2 | Self::L3 | Self::L4 => &[&[0], &[1]],
@@ -112,7 +113,8 @@ pub struct Mesh {
     pub cells: Vec<usize>,
     /// Facets of each named side, in the order in which the boundary is walked.
     pub sides: BTreeMap<String, Vec<Facet>>,
-    /// What was repaired when the mesh was read from a file, as sentences; nothing for built-in shapes.
+    /// What was repaired when the mesh was read from a file, as sentences; nothing for built-in
+    /// shapes.
     pub repairs: Vec<String>,
 }
 
@@ -146,8 +148,8 @@ impl Mesh {
         Some(nodes)
     }
 
-    /// Direction of a facet: that of its outward normal where the facet is a point, ±1; 1 where the walk along the
-    /// boundary gives the normal.
+    /// Direction of a facet: that of its outward normal where the facet is a point, ±1; 1 where the
+    /// walk along the boundary gives the normal.
     pub fn orientation(&self, facet: &Facet) -> f64 {
         if self.element.facet_shape() != Some(FacetShape::Point) {
             return 1.0;

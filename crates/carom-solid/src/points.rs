@@ -1,6 +1,8 @@
-//! Quadrature points side by side: sums over the nodes of a cell, for four points at once in one register.
+//! Quadrature points side by side: sums over the nodes of a cell, for four points at once in one
+//! register.
 //!
-//! Each lane is a point; lanes are added up at the end, (0 + 1) + (2 + 3). The order of every sum is fixed, so the bits are the same on every machine.
+//! Each lane is a point; lanes are added up at the end, (0 + 1) + (2 + 3). The order of every sum
+//! is fixed, so the bits are the same on every machine.
 
 use carom_algebra::{Mat, Vector};
 
@@ -32,7 +34,8 @@ pub(crate) struct Points<const D: usize, const N: usize> {
 impl<const D: usize, const N: usize> Points<D, N> {
     /// From the gradients and weights of one to four points.
     pub(crate) fn new(points: &[([Vector<D>; N], f64)]) -> Self {
-        let mut packed = Self { gradients: [[[0.0; LANES]; D]; N], weights: [0.0; LANES], count: points.len() };
+        let mut packed =
+            Self { gradients: [[[0.0; LANES]; D]; N], weights: [0.0; LANES], count: points.len() };
         for (l, (gradients, weight)) in points.iter().enumerate() {
             for a in 0..N {
                 for j in 0..D {
@@ -71,7 +74,8 @@ impl<const D: usize, const N: usize> Points<D, N> {
         }
     }
 
-    /// Kᵐⁿ += ∂P/∂F : Aᵀ∇φᵐ Aᵀ∇φⁿ, with moduli that hold the weight. K is bilinear in the gradients: the law is asked for unit vectors only.
+    /// Kᵐⁿ += ∂P/∂F : Aᵀ∇φᵐ Aᵀ∇φⁿ, with moduli that hold the weight. K is bilinear in the
+    /// gradients: the law is asked for unit vectors only.
     #[inline(always)]
     pub(crate) fn add_tangent(&self, moduli: &[[Mats<D>; D]; D], a: &Mat<D>, blocks: &mut Blocks<D, N>) {
         let moduli = pulled_back(moduli, a);
@@ -95,7 +99,12 @@ impl<const D: usize, const N: usize> Points<D, N> {
 
 /// Takes the moduli of one point up, times its weight.
 #[inline(always)]
-pub(crate) fn set_moduli<const D: usize>(moduli: &mut [[Mats<D>; D]; D], point: usize, of: &Moduli<D>, weight: f64) {
+pub(crate) fn set_moduli<const D: usize>(
+    moduli: &mut [[Mats<D>; D]; D],
+    point: usize,
+    of: &Moduli<D>,
+    weight: f64,
+) {
     for j in 0..D {
         for l in 0..D {
             set(&mut moduli[j][l], point, &of[j][l], weight);

@@ -1,5 +1,5 @@
-//! Points in one, two or three dimensions, side by side in memory: what a mesh and everything above the
-//! cells sees. A kernel of known dimension reads them as `&[[f64; D]]`.
+//! Points in one, two or three dimensions, side by side in memory: what a mesh and everything above
+//! the cells sees. A kernel of known dimension reads them as `&[[f64; D]]`.
 
 use std::ops::{Index, IndexMut};
 

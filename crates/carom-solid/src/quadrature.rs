@@ -1,11 +1,14 @@
 //! Quadrature, Σ w f(ξ) = ∫f dξ exactly for polynomials of a total degree, all weights positive.
 //!
-//! - Lines: Gauss–Legendre; nodes are the roots of Pₙ by Newton's method, w = 2/((1 − x²) P′ₙ(x)²), exact to degree 2n − 1.
-//! - Triangles: D. A. Dunavant, "High degree efficient symmetrical Gaussian quadrature rules for the triangle", IJNME 21 (1985) 1129–1148,
-//!   degrees 1, 2, 4, 6, 8 and 10 (1, 3, 6, 12, 16 and 25 points), the printed digits continued by Newton's method on the moments. Odd
-//!   degrees use the next even rule: Dunavant's of degrees 3 and 7 have negative weights.
-//! - Tetrahedra: degree 2, 4 points (P. C. Hammer, A. H. Stroud, MTAC 10 (1956) 137–139); above, products of Gauss–Legendre rules
-//!   on the collapsed cube (A. H. Stroud, Approximate Calculation of Multiple Integrals, 1971, §2.5).
+//! - Lines: Gauss–Legendre; nodes are the roots of Pₙ by Newton's method, w = 2/((1 − x²) P′ₙ(x)²),
+//!   exact to degree 2n − 1.
+//! - Triangles: D. A. Dunavant, "High degree efficient symmetrical Gaussian quadrature rules for
+//!   the triangle", IJNME 21 (1985) 1129–1148, degrees 1, 2, 4, 6, 8 and 10 (1, 3, 6, 12, 16 and 25
+//!   points), the printed digits continued by Newton's method on the moments. Odd degrees use the
+//!   next even rule: Dunavant's of degrees 3 and 7 have negative weights.
+//! - Tetrahedra: degree 2, 4 points (P. C. Hammer, A. H. Stroud, MTAC 10 (1956) 137–139); above,
+//!   products of Gauss–Legendre rules on the collapsed cube (A. H. Stroud, Approximate Calculation
+//!   of Multiple Integrals, 1971, §2.5).
 
 use carom_algebra::Vector;
 
@@ -52,8 +55,8 @@ fn legendre(n: usize, x: f64) -> (f64, f64) {
     (p, n as f64 * (before - x * p) / (1.0 - x * x))
 }
 
-/// A symmetric triangle rule by orbits: weight (relative to the area) of the centre; (weight, a) of the three points (a, a, 1 − 2a);
-/// (weight, a, b) of the six permutations of (a, b, 1 − a − b).
+/// A symmetric triangle rule by orbits: weight (relative to the area) of the centre; (weight, a) of
+/// the three points (a, a, 1 − 2a); (weight, a, b) of the six permutations of (a, b, 1 − a − b).
 struct Orbits {
     centre: &'static [f64],
     threes: &'static [(f64, f64)],
@@ -137,11 +140,14 @@ pub fn tetrahedron(degree: usize) -> Rule<3> {
     }
     let a = (5.0 - 5.0_f64.sqrt()) / 20.0;
     let b = 1.0 - 3.0 * a;
-    Rule { points: [[a, a, a], [b, a, a], [a, b, a], [a, a, b]].map(Vector).to_vec(), weights: vec![1.0 / 24.0; 4] }
+    Rule {
+        points: [[a, a, a], [b, a, a], [a, b, a], [a, a, b]].map(Vector).to_vec(),
+        weights: vec![1.0 / 24.0; 4],
+    }
 }
 
-/// The cube of Gauss–Legendre points collapsed to the tetrahedron, ξ = (u(1−v)(1−w), v(1−w), w): what the map adds to the
-/// degree, 1 along v and 2 along w, the rules along them take up.
+/// The cube of Gauss–Legendre points collapsed to the tetrahedron, ξ = (u(1−v)(1−w), v(1−w), w):
+/// what the map adds to the degree, 1 along v and 2 along w, the rules along them take up.
 fn collapsed(degree: usize) -> Rule<3> {
     let on_unit = |degree: usize| {
         let rule = line(degree);
@@ -187,7 +193,8 @@ mod tests {
             assert!(rule.weights.iter().all(|w| *w > 0.0));
             for p in 0..=degree {
                 for q in 0..=degree - p {
-                    let sum: f64 = rule.iter().map(|(x, w)| w * x[0].powi(p as i32) * x[1].powi(q as i32)).sum();
+                    let sum: f64 =
+                        rule.iter().map(|(x, w)| w * x[0].powi(p as i32) * x[1].powi(q as i32)).sum();
                     let exact = factorial(p) * factorial(q) / factorial(p + q + 2);
                     assert!((sum - exact).abs() < 1e-15, "degree {degree}, x^{p} y^{q}: {:e}", sum - exact);
                 }
@@ -203,10 +210,15 @@ mod tests {
             for p in 0..=degree {
                 for q in 0..=degree - p {
                     for r in 0..=degree - p - q {
-                        let monomial = |x: &Vector<3>| x[0].powi(p as i32) * x[1].powi(q as i32) * x[2].powi(r as i32);
+                        let monomial =
+                            |x: &Vector<3>| x[0].powi(p as i32) * x[1].powi(q as i32) * x[2].powi(r as i32);
                         let sum: f64 = rule.iter().map(|(x, w)| w * monomial(x)).sum();
                         let exact = factorial(p) * factorial(q) * factorial(r) / factorial(p + q + r + 3);
-                        assert!((sum - exact).abs() < 1e-15, "degree {degree}, x^{p} y^{q} z^{r}: {:e}", sum - exact);
+                        assert!(
+                            (sum - exact).abs() < 1e-15,
+                            "degree {degree}, x^{p} y^{q} z^{r}: {:e}",
+                            sum - exact
+                        );
                     }
                 }
             }

@@ -1,5 +1,5 @@
-//! The reference map X(ξ) = Σ φᵃ Xᵃ of a cell: its gradient ∂X/∂ξ, the gradients ∇₀φ = (∂X/∂ξ)⁻ᵀ ∂φ/∂ξ, and its inverse by Newton's
-//! method, which finds the cell that holds a point.
+//! The reference map X(ξ) = Σ φᵃ Xᵃ of a cell: its gradient ∂X/∂ξ, the gradients ∇₀φ = (∂X/∂ξ)⁻ᵀ
+//! ∂φ/∂ξ, and its inverse by Newton's method, which finds the cell that holds a point.
 
 use carom_algebra::{Mat, Vector};
 
@@ -12,7 +12,10 @@ pub(crate) struct Degenerate<const D: usize> {
 }
 
 /// Σ φᵃ xᵃ.
-pub(crate) fn interpolate<const D: usize, const N: usize>(values: &[f64; N], x: &[Vector<D>; N]) -> Vector<D> {
+pub(crate) fn interpolate<const D: usize, const N: usize>(
+    values: &[f64; N],
+    x: &[Vector<D>; N],
+) -> Vector<D> {
     let mut sum = Vector::ZERO;
     for a in 0..N {
         sum += x[a] * values[a];
@@ -48,11 +51,13 @@ pub(crate) fn map<const D: usize, const N: usize, S: Shape<D, N>>(
     }
 }
 
-/// A point this far outside a cell, in reference coordinates, still belongs to it: places are typed with six digits.
+/// A point this far outside a cell, in reference coordinates, still belongs to it: places are typed
+/// with six digits.
 const TOLERANCE: f64 = 1e-6;
 
-/// How far such a point may lie outside the hull of the cell's control points, compared with the size of its box. Where barycentric coordinates
-/// are ≥ −ε the Bernstein polynomials of degree k add up to at most (1 + 2dε)ᵏ, in d ≤ 3 dimensions: the point is outside by no more than dkε.
+/// How far such a point may lie outside the hull of the cell's control points, compared with the
+/// size of its box. Where barycentric coordinates are ≥ −ε the Bernstein polynomials of degree k
+/// add up to at most (1 + 2dε)ᵏ, in d ≤ 3 dimensions: the point is outside by no more than dkε.
 pub(crate) const MARGIN: f64 = 20.0 * TOLERANCE;
 
 /// Whether the reference map is not affine.
@@ -70,7 +75,8 @@ pub(crate) fn invert<const D: usize, const N: usize, S: Shape<D, N>>(
 ) -> Option<Vector<D>> {
     let mut xi = S::Domain::CENTRE;
     for _ in 0..30 {
-        let step = gradient(x, &S::gradients(&xi)).inverse().apply(&(*point - interpolate(&S::values(&xi), x)));
+        let step =
+            gradient(x, &S::gradients(&xi)).inverse().apply(&(*point - interpolate(&S::values(&xi), x)));
         xi += step;
         if step.norm() < 1e-13 {
             break;

@@ -2,13 +2,16 @@
 //!
 //!   H = Σ (yᵃ − Xᵃ) ⊗ ∇₀φᵃ,   U = Σ w Ψ,   fᵃ = Σ w P ∇₀φᵃ,   Kᵃᵇ = Σ w ∂P/∂F : ∇₀φᵃ ∇₀φᵇ,
 //!
-//! (Coda, Paccola, Latin Am. J. Solids Struct. 4 (2007), positions as unknowns; Holzapfel, Nonlinear Solid Mechanics, §8). The difference
-//! y − X is formed here, once, so that small motions keep their digits. ∇₀φ and w = weight · det(∂X/∂ξ) · thickness of every quadrature
-//! point of a curved cell are computed when the body is made. Straight cells share the points of the reference cell, and have one map each, ∇₀φ = (∂X/∂ξ)⁻ᵀ ∂φ/∂ξ:
-//! what is read less is not waited for. Four points are computed at once (`points.rs`).
+//! (Coda, Paccola, Latin Am. J. Solids Struct. 4 (2007), positions as unknowns; Holzapfel,
+//! Nonlinear Solid Mechanics, §8). The difference y − X is formed here, once, so that small motions
+//! keep their digits. ∇₀φ and w = weight · det(∂X/∂ξ) · thickness of every quadrature point of a
+//! curved cell are computed when the body is made. Straight cells share the points of the reference
+//! cell, and have one map each, ∇₀φ = (∂X/∂ξ)⁻ᵀ ∂φ/∂ξ: what is read less is not waited for. Four
+//! points are computed at once (`points.rs`).
 //!
-//! Degrees of the rules, shape functions of degree k: straight cells 2k for force and mass; cells with curved edges 2k (k ≤ 2) or 4(k − 1)
-//! for force, 4k − 2 for mass; a law whose energy is a polynomial of degree m in F at least m (k − 1).
+//! Degrees of the rules, shape functions of degree k: straight cells 2k for force and mass; cells
+//! with curved edges 2k (k ≤ 2) or 4(k − 1) for force, 4k − 2 for mass; a law whose energy is a
+//! polynomial of degree m in F at least m (k − 1).
 
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -36,7 +39,9 @@ pub enum SolidError {
     MissingNode { cell: usize, node: usize, count: usize },
     #[error("node {node} is not at a finite place")]
     NotFinite { node: usize },
-    #[error("cell {cell} is degenerate at {place:.4?}: the Jacobian of its reference shape is {jacobian:.3e}")]
+    #[error(
+        "cell {cell} is degenerate at {place:.4?}: the Jacobian of its reference shape is {jacobian:.3e}"
+    )]
     Degenerate { cell: usize, place: Vec<f64>, jacobian: f64 },
     #[error("density {0} is not a finite number ≥ 0")]
     Density(f64),
@@ -47,7 +52,8 @@ pub enum SolidError {
 /// Quadrature points of a cell for forces.
 struct Place<const D: usize> {
     points: Range<usize>,
-    /// ∇₀φ is the transpose of this times the gradients of the points: (∂X/∂ξ)⁻¹ of a straight cell.
+    /// ∇₀φ is the transpose of this times the gradients of the points: (∂X/∂ξ)⁻¹ of a straight
+    /// cell.
     inverse: Mat<D>,
     /// Volume of the cell per weight of the points.
     volume: f64,
@@ -73,10 +79,12 @@ pub struct Solid<const D: usize, const N: usize, S, L> {
 }
 
 impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N, S, L> {
-    /// Body of a mesh, a law, a density ≥ 0 and a thickness > 0 (dimension 1: the area of the cross-section).
+    /// Body of a mesh, a law, a density ≥ 0 and a thickness > 0 (dimension 1: the area of the
+    /// cross-section).
     ///
     /// # Errors
-    /// If a number is out of its range or the reference shape of a cell is degenerate or turned over.
+    /// If a number is out of its range or the reference shape of a cell is degenerate or turned
+    /// over.
     pub fn new(mesh: Mesh, law: L, density: f64, thickness: f64) -> Result<Self, SolidError> {
         check::<D, N>(&mesh, density, thickness)?;
         let k = S::DEGREE;
@@ -101,7 +109,11 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
         for cell in 0..cells {
             let x = solid.reference(cell);
             let curved = reference::is_curved::<D, N, S>(&x);
-            let at = |Degenerate { place, jacobian }| SolidError::Degenerate { cell, place: place.to_vec(), jacobian };
+            let at = |Degenerate { place, jacobian }| SolidError::Degenerate {
+                cell,
+                place: place.to_vec(),
+                jacobian,
+            };
             for xi in S::NODES.iter().chain(&solid.mass_rules[usize::from(curved)].points) {
                 reference::map::<D, N, S>(&x, xi).map_err(at)?;
             }
@@ -116,7 +128,11 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
                 Place { points: first..solid.points.len(), inverse: Mat::identity(), volume: 1.0 }
             } else {
                 let derivative = gradient(&x, &S::gradients(&S::Domain::CENTRE));
-                Place { points: shared.clone(), inverse: derivative.inverse(), volume: derivative.det() * thickness }
+                Place {
+                    points: shared.clone(),
+                    inverse: derivative.inverse(),
+                    volume: derivative.det() * thickness,
+                }
             };
             solid.places.push(place);
             solid.curved.push(curved);
@@ -139,7 +155,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
     /// y − X at the nodes of a cell.
     #[inline(always)]
     fn displacements(&self, cell: usize, y: &[f64]) -> [Vector<D>; N] {
-        let (nodes, places, y) = (self.nodes(cell), self.mesh.nodes.of_dimension::<D>(), y.as_chunks::<D>().0);
+        let (nodes, places, y) =
+            (self.nodes(cell), self.mesh.nodes.of_dimension::<D>(), y.as_chunks::<D>().0);
         let mut u = [Vector::ZERO; N];
         for a in 0..N {
             u[a] = Vector(y[nodes[a]]) - Vector(places[nodes[a]]);
@@ -158,12 +175,18 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
 }
 
 /// Points side by side, from their gradients and weights.
-fn pack<const D: usize, const N: usize>(points: impl Iterator<Item = ([Vector<D>; N], f64)>) -> Vec<Points<D, N>> {
+fn pack<const D: usize, const N: usize>(
+    points: impl Iterator<Item = ([Vector<D>; N], f64)>,
+) -> Vec<Points<D, N>> {
     points.collect::<Vec<_>>().chunks(LANES).map(Points::new).collect()
 }
 
 /// Numbers in range, cells whole, nodes there.
-fn check<const D: usize, const N: usize>(mesh: &Mesh, density: f64, thickness: f64) -> Result<(), SolidError> {
+fn check<const D: usize, const N: usize>(
+    mesh: &Mesh,
+    density: f64,
+    thickness: f64,
+) -> Result<(), SolidError> {
     if mesh.element.dimension() != D || mesh.dimension() != D || mesh.element.nodes() != N {
         return Err(SolidError::Dimension { element: mesh.element, dimension: mesh.dimension() });
     }

@@ -1,15 +1,18 @@
 //! A hierarchy of boxes: which of n boxes meet a given one, in O(log n + found).
 //!
-//! Built from the top by halving at the median of the boxes' centres along the longest axis (Ericson, Real-Time Collision Detection, §6.2), it has
-//! a leaf per box and lies in one array, each node before its left branch and that before the right one: who skips a node goes on where its
-//! branch ends, without a stack.
-//! When boxes move, the tree is refitted, O(n); when that has made it poor, it is built anew, O(n log n). What is found depends on neither.
-//! It is ours because what there is brings a library of vectors (`bvh` nalgebra, `parry` and `obvhs` glam, the last in single precision, which is not
+//! Built from the top by halving at the median of the boxes' centres along the longest axis
+//! (Ericson, Real-Time Collision Detection, §6.2), it has a leaf per box and lies in one array,
+//! each node before its left branch and that before the right one: who skips a node goes on where
+//! its branch ends, without a stack.
+//! When boxes move, the tree is refitted, O(n); when that has made it poor, it is built anew, O(n
+//! log n). What is found depends on neither. It is ours because what there is brings a library of
+//! vectors (`bvh` nalgebra, `parry` and `obvhs` glam, the last in single precision, which is not
 //! conservative) or cannot be refitted (`rstar`).
 
 use crate::bounds::Bounds;
 
-/// The tree is built anew when its boxes, compared with the outermost, have become larger by this factor since it was built last.
+/// The tree is built anew when its boxes, compared with the outermost, have become larger by this
+/// factor since it was built last.
 pub const REBUILT: f64 = 1.5;
 
 /// Hierarchy of the boxes numbered 0, 1, ….
@@ -56,7 +59,8 @@ impl Tree {
         self.nodes.first().map_or(Bounds::EMPTY, |root| root.bounds)
     }
 
-    /// Takes in new boxes, and builds the tree anew if that has made it poor; whether it did is returned.
+    /// Takes in new boxes, and builds the tree anew if that has made it poor; whether it did is
+    /// returned.
     pub fn update(&mut self, bounds: impl Fn(usize) -> Bounds) -> bool {
         self.refit(bounds);
         // A box without bounds has no size to compare: built anew every time.
@@ -107,9 +111,13 @@ impl Tree {
         found.sort_unstable();
     }
 
-    /// What is nearest to a point, and its distance as `distance` gives it, `None` for what does not count; of equals the first. A thing must lie in
-    /// its box, round-off included.
-    pub fn nearest(&self, point: &[f64], mut distance: impl FnMut(usize) -> Option<f64>) -> Option<(usize, f64)> {
+    /// What is nearest to a point, and its distance as `distance` gives it, `None` for what does
+    /// not count; of equals the first. A thing must lie in its box, round-off included.
+    pub fn nearest(
+        &self,
+        point: &[f64],
+        mut distance: impl FnMut(usize) -> Option<f64>,
+    ) -> Option<(usize, f64)> {
         let mut best = None;
         if !self.nodes.is_empty() {
             self.nearer(0, point, &mut distance, &mut best);
@@ -166,8 +174,9 @@ impl Tree {
             let extents = around.extents();
             let axis = (1..3).fold(0, |axis, i| if extents[i] > extents[axis] { i } else { axis });
             let middle = items.len() / 2;
-            items
-                .select_nth_unstable_by(middle, |&a, &b| centres[a][axis].total_cmp(&centres[b][axis]).then(a.cmp(&b)));
+            items.select_nth_unstable_by(middle, |&a, &b| {
+                centres[a][axis].total_cmp(&centres[b][axis]).then(a.cmp(&b))
+            });
             let (left, right) = items.split_at_mut(middle);
             self.split(left, centres);
             self.split(right, centres);
@@ -175,11 +184,13 @@ impl Tree {
         self.nodes[here].end = self.nodes.len();
     }
 
-    /// Edges of the inner boxes, added up, over those of the outermost: how many boxes a query has to look at, but for a factor.
+    /// Edges of the inner boxes, added up, over those of the outermost: how many boxes a query has
+    /// to look at, but for a factor.
     fn expense(&self) -> f64 {
         let edges = |node: &Node| node.bounds.extents().iter().map(|e| e.max(0.0)).sum::<f64>();
         let inner = self.nodes.iter().enumerate().filter(|(k, node)| !node.is_leaf(*k));
-        inner.map(|(_, node)| edges(node)).sum::<f64>() / self.nodes.first().map_or(0.0, edges).max(f64::MIN_POSITIVE)
+        inner.map(|(_, node)| edges(node)).sum::<f64>()
+            / self.nodes.first().map_or(0.0, edges).max(f64::MIN_POSITIVE)
     }
 }
 

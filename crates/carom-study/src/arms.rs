@@ -1,7 +1,8 @@
-//! Arms of a study: those written down, then the product of the grid; and an arm's problems, shown where the arm was written.
+//! Arms of a study: those written down, then the product of the grid; and an arm's problems, shown
+//! where the arm was written.
 
 use carom::case::{Diagnostic, Document, Problem};
-use carom_record::study::design::{Kind, Part};
+use carom_record::study::design::{Kind, Role};
 use toml_edit::Value;
 
 use crate::file::{FINE_NAME, StudyFile};
@@ -19,10 +20,11 @@ pub(crate) struct Draft {
     pub(crate) sets: Vec<(String, String)>,
     /// The case file it names.
     pub(crate) case: Option<String>,
-    /// Its expectations instead of the case's, as the override that puts them there, and their path.
+    /// Its expectations instead of the case's, as the override that puts them there, and their
+    /// path.
     pub(crate) expect: (String, String),
     /// What it is to the study.
-    pub(crate) part: Part,
+    pub(crate) role: Role,
 }
 
 /// All arms in their order. The last key of the grid varies fastest.
@@ -30,7 +32,8 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
     let mut drafts: Vec<Draft> = Vec::new();
     for (i, arm) in file.arms.iter().enumerate() {
         let path = format!("arm[{i}]");
-        let sets = arm.set.iter().map(|(key, value)| (assignment(key, value), format!("{path}.set.\"{key}\"")));
+        let sets =
+            arm.set.iter().map(|(key, value)| (assignment(key, value), format!("{path}.set.\"{key}\"")));
         let expect = format!("expect={}", arm.expect.as_deref().unwrap_or("[]"));
         drafts.push(Draft {
             name: arm.name.clone(),
@@ -38,10 +41,11 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
             case: arm.case.clone(),
             expect: (expect, format!("{path}.expect")),
             path,
-            part: Part { by_cost: arm.by_cost, ..Part::default() },
+            role: Role { by_cost: arm.by_cost, ..Role::default() },
         });
     }
-    let combinations: usize = if file.grid.is_empty() { 0 } else { file.grid.iter().map(|(_, v)| v.len()).product() };
+    let combinations: usize =
+        if file.grid.is_empty() { 0 } else { file.grid.iter().map(|(_, v)| v.len()).product() };
     for combination in 0..combinations {
         let mut rest = combination;
         let mut sets = Vec::new();
@@ -60,29 +64,31 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
             sets,
             case: None,
             expect: ("expect=[]".into(), "grid".into()),
-            part: Part::default(),
+            role: Role::default(),
         });
     }
     if file.design.is_some() { levels(&drafts, file) } else { drafts }
 }
 
-/// Every method of a design at each of its levels; at its own step where no steps are given. Where it is to get the step at which it costs what another method
-/// does, a step of its own is where its pilots begin, at the first level and likewise at the others.
+/// Every method of a design at each of its levels; at its own step where no steps are given. Where
+/// it is to get the step at which it costs what another method does, a step of its own is where its
+/// pilots begin, at the first level and likewise at the others.
 fn levels(methods: &[Draft], file: &StudyFile) -> Vec<Draft> {
     let steps = &file.steps;
     let cost_of = file.cost_of.as_ref().or(methods.first().map(|m| &m.name));
     let at = |(method, level): (&Draft, usize)| {
-        let part = Part { method: Some(method.name.clone()), level, ..method.part.clone() };
-        let Some(step) = steps.get(level) else { return Draft { part, ..method.clone() } };
+        let role = Role { method: Some(method.name.clone()), level, ..method.role.clone() };
+        let Some(step) = steps.get(level) else { return Draft { role, ..method.clone() } };
         let mut sets = method.sets.clone();
-        let costed = (file.design == Some(Kind::MatchedCost) || method.part.by_cost) && cost_of != Some(&method.name);
+        let costed =
+            (file.design == Some(Kind::MatchedCost) || method.role.by_cost) && cost_of != Some(&method.name);
         let own = sets.iter().find_map(|(set, _)| set.strip_prefix("time.step=")?.trim().parse::<f64>().ok());
         // A step of the method's own gives way.
         sets.retain(|(set, _)| !set.starts_with("time.step="));
         let begin = own.filter(|_| costed).map_or(*step, |own| own * step / steps[0]);
         sets.push((format!("time.step={begin:?}"), format!("steps[{level}]")));
         let of = if costed { "cost of " } else { "" };
-        Draft { name: format!("{}, {of}Δt {}", method.name, short(*step)), sets, part, ..method.clone() }
+        Draft { name: format!("{}, {of}Δt {}", method.name, short(*step)), sets, role, ..method.clone() }
     };
     let count = steps.len().max(1);
     methods.iter().flat_map(|m| (0..count).map(move |level| (m, level))).map(at).collect()
@@ -100,10 +106,12 @@ pub(crate) fn computes_reference(file: &StudyFile, drafts: &[Draft]) -> bool {
     file.reference.as_deref() == Some(FINE_NAME) && drafts.iter().all(|d| d.name != FINE_NAME)
 }
 
-/// The three runs of the computed reference, the coarsest first: at most `step` over `refine`, twice and four times that, whole steps up to `end`.
+/// The three runs of the computed reference, the coarsest first: at most `step` over `refine`,
+/// twice and four times that, whole steps up to `end`.
 pub(crate) fn fine(file: &StudyFile, step: f64, end: f64) -> Vec<Draft> {
     let steps = 4.0 * (end / step * f64::from(file.refine.unwrap_or(REFINE)) / 4.0).ceil();
-    let default = || vec![("time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.1 }".to_owned(), "fine".to_owned())];
+    let default =
+        || vec![("time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.1 }".to_owned(), "fine".to_owned())];
     let set = |(key, value): &(String, Value)| (assignment(key, value), format!("fine.set.\"{key}\""));
     let run = |times: f64| {
         let mut sets: Vec<_> = file.fine.iter().map(set).collect();
@@ -112,9 +120,9 @@ pub(crate) fn fine(file: &StudyFile, step: f64, end: f64) -> Vec<Draft> {
         }
         sets.push((format!("time.step={:?}", end * times / steps), "fine".to_owned()));
         let name = if times == 1.0 { FINE_NAME.to_owned() } else { format!("{FINE_NAME}, {times} Δt") };
-        let part = Part { fine: true, ..Part::default() };
+        let role = Role { fine: true, ..Role::default() };
         let expect = ("expect=[]".to_owned(), "fine".to_owned());
-        Draft { name, path: "reference".into(), sets, case: None, expect, part }
+        Draft { name, path: "reference".into(), sets, case: None, expect, role }
     };
     [4.0, 2.0, 1.0].map(run).into()
 }
@@ -139,7 +147,8 @@ fn brief(value: &Value) -> String {
     }
 }
 
-/// Directory names: letters and digits of the name, the rest as single hyphens, at most 40 characters.
+/// Directory names: letters and digits of the name, the rest as single hyphens, at most 40
+/// characters.
 pub(crate) fn slug(name: &str) -> String {
     let mut slug = String::new();
     for c in name.chars() {
@@ -157,12 +166,17 @@ pub(crate) fn slug(name: &str) -> String {
     slug.trim_matches(['-', '.']).to_owned()
 }
 
-/// A diagnostic of an arm's case, placed in the study file; `base` are those of the case without any change.
+/// A diagnostic of an arm's case, placed in the study file; `base` are those of the case without
+/// any change.
 pub(crate) fn placed(study: &Document, draft: &Draft, found: &Diagnostic, base: &[Diagnostic]) -> Diagnostic {
     if base.contains(found) {
         return found.clone();
     }
-    let set = draft.sets.iter().chain([&draft.expect]).find(|(set, _)| found.file == "--set" && found.quoted == *set);
+    let set = draft
+        .sets
+        .iter()
+        .chain([&draft.expect])
+        .find(|(set, _)| found.file == "--set" && found.quoted == *set);
     let path = set.map_or(&draft.path, |(_, path)| path);
     let place = match found.line {
         line if line > 0 && found.file != "--set" => format!(" ({}:{line}:{})", found.file, found.column),
@@ -183,8 +197,10 @@ mod tests {
             let parsed: Value = text.parse().unwrap();
             parsed.as_array().unwrap().iter().cloned().collect()
         };
-        file.grid
-            .push(("time.scheme".into(), list("[{ kind = \"hu\" }, { kind = \"chung-hulbert\", rho_inf = 0.6 }]")));
+        file.grid.push((
+            "time.scheme".into(),
+            list("[{ kind = \"hu\" }, { kind = \"chung-hulbert\", rho_inf = 0.6 }]"),
+        ));
         file.grid.push(("time.step".into(), list("[1e-3, 0.0005]")));
         let arms = all(&file);
         let names: Vec<&str> = arms.iter().map(|a| a.name.as_str()).collect();
@@ -196,7 +212,8 @@ mod tests {
         assert_eq!(slug("Hu, Δt 1.875e-4"), "hu-dt-1.875e-4");
     }
 
-    /// At matched cost the others are named after the step whose cost they have, and begin where they say.
+    /// At matched cost the others are named after the step whose cost they have, and begin where
+    /// they say.
     #[test]
     fn matched_cost_names_what_is_matched() {
         let arm = |name: &str, step: Option<&str>| crate::file::ArmEntry {
@@ -224,6 +241,6 @@ mod tests {
         let same = all(&of(Kind::MatchedStep));
         let sets = |arms: &[Draft]| arms.iter().map(|a| (a.name.clone(), a.sets.clone())).collect::<Vec<_>>();
         assert_eq!(sets(&same), sets(&arms));
-        assert!(same[3].part.by_cost && !same[0].part.by_cost);
+        assert!(same[3].role.by_cost && !same[0].role.by_cost);
     }
 }

@@ -1,7 +1,10 @@
-//! What a study with a goal tries on itself once its arms have ended: the arm with the fewest steps and iterations is computed with two threads, and once
-//! more, stopped at the first step at which something touches (the last but one where nothing does) and resumed from its files. The tables of all three must have the same bits.
+//! What a study with a goal tries on itself once its arms have ended: the arm with the fewest steps
+//! and iterations is computed with two threads, and once more, stopped at the first step at which
+//! something touches (the last but one where nothing does) and resumed from its files. The tables
+//! of all three must have the same bits.
 //!
-//! What was found stands in `checks.json` and on the page. The repetitions are kept, in `checks/`, only where they differ.
+//! What was found stands in `checks.json` and on the page. The repetitions are kept, in `checks/`,
+//! only where they differ.
 
 use std::fs;
 use std::path::Path;
@@ -18,14 +21,16 @@ use crate::error::StudyError;
 /// Threads of the repetition: the arms have one.
 const THREADS: usize = 2;
 
-/// Tries it, unless it was tried before or no arm has finished. Whatever keeps it from being tried, a full disk or a wish to stop, is no fault of the study:
-/// there is no `checks.json` then, and the page says so.
+/// Tries it, unless it was tried before or no arm has finished. Whatever keeps it from being tried,
+/// a full disk or a wish to stop, is no fault of the study: there is no `checks.json` then, and the
+/// page says so.
 pub(crate) fn make(manifest: &StudyManifest, directory: &Path, stop: &AtomicBool) {
     if directory.join("checks.json").is_file() {
         return;
     }
     let folder = directory.join("checks");
-    let written = tried(manifest, directory, &folder, stop).ok().flatten().filter(|c| c.write(directory).is_ok());
+    let written =
+        tried(manifest, directory, &folder, stop).ok().flatten().filter(|c| c.write(directory).is_ok());
     if !written.is_some_and(|c| c.fingerprint != c.threads.1 || c.fingerprint != c.resumed.1) {
         // Where it cannot be removed, it is only in the way of the next attempt.
         let _ = fs::remove_dir_all(&folder);
@@ -60,12 +65,12 @@ fn tried(
     if done.map_err(refused)?.end == End::Interrupted {
         return Ok(None);
     }
-    let (halt, mut at, mut touching) = (AtomicBool::new(false), 0, 0);
+    let (halt, mut at, mut active_pairs) = (AtomicBool::new(false), 0, 0);
     let mut watch = |p: &Progress| {
         let here = p.active > 0 || p.step + 1 >= p.steps;
         if !halt.load(Ordering::Relaxed) && (here || stop.load(Ordering::Relaxed)) {
             halt.store(true, Ordering::Relaxed);
-            (at, touching) = (p.step, p.active);
+            (at, active_pairs) = (p.step, p.active);
         }
     };
     recording::run(&case, source(), &resumed, Options { threads: 1 }, &mut watch, &halt).map_err(refused)?;
@@ -78,6 +83,6 @@ fn tried(
         fingerprint: fingerprint(&directory.join(&arm.directory))?,
         threads: (THREADS, fingerprint(&threads)?),
         resumed: (at, fingerprint(&resumed)?),
-        touching,
+        active_pairs,
     }))
 }

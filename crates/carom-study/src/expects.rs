@@ -1,4 +1,5 @@
-//! Expectations of a study must be in the records of its arms: names of arms, columns and metrics, keys that are numbers.
+//! Expectations of a study must be in the records of its arms: names of arms, columns and metrics,
+//! keys that are numbers.
 
 use carom::case::{Case, Problem, history_columns};
 use carom_record::question::{Asked, Quantity, Question, Series, column_metric_names, metric_names};
@@ -10,8 +11,12 @@ pub(crate) fn check(expects: &[Expect], arms: &[(&str, &Case)], problems: &mut V
         let path = format!("expect[{i}].what");
         let wrong = match (&expect.order, &expect.deviation) {
             (Some(order), _) => order_of(order, arms).map_err(|what| (format!("expect[{i}].of"), what)),
-            (None, Some(_)) => Series::parse(&expect.what).and_then(|s| series(&s, arms)).map_err(|what| (path, what)),
-            (None, None) => Question::parse(&expect.what).and_then(|q| question(&q, arms)).map_err(|what| (path, what)),
+            (None, Some(_)) => {
+                Series::parse(&expect.what).and_then(|s| series(&s, arms)).map_err(|what| (path, what))
+            }
+            (None, None) => {
+                Question::parse(&expect.what).and_then(|q| question(&q, arms)).map_err(|what| (path, what))
+            }
         };
         if let Err((path, what)) = wrong {
             let why = "it is asked of the records of the arms";
@@ -55,7 +60,10 @@ fn column(asked: &Asked, arms: &[(&str, &Case)]) -> Result<(), String> {
 }
 
 /// The arms a quantity is asked of: the one it names, or all.
-fn here<'a>(arm: Option<&str>, arms: &'a [(&'a str, &'a Case)]) -> Result<Vec<&'a (&'a str, &'a Case)>, String> {
+fn here<'a>(
+    arm: Option<&str>,
+    arms: &'a [(&'a str, &'a Case)],
+) -> Result<Vec<&'a (&'a str, &'a Case)>, String> {
     let Some(name) = arm else { return Ok(arms.iter().collect()) };
     let found: Vec<_> = arms.iter().filter(|(other, _)| *other == name).collect();
     if found.is_empty() {

@@ -1,5 +1,5 @@
-//! The study file as written: its keys, their types, and where each of them stands. A path names a place as in
-//! [`carom::case::Problem`]: `arm[0].set."time.step"`.
+//! The study file as written: its keys, their types, and where each of them stands. A path names a
+//! place as in [`carom::case::Problem`]: `arm[0].set."time.step"`.
 
 use carom::case::{Asked, Document, Problem, read_expects};
 use carom_record::Expect;
@@ -79,7 +79,8 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
     file.reference = text(root, "reference", "", problems);
     comparison(root, &mut file, problems);
     let arms = tables(root, "arm", problems);
-    let named = !arms.is_empty() && !root.contains_key("grid") && arms.iter().all(|arm| arm.contains_key("case"));
+    let named =
+        !arms.is_empty() && !root.contains_key("grid") && arms.iter().all(|arm| arm.contains_key("case"));
     match text(root, "case", "", problems) {
         Some(case) => file.case = Some(case),
         None if root.contains_key("case") || named => {}
@@ -141,14 +142,17 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
     for (i, table) in tables(root, "claim", problems).into_iter().enumerate() {
         let path = format!("claim[{i}]");
         known(table, &CLAIM, "[[claim]]", &path, problems);
-        let (words, compare) = (text(table, "text", &path, problems), text(table, "compare", &path, problems));
+        let (words, compare) =
+            (text(table, "text", &path, problems), text(table, "compare", &path, problems));
         match (words, compare) {
             (Some(text), Some(compare)) => file.claims.push(carom_record::study::Claim { text, compare }),
             _ if table.contains_key("text") && table.contains_key("compare") => {}
             _ => {
                 let why = "a claim is a statement and the comparison that decides it";
                 let help = "add `text = \"…\"` and `compare = 'METRIC of \"ARM\" > METRIC of \"ARM\"'`";
-                problems.push(Problem::new(&path, "the claim has not both `text` and `compare`", why, help).at_key());
+                problems.push(
+                    Problem::new(&path, "the claim has not both `text` and `compare`", why, help).at_key(),
+                );
             }
         }
     }
@@ -161,7 +165,8 @@ fn comparison(root: &dyn TableLike, file: &mut StudyFile, problems: &mut Vec<Pro
     file.design = one_of(root, "design", &kinds, problems);
     file.goal = one_of(root, "goal", &Goal::NAMES.map(|(name, goal, _)| (name, goal)), problems);
     file.cost_of = text(root, "cost_of", "", problems);
-    let positive = |item: &Item| item.as_float().or_else(|| item.as_integer().map(|i| i as f64)).filter(|x| *x > 0.0);
+    let positive =
+        |item: &Item| item.as_float().or_else(|| item.as_integer().map(|i| i as f64)).filter(|x| *x > 0.0);
     if let Some(item) = root.get("accuracy") {
         match positive(item) {
             Some(value) => file.accuracy = Some(value),
@@ -169,10 +174,13 @@ fn comparison(root: &dyn TableLike, file: &mut StudyFile, problems: &mut Vec<Pro
         }
     }
     if let Some(item) = root.get("steps") {
-        let list =
-            item.as_array().map(|l| l.iter().map(|v| positive(&Item::Value(v.clone()))).collect::<Option<Vec<_>>>());
+        let list = item
+            .as_array()
+            .map(|l| l.iter().map(|v| positive(&Item::Value(v.clone()))).collect::<Option<Vec<_>>>());
         match list {
-            Some(Some(steps)) if !steps.is_empty() && steps.windows(2).all(|h| h[0] > h[1]) => file.steps = steps,
+            Some(Some(steps)) if !steps.is_empty() && steps.windows(2).all(|h| h[0] > h[1]) => {
+                file.steps = steps
+            }
             _ => problems.push(not("steps", "a list of falling positive numbers", "steps = [1e-3, 5e-4]")),
         }
     }
@@ -190,7 +198,9 @@ fn comparison(root: &dyn TableLike, file: &mut StudyFile, problems: &mut Vec<Pro
     known(table, &FINE, "[fine]", "fine", problems);
     match table.get("set").map(Item::as_table_like) {
         Some(Some(values)) => flatten(values, "", &mut file.fine),
-        Some(None) => problems.push(not("fine.set", "a table", "set = { \"time.scheme\" = { kind = \"hu\" } }")),
+        Some(None) => {
+            problems.push(not("fine.set", "a table", "set = { \"time.scheme\" = { kind = \"hu\" } }"))
+        }
         None => {}
     }
     if let Some(item) = table.get("refine") {
@@ -201,24 +211,43 @@ fn comparison(root: &dyn TableLike, file: &mut StudyFile, problems: &mut Vec<Pro
     }
     if file.reference.as_deref() != Some(FINE_NAME) {
         let help = format!("add `reference = \"{FINE_NAME}\"`");
-        problems.push(Problem::new("fine", "[fine] is not used", "it describes a computed reference", help).at_key());
+        problems.push(
+            Problem::new("fine", "[fine] is not used", "it describes a computed reference", help).at_key(),
+        );
     }
 }
 
-fn one_of<T: Copy>(root: &dyn TableLike, key: &str, known: &[(&str, T)], problems: &mut Vec<Problem>) -> Option<T> {
+fn one_of<T: Copy>(
+    root: &dyn TableLike,
+    key: &str,
+    known: &[(&str, T)],
+    problems: &mut Vec<Problem>,
+) -> Option<T> {
     let word = text(root, key, "", problems)?;
     let found = known.iter().find(|(name, _)| *name == word).map(|(_, value)| *value);
     if found.is_none() {
         let names = known.iter().map(|(name, _)| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
-        let near = known.iter().min_by_key(|(name, _)| strsim::damerau_levenshtein(name, &word)).map_or("", |n| n.0);
+        let near =
+            known.iter().min_by_key(|(name, _)| strsim::damerau_levenshtein(name, &word)).map_or("", |n| n.0);
         let what = format!("there is no {key} \"{word}\"");
-        problems.push(Problem::new(key, what, format!("{key} is one of {names}"), format!("did you mean \"{near}\"?")));
+        problems.push(Problem::new(
+            key,
+            what,
+            format!("{key} is one of {names}"),
+            format!("did you mean \"{near}\"?"),
+        ));
     }
     found
 }
 
-/// Expectations of an arm: checked where they stand, and as the text that replaces those of its case.
-fn expected(document: &Document, table: &dyn TableLike, path: &str, problems: &mut Vec<Problem>) -> Option<String> {
+/// Expectations of an arm: checked where they stand, and as the text that replaces those of its
+/// case.
+fn expected(
+    document: &Document,
+    table: &dyn TableLike,
+    path: &str,
+    problems: &mut Vec<Problem>,
+) -> Option<String> {
     let item = table.get("expect")?;
     read_expects(document, path, Asked::OfARun, problems);
     let text = match item {
@@ -264,7 +293,9 @@ fn flatten(table: &dyn TableLike, before: &str, out: &mut Vec<(String, Value)>) 
     for (key, item) in table.iter() {
         let key = format!("{before}{key}");
         match item {
-            Item::Value(Value::InlineTable(inner)) if inner.is_dotted() => flatten(inner, &format!("{key}."), out),
+            Item::Value(Value::InlineTable(inner)) if inner.is_dotted() => {
+                flatten(inner, &format!("{key}."), out)
+            }
             Item::Table(inner) => flatten(inner, &format!("{key}."), out),
             Item::Value(value) => out.push((key, value.clone())),
             Item::ArrayOfTables(_) | Item::None => {}
@@ -310,7 +341,8 @@ fn known(table: &dyn TableLike, keys: &[&str], name: &str, path: &str, problems:
     for (key, _) in table.iter().filter(|(key, _)| !keys.contains(key)) {
         let near = keys.iter().min_by_key(|k| strsim::damerau_levenshtein(key, k));
         let near = near.filter(|k| strsim::damerau_levenshtein(key, k) <= (key.chars().count() / 3).max(1));
-        let help = near.map_or_else(|| format!("use one of: {}", keys.join(", ")), |k| format!("did you mean `{k}`?"));
+        let help = near
+            .map_or_else(|| format!("use one of: {}", keys.join(", ")), |k| format!("did you mean `{k}`?"));
         let path = if path.is_empty() { format!("\"{key}\"") } else { format!("{path}.\"{key}\"") };
         let why = format!("{name} has the keys {}", keys.join(", "));
         problems.push(Problem::new(path, format!("unknown key `{key}` in {name}"), why, help).at_key());

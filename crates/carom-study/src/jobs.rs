@@ -11,7 +11,7 @@ use carom_record::Status;
 #[derive(Clone, Debug)]
 pub enum Event {
     /// It was finished, or had failed, before.
-    Kept(usize),
+    AlreadyDone(usize),
     /// It begins, or goes on.
     Began(usize),
     /// After an accepted step.
@@ -42,7 +42,8 @@ impl Ended {
     }
 }
 
-/// Computes numbered runs, as many at a time as there are jobs, begun in the order given; stops at the first error.
+/// Computes numbered runs, as many at a time as there are jobs, begun in the order given; stops at
+/// the first error.
 pub(crate) fn side_by_side<E: Send>(
     order: VecDeque<usize>,
     jobs: usize,

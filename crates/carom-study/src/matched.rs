@@ -1,18 +1,22 @@
-//! Steps at which methods cost the same. The cost of a run is counted, not timed: Newton iterations and factorisations (steps, where a scheme needs
-//! neither), each weighted by the processor seconds one of them took in the method's first pilot run.
+//! Steps at which methods cost the same. The cost of a run is counted, not timed: Newton iterations
+//! and factorisations (steps, where a scheme needs neither), each weighted by the processor seconds
+//! one of them took in the method's first pilot run.
 //!
 //! ```text
 //! cost = c_n · Newton iterations + c_f · factorisations        or  c_s · steps
 //! Δt = end/N,  N ← N · (budget/cost)^{1/p},  cost ∝ Nᵖ          until the cost is within 5 % of the budget: that of `cost_of` at the level
 //! ```
 //!
-//! p is 1 at first, then what two trials say: those that have the budget between them, or the last two. Fewer steps need more iterations each, so that a
-//! composite scheme's cost may grow as the cube root of N alone, and what is not asked for p never comes near. A budget that falls between the costs of two
-//! successive numbers of steps cannot be met; what was reached stands in `study.json` and on the page.
+//! p is 1 at first, then what two trials say: those that have the budget between them, or the last
+//! two. Fewer steps need more iterations each, so that a composite scheme's cost may grow as the
+//! cube root of N alone, and what is not asked for p never comes near. A budget that falls between
+//! the costs of two successive numbers of steps cannot be met; what was reached stands in
+//! `study.json` and on the page.
 //!
-//! Counts are the same bits everywhere; the weights are measured once and kept in `pilots/ARM/pilot.json` with every trial, so that a study that is
-//! resumed comes to the same steps. A pilot is a whole run, since contact costs more than flight; the one that is accepted becomes the arm. What the arms
-//! then really took is on the page.
+//! Counts are the same bits everywhere; the weights are measured once and kept in
+//! `pilots/ARM/pilot.json` with every trial, so that a study that is resumed comes to the same
+//! steps. A pilot is a whole run, since contact costs more than flight; the one that is accepted
+//! becomes the arm. What the arms then really took is on the page.
 
 use std::fs;
 use std::path::Path;
@@ -33,7 +37,8 @@ use crate::jobs::{Ended, Event, side_by_side};
 const CLOSE: f64 = 0.05;
 /// Pilot runs of an arm at most.
 const TRIALS: usize = 9;
-/// By how many times a step may be longer than the one pilots begin with: beyond, most steps are rejected and bisected, and a run has no step to speak of.
+/// By how many times a step may be longer than the one pilots begin with: beyond, most steps are
+/// rejected and bisected, and a run has no step to speak of.
 const LONGEST: u64 = 16;
 /// Powers of the number of steps a cost is taken to grow with.
 const POWERS: (f64, f64) = (0.25, 2.0);
@@ -95,9 +100,11 @@ impl Pilot {
     fn read(folder: &Path) -> Result<Self, RecordError> {
         let path = folder.join("pilot.json");
         match fs::read(&path) {
-            Ok(bytes) => {
-                serde_json::from_slice(&bytes).map_err(|e| RecordError::Io { action: "read", path, source: e.into() })
-            }
+            Ok(bytes) => serde_json::from_slice(&bytes).map_err(|e| RecordError::Io {
+                action: "read",
+                path,
+                source: e.into(),
+            }),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(Self::default()),
             Err(source) => Err(RecordError::Io { action: "read", path, source }),
         }
@@ -116,7 +123,8 @@ impl Pilot {
         let budget = self.budget?;
         let tried = |next: u64| self.trials.iter().any(|t| t.steps == next);
         if last.cost.is_none() {
-            // Refused, as an explicit scheme does beyond its stable step: half way back to what ran.
+            // Refused, as an explicit scheme does beyond its stable step: half way back to what
+            // ran.
             let ran = self.trials.iter().filter(|t| t.cost.is_some()).map(|t| t.steps);
             let next = (ran.min_by_key(|s| s.abs_diff(last.steps))? + last.steps).div_ceil(2);
             return (self.trials.len() < TRIALS && !tried(next)).then_some(next);
@@ -147,13 +155,17 @@ impl Pilot {
 
     /// The trial whose cost is closest to the budget; the first if none could run.
     fn closest(&self) -> usize {
-        let off =
-            |t: &Trial| t.cost.zip(self.budget).map_or(f64::INFINITY, |(cost, budget)| (cost / budget).ln().abs());
-        (0..self.trials.len()).min_by(|a, b| off(&self.trials[*a]).total_cmp(&off(&self.trials[*b]))).unwrap_or(0)
+        let off = |t: &Trial| {
+            t.cost.zip(self.budget).map_or(f64::INFINITY, |(cost, budget)| (cost / budget).ln().abs())
+        };
+        (0..self.trials.len())
+            .min_by(|a, b| off(&self.trials[*a]).total_cmp(&off(&self.trials[*b])))
+            .unwrap_or(0)
     }
 }
 
-/// Settles the steps of every arm whose cost is matched, and computes these arms. Whether it came to its end.
+/// Settles the steps of every arm whose cost is matched, and computes these arms. Whether it came
+/// to its end.
 ///
 /// # Errors
 /// What the machine refused.
@@ -165,13 +177,14 @@ pub(crate) fn settle(
     stop: &AtomicBool,
 ) -> Result<bool, StudyError> {
     let Some(design) = manifest.design.clone() else { return Ok(true) };
-    let those =
-        |mine: &dyn Fn(&Arm) -> bool| (0..manifest.arms.len()).filter(|i| mine(&manifest.arms[*i])).collect::<Vec<_>>();
+    let those = |mine: &dyn Fn(&Arm) -> bool| {
+        (0..manifest.arms.len()).filter(|i| mine(&manifest.arms[*i])).collect::<Vec<_>>()
+    };
     let others = those(&|arm| manifest.by_cost(arm));
     if others.is_empty() {
         return Ok(true);
     }
-    let anchors = those(&|arm| !arm.part.fine && arm.part.method.as_ref() == Some(&design.cost_of));
+    let anchors = those(&|arm| !arm.role.fine && arm.role.method.as_ref() == Some(&design.cost_of));
     let not_ended = |i: &usize| {
         let status = manifest.state(directory, &manifest.arms[*i]).map(|s| s.0);
         !matches!(status, Ok(Some(Status::Finished | Status::Failed)))
@@ -186,7 +199,7 @@ pub(crate) fn settle(
         return Ok(false);
     }
     let budget = |level: usize| -> Result<Option<f64>, RecordError> {
-        let Some(arm) = anchors.iter().map(|i| &manifest.arms[*i]).find(|a| a.part.level == level) else {
+        let Some(arm) = anchors.iter().map(|i| &manifest.arms[*i]).find(|a| a.role.level == level) else {
             return Ok(None);
         };
         let run = Manifest::read(&directory.join(&arm.directory))?;
@@ -196,7 +209,7 @@ pub(crate) fn settle(
     let budgets = (0..levels).map(budget).collect::<Result<Vec<_>, _>>()?;
     let settled: Mutex<Vec<(usize, u64, Option<f64>)>> = Mutex::default();
     let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
-        let budget = budgets.get(manifest.arms[i].part.level).copied().flatten();
+        let budget = budgets.get(manifest.arms[i].role.level).copied().flatten();
         let (ended, steps, share) = pilot(manifest, directory, i, budget, progress, stop)?;
         if ended.status != Status::Stopped {
             settled.lock().unwrap_or_else(PoisonError::into_inner).push((i, steps, share));
@@ -208,7 +221,7 @@ pub(crate) fn settle(
     let whole = settled.len() == others.len();
     for (i, steps, share) in settled {
         place(manifest, i, steps)?;
-        manifest.arms[i].part.cost = share;
+        manifest.arms[i].role.cost = share;
     }
     manifest.write(directory)?;
     Ok(whole)
@@ -235,7 +248,8 @@ fn case_with(manifest: &StudyManifest, i: usize, steps: u64) -> Result<Case, Stu
     Ok(case)
 }
 
-/// Pilot runs of an arm until its cost is that of the budget; how the accepted one ended, its steps, and its cost over the budget.
+/// Pilot runs of an arm until its cost is that of the budget; how the accepted one ended, its
+/// steps, and its cost over the budget.
 fn pilot(
     manifest: &StudyManifest,
     directory: &Path,
@@ -285,7 +299,8 @@ fn pilot(
     Ok((Ended { status: run.status, reason: run.reason, wall }, accepted.steps, share))
 }
 
-/// One pilot run, begun or gone on with; none where the model refuses the step, which an explicit scheme does beyond its stable one.
+/// One pilot run, begun or gone on with; none where the model refuses the step, which an explicit
+/// scheme does beyond its stable one.
 fn trial(
     manifest: &StudyManifest,
     i: usize,
@@ -320,8 +335,9 @@ mod tests {
         Pilot { budget: Some(10.0), trials, ..Pilot::default() }
     }
 
-    /// Twice the budget: half the steps; within 5 %: done; a run that failed: done; the closest is the one accepted. 20 and 14.14 are as √N, so that 10 needs a
-    /// quarter of 400; between 7 and 20 the power is ln(20/7)/ln 4 = 0.757; between successive numbers there is nothing.
+    /// Twice the budget: half the steps; within 5 %: done; a run that failed: done; the closest is
+    /// the one accepted. 20 and 14.14 are as √N, so that 10 needs a quarter of 400; between 7 and
+    /// 20 the power is ln(20/7)/ln 4 = 0.757; between successive numbers there is nothing.
     #[test]
     fn steps_follow_the_budget() {
         assert_eq!(pilot(&[]).next(400), Some(400));
@@ -338,13 +354,16 @@ mod tests {
         assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(12.0)), (166, None)]).closest(), 1);
     }
 
-    /// 8 iterations with 4 factorisations in 2 s, of which a quarter factored: 1.5/8 s and 0.5/4 s; without iterations, by the step.
+    /// 8 iterations with 4 factorisations in 2 s, of which a quarter factored: 1.5/8 s and 0.5/4 s;
+    /// without iterations, by the step.
     #[test]
     fn weights_by_hand() {
         let source = carom_record::Source { text: String::new(), sets: Vec::new() };
         let mut run = Manifest::new("0", serde_json::Value::Null, source, Vec::new(), 1);
-        run.counters = [("newton", 8), ("factorisations", 4), ("steps", 5)].map(|(n, c)| (n.to_owned(), c)).into();
-        run.timings = [("cpu", 2.0), ("factor", 1.0), ("assembly", 3.0)].map(|(n, c)| (n.to_owned(), c)).into();
+        run.counters =
+            [("newton", 8), ("factorisations", 4), ("steps", 5)].map(|(n, c)| (n.to_owned(), c)).into();
+        run.timings =
+            [("cpu", 2.0), ("factor", 1.0), ("assembly", 3.0)].map(|(n, c)| (n.to_owned(), c)).into();
         let weights = Weights::of(&run);
         assert_eq!(weights, Weights { newton: 1.5 / 8.0, factorisation: 0.125, step: 0.0 });
         assert_eq!(weights.cost(&run), 2.0);

@@ -1,4 +1,5 @@
-//! A study read and checked: every arm's case is resolved and its model built before anything is written.
+//! A study read and checked: every arm's case is resolved and its model built before anything is
+//! written.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
@@ -34,7 +35,8 @@ impl Plan {
     /// Reads a study file and the case it names.
     ///
     /// # Errors
-    /// Everything that is wrong, with its place in the study file; in the case file, where it is wrong without any arm.
+    /// Everything that is wrong, with its place in the study file; in the case file, where it is
+    /// wrong without any arm.
     pub fn read(path: &Path) -> Result<Self, CaseError> {
         let study = Document::open(path, &[])?;
         let mut problems = Vec::new();
@@ -61,7 +63,8 @@ impl Plan {
         let mut waiting: VecDeque<Draft> = drafts.into();
         let mut methods = waiting.len();
         while let Some(draft) = waiting.pop_front() {
-            let Some(base) = draft.case.as_ref().or(file.case.as_ref()).and_then(|name| cases.get(name)) else {
+            let Some(base) = draft.case.as_ref().or(file.case.as_ref()).and_then(|name| cases.get(name))
+            else {
                 continue;
             };
             let mut sets: Vec<String> = draft.sets.iter().map(|(set, _)| set.clone()).collect();
@@ -88,7 +91,8 @@ impl Plan {
                 }
             }
         }
-        let known: Vec<(&str, &Case)> = planned.iter().map(|(d, _, case, _)| (d.name.as_str(), case)).collect();
+        let known: Vec<(&str, &Case)> =
+            planned.iter().map(|(d, _, case, _)| (d.name.as_str(), case)).collect();
         let mut problems = Vec::new();
         expects::check(&file.expects, &known, &mut problems);
         if let Err(CaseError::Wrong(more)) =
@@ -116,13 +120,13 @@ impl Plan {
             directory: format!("arms/{:02}-{}", i + 1, arms::slug(&draft.name)),
             sets: sets.clone(),
             steps: case.time.steps() as u64,
-            part: draft.part.clone(),
+            role: draft.role.clone(),
             case_path: draft.case.clone(),
             case: serde_json::to_value(case).unwrap_or_default(),
         };
         let design = file.design.map(|kind| {
-            let of = |level: usize| planned.iter().find(|(d, ..)| d.part.level == level && !d.part.fine);
-            let cost_of = file.cost_of.clone().or_else(|| of(0)?.0.part.method.clone()).unwrap_or_default();
+            let of = |level: usize| planned.iter().find(|(d, ..)| d.role.level == level && !d.role.fine);
+            let cost_of = file.cost_of.clone().or_else(|| of(0)?.0.role.method.clone()).unwrap_or_default();
             let steps = if file.steps.is_empty() {
                 of(0).map(|p| p.2.time.step).into_iter().collect()
             } else {
@@ -193,18 +197,29 @@ fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) 
         if drafts[..i].iter().any(|d| d.name == draft.name) {
             let what = format!("two arms are named \"{}\"", draft.name);
             let path = if draft.path == "grid" { draft.path.clone() } else { format!("{}.name", draft.path) };
-            problems.push(Problem::new(path, what, "tables, figures and claims tell them apart by name", "rename one"));
+            problems.push(Problem::new(
+                path,
+                what,
+                "tables, figures and claims tell them apart by name",
+                "rename one",
+            ));
         }
     }
     if let Some(name) = &file.cost_of
-        && !drafts.iter().any(|d| d.part.method.as_ref() == Some(name))
+        && !drafts.iter().any(|d| d.role.method.as_ref() == Some(name))
     {
         let methods: Vec<_> = file.arms.iter().map(|a| format!("\"{}\"", a.name)).collect();
         let why = format!("the methods are: {}", methods.join(", "));
-        problems.push(Problem::new("cost_of", format!("no method is named \"{name}\""), why, "name one of them"));
+        problems.push(Problem::new(
+            "cost_of",
+            format!("no method is named \"{name}\""),
+            why,
+            "name one of them",
+        ));
     }
-    let cost_of = file.cost_of.as_ref().or(drafts.first().and_then(|d| d.part.method.as_ref()));
-    for (i, arm) in file.arms.iter().enumerate().filter(|(_, arm)| arm.by_cost && Some(&arm.name) == cost_of) {
+    let cost_of = file.cost_of.as_ref().or(drafts.first().and_then(|d| d.role.method.as_ref()));
+    for (i, arm) in file.arms.iter().enumerate().filter(|(_, arm)| arm.by_cost && Some(&arm.name) == cost_of)
+    {
         let what = format!("\"{}\" cannot match its own cost", arm.name);
         let why = "`match = \"cost\"` gives an arm the cost of `cost_of`, the first arm where that is left out, and this arm is it";
         let help = "name another arm in `cost_of`, or take `match` out";
@@ -229,7 +244,12 @@ fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) 
             Ok(comparison) => {
                 for arm in comparison.arms().into_iter().filter(|arm| !exists(arm)) {
                     let what = format!("no arm is named \"{arm}\"");
-                    problems.push(Problem::new(&path, what, format!("the arms are: {}", known()), "name one of them"));
+                    problems.push(Problem::new(
+                        &path,
+                        what,
+                        format!("the arms are: {}", known()),
+                        "name one of them",
+                    ));
                 }
             }
             Err(why) => {

@@ -1,5 +1,6 @@
-//! The arms of a study computed: as many at a time as there are jobs, the longest first, each in its own run directory. An arm that
-//! fails is a row of the tables; Ctrl-C or a kill leaves every arm resumable.
+//! The arms of a study computed: as many at a time as there are jobs, the longest first, each in
+//! its own run directory. An arm that fails is a row of the tables; Ctrl-C or a kill leaves every
+//! arm resumable.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,7 +19,7 @@ use crate::{checks, matched, theory};
 /// A study that ended.
 #[derive(Debug)]
 pub struct Outcome {
-    /// Stopped before all arms had ended; `go_on` goes on.
+    /// Stopped before all arms had ended; `resume` goes on.
     pub interrupted: bool,
     /// What the records say.
     pub study: Study,
@@ -47,14 +48,14 @@ pub fn start(
     if plan.manifest.goal.is_some() {
         theory::write(plan, directory)?;
     }
-    go_on(directory, jobs, observe, stop)
+    resume(directory, jobs, observe, stop)
 }
 
 /// Runs the arms that have not ended, `jobs` at a time, and writes the tables.
 ///
 /// # Errors
 /// What the machine refused, or what is no study of this version. A failed arm is no error.
-pub fn go_on(
+pub fn resume(
     directory: &Path,
     jobs: usize,
     observe: &mut dyn FnMut(&Event),
@@ -67,7 +68,7 @@ pub fn go_on(
     let mut waiting = Vec::new();
     for (i, arm) in manifest.arms.iter().enumerate() {
         match manifest.state(directory, arm)?.0 {
-            Some(Status::Finished | Status::Failed) => observe(&Event::Kept(i)),
+            Some(Status::Finished | Status::Failed) => observe(&Event::AlreadyDone(i)),
             // An arm whose step is not settled waits for the next time.
             _ if !whole => {}
             state => waiting.push((i, state.is_some())),
@@ -84,7 +85,8 @@ pub fn go_on(
         checks::make(&manifest, directory, stop);
     }
     let study = Study::open(directory, &mut |_, _| ())?;
-    let ended = |row: &carom_record::study::Row| matches!(row.status, Some(Status::Finished | Status::Failed));
+    let ended =
+        |row: &carom_record::study::Row| matches!(row.status, Some(Status::Finished | Status::Failed));
     let interrupted = !study.rows.iter().all(ended);
     manifest.status = if interrupted { Status::Stopped } else { Status::Finished };
     manifest.write(directory)?;

@@ -1,4 +1,5 @@
-//! JSON Schema (draft 2020-12) of the study file, for editors: its own keys, and those of the case wherever a value is set.
+//! JSON Schema (draft 2020-12) of the study file, for editors: its own keys, and those of the case
+//! wherever a value is set.
 
 use carom::case;
 use serde_json::{Map, Value, json};
@@ -13,8 +14,7 @@ pub fn schema() -> Value {
     let one_of = |doc: &str, words: &[&str]| json!({ "enum": words, "description": doc });
     let set = |values: Map<String, Value>, doc: &str| json!({ "type": "object", "description": doc, "patternProperties": values, "additionalProperties": false });
     let list = |(pattern, schema)| (pattern, json!({ "type": "array", "minItems": 1, "items": schema }));
-    let set_doc =
-        "Values of the case that this arm replaces: \"time.step\" = 1e-3, \"body.cylinder.element\" = \"T6\".";
+    let set_doc = "Values of the case that this arm replaces: \"time.step\" = 1e-3, \"body.cylinder.element\" = \"T6\".";
     let expects = || json!({ "type": "array", "items": case::expectation() });
     let arm = [
         text("Its name in tables, figures and claims."),
@@ -26,7 +26,8 @@ pub fn schema() -> Value {
             &["cost"],
         ),
     ];
-    let claim = [text("A statement, in words."), text("What decides it: 'METRIC of \"ARM\" > METRIC of \"ARM\"'.")];
+    let claim =
+        [text("A statement, in words."), text("What decides it: 'METRIC of \"ARM\" > METRIC of \"ARM\"'.")];
     let study = [
         text("Title of the page."),
         text("The case file, relative to this one."),

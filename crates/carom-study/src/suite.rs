@@ -1,4 +1,5 @@
-//! What `carom verify` runs: the cases and studies of files and folders that carry expectations, read and checked before anything is written.
+//! What `carom verify` runs: the cases and studies of files and folders that carry expectations,
+//! read and checked before anything is written.
 
 use std::path::{Path, PathBuf};
 
@@ -40,7 +41,8 @@ pub enum Kind {
 }
 
 impl Suite {
-    /// Reads files, and all `.toml` files below folders. What carries no expectation, or with `fast` only slow ones, is left out.
+    /// Reads files, and all `.toml` files below folders. What carries no expectation, or with
+    /// `fast` only slow ones, is left out.
     ///
     /// # Errors
     /// Everything that is wrong with any of them, with its place.
@@ -58,7 +60,8 @@ impl Suite {
         for (family, file) in files {
             match kind(&file, fast) {
                 Ok(Some(kind)) => {
-                    let name = file.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+                    let name =
+                        file.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
                     suite.items.push(Item { family, name, file, kind });
                 }
                 Ok(None) => {}
@@ -73,7 +76,8 @@ impl Suite {
 /// The folder below the one that was named, or that folder itself.
 fn family(named: &Path, file: &Path, folder: bool) -> String {
     let parent = file.parent().unwrap_or(Path::new(""));
-    let below = if folder { parent.strip_prefix(named).ok().and_then(|p| p.components().next()) } else { None };
+    let below =
+        if folder { parent.strip_prefix(named).ok().and_then(|p| p.components().next()) } else { None };
     let name = if let Some(first) = below {
         first.as_os_str().to_owned()
     } else {

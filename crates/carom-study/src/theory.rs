@@ -1,5 +1,6 @@
-//! What theory says of a study's schemes, for its page: `theory.csv`, spectral radius, damping ratio and period error of every method on the test
-//! oscillator, and `frequencies.csv`, the model's own frequencies and those of contact springs. Both are made when the study begins.
+//! What theory says of a study's schemes, for its page: `theory.csv`, spectral radius, damping
+//! ratio and period error of every method on the test oscillator, and `frequencies.csv`, the
+//! model's own frequencies and those of contact springs. Both are made when the study begins.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -16,13 +17,16 @@ use crate::file::FINE_NAME;
 /// Points per decade of ωΔt, from 0.01 to 1000.
 const POINTS: i32 = 24;
 
-/// ρ of the whole amplification matrix, ξ and period error of its principal pair at Ω; none where that pair does not oscillate.
+/// ρ of the whole amplification matrix, ξ and period error of its principal pair at Ω; none where
+/// that pair does not oscillate.
 fn at(scheme: &SchemeSpec, omega_dt: f64) -> [Option<f64>; 3] {
     let Ok(integrator) = scheme.integrator() else { return [None; 3] };
     if let Integrator::Nonsmooth(scheme, _) = &integrator {
         let pair = scheme.oscillation(omega_dt);
-        let [damping, period] =
-            [pair.map(|(modulus, angle)| -modulus.ln() / angle), pair.map(|(_, angle)| omega_dt / angle - 1.0)];
+        let [damping, period] = [
+            pair.map(|(modulus, angle)| -modulus.ln() / angle),
+            pair.map(|(_, angle)| omega_dt / angle - 1.0),
+        ];
         return [Some(scheme.spectral_radius(omega_dt)), damping, period];
     }
     let Some(kernel) = integrator.kernel() else { return [None; 3] };
@@ -38,21 +42,27 @@ fn at(scheme: &SchemeSpec, omega_dt: f64) -> [Option<f64>; 3] {
 pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
     let mut lines = vec!["method,omega_dt,spectral_radius,damping_ratio,period_error".to_owned()];
     let mut seen: Vec<&SchemeSpec> = Vec::new();
-    let arms = plan.manifest.arms.iter().zip(&plan.arms).filter(|(arm, _)| !arm.part.fine);
+    let arms = plan.manifest.arms.iter().zip(&plan.arms).filter(|(arm, _)| !arm.role.fine);
     for (arm, planned) in arms {
         let scheme = &planned.case.time.scheme;
         if seen.contains(&scheme) || scheme.is_static() {
             continue;
         }
         seen.push(scheme);
-        let name = arm.part.method.as_ref().unwrap_or(&arm.name).replace('"', "\"\"");
+        let name = arm.role.method.as_ref().unwrap_or(&arm.name).replace('"', "\"\"");
         for i in -2 * POINTS..=3 * POINTS {
             let omega_dt = 10f64.powf(f64::from(i) / f64::from(POINTS));
             let [radius, damping, period] = at(scheme, omega_dt);
             // Beyond Ω ≈ 6 no period is resolved that could be in error.
             let period = period.filter(|_| omega_dt <= std::f64::consts::TAU);
-            let cell = |x: Option<f64>| x.filter(|x| x.is_finite()).map_or_else(String::new, |x| format!("{x:?}"));
-            lines.push(format!("\"{name}\",{omega_dt:?},{},{},{}", cell(radius), cell(damping), cell(period)));
+            let cell =
+                |x: Option<f64>| x.filter(|x| x.is_finite()).map_or_else(String::new, |x| format!("{x:?}"));
+            lines.push(format!(
+                "\"{name}\",{omega_dt:?},{},{},{}",
+                cell(radius),
+                cell(damping),
+                cell(period)
+            ));
         }
     }
     put(directory, "theory.csv", &lines)?;
@@ -62,7 +72,7 @@ pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
     // Arms that differ by their step alone have the same springs, and most have none.
     let mut seen = BTreeSet::new();
     let stiff = plan.manifest.arms.iter().zip(&plan.arms).filter(|(arm, planned)| {
-        let name = if arm.part.fine { FINE_NAME } else { arm.part.method.as_ref().unwrap_or(&arm.name) };
+        let name = if arm.role.fine { FINE_NAME } else { arm.role.method.as_ref().unwrap_or(&arm.name) };
         planned.case.contacts.iter().any(|c| c.enforcement == Enforcement::Penalty) && seen.insert(name)
     });
     let mut springs: Vec<f64> = stiff.filter_map(|(_, planned)| spring_of(&planned.case)).collect();
@@ -92,12 +102,17 @@ fn put(directory: &Path, name: &str, lines: &[String]) -> Result<(), RecordError
 mod tests {
     use super::*;
 
-    /// At Ω = 2π/10, published: ξ 0.297 and PE 12 % of Hu's scheme, 0.036 of Chung and Hulbert's with ρ∞ = 0.1; the trapezoidal rule damps nothing.
+    /// At Ω = 2π/10, published: ξ 0.297 and PE 12 % of Hu's scheme, 0.036 of Chung and Hulbert's
+    /// with ρ∞ = 0.1; the trapezoidal rule damps nothing.
     #[test]
     fn published_dampings() {
         let damping = |kind: &str, parameters: &[(&str, f64)]| {
             let parameters = parameters.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect();
-            let scheme = SchemeSpec { kind: kind.to_owned(), parameters, forces: carom_time::ForceRule::AverageForces };
+            let scheme = SchemeSpec {
+                kind: kind.to_owned(),
+                parameters,
+                forces: carom_time::ForceRule::AverageForces,
+            };
             at(&scheme, std::f64::consts::TAU / 10.0)
         };
         let [_, xi, period] = damping("hu", &[]);

@@ -1,4 +1,5 @@
-//! A suite run and judged: cases and arms side by side, the longest first, one thread each. Pictures and pages are made only if asked for.
+//! A suite run and judged: cases and arms side by side, the longest first, one thread each.
+//! Pictures and pages are made only if asked for.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -21,9 +22,11 @@ use crate::suite::{Item, Kind, Suite};
 pub struct VerifyOptions {
     /// Runs at the same time.
     pub jobs: usize,
-    /// Whether runs write field files and checkpoints as their cases say, so that pages can be made of them.
+    /// Whether runs write field files and checkpoints as their cases say, so that pages can be made
+    /// of them.
     pub whole: bool,
-    /// Whether to stop at the first set-up that misses an expectation or could not go on; the short set-ups are then run first.
+    /// Whether to stop at the first set-up that misses an expectation or could not go on; the short
+    /// set-ups are then run first.
     pub fail_fast: bool,
 }
 
@@ -46,10 +49,13 @@ pub struct Named {
 }
 
 impl Suite {
-    /// Runs everything into a directory, which is made; none if it was stopped before the end. With `fail_fast`, what was judged until the first miss. `begin` is told the runs events speak of by number.
+    /// Runs everything into a directory, which is made; none if it was stopped before the end. With
+    /// `fail_fast`, what was judged until the first miss. `begin` is told the runs events speak of
+    /// by number.
     ///
     /// # Errors
-    /// What the machine refused. A run that stops, and an expectation that is missed, are no errors.
+    /// What the machine refused. A run that stops, and an expectation that is missed, are no
+    /// errors.
     pub fn verify(
         &self,
         directory: &Path,
@@ -76,7 +82,8 @@ impl Suite {
                 halt.fetch_or(stop.load(Ordering::Relaxed), Ordering::Relaxed);
                 progress(p);
             };
-            let done = recording::run(case, source.clone(), directory, Options { threads: 1 }, &mut watched, &halt);
+            let done =
+                recording::run(case, source.clone(), directory, Options { threads: 1 }, &mut watched, &halt);
             done.map(Ended::of).map_err(|source| StudyError::Arm { arm: name.clone(), source })
         };
         let mut judged: Vec<Option<Result<SetUp, StudyError>>> = self.items.iter().map(|_| None).collect();
@@ -134,7 +141,8 @@ impl Suite {
     }
 }
 
-/// The longest first, so that all jobs have work to the end; or set-up by set-up, the shortest first, so that a miss is found soon.
+/// The longest first, so that all jobs have work to the end; or set-up by set-up, the shortest
+/// first, so that a miss is found soon.
 fn order(units: &[Unit], items: usize, shortest_first: bool) -> Vec<usize> {
     let mut order: Vec<usize> = (0..units.len()).collect();
     let mut works = vec![0.0; items];
@@ -213,10 +221,13 @@ impl Item {
                 set_up.title.clone_from(&case.title);
                 set_up.input_hash.clone_from(&run.manifest.input_hash);
                 set_up.contact = run.had_dynamic_contact();
-                if run.manifest.status == Status::Failed && !case.expects.iter().any(Expect::asks_whether_stopped) {
+                if run.manifest.status == Status::Failed
+                    && !case.expects.iter().any(Expect::asks_whether_stopped)
+                {
                     set_up.stopped.push(run.manifest.reason.clone().unwrap_or_default());
                 }
-                set_up.rows = judge(&run, &case.expects).into_iter().map(|v| row(None, place.to_owned(), v)).collect();
+                set_up.rows =
+                    judge(&run, &case.expects).into_iter().map(|v| row(None, place.to_owned(), v)).collect();
             }
             Kind::Study(plan) => {
                 let mut manifest = plan.manifest.clone();
@@ -229,7 +240,9 @@ impl Item {
                 set_up.runs = manifest.arms.len();
                 set_up.contact = study.rows.iter().any(|r| r.contact);
                 for (arm, found) in manifest.arms.iter().zip(&study.rows) {
-                    if found.status == Some(Status::Failed) && !stop_expected(&manifest, &arm.name, &arm.expects()) {
+                    if found.status == Some(Status::Failed)
+                        && !stop_expected(&manifest, &arm.name, &arm.expects())
+                    {
                         let reason = found.reason.as_deref().unwrap_or_default();
                         set_up.stopped.push(format!("\"{}\": {reason}", arm.name));
                     }
@@ -247,7 +260,8 @@ impl Item {
 
 /// Whether an expectation of the arm, or of the study about the arm, asks if it stopped.
 fn stop_expected(manifest: &StudyManifest, arm: &str, expects: &[Expect]) -> bool {
-    let about =
-        |e: &Expect| Question::parse(&e.what).is_ok_and(|q| q.asks_whether_stopped() && q.arms().contains(&Some(arm)));
+    let about = |e: &Expect| {
+        Question::parse(&e.what).is_ok_and(|q| q.asks_whether_stopped() && q.arms().contains(&Some(arm)))
+    };
     expects.iter().any(Expect::asks_whether_stopped) || manifest.expects.iter().any(about)
 }

@@ -1,4 +1,5 @@
-//! A step of the α family as one stage with the unknown d = y_{s+1} − y_s: eq. (13), (14) solved for a and v, and the weights of eq. (15).
+//! A step of the α family as one stage with the unknown d = y_{s+1} − y_s: eq. (13), (14) solved
+//! for a and v, and the weights of eq. (15).
 //!
 //! ```text
 //! a = [d − Δt v_s − (½ − β)Δt² a_s] / (βΔt²)
@@ -7,7 +8,8 @@
 use crate::scheme::{ForceRule, Scheme};
 use crate::stage::{Internal, Kernel, Memory, Stage, Weights};
 
-/// One implicit solve per step. The acceleration carried from step to step is the algorithmic one: deriving it anew from the balance costs an order.
+/// One implicit solve per step. The acceleration carried from step to step is the algorithmic one:
+/// deriving it anew from the balance costs an order.
 impl Kernel for Scheme {
     fn stages(&self) -> usize {
         1

@@ -12,8 +12,9 @@
 //! 4s²(1 + ms) + q (1 + fs)(1 + gs + hs²) = 0
 //! ```
 //!
-//! from which all below follows: roots without cancellation at small Ω, the limit Ω → ∞, stability by Routh and Hurwitz. Definitions of damping and
-//! period error: Hilber and Hughes 1978. Both force rules are the same scheme on this linear equation.
+//! from which all below follows: roots without cancellation at small Ω, the limit Ω → ∞, stability
+//! by Routh and Hurwitz. Definitions of damping and period error: Hilber and Hughes 1978. Both
+//! force rules are the same scheme on this linear equation.
 use crate::cubic::{Root, cubic, quadratic};
 use crate::scheme::Scheme;
 
@@ -35,17 +36,25 @@ pub struct Principal {
 impl Scheme {
     /// m, f, g, h of the polynomial in s.
     fn coefficients(&self) -> [f64; 4] {
-        [1.0 - 2.0 * self.alpha_m, 1.0 - 2.0 * self.alpha_f, 2.0 * self.gamma - 1.0, 4.0 * self.beta - 2.0 * self.gamma]
+        [
+            1.0 - 2.0 * self.alpha_m,
+            1.0 - 2.0 * self.alpha_f,
+            2.0 * self.gamma - 1.0,
+            4.0 * self.beta - 2.0 * self.gamma,
+        ]
     }
 
-    /// The amplification matrix A of one step, (u, Δt v, Δt² a)_{s+1} = A (u, Δt v, Δt² a)_s. Row-major.
+    /// The amplification matrix A of one step, (u, Δt v, Δt² a)_{s+1} = A (u, Δt v, Δt² a)_s.
+    /// Row-major.
     pub fn amplification(&self, omega_dt: f64) -> [[f64; 3]; 3] {
         let q = omega_dt * omega_dt;
         let Self { alpha_m, alpha_f, beta, gamma, .. } = *self;
         let new = 1.0 - alpha_f;
         let lead = (1.0 - alpha_m) + new * beta * q;
         let a = [-q / lead, -new * q / lead, -(alpha_m + new * q * (0.5 - beta)) / lead];
-        let row = |free: [f64; 3], share: f64| [free[0] + share * a[0], free[1] + share * a[1], free[2] + share * a[2]];
+        let row = |free: [f64; 3], share: f64| {
+            [free[0] + share * a[0], free[1] + share * a[1], free[2] + share * a[2]]
+        };
         [row([1.0, 1.0, 0.5 - beta], beta), row([0.0, 1.0, 1.0 - gamma], gamma), a]
     }
 
@@ -56,7 +65,8 @@ impl Scheme {
         cubic(4.0 * m + q * f * h, 4.0 + q * (h + f * g), q * (f + g), q)
     }
 
-    /// The three eigenvalues of [`Scheme::amplification`]: the principal pair first where it oscillates, the spurious root last.
+    /// The three eigenvalues of [`Scheme::amplification`]: the principal pair first where it
+    /// oscillates, the spurious root last.
     pub fn roots(&self, omega_dt: f64) -> [Root; 3] {
         padded(&self.s_roots(omega_dt))
     }
@@ -82,19 +92,22 @@ impl Scheme {
     /// ```
     pub fn spectral_radius_at_infinity(&self) -> f64 {
         let force_root = self.alpha_f / (1.0 - self.alpha_f);
-        largest(&self.held_roots()).max(force_root.abs())
+        largest(&self.constrained_roots()).max(force_root.abs())
     }
 
-    /// The map (Δt v, Δt² a)_s → (Δt v, Δt² a)_{s+1} of a dof whose position is held: what contact does to the dof it constrains. Row-major.
+    /// The map (Δt v, Δt² a)_s → (Δt v, Δt² a)_{s+1} of a dof whose position is constrained: what
+    /// contact does to the dof it constrains. Row-major.
     pub fn held_map(&self) -> [[f64; 2]; 2] {
         let Self { beta, gamma, .. } = *self;
         [[1.0 - gamma / beta, 1.0 - 0.5 * gamma / beta], [-1.0 / beta, 1.0 - 0.5 / beta]]
     }
 
-    /// Eigenvalues of [`Scheme::held_map`], which are those at Ω → ∞ but for −α_f/(1 − α_f): from 1 + gs + hs² = 0.
-    pub fn held_roots(&self) -> [Root; 2] {
+    /// Eigenvalues of [`Scheme::held_map`], which are those at Ω → ∞ but for −α_f/(1 − α_f): from 1
+    /// + gs + hs² = 0.
+    pub fn constrained_roots(&self) -> [Root; 2] {
         let [_, _, g, h] = self.coefficients();
-        // Most members have a double root by construction; g and h know it to the rounding of β and γ only.
+        // Most members have a double root by construction; g and h know it to the rounding of β and
+        // γ only.
         let snap = 16.0 * f64::EPSILON * (self.beta.abs() + self.gamma.abs());
         let roots = padded(&quadratic(h, g, 1.0, snap));
         [roots[0], roots[1]]
@@ -120,7 +133,8 @@ impl Scheme {
         })
     }
 
-    /// Order of convergence on smooth motion: 2 iff γ = ½ − α_m + α_f, else 1; 0 where errors grow from step to step (α_m > ½).
+    /// Order of convergence on smooth motion: 2 iff γ = ½ − α_m + α_f, else 1; 0 where errors grow
+    /// from step to step (α_m > ½).
     pub fn order(&self) -> u8 {
         let shift = self.gamma - (0.5 - self.alpha_m + self.alpha_f);
         match () {
@@ -130,14 +144,16 @@ impl Scheme {
         }
     }
 
-    /// Whether no Ω grows: m ≥ 0, fh ≥ 0, h + fg ≥ 0, f + g ≥ m, g(h + f² + fg) ≥ 0 (Routh and Hurwitz for every q > 0).
+    /// Whether no Ω grows: m ≥ 0, fh ≥ 0, h + fg ≥ 0, f + g ≥ m, g(h + f² + fg) ≥ 0 (Routh and
+    /// Hurwitz for every q > 0).
     pub fn is_a_stable(&self) -> bool {
         let [m, f, g, h] = self.coefficients();
         [m, f * h, h + f * g, f + g - m, g * (h + f * f + f * g)].iter().all(|&x| x >= -ROUND_OFF)
     }
 
     /// |v₁| / (Ω ω|u₀|) as Ω → ∞ of a stiff mode released from u₀ with a₀ = −ω²u₀: |1 − γ/(2β)|. Zero: no overshoot in velocity.
-    /// Displacements of the family do not overshoot beyond a factor free of Ω (Hilber and Hughes 1978).
+    /// Displacements of the family do not overshoot beyond a factor free of Ω (Hilber and Hughes
+    /// 1978).
     pub fn velocity_overshoot(&self) -> f64 {
         (1.0 - 0.5 * self.gamma / self.beta).abs()
     }

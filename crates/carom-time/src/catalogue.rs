@@ -23,7 +23,11 @@ pub(crate) fn info(kind: &str) -> Option<&'static KindInfo> {
 /// assert_eq!(made.alpha(), Some(Scheme::chung_hulbert(0.1)?));
 /// # Ok::<(), carom_time::SchemeError>(())
 /// ```
-pub fn scheme(kind: &str, parameters: &BTreeMap<String, f64>, forces: ForceRule) -> Result<Integrator, SchemeError> {
+pub fn scheme(
+    kind: &str,
+    parameters: &BTreeMap<String, f64>,
+    forces: ForceRule,
+) -> Result<Integrator, SchemeError> {
     let Some(info) = info(kind) else {
         let known = KINDS.iter().map(|info| info.name).collect();
         return Err(SchemeError::UnknownKind { kind: kind.to_owned(), known });
@@ -92,7 +96,10 @@ mod tests {
         assert_eq!(error.to_string(), "scheme `hu` does not take `rho_inf`; it takes no parameter");
         for value in [1.2, -0.1, f64::NAN, f64::INFINITY] {
             let error = build("chung-hulbert", &[("rho_inf", value)]).unwrap_err();
-            assert!(matches!(error, SchemeError::OutOfRange { key: "rho_inf", range: "[0, 1]", .. }), "{error}");
+            assert!(
+                matches!(error, SchemeError::OutOfRange { key: "rho_inf", range: "[0, 1]", .. }),
+                "{error}"
+            );
         }
         assert_eq!(build("newmark", &[("beta", 0.0), ("gamma", 0.5)]).unwrap_err().key(), "beta");
         let error = build("hht", &[("alpha", -0.05)]).unwrap_err().to_string();

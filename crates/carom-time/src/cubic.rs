@@ -1,7 +1,8 @@
 //! Roots of real polynomials up to degree three, for the analysis of schemes.
 //!
-//! Cubic: Newton's iteration to an outer real root from a start beyond which it is monotone, then deflation from the end that loses least
-//! (W. Kahan, *To Solve a Real Cubic Equation*, 1986). Quadratic: the root of larger size by addition, the other by the product.
+//! Cubic: Newton's iteration to an outer real root from a start beyond which it is monotone, then
+//! deflation from the end that loses least (W. Kahan, *To Solve a Real Cubic Equation*, 1986).
+//! Quadratic: the root of larger size by addition, the other by the product.
 
 /// A root in the complex plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,8 +24,9 @@ impl Root {
     }
 }
 
-/// Roots of a z² + b z + c; fewer where leading coefficients are zero. A discriminant within ± `snap` counts as zero: a double root known
-/// to exist is not to be split by the rounding of its coefficients into two with half the digits.
+/// Roots of a z² + b z + c; fewer where leading coefficients are zero. A discriminant within ±
+/// `snap` counts as zero: a double root known to exist is not to be split by the rounding of its
+/// coefficients into two with half the digits.
 pub(crate) fn quadratic(a: f64, b: f64, c: f64, snap: f64) -> Vec<Root> {
     if a == 0.0 {
         return if b == 0.0 { vec![] } else { vec![Root::real(-c / b)] };
@@ -114,7 +116,10 @@ mod tests {
                     let largest = roots.iter().map(|root| root.modulus()).fold(0.0, f64::max);
                     let scale = [largest, largest * largest, largest * largest * largest];
                     for ((got, want), scale) in expanded(&roots).iter().zip([b, c, d]).zip(scale) {
-                        assert!((got - want).abs() <= 1e-14 * scale.max(want.abs()), "{b} {c} {d}: {roots:?}");
+                        assert!(
+                            (got - want).abs() <= 1e-14 * scale.max(want.abs()),
+                            "{b} {c} {d}: {roots:?}"
+                        );
                     }
                 }
             }

@@ -1,4 +1,5 @@
-//! What can be wrong with a scheme as asked for. Every variant names the key it is about, for a reader of files to point at.
+//! What can be wrong with a scheme as asked for. Every variant names the key it is about, for a
+//! reader of files to point at.
 
 /// A scheme that does not exist or cannot be stepped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -62,7 +63,9 @@ impl SchemeError {
     /// What could stand in the key's place, for a suggestion: kinds, or keys of the kind.
     pub fn known(&self) -> &[&'static str] {
         match self {
-            Self::UnknownKind { known, .. } | Self::Missing { known, .. } | Self::Superfluous { known, .. } => known,
+            Self::UnknownKind { known, .. }
+            | Self::Missing { known, .. }
+            | Self::Superfluous { known, .. } => known,
             Self::OutOfRange { .. } => &[],
         }
     }

@@ -1,4 +1,5 @@
-//! What `carom explain` knows of a scheme: its parameters in every convention, its accuracy, and what contact makes of it.
+//! What `carom explain` knows of a scheme: its parameters in every convention, its accuracy, and
+//! what contact makes of it.
 use std::f64::consts::TAU;
 
 use serde::Serialize;
@@ -38,7 +39,7 @@ pub struct Accuracy {
 
 /// What happens to velocity and acceleration of a dof whose position contact holds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Held {
+pub struct Constrained {
     /// Largest modulus of the roots that act on it.
     pub radius: f64,
     /// Steps until the transient is below 1 % of v₀/Δt; none where it does not settle.
@@ -69,7 +70,7 @@ pub struct Explanation {
     /// What is conserved, and what is not.
     pub conserves: Vec<&'static str>,
     /// Under contact.
-    pub held: Held,
+    pub constrained: Constrained,
     /// What else its parameters imply.
     pub remarks: Vec<String>,
     /// In other codes.
@@ -80,7 +81,7 @@ pub struct Explanation {
 ///
 /// ```
 /// let told = carom_time::explain(&carom_time::Scheme::chung_hulbert(0.1)?);
-/// assert_eq!((told.order, told.held.steps), (2, Some(6)));
+/// assert_eq!((told.order, told.constrained.steps), (2, Some(6)));
 /// assert!(told.to_string().contains("chung-hulbert"));
 /// # Ok::<(), carom_time::SchemeError>(())
 /// ```
@@ -111,7 +112,7 @@ fn explained(scheme: &Scheme, names: Vec<Name>) -> Explanation {
         rho_inf: scheme.spectral_radius_at_infinity(),
         accuracy: [5, 10, 20, 50, 100].map(|steps| accuracy(scheme, steps)).into(),
         conserves: conserves(scheme),
-        held: held(scheme),
+        constrained: constrained(scheme),
         remarks: scheme.remarks(),
         elsewhere: elsewhere(scheme, &names),
         scheme: Some(*scheme),
@@ -134,13 +135,15 @@ pub(crate) fn explain_kernel(kernel: &dyn Kernel, name: &Name) -> Explanation {
         scheme: None,
         names: vec![name.clone()],
         references: info(name.kind).map(|info| info.reference).into_iter().collect(),
-        conventions: vec![Convention { name: "spectral radius at infinity", values: vec![("ρ∞", rho_inf)] }],
+        conventions: vec![Convention {
+            name: "spectral radius at infinity", values: vec![("ρ∞", rho_inf)]
+        }],
         order: map::order(kernel),
         a_stable: sweep().all(|rho| rho <= 1.0 + 1e-7),
         rho_inf,
         accuracy: [5, 10, 20, 50, 100].map(|steps| accuracy_of(kernel, steps)).into(),
         conserves: vec!["momentum: exactly", energy],
-        held: held_of(kernel),
+        constrained: constrained_of(kernel),
         remarks: kernel.notes().iter().map(ToString::to_string).collect(),
         elsewhere: Vec::new(),
     }
@@ -157,12 +160,13 @@ pub(crate) fn accuracy_of(kernel: &dyn Kernel, steps_per_period: u32) -> Accurac
     }
 }
 
-/// What a held dof does, by the map with its position held: v₀ = 1 at the start, Δt = 1, λ = −m a.
-pub(crate) fn held_of(kernel: &dyn Kernel) -> Held {
+/// What a constrained dof does, by the map with its position constrained: v₀ = 1 at the start, Δt =
+/// 1, λ = −m a.
+pub(crate) fn constrained_of(kernel: &dyn Kernel) -> Constrained {
     let radius = map::spectral_radius_at_infinity(kernel);
     if radius >= 1.0 - NOTHING {
         let text = "its velocity and acceleration do not settle: needs persistency = \"project\", law = \"predictor\" or a penalty";
-        return Held { radius, steps: None, text: text.to_owned() };
+        return Constrained { radius, steps: None, text: text.to_owned() };
     }
     let share = if radius < NOTHING { NOTHING } else { 0.01 };
     let free = Oscillator { mass: 1.0, stiffness: 0.0, force: 0.0 };
@@ -183,7 +187,7 @@ pub(crate) fn held_of(kernel: &dyn Kernel) -> Held {
             "its acceleration and contact force fade by {radius:.3} a step after impact, below 1 % of v₀/Δt after {steps} steps"
         )
     };
-    Held { radius, steps: Some(steps), text }
+    Constrained { radius, steps: Some(steps), text }
 }
 
 pub(crate) fn accuracy(scheme: &Scheme, steps_per_period: u32) -> Accuracy {
@@ -211,10 +215,15 @@ fn conventions(scheme: &Scheme, names: &[Name]) -> Vec<Convention> {
         },
     ];
     if is("hht") {
-        told.push(Convention { name: "Hilber, Hughes and Taylor's own", values: vec![("α", 0.0 - alpha_f)] });
+        told.push(Convention {
+            name: "Hilber, Hughes and Taylor's own", values: vec![("α", 0.0 - alpha_f)]
+        });
     }
     if is("wbz") {
-        told.push(Convention { name: "Wood, Bossak and Zienkiewicz's own", values: vec![("α_B = α_m", alpha_m)] });
+        told.push(Convention {
+            name: "Wood, Bossak and Zienkiewicz's own",
+            values: vec![("α_B = α_m", alpha_m)],
+        });
     }
     told.push(Convention {
         name: "spectral radius at infinity",
@@ -226,8 +235,10 @@ fn conventions(scheme: &Scheme, names: &[Name]) -> Vec<Convention> {
 fn conserves(scheme: &Scheme) -> Vec<&'static str> {
     let mut told = vec!["momentum: exactly"];
     let lossless = scheme.order() == 2 && scheme.rho_is_one_everywhere();
-    let midpoint =
-        lossless && scheme.alpha_m == 0.5 && scheme.alpha_f == 0.5 && scheme.forces == ForceRule::AverageState;
+    let midpoint = lossless
+        && scheme.alpha_m == 0.5
+        && scheme.alpha_f == 0.5
+        && scheme.forces == ForceRule::AverageState;
     told.push(if midpoint {
         "moment of momentum: exactly but for contact (this is the midpoint rule)"
     } else {
@@ -245,9 +256,10 @@ fn conserves(scheme: &Scheme) -> Vec<&'static str> {
     told
 }
 
-/// The map of a held dof in words (theory: a constrained dof sees the limit Ω → ∞, whatever the step).
-pub(crate) fn held(scheme: &Scheme) -> Held {
-    let roots = scheme.held_roots();
+/// The map of a constrained dof in words (theory: a constrained dof sees the limit Ω → ∞, whatever
+/// the step).
+pub(crate) fn constrained(scheme: &Scheme) -> Constrained {
+    let roots = scheme.constrained_roots();
     let multiplier = (scheme.alpha_f / (1.0 - scheme.alpha_f)).abs();
     let own = roots[0].modulus().max(roots[1].modulus());
     let radius = own.max(multiplier);
@@ -277,10 +289,11 @@ pub(crate) fn held(scheme: &Scheme) -> Held {
             ),
         )
     };
-    Held { radius, steps, text }
+    Constrained { radius, steps, text }
 }
 
-/// Steps until |Δt a| and |Δt λ/m| of a mass stopped at v₀ stay below `share` of v₀. Eq. (15) gives λ with the constraint held from the step's start.
+/// Steps until |Δt a| and |Δt λ/m| of a mass stopped at v₀ stay below `share` of v₀. Eq. (15) gives
+/// λ with the constraint active from the step's start.
 fn ringing(scheme: &Scheme, share: f64) -> u32 {
     let [[vv, va], [av, aa]] = scheme.held_map();
     let Scheme { alpha_m, alpha_f, .. } = *scheme;
@@ -326,17 +339,18 @@ impl Scheme {
         }
         if *self == (Self { forces: self.forces, ..Self::hu() }) {
             told.push(
-                "γ and β are those of Chung and Hulbert at ρ∞ = 0; α_m = −1 would make it second order".to_owned(),
+                "γ and β are those of Chung and Hulbert at ρ∞ = 0; α_m = −1 would make it second order"
+                    .to_owned(),
             );
         }
         if !self.is_a_stable() {
             told.push("not unconditionally stable: some Ω = ωΔt grows".to_owned());
         }
-        let held = self.held_roots().iter().map(|root| root.modulus()).fold(0.0, f64::max);
+        let constrained = self.constrained_roots().iter().map(|root| root.modulus()).fold(0.0, f64::max);
         let averaged = alpha_f / (1.0 - alpha_f);
-        if averaged > held + NOTHING {
+        if averaged > constrained + NOTHING {
             told.push(format!(
-                "α_f/(1 − α_f) = {averaged:.3} exceeds the other roots at infinity ({held:.3}): ρ∞ rises again with α_f"
+                "α_f/(1 − α_f) = {averaged:.3} exceeds the other roots at infinity ({constrained:.3}): ρ∞ rises again with α_f"
             ));
         }
         let overshoot = self.velocity_overshoot();

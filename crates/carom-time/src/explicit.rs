@@ -1,4 +1,5 @@
-//! Explicit schemes: central differences of smooth motion, whatever their contact keeps out. On linear motion
+//! Explicit schemes: central differences of smooth motion, whatever their contact keeps out. On
+//! linear motion
 //!
 //! ```text
 //! z² + (Ω² − 2)z + 1 = 0,   Ω = ωΔt:   |z| = 1 and sin(arg z/2) = Ω/2 up to Ω = 2

@@ -1,5 +1,5 @@
-//! What a name in the catalogue stands for: a member of the α family, whose analysis is closed, any other list of stages, whose analysis is numeric, or a scheme
-//! with a contact law of its own.
+//! What a name in the catalogue stands for: a member of the α family, whose analysis is closed, any
+//! other list of stages, whose analysis is numeric, or a scheme with a contact law of its own.
 
 use crate::name::Name;
 use crate::nonsmooth::Nonsmooth;

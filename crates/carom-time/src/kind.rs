@@ -1,5 +1,7 @@
-//! A kind of scheme as the table [`crate::KINDS`] holds it: name, keys, text, what builds it, and members with what their papers claim. Reader, schema, help,
-//! `explain` and the tests that are the same for every scheme go through the table; the claims are numbers, against which the tests measure.
+//! A kind of scheme as the table [`crate::KINDS`] holds it: name, keys, text, what builds it, and
+//! members with what their papers claim. Reader, schema, help, `explain` and the tests that are the
+//! same for every scheme go through the table; the claims are numbers, against which the tests
+//! measure.
 use std::collections::BTreeMap;
 
 use crate::error::SchemeError;
@@ -34,7 +36,8 @@ pub struct Member {
     pub parameters: &'static [(&'static str, f64)],
     /// Order of convergence on smooth motion.
     pub order: u8,
-    /// Spectral radius at infinity; infinite where the scheme is stable up to a limit of the step only.
+    /// Spectral radius at infinity; infinite where the scheme is stable up to a limit of the step
+    /// only.
     pub rho_inf: f64,
     /// How much too far it falls from rest or any other start in n steps, in units of g Δt².
     pub falls: fn(f64) -> f64,
@@ -59,7 +62,8 @@ impl Member {
     }
 }
 
-/// What a kind makes of the values of a set in its order; of the α family, of the number of the set too.
+/// What a kind makes of the values of a set in its order; of the α family, of the number of the set
+/// too.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Build {
     Alpha(fn(usize, &[f64]) -> Result<Scheme, SchemeError>),
@@ -109,7 +113,11 @@ impl KindInfo {
     }
 
     /// The scheme that these parameters make of it. `forces` is for the α family.
-    pub(crate) fn build(&self, given: &BTreeMap<String, f64>, forces: ForceRule) -> Result<Integrator, SchemeError> {
+    pub(crate) fn build(
+        &self,
+        given: &BTreeMap<String, f64>,
+        forces: ForceRule,
+    ) -> Result<Integrator, SchemeError> {
         // The set that explains most of what was given; the first one if nothing was.
         let mut best = (0, &[][..], 0);
         for (number, set) in self.sets.iter().enumerate() {
@@ -121,7 +129,12 @@ impl KindInfo {
         let (number, set, _) = best;
         let (kind, expected, known) = (self.name, || self.expected(), || self.keys());
         if let Some(key) = given.keys().find(|key| !set.iter().any(|parameter| parameter.key == **key)) {
-            return Err(SchemeError::Superfluous { kind, key: key.clone(), expected: expected(), known: known() });
+            return Err(SchemeError::Superfluous {
+                kind,
+                key: key.clone(),
+                expected: expected(),
+                known: known(),
+            });
         }
         let value = |&Parameter { key, .. }: &Parameter| {
             let missing = || SchemeError::Missing { kind, key, expected: expected(), known: known() };

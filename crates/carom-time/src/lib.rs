@@ -1,4 +1,5 @@
-//! Time integration schemes as data, their analysis, and the stages a step is made of. Depends on none of Carom's crates.
+//! Time integration schemes as data, their analysis, and the stages a step is made of. Depends on
+//! none of Carom's crates.
 
 mod alpha;
 mod analysis;
@@ -27,7 +28,7 @@ pub use analysis::Principal;
 pub use catalogue::scheme;
 pub use cubic::Root;
 pub use error::SchemeError;
-pub use explain::{Accuracy, Convention, Explanation, Held, explain};
+pub use explain::{Accuracy, Constrained, Convention, Explanation, explain};
 pub use explained::Explained;
 pub use explicit::Explicit;
 pub use integrator::Integrator;

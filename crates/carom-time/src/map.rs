@@ -1,8 +1,11 @@
-//! Any kernel on the test oscillator a + ω²u = 0: its amplification matrix as a numeric map, and what follows from its eigenvalues.
+//! Any kernel on the test oscillator a + ω²u = 0: its amplification matrix as a numeric map, and
+//! what follows from its eigenvalues.
 //!
-//! The matrix A takes (u, Δt v, Δt² a) over one step of Ω = ωΔt; that of a two-step kernel takes (u, Δt v, Δt² a, d, Δt v₋) with d and v₋ of the step
-//! before. Its columns are steps of the kernel from unit vectors, so the map is the kernel and not a second derivation. Ω → ∞ is the map with u held at
-//! zero at every stage's end. Definitions of damping and period error: Hilber and Hughes 1978.
+//! The matrix A takes (u, Δt v, Δt² a) over one step of Ω = ωΔt; that of a two-step kernel takes
+//! (u, Δt v, Δt² a, d, Δt v₋) with d and v₋ of the step before. Its columns are steps of the kernel
+//! from unit vectors, so the map is the kernel and not a second derivation. Ω → ∞ is the map with u
+//! constrained at zero at every stage's end. Definitions of damping and period error: Hilber and
+//! Hughes 1978.
 use crate::analysis::Principal;
 use crate::cubic::Root;
 use crate::oscillator::Oscillator;
@@ -15,7 +18,8 @@ pub fn amplification(kernel: &dyn Kernel, omega_dt: f64) -> Vec<Vec<f64>> {
     columns(kernel, |before, start, stage| oscillator.step_after(kernel, 1.0, before, start, stage))
 }
 
-/// The map of a dof whose position is held at zero at every stage's end: what contact does to a dof, and A as Ω → ∞.
+/// The map of a dof whose position is constrained at zero at every stage's end: what contact does
+/// to a dof, and A as Ω → ∞.
 pub fn held_amplification(kernel: &dyn Kernel) -> Vec<Vec<f64>> {
     let free = Oscillator { mass: 1.0, stiffness: 0.0, force: 0.0 };
     columns(kernel, |before, start, stage| free.held_step_after(kernel, 1.0, before, start, stage, 0.0))
@@ -40,7 +44,8 @@ fn columns(
     matrix
 }
 
-/// Eigenvalues of a map, after a similarity that makes its entries comparable: velocities by Ω, accelerations by Ω².
+/// Eigenvalues of a map, after a similarity that makes its entries comparable: velocities by Ω,
+/// accelerations by Ω².
 fn eigenvalues(mut matrix: Vec<Vec<f64>>, omega_dt: f64) -> Vec<Root> {
     let s = omega_dt.max(1.0);
     let scales = [1.0, s, s * s, 1.0, s];
@@ -57,20 +62,26 @@ pub fn spectral_radius(kernel: &dyn Kernel, omega_dt: f64) -> f64 {
     largest(&eigenvalues(amplification(kernel, omega_dt), omega_dt))
 }
 
-/// ρ∞, from the held map.
+/// ρ∞, from the constrained map.
 pub fn spectral_radius_at_infinity(kernel: &dyn Kernel) -> f64 {
     largest(&eigenvalues(held_amplification(kernel), 1.0))
 }
 
 /// The oscillating pair at Ω, if there is one: the least damped.
 pub fn principal(kernel: &dyn Kernel, omega_dt: f64) -> Option<Principal> {
-    let oscillating = eigenvalues(amplification(kernel, omega_dt), omega_dt).into_iter().filter(|z| z.im > 1e-7);
+    let oscillating =
+        eigenvalues(amplification(kernel, omega_dt), omega_dt).into_iter().filter(|z| z.im > 1e-7);
     let z = oscillating.max_by(|a, b| a.modulus().total_cmp(&b.modulus()))?;
     let (log_modulus, angle) = (z.modulus().ln(), z.im.atan2(z.re));
-    Some(Principal { modulus: z.modulus(), damping_ratio: -log_modulus / angle, period_error: omega_dt / angle - 1.0 })
+    Some(Principal {
+        modulus: z.modulus(),
+        damping_ratio: -log_modulus / angle,
+        period_error: omega_dt / angle - 1.0,
+    })
 }
 
-/// Order of convergence on smooth motion, measured: the principal root departs from exp(iΩ) like Ω^(p + 1). Zero where nothing oscillates.
+/// Order of convergence on smooth motion, measured: the principal root departs from exp(iΩ) like
+/// Ω^(p + 1). Zero where nothing oscillates.
 pub fn order(kernel: &dyn Kernel) -> u8 {
     let defect = |omega_dt: f64| {
         principal(kernel, omega_dt).map(|p| {

@@ -1,5 +1,5 @@
-//! The names a scheme goes by, found from its parameters: in a case file, and in other codes. Facts about other codes are what their sources and manuals
-//! say, by parameter.
+//! The names a scheme goes by, found from its parameters: in a case file, and in other codes. Facts
+//! about other codes are what their sources and manuals say, by parameter.
 use serde::Serialize;
 
 use crate::name::Name;
@@ -14,7 +14,8 @@ pub struct Elsewhere {
     pub note: &'static str,
 }
 
-/// The published ways to ask for these four parameters that are known here, most particular first. Each candidate is built through the catalogue and compared.
+/// The published ways to ask for these four parameters that are known here, most particular first.
+/// Each candidate is built through the catalogue and compared.
 pub(crate) fn names(of: &Scheme) -> Vec<Name> {
     let Scheme { alpha_m, alpha_f, beta, gamma, .. } = *of;
     let candidates: [(&'static str, &[(&'static str, f64)]); 7] = [
@@ -24,10 +25,14 @@ pub(crate) fn names(of: &Scheme) -> Vec<Name> {
         ("chung-hulbert", &[("rho_inf", alpha_f / (1.0 - alpha_f))]),
         ("wbz", &[("rho_inf", (1.0 + alpha_m) / (1.0 - alpha_m))]),
         ("hht", &[("alpha", alpha_f)]),
-        ("generalized-alpha", &[("alpha_m", alpha_m), ("alpha_f", alpha_f), ("beta", beta), ("gamma", gamma)]),
+        (
+            "generalized-alpha",
+            &[("alpha_m", alpha_m), ("alpha_f", alpha_f), ("beta", beta), ("gamma", gamma)],
+        ),
     ];
     let same = |made: &Scheme| {
-        let pairs = [(made.alpha_m, alpha_m), (made.alpha_f, alpha_f), (made.beta, beta), (made.gamma, gamma)];
+        let pairs =
+            [(made.alpha_m, alpha_m), (made.alpha_f, alpha_f), (made.beta, beta), (made.gamma, gamma)];
         pairs.iter().all(|(a, b)| (a - b).abs() <= 1e-12)
     };
     let made = candidates.into_iter().filter_map(|(kind, parameters)| {
@@ -58,7 +63,11 @@ pub(crate) fn elsewhere(of: &Scheme, names: &[Name]) -> Vec<Elsewhere> {
             "index n + α; forces of the averaged state, taken at t + Δt; clamps ρ∞ silently; its HHT α lies in [2/3, 1]",
         ),
         (averaged, "PETSc", "index n + α; forces of the averaged state"),
-        (averaged, "FEBio", "index n + α; ρ∞ = −1 stands for Euler, −2 (the default) for the other parameters"),
+        (
+            averaged,
+            "FEBio",
+            "index n + α; ρ∞ = −1 stands for Euler, −2 (the default) for the other parameters",
+        ),
         (
             averaged,
             "SciML",
@@ -91,14 +100,18 @@ mod tests {
     #[test]
     fn a_scheme_is_recognised_by_its_parameters() {
         let words = |scheme: Scheme| names(&scheme).iter().map(ToString::to_string).collect::<Vec<_>>();
-        assert_eq!(words(Scheme::chung_hulbert(0.1).unwrap())[0], "{ kind = \"chung-hulbert\", rho_inf = 0.1 }");
+        assert_eq!(
+            words(Scheme::chung_hulbert(0.1).unwrap())[0],
+            "{ kind = \"chung-hulbert\", rho_inf = 0.1 }"
+        );
         assert_eq!(words(Scheme::hht(0.05).unwrap())[0], "{ kind = \"hht\", alpha = 0.05 }");
         let hu = words(Scheme::hu());
         assert_eq!(hu[0], "{ kind = \"hu\" }");
         assert_eq!(hu[2], "{ kind = \"newmark\", rho_inf = 0 }");
         let trapezoidal = words(Scheme::newmark(0.25, 0.5).unwrap());
         assert_eq!(trapezoidal.len(), 5, "{trapezoidal:?}");
-        for (build, kind) in [(Scheme::wbz as fn(f64) -> _, "wbz"), (Scheme::chung_hulbert, "chung-hulbert")] {
+        for (build, kind) in [(Scheme::wbz as fn(f64) -> _, "wbz"), (Scheme::chung_hulbert, "chung-hulbert")]
+        {
             for percent in 0..=100 {
                 let rho_inf = f64::from(percent) / 100.0;
                 let found = names(&build(rho_inf).unwrap());

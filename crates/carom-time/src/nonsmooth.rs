@@ -1,7 +1,9 @@
-//! Schemes that bring their own treatment of contact: explicit ones, and those whose unknown at an impact is an impulse.
+//! Schemes that bring their own treatment of contact: explicit ones, and those whose unknown at an
+//! impact is an impulse.
 //!
-//! An impulse scheme holds 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0 where the gap is predicted to be closed. It is a [`crate::Stage`] with the unknown
-//! d = y_{n+1} − y_n, without contact forces, and an impulse beside it with the three shares of [`ImpulseShares`].
+//! An impulse scheme holds 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0 where the gap is predicted to be closed.
+//! It is a [`crate::Stage`] with the unknown d = y_{n+1} − y_n, without contact forces, and an
+//! impulse beside it with the three shares of [`ImpulseShares`].
 
 use crate::explicit::{self, Explicit};
 use crate::map;
@@ -25,7 +27,8 @@ pub trait Impulse: Kernel {
     /// Where the impulse enters the stage of a step of size `dt`.
     fn shares(&self, dt: f64) -> ImpulseShares;
 
-    /// Whether the gap that decides is that at the end of the step solved without contact; otherwise that at y_n + Δt v_n/2.
+    /// Whether the gap that decides is that at the end of the step solved without contact;
+    /// otherwise that at y_n + Δt v_n/2.
     fn predicts_by_solving(&self) -> bool {
         false
     }
@@ -60,7 +63,9 @@ impl Nonsmooth {
     pub fn order(&self) -> u8 {
         match self {
             Self::Explicit(scheme) => scheme.order,
-            Self::Impulse(scheme) => scheme.alpha().map_or_else(|| map::order(&**scheme), |alpha| alpha.order()),
+            Self::Impulse(scheme) => {
+                scheme.alpha().map_or_else(|| map::order(&**scheme), |alpha| alpha.order())
+            }
         }
     }
 
@@ -80,13 +85,15 @@ impl Nonsmooth {
         }
     }
 
-    /// Spectral radius of the whole map of smooth motion at Ω, the root of a carried acceleration included.
+    /// Spectral radius of the whole map of smooth motion at Ω, the root of a carried acceleration
+    /// included.
     pub fn spectral_radius(&self, omega_dt: f64) -> f64 {
         match self {
             Self::Explicit(_) => explicit::spectral_radius(omega_dt),
-            Self::Impulse(scheme) => scheme
-                .alpha()
-                .map_or_else(|| map::spectral_radius(&**scheme, omega_dt), |alpha| alpha.spectral_radius(omega_dt)),
+            Self::Impulse(scheme) => scheme.alpha().map_or_else(
+                || map::spectral_radius(&**scheme, omega_dt),
+                |alpha| alpha.spectral_radius(omega_dt),
+            ),
         }
     }
 
@@ -116,7 +123,8 @@ mod tests {
         })
     }
 
-    /// Where the analysis is that of the α family, the stage moves an oscillator so, third root included.
+    /// Where the analysis is that of the α family, the stage moves an oscillator so, third root
+    /// included.
     #[test]
     fn a_closed_analysis_is_that_of_the_stage() {
         for (scheme, alpha) in impulses().filter_map(|scheme| scheme.alpha().map(|alpha| (scheme, alpha))) {
@@ -130,7 +138,8 @@ mod tests {
         }
     }
 
-    /// A free mass stopped by an impulse: momentum is M v whatever the scheme, and the acceleration carried is that of the forces or of the whole step.
+    /// A free mass stopped by an impulse: momentum is M v whatever the scheme, and the acceleration
+    /// carried is that of the forces or of the whole step.
     #[test]
     fn an_impulse_changes_the_velocity_by_itself_over_the_mass() {
         let (dt, mass, v, p) = (0.1, 2.0, -3.0, 6.0);
@@ -142,7 +151,8 @@ mod tests {
             let w = stage.weights.mass * mass;
             let d = (shares.force * p - w * stage.acceleration.at_start[0]) / (w * stage.acceleration.slope);
             let end = stage.velocity.slope * d + stage.velocity.at_start[0] + shares.velocity * p / mass;
-            let a = stage.acceleration.slope * d + stage.acceleration.at_start[0] - shares.acceleration * p / mass;
+            let a = stage.acceleration.slope * d + stage.acceleration.at_start[0]
+                - shares.acceleration * p / mass;
             assert!((end - (v + p / mass)).abs() < 1e-13, "{scheme:?}: {end}");
             assert!(a.abs() < 1e-12 || (a - p / mass / dt).abs() < 1e-12, "{scheme:?}: {a}");
             // The jump moves the position by a share of Δt w.

@@ -43,10 +43,13 @@ pub(crate) fn explain_nonsmooth(scheme: &Nonsmooth, name: &Name) -> NonsmoothExp
             scheme.contact,
             "energy: no mode of linear motion is damped below the stable step; each impact of a node takes its share",
         ),
-        Nonsmooth::Impulse(_) if lossless => {
-            (IMPULSES, "energy: no mode of linear motion is damped; an impact with e = 0 takes what the node had")
+        Nonsmooth::Impulse(_) if lossless => (
+            IMPULSES,
+            "energy: no mode of linear motion is damped; an impact with e = 0 takes what the node had",
+        ),
+        Nonsmooth::Impulse(_) => {
+            (IMPULSES, "energy: dissipates, high frequencies most; see the damping above")
         }
-        Nonsmooth::Impulse(_) => (IMPULSES, "energy: dissipates, high frequencies most; see the damping above"),
     };
     NonsmoothExplanation {
         kind: name.kind,
@@ -64,7 +67,7 @@ pub(crate) fn explain_nonsmooth(scheme: &Nonsmooth, name: &Name) -> NonsmoothExp
 
 const IMPULSES: &[&str] = &[
     "an impulse P per step where the gap is predicted closed: 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0; recorded as the force P/Δt",
-    "velocities, not positions, are held: penetration of the order of Δt·speed stays",
+    "velocities, not positions, are constrained: penetration of the order of Δt·speed stays",
 ];
 
 fn accuracy(scheme: &Nonsmooth, steps_per_period: u32) -> Option<Accuracy> {

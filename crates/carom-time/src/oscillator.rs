@@ -1,4 +1,5 @@
-//! One degree of freedom, m a + k u = f: the smallest thing a kernel can drive, and the place to measure what its analysis claims.
+//! One degree of freedom, m a + k u = f: the smallest thing a kernel can drive, and the place to
+//! measure what its analysis claims.
 use crate::stage::{Affine, Before, Kernel, Memory, Stage, Weights};
 
 /// m a + k u = f with constant f, driven by any kernel.
@@ -34,7 +35,8 @@ impl Oscillator {
         self.step_after(kernel, dt, None, start, stage)
     }
 
-    /// One step of a two-step kernel: `before` is the increment over the step before and the velocity at its start.
+    /// One step of a two-step kernel: `before` is the increment over the step before and the
+    /// velocity at its start.
     pub fn step_after(
         &self,
         kernel: &dyn Kernel,
@@ -47,7 +49,14 @@ impl Oscillator {
     }
 
     /// One step with the position imposed at the end of every stage: a dof held by a contact.
-    pub fn held_step(&self, kernel: &dyn Kernel, dt: f64, start: Motion, stage: &mut Stage, u: f64) -> Motion {
+    pub fn held_step(
+        &self,
+        kernel: &dyn Kernel,
+        dt: f64,
+        start: Motion,
+        stage: &mut Stage,
+        u: f64,
+    ) -> Motion {
         self.held_step_after(kernel, dt, None, start, stage, u)
     }
 
@@ -72,8 +81,9 @@ impl Oscillator {
     /// The balance of a stage, linear in the increment.
     fn increment(&self, stage: &Stage, [u0, _, a0]: Motion) -> f64 {
         let Stage { weights: now, before, .. } = stage;
-        let forces =
-            |w: &Weights, a: f64| w.mass * self.mass * a + w.internal * self.stiffness * u0 - w.external * self.force;
+        let forces = |w: &Weights, a: f64| {
+            w.mass * self.mass * a + w.internal * self.stiffness * u0 - w.external * self.force
+        };
         let residual = forces(now, stage.acceleration.at_start[0]) + forces(before, a0);
         let stiffness = now.internal * (1.0 - stage.average) * self.stiffness;
         -residual / (now.mass * self.mass * stage.acceleration.slope + stiffness)

@@ -1,6 +1,7 @@
 //! Characteristic polynomials of small matrices and their roots, for schemes without a closed form.
 //!
-//! Coefficients by Faddeev and Le Verrier, roots all at once by Ehrlich and Aberth (O. Aberth, Math. Comp. 27 (1973) 339–344); zero roots are taken out first.
+//! Coefficients by Faddeev and Le Verrier, roots all at once by Ehrlich and Aberth (O. Aberth,
+//! Math. Comp. 27 (1973) 339–344); zero roots are taken out first.
 use crate::cubic::{Root, cubic};
 
 /// Coefficients of det(z I − A), the leading one (1) first.

@@ -1,4 +1,5 @@
-//! The α family as data: what a step of eq. (15) needs. The published ways to choose it are files of `schemes/`.
+//! The α family as data: what a step of eq. (15) needs. The published ways to choose it are files
+//! of `schemes/`.
 //!
 //! ```text
 //! (1 − α_m) M a_{s+1} + α_m M a_s + (1 − α_f) f_{s+1} + α_f f_s = 0                              (15)
@@ -6,7 +7,8 @@
 //! v_{s+1} = v_s + Δt [(1 − γ) a_s + γ a_{s+1}]                                                   (14)
 //! ```
 //!
-//! Index s + 1 − α: an α is the share of the *old* term (Chung and Hulbert 1993). [`crate::explain`] translates.
+//! Index s + 1 − α: an α is the share of the *old* term (Chung and Hulbert 1993).
+//! [`crate::explain`] translates.
 use serde::{Deserialize, Serialize};
 
 use crate::error::SchemeError;
@@ -22,7 +24,8 @@ pub enum ForceRule {
     AverageState,
 }
 
-/// One member of the α family, index s + 1 − α (eq. 15). Values are used as given; nothing is clamped.
+/// One member of the α family, index s + 1 − α (eq. 15). Values are used as given; nothing is
+/// clamped.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scheme {
     /// Share of the old inertia force.
@@ -37,7 +40,8 @@ pub struct Scheme {
     pub forces: ForceRule,
 }
 
-/// Constructors by published name stand in [`crate::schemes`]; all average forces, see [`Scheme::with_forces`].
+/// Constructors by published name stand in [`crate::schemes`]; all average forces, see
+/// [`Scheme::with_forces`].
 impl Scheme {
     /// The same scheme with another rule for what α_f averages.
     #[must_use]
@@ -47,15 +51,24 @@ impl Scheme {
 
     /// The scheme itself if a step can be taken with it; for one read from a file.
     pub fn checked(self) -> Result<Self, SchemeError> {
-        let parameters =
-            [("alpha_m", self.alpha_m), ("alpha_f", self.alpha_f), ("beta", self.beta), ("gamma", self.gamma)];
+        let parameters = [
+            ("alpha_m", self.alpha_m),
+            ("alpha_f", self.alpha_f),
+            ("beta", self.beta),
+            ("gamma", self.gamma),
+        ];
         for (key, value) in parameters {
             finite(key, value)?;
         }
         if self.beta <= 0.0 {
             let hint = "with β = 0 the new position does not depend on the new acceleration: an explicit scheme, which this \
                         implicit family cannot solve for; the trapezoidal rule has beta = 0.25";
-            return Err(SchemeError::OutOfRange { key: "beta", value: self.beta, range: "> 0", hint: hint.to_owned() });
+            return Err(SchemeError::OutOfRange {
+                key: "beta",
+                value: self.beta,
+                range: "> 0",
+                hint: hint.to_owned(),
+            });
         }
         if self.gamma <= 0.0 {
             let hint = "γ is the share of the new acceleration in the new velocity; below ½ motion grows, the trapezoidal rule has gamma = 0.5";
@@ -68,7 +81,8 @@ impl Scheme {
         }
         for (key, value, what) in [("alpha_m", self.alpha_m, "inertia"), ("alpha_f", self.alpha_f, "force")] {
             if value >= 1.0 {
-                let hint = format!("at 1 the balance holds no new {what} term, above it one of the wrong sign");
+                let hint =
+                    format!("at 1 the balance holds no new {what} term, above it one of the wrong sign");
                 return Err(SchemeError::OutOfRange { key, value, range: "< 1", hint });
             }
         }

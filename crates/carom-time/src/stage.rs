@@ -1,4 +1,5 @@
-//! What a solver sees of a time integrator: one unknown, velocity and acceleration affine in it, and the weights of the balance.
+//! What a solver sees of a time integrator: one unknown, velocity and acceleration affine in it,
+//! and the weights of the balance.
 //!
 //! A step is a list of stages. At the end of each, positions y = y_s + d solve
 //!
@@ -7,11 +8,13 @@
 //! v = velocity.slope d + velocity.at_start,   a = acceleration.slope d + acceleration.at_start,   d = y − y_s
 //! ```
 //!
-//! with f_int at (1 − average) y + average y_s, or a discrete gradient between y_s and y, and f_cont = Gᵀλ at y. Time knows neither space nor contact.
+//! with f_int at (1 − average) y + average y_s, or a discrete gradient between y_s and y, and
+//! f_cont = Gᵀλ at y. Time knows neither space nor contact.
 //!
-//! The maps take the increment d since the step's start, and a solver should keep d as its unknown: as a function of y the
-//! acceleration carries the last digit of y divided by Δt². Free fall from y = 1.5 over 400 steps of 1.875e-3 errs by
-//! 2e-11 with maps of y, 2e-12 with d formed as a difference of rounded y, 1e-13 with d kept (`tests/free_fall.rs`).
+//! The maps take the increment d since the step's start, and a solver should keep d as its unknown:
+//! as a function of y the acceleration carries the last digit of y divided by Δt². Free fall from y
+//! = 1.5 over 400 steps of 1.875e-3 errs by 2e-11 with maps of y, 2e-12 with d formed as a
+//! difference of rounded y, 1e-13 with d kept (`tests/free_fall.rs`).
 
 /// Weights of the four force families in the balance of a stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,7 +34,8 @@ impl Weights {
     pub const FULL: Self = Self { mass: 1.0, internal: 1.0, external: 1.0, contact: 1.0 };
 }
 
-/// A nodal vector as an affine function of the increment of positions since the step's start: slope·(y − y_s) + at_start.
+/// A nodal vector as an affine function of the increment of positions since the step's start:
+/// slope·(y − y_s) + at_start.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Affine {
     /// Factor of the unknown.
@@ -72,12 +76,14 @@ pub struct Stage {
     pub weights: Weights,
     /// Weights at the step's start.
     pub before: Weights,
-    /// Internal forces are taken at (1 − average) y + average y_s; external forces at that time too.
+    /// Internal forces are taken at (1 − average) y + average y_s; external forces at that time
+    /// too.
     pub average: f64,
     /// Rule of the internal forces.
     pub internal: Internal,
-    /// What the stage adds to the mean of a force over the step, as the step's own velocity update weighs it: shares of the mean over the step before, of
-    /// the force at the step's start, of the force at the stage's end. Over all stages they add up to one.
+    /// What the stage adds to the mean of a force over the step, as the step's own velocity update
+    /// weighs it: shares of the mean over the step before, of the force at the step's start, of the
+    /// force at the stage's end. Over all stages they add up to one.
     pub mean: [f64; 3],
 }
 
@@ -89,7 +95,8 @@ impl Stage {
         self.internal = Internal::Gradient;
     }
 
-    /// Whether the balance has no inertia: velocities and accelerations are then zero, and time only parametrises the loads.
+    /// Whether the balance has no inertia: velocities and accelerations are then zero, and time
+    /// only parametrises the loads.
     pub fn is_static(&self) -> bool {
         self.weights.mass == 0.0
     }
@@ -100,7 +107,8 @@ impl Stage {
 pub struct Memory<'a> {
     /// (y, v, a) at the step's start, then at each finished stage's end; flat, one entry per dof.
     pub states: &'a [(&'a [f64], &'a [f64], &'a [f64])],
-    /// The step before, where it had the same size and nothing happened since; only for kernels that ask for it.
+    /// The step before, where it had the same size and nothing happened since; only for kernels
+    /// that ask for it.
     pub before: Option<Before<'a>>,
 }
 
@@ -118,12 +126,14 @@ pub trait Kernel: Send + Sync + std::fmt::Debug {
     /// Stages of a step.
     fn stages(&self) -> usize;
 
-    /// Whether it uses the step before. Its first step, and every one after something abrupt, has none: [`Memory::before`] is empty.
+    /// Whether it uses the step before. Its first step, and every one after something abrupt, has
+    /// none: [`Memory::before`] is empty.
     fn two_step(&self) -> bool {
         false
     }
 
-    /// Whether its only stage is Newmark's y = y_s + Δt v_s + Δt² (…), so that a contact law may put another position in place of y_s + Δt v_s.
+    /// Whether its only stage is Newmark's y = y_s + Δt v_s + Δt² (…), so that a contact law may
+    /// put another position in place of y_s + Δt v_s.
     fn has_predictor(&self) -> bool {
         false
     }

@@ -41,21 +41,30 @@ impl Display for Explanation {
         }
         writeln!(f, "\nparameters")?;
         for convention in &self.conventions {
-            let values: Vec<_> =
-                convention.values.iter().map(|(symbol, value)| format!("{symbol} = {}", short(*value))).collect();
+            let values: Vec<_> = convention
+                .values
+                .iter()
+                .map(|(symbol, value)| format!("{symbol} = {}", short(*value)))
+                .collect();
             writeln!(f, "  {}\n      {}", convention.name, values.join("   "))?;
         }
         let stable = if self.a_stable { "stable at any Δt" } else { "not stable at any Δt" };
-        writeln!(f, "\norder {}   ρ∞ = {}   {stable} (linear motion)", self.order, cell(Some(self.rho_inf), 1.0))?;
+        writeln!(
+            f,
+            "\norder {}   ρ∞ = {}   {stable} (linear motion)",
+            self.order,
+            cell(Some(self.rho_inf), 1.0)
+        )?;
         writeln!(f, "\n  {:>6} {:>10} {:>12} {:>10}", "T/Δt", "ρ", "damping ξ", "PE %")?;
         for Accuracy { steps_per_period, spectral_radius, damping_ratio, period_error } in &self.accuracy {
             let (damping, period) = (cell(*damping_ratio, 1.0), cell(*period_error, 100.0));
             writeln!(f, "  {steps_per_period:>6} {spectral_radius:>10.6} {damping:>12} {period:>10}")?;
         }
         list(f, "conserves", &self.conserves)?;
-        list(f, "a dof held by contact", &[&self.held.text])?;
+        list(f, "a dof constrained by contact", &[&self.constrained.text])?;
         list(f, "remarks", &self.remarks)?;
-        let elsewhere: Vec<_> = self.elsewhere.iter().map(|fact| format!("{}: {}", fact.code, fact.note)).collect();
+        let elsewhere: Vec<_> =
+            self.elsewhere.iter().map(|fact| format!("{}: {}", fact.code, fact.note)).collect();
         list(f, "elsewhere", &elsewhere)
     }
 }
@@ -75,8 +84,8 @@ pub struct CatalogueRow {
     pub rho_inf: f64,
     /// At ten steps per period.
     pub accuracy: Accuracy,
-    /// Steps a held dof rings; none: for ever.
-    pub held_steps: Option<u32>,
+    /// Steps a constrained dof rings; none: for ever.
+    pub constrained_steps: Option<u32>,
 }
 
 /// Typical members of every kind, side by side.
@@ -92,7 +101,7 @@ pub struct Catalogue {
 ///
 /// ```
 /// let hu = carom_time::explain_all().rows.into_iter().find(|row| row.kind == "hu");
-/// assert_eq!(hu.map(|row| (row.order, row.rho_inf, row.held_steps)), Some((1, 0.0, Some(2))));
+/// assert_eq!(hu.map(|row| (row.order, row.rho_inf, row.constrained_steps)), Some((1, 0.0, Some(2))));
 /// ```
 pub fn explain_all() -> Catalogue {
     let mut told = Catalogue { rows: Vec::new(), nonsmooth: Vec::new() };
@@ -118,13 +127,13 @@ fn row(kind: &'static str, parameters: &[(&str, f64)], told: Explanation) -> Opt
         order: told.order,
         rho_inf: told.rho_inf,
         accuracy: told.accuracy.into_iter().find(|a| a.steps_per_period == 10)?,
-        held_steps: told.held.steps,
+        constrained_steps: told.constrained.steps,
     })
 }
 
 impl Display for Catalogue {
     fn fmt(&self, f: &mut Formatter) -> Result {
-        let heads = ["α_m", "α_f", "β", "γ", "order", "ρ∞", "ξ(T/10)", "PE(T/10)", "held"];
+        let heads = ["α_m", "α_f", "β", "γ", "order", "ρ∞", "ξ(T/10)", "PE(T/10)", "constrained"];
         write!(f, "{:<18}{:<24}", "kind", "parameters")?;
         heads.iter().try_for_each(|head| write!(f, "{head:>10}"))?;
         writeln!(f)?;
@@ -137,12 +146,23 @@ impl Display for Catalogue {
                 None => write!(f, "{:>10}{:>10}{:>10}{:>10}", "–", "–", "–", "–")?,
             }
             let (xi, pe) = (cell(row.accuracy.damping_ratio, 1.0), cell(row.accuracy.period_error, 100.0));
-            let held = row.held_steps.map_or("∞".to_owned(), |steps| steps.to_string());
-            writeln!(f, "{:>10}{:>10.3}{xi:>10}{:>10}{held:>10}", row.order, row.rho_inf, format!("{pe} %"))?;
+            let constrained = row.constrained_steps.map_or("∞".to_owned(), |steps| steps.to_string());
+            writeln!(
+                f,
+                "{:>10}{:>10.3}{xi:>10}{:>10}{constrained:>10}",
+                row.order,
+                row.rho_inf,
+                format!("{pe} %")
+            )?;
         }
-        writeln!(f, "\nwith a contact law of their own{:>51}{:>10}{:>10}{:>10}", "order", "ρ∞", "ξ(T/10)", "PE(T/10)")?;
+        writeln!(
+            f,
+            "\nwith a contact law of their own{:>51}{:>10}{:>10}{:>10}",
+            "order", "ρ∞", "ξ(T/10)", "PE(T/10)"
+        )?;
         for told in &self.nonsmooth {
-            let words: Vec<_> = told.parameters.iter().map(|(key, value)| format!("{key} {value:.3}")).collect();
+            let words: Vec<_> =
+                told.parameters.iter().map(|(key, value)| format!("{key} {value:.3}")).collect();
             let rho = told.rho_inf.map_or("ωΔt ≤ 2".to_owned(), |rho| format!("{rho:.3}"));
             let tenth = told.accuracy.iter().find(|row| row.steps_per_period == 10);
             let (xi, pe) = tenth.map_or((None, None), |row| (row.damping_ratio, row.period_error));
@@ -151,7 +171,7 @@ impl Display for Catalogue {
         }
         write!(
             f,
-            "\nIndex s + 1 − α. ξ, PE: damping and lengthening of a period of ten steps. held: steps a dof held by contact rings above 1 % of v₀/Δt."
+            "\nIndex s + 1 − α. ξ, PE: damping and lengthening of a period of ten steps. constrained: steps a dof constrained by contact rings above 1 % of v₀/Δt."
         )
     }
 }
@@ -167,7 +187,8 @@ mod tests {
         let table = explain_all();
         let shown = KINDS.iter().flat_map(|kind| kind.members).filter(|member| member.shown);
         assert_eq!(table.rows.len() + table.nonsmooth.len(), shown.count());
-        let names = || table.rows.iter().map(|row| row.kind).chain(table.nonsmooth.iter().map(|told| told.kind));
+        let names =
+            || table.rows.iter().map(|row| row.kind).chain(table.nonsmooth.iter().map(|told| told.kind));
         assert!(KINDS.iter().all(|kind| kind.name == crate::STATIC || names().any(|name| name == kind.name)));
     }
 
@@ -187,7 +208,7 @@ mod tests {
         let hht = explain(&Scheme::hht(0.05).unwrap()).to_string();
         assert!(hht.contains("α = -0.05") && hht.contains("α_f = 0.95"), "{hht}");
         let trapezoidal = explain(&Scheme::newmark(0.25, 0.5).unwrap());
-        assert_eq!(trapezoidal.held.steps, None);
+        assert_eq!(trapezoidal.constrained.steps, None);
         assert!(trapezoidal.to_string().contains("grows by 4 v₀/Δt per step"));
     }
 }

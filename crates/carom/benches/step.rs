@@ -1,4 +1,5 @@
-//! What a step is made of, on the jobs of `cases/perf/` in mid-contact: cells, detection, gaps, assembly and factor, solve, whole steps.
+//! What a step is made of, on the jobs of `cases/perf/` in mid-contact: cells, detection, gaps,
+//! assembly and factor, solve, whole steps.
 //!
 //!     cargo bench -p carom                    times
 //!     bench/instructions.py carom             instructions
@@ -123,13 +124,15 @@ fn gaps(bencher: Bencher, job: Job) {
     });
 }
 
-/// The consistent mass on the pattern of the tangent, positive definite; left for last are the nodes that the pairs act on.
+/// The consistent mass on the pattern of the tangent, positive definite; left for last are the
+/// nodes that the pairs act on.
 fn mass_matrix(sim: &Simulation) -> (Pattern, Vec<f64>, Vec<usize>, Vec<usize>) {
     let mass = &sim.model.mass;
     let entries = (0..mass.nodes()).flat_map(|a| mass.row(a).map(move |(b, value)| (a, b, value)));
     let entries: Vec<_> = entries
         .flat_map(|(a, b, v)| {
-            [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| (2 * a + i, 2 * b + j, if i == j { v } else { 0.0 }))
+            [(0, 0), (0, 1), (1, 0), (1, 1)]
+                .map(|(i, j)| (2 * a + i, 2 * b + j, if i == j { v } else { 0.0 }))
         })
         .filter(|(i, j, _)| i >= j)
         .collect();
@@ -140,7 +143,8 @@ fn mass_matrix(sim: &Simulation) -> (Pattern, Vec<f64>, Vec<usize>, Vec<usize>) 
     }
     let groups = (0..sim.model.dofs()).map(|dof| dof / 2).collect();
     let kinematics = &sim.model.contacts[0].kinematics;
-    let touched = |pair: &Pair| [&[kinematics.secondary()[pair.node]], kinematics.facet_nodes(pair.facet)].concat();
+    let touched =
+        |pair: &Pair| [&[kinematics.secondary()[pair.node]], kinematics.facet_nodes(pair.facet)].concat();
     let touched: BTreeSet<usize> = sim.state.pairs[0].iter().flat_map(touched).collect();
     let last = touched.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
     (pattern, values, groups, last)

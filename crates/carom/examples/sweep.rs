@@ -1,4 +1,5 @@
-//! A bar strikes a rigid wall at three speeds, in memory; exact: ρ c v = 30 v for 2L/c = 0.667 (`cargo run --release -p carom --example sweep`).
+//! A bar strikes a rigid wall at three speeds, in memory; exact: ρ c v = 30 v for 2L/c = 0.667
+//! (`cargo run --release -p carom --example sweep`).
 
 use carom::case::{Document, read};
 

@@ -1,6 +1,8 @@
-//! A start elsewhere than in the reference positions: of a motion that is given, or `[initial] from`, positions, velocities and contact at the end of another run of the same meshes.
+//! A start elsewhere than in the reference positions: of a motion that is given, or `[initial]
+//! from`, positions, velocities and contact at the end of another run of the same meshes.
 //!
-//! The meshes are made again from the case that run was resolved with, and compared node by node: names alone would let a changed mesh pass.
+//! The meshes are made again from the case that run was resolved with, and compared node by node:
+//! names alone would let a changed mesh pass.
 
 use carom_case::{Case, InitialSpec, Problem, Velocities};
 use carom_mechanics::model::{Manufactured, Model};
@@ -27,7 +29,8 @@ pub(crate) fn given(motion: &Manufactured, model: &Model) -> Result<Before, Vec<
 /// Reads the end of the run a case starts from.
 ///
 /// # Errors
-/// There is no such run, it is not finished, or its bodies are not those of the case; all under `initial.from`.
+/// There is no such run, it is not finished, or its bodies are not those of the case; all under
+/// `initial.from`.
 pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<Before, Vec<Problem>> {
     let directory = spec.from.display();
     let wrong = |what: String, why: String, help: &str| vec![Problem::new("initial.from", what, why, help)];
@@ -62,8 +65,9 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<B
     let mut meshes = Vec::new();
     let mut first = 0;
     for body in &old.bodies {
-        let mesh =
-            body.make_mesh(d).map_err(|why| unreadable(format!("the mesh of its body \"{}\": {why}", body.name)))?;
+        let mesh = body
+            .make_mesh(d)
+            .map_err(|why| unreadable(format!("the mesh of its body \"{}\": {why}", body.name)))?;
         let nodes = mesh.nodes.len();
         meshes.push((&body.name, first, mesh));
         first += nodes;
@@ -83,8 +87,9 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<B
             ));
         };
         if old.nodes != mesh.nodes || old.cells != mesh.cells || old.element != mesh.element {
-            let count =
-                |m: &carom_solid::Mesh| format!("{} nodes, {} cells {:?}", m.nodes.len(), m.cell_count(), m.element);
+            let count = |m: &carom_solid::Mesh| {
+                format!("{} nodes, {} cells {:?}", m.nodes.len(), m.cell_count(), m.element)
+            };
             let why = format!(
                 "there it has {}, here {}; nodes and cells must be the same to the last digit",
                 count(old),
@@ -109,10 +114,9 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<B
         }
     }
     for contact in &case.contacts {
-        let same = old
-            .contacts
-            .iter()
-            .position(|c| (&c.name, &c.secondary, &c.primary) == (&contact.name, &contact.secondary, &contact.primary));
+        let same = old.contacts.iter().position(|c| {
+            (&c.name, &c.secondary, &c.primary) == (&contact.name, &contact.secondary, &contact.primary)
+        });
         before.pairs.push(same.and_then(|k| state.pairs.get(k).cloned()).unwrap_or_default());
     }
     Ok(before)

@@ -1,7 +1,7 @@
 //! Impact and contact of deformable solids by the positional finite element method.
 //!
-//! A case, text or file, is read and checked by [`case`], built into a [`Simulation`] by [`simulation`], and run step by step, or
-//! into a run directory by [`recording::run`].
+//! A case, text or file, is read and checked by [`case`], built into a [`Simulation`] by
+//! [`simulation`], and run step by step, or into a run directory by [`recording::run`].
 
 mod build;
 mod initial;
@@ -11,8 +11,8 @@ mod setup;
 pub use build::{build, overlaps};
 pub use carom_case as case;
 pub use carom_mechanics::{
-    Accepted, Ahead, Before, Explicit, Grid, GridReport, Halved, Implicit, Impulsive, Kept, Ledger, LogEvent, Means,
-    Point, Previous, Rejected, Settings, Simulation, State, StepReport, Stepper, Stopped, Tangent, Timings, Workspace,
-    frequencies, model, stability,
+    Accepted, Before, Bisection, Explicit, FrozenTangent, Grid, GridReport, HalfStepVelocity, Implicit,
+    Impulsive, Ledger, LogEvent, Means, Point, Previous, Rejected, Settings, Simulation, State, StepReport,
+    Stepper, Stopped, Tangent, Timings, Workspace, frequencies, model, stability,
 };
 pub use setup::{resumed, simulation, too_long};

@@ -11,7 +11,8 @@ use carom_time::{Integrator, Nonsmooth};
 use crate::build::{build, overlaps};
 use crate::initial::{before, given};
 
-/// Builds the model of a case and its state at t = 0. Cells are computed by this many threads; the result does not depend on it.
+/// Builds the model of a case and its state at t = 0. Cells are computed by this many threads; the
+/// result does not depend on it.
 ///
 /// # Errors
 /// Everything wrong with the case that only its meshes show.
@@ -34,7 +35,8 @@ pub fn simulation(case: &Case, threads: usize) -> Result<Simulation, Vec<Problem
         .map_err(|rejected| vec![no_start(case, placed, &rejected)])
 }
 
-/// Builds the model of a case and goes on from a state of an earlier run of it; the run its `[initial]` names is not needed any more.
+/// Builds the model of a case and goes on from a state of an earlier run of it; the run its
+/// `[initial]` names is not needed any more.
 ///
 /// # Errors
 /// As [`simulation`].
@@ -45,7 +47,8 @@ pub fn resumed(case: &Case, threads: usize, state: State) -> Result<Simulation, 
 }
 
 fn grid(case: &Case) -> Grid {
-    // Load steps create nothing: what their works miss of the energies is the error of a sum over few steps.
+    // Load steps create nothing: what their works miss of the energies is the error of a sum over
+    // few steps.
     let guard = case.time.energy_guard.filter(|_| !case.time.scheme.is_static());
     Grid { dt: case.time.step, steps: (case.time.end / case.time.step).round() as u64, guard }
 }
@@ -53,7 +56,9 @@ fn grid(case: &Case) -> Grid {
 /// Why a case has no start, with its place and a way out.
 fn no_start(case: &Case, placed: bool, rejected: &Rejected) -> Problem {
     let (path, what, help) = match rejected {
-        Rejected::NoValue(_) => ("load".into(), "a formula has no value at t = 0", "change it so that it has one"),
+        Rejected::NoValue(_) => {
+            ("load".into(), "a formula has no value at t = 0", "change it so that it has one")
+        }
         Rejected::Jump { .. } => {
             ("support".into(), "a support would jump at the start", "let its `move` begin where the body is")
         }
@@ -72,7 +77,12 @@ fn stepper(case: &Case, model: &Model) -> Result<Box<dyn Stepper>, Vec<Problem>>
     let settings = settings(&case.newton);
     let integrator = case.time.scheme.integrator().map_err(|error| {
         let path = format!("time.scheme.{}", error.key());
-        vec![Problem::new(path, "the scheme cannot be used", error.to_string(), "carom explain lists schemes")]
+        vec![Problem::new(
+            path,
+            "the scheme cannot be used",
+            error.to_string(),
+            "carom explain lists schemes",
+        )]
     })?;
     Ok(match integrator {
         Integrator::Alpha(scheme, _) => Box::new(Implicit::new(Box::new(scheme), settings)),
@@ -84,11 +94,16 @@ fn stepper(case: &Case, model: &Model) -> Result<Box<dyn Stepper>, Vec<Problem>>
 
 fn settings(newton: &NewtonSpec) -> Settings {
     let tangent = match newton.tangent {
-        TangentRule::Kept => Tangent::Kept,
-        TangentRule::KeptDouble => Tangent::KeptDouble,
+        TangentRule::Frozen => Tangent::Frozen,
+        TangentRule::FrozenDouble => Tangent::FrozenDouble,
         TangentRule::Full => Tangent::Full,
     };
-    Settings { tolerance: newton.tolerance, max_iterations: newton.max_iterations, tangent, mixing: newton.mixing }
+    Settings {
+        tolerance: newton.tolerance,
+        max_iterations: newton.max_iterations,
+        tangent,
+        mixing: newton.mixing,
+    }
 }
 
 /// The refusal of a step longer than an explicit scheme is stable with.
@@ -110,7 +125,8 @@ pub fn too_long(case: &Case, model: &Model) -> Vec<Problem> {
     if step <= longest {
         return Vec::new();
     }
-    let what = format!("the step {step:e} is longer than {} is stable with: {longest:.4e}", case.time.scheme.kind);
+    let what =
+        format!("the step {step:e} is longer than {} is stable with: {longest:.4e}", case.time.scheme.kind);
     let why = format!(
         "an explicit step must stay below 2/ω_max = {:.4e} (bound by single cells {:.4e}); {SAFETY} of it is accepted",
         stable.power, stable.cell

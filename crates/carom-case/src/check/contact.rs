@@ -1,4 +1,5 @@
-//! Contacts: two different bodies, each pair once, mass where the projection needs it, laws that go together and with the scheme.
+//! Contacts: two different bodies, each pair once, mass where the projection needs it, laws that go
+//! together and with the scheme.
 
 use super::super::{ContactLaw, ContactSpec, Enforcement, Persistency, PrimarySpec};
 use super::Check;
@@ -38,7 +39,8 @@ impl Check<'_> {
             );
         }
         if self.draft.contacts.iter().flatten().any(|other| other.law != contact.law) {
-            let why = "the predictor is one of the whole system: it is projected for all contacts or for none";
+            let why =
+                "the predictor is one of the whole system: it is projected for all contacts or for none";
             self.add(path("law"), "contacts have different laws", why, "give all contacts one law");
         }
         let Some(scheme) = self.draft.time.as_ref().map(|time| &time.scheme) else { return };
@@ -69,7 +71,8 @@ impl Check<'_> {
                     if let (Some(a), Some(b)) = (secondary, primary)
                         && a.name == b.name
                     {
-                        let what = format!("both sides of `{}` belong to the body `{}`", contact.name, a.name);
+                        let what =
+                            format!("both sides of `{}` belong to the body `{}`", contact.name, a.name);
                         let why = "a body in contact with itself belongs to a later version of Carom";
                         self.add(path("primary"), what, why, "name a side of another body");
                         continue;
@@ -105,7 +108,9 @@ impl Check<'_> {
                     format!("give contact `{}` persistency = \"none\"", contact.name),
                 );
             }
-            if let Some(j) = contacts[..i].iter().position(|c| c.as_ref().is_some_and(|c| same_pair(c, contact))) {
+            if let Some(j) =
+                contacts[..i].iter().position(|c| c.as_ref().is_some_and(|c| same_pair(c, contact)))
+            {
                 let what = "these two sides are a contact already";
                 let why = format!("contact number {} has the same pair; each would add its own force", j + 1);
                 self.add(path("secondary"), what, why, "leave one of them out");

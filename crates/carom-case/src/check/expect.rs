@@ -9,7 +9,8 @@ use super::{Check, columns};
 impl Check<'_> {
     pub(super) fn expects(&mut self) {
         let draft = self.draft;
-        // Columns come from names: with a key unknown or missing somewhere, an unknown column proves nothing.
+        // Columns come from names: with a key unknown or missing somewhere, an unknown column
+        // proves nothing.
         let complete = !self.problems.iter().any(|p| p.at_key)
             && draft.probes.iter().all(Option::is_some)
             && draft.bodies.iter().all(Option::is_some)
@@ -65,7 +66,12 @@ impl Check<'_> {
             }
             if let Some(arm) = arms.first() {
                 let why = "a case is one run; only a study has arms";
-                self.add(path.clone(), format!("there is no arm \"{arm}\""), why, format!("leave `of \"{arm}\"` out"));
+                self.add(
+                    path.clone(),
+                    format!("there is no arm \"{arm}\""),
+                    why,
+                    format!("leave `of \"{arm}\"` out"),
+                );
             }
             for column in wanted.iter().filter(|_| complete).filter(|c| !known.contains(c)) {
                 self.no_column(path.clone(), column, &known);
@@ -75,8 +81,10 @@ impl Check<'_> {
 
     fn no_column(&mut self, path: String, column: &str, known: &[String]) {
         let why = "columns are those of history.csv; probes add name.quantity";
-        let help = suggest::nearest(column, known.iter().map(String::as_str))
-            .map_or_else(|| format!("use one of: {}", known.join(", ")), |near| format!("did you mean `{near}`?"));
+        let help = suggest::nearest(column, known.iter().map(String::as_str)).map_or_else(
+            || format!("use one of: {}", known.join(", ")),
+            |near| format!("did you mean `{near}`?"),
+        );
         self.add(path, format!("history.csv will have no column `{column}`"), why, help);
     }
 

@@ -1,4 +1,5 @@
-//! Loads and moving supports against the rest of the case: their sides and bodies, the time their tables cover, what a static run can have.
+//! Loads and moving supports against the rest of the case: their sides and bodies, the time their
+//! tables cover, what a static run can have.
 
 use super::super::tree::Node;
 use super::Check;
@@ -26,7 +27,12 @@ impl Check<'_> {
                 let what = format!("the table \"{}\" does not cover the run", table.file);
                 let lines = format!("its first line is t = {first}, its last t = {last}");
                 let why = format!("{}: {lines}; the run goes from 0 to {end}", table.file);
-                self.add(format!("load[{i}].table"), what, why, "add lines to the table, or end the run earlier");
+                self.add(
+                    format!("load[{i}].table"),
+                    what,
+                    why,
+                    "add lines to the table, or end the run earlier",
+                );
             }
         }
     }
@@ -48,16 +54,27 @@ impl Check<'_> {
                 let what = "the support neither holds nor moves";
                 let why = "a support names directions in `fix`, in `move`, or in both";
                 self.problems.push(
-                    super::Problem::new(format!("support[{i}]"), what, why, "add `fix = [\"x\", \"y\"]`").at_key(),
+                    super::Problem::new(format!("support[{i}]"), what, why, "add `fix = [\"x\", \"y\"]`")
+                        .at_key(),
                 );
             }
             for entry in moved.map_or(&[][..], |m| &m.0) {
                 let path = format!("support[{i}].move.{}", entry.key);
                 if fixed.contains(&entry.key.as_str()) {
                     let what = format!("the direction {} is both fixed and moved", entry.key);
-                    self.add(path, what, "`fix` holds it, `move` gives its displacement", "leave it out of `fix`");
+                    self.add(
+                        path,
+                        what,
+                        "`fix` holds it, `move` gives its displacement",
+                        "leave it out of `fix`",
+                    );
                 } else if entry.key == "y" && self.draft.dimension == Some(1) {
-                    self.add(path, "there is no direction y", "the case has dimension = 1", "use move = { x = … }");
+                    self.add(
+                        path,
+                        "there is no direction y",
+                        "the case has dimension = 1",
+                        "use move = { x = … }",
+                    );
                 }
             }
         }
@@ -70,9 +87,12 @@ impl Check<'_> {
             return;
         }
         let why = "[manufactured] gives the motion; load, boundary and start follow from it";
-        for (key, path) in
-            [("support", "support[0]"), ("load", "load[0]"), ("contact", "contact[0]"), ("initial", "initial")]
-        {
+        for (key, path) in [
+            ("support", "support[0]"),
+            ("load", "load[0]"),
+            ("contact", "contact[0]"),
+            ("initial", "initial"),
+        ] {
             if root.get(key).is_some() {
                 self.add(path, format!("a manufactured motion has no {key} of its own"), why, "leave it out");
             }
@@ -98,7 +118,8 @@ impl Check<'_> {
         }
     }
 
-    /// Initial velocities where there is no inertia, or where another run has given them, and positions where it has.
+    /// Initial velocities where there is no inertia, or where another run has given them, and
+    /// positions where it has.
     pub(super) fn starts(&mut self) {
         let draft = self.draft;
         let is_static = draft.time.as_ref().is_some_and(|t| t.scheme.is_static());
@@ -110,11 +131,21 @@ impl Check<'_> {
         };
         for (i, body) in draft.bodies.iter().enumerate() {
             if body.as_ref().is_some_and(|b| !b.velocity.iter().all(super::super::FormulaSpec::is_zero)) {
-                self.add(format!("body[{i}].velocity"), "the body has an initial velocity", why, "leave it out");
+                self.add(
+                    format!("body[{i}].velocity"),
+                    "the body has an initial velocity",
+                    why,
+                    "leave it out",
+                );
             }
             if initial && body.as_ref().is_some_and(|b| b.position.is_some()) {
                 let why = "[initial] says where the bodies are";
-                self.add(format!("body[{i}].position"), "the body has an initial position", why, "leave it out");
+                self.add(
+                    format!("body[{i}].position"),
+                    "the body has an initial position",
+                    why,
+                    "leave it out",
+                );
             }
         }
     }

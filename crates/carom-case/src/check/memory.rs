@@ -1,8 +1,9 @@
 //! Whether the model fits into memory, estimated before anything is allocated.
 //!
-//! Per node of degree-k cells in dimension D, with c nodes coupled to it (mean over a large mesh: 3, 4, 5 for L2 L3 L4; 7, 12, 19 for T3 T6
-//! T10): half the matrix with 8-byte values and indices, 16·D²·c/2; its factor, a fill of c·log₂n/2 by nested dissection in the plane and c/2
-//! on a line, twice (numbers and scratch); a dozen state vectors.
+//! Per node of degree-k cells in dimension D, with c nodes coupled to it (mean over a large mesh:
+//! 3, 4, 5 for L2 L3 L4; 7, 12, 19 for T3 T6 T10): half the matrix with 8-byte values and indices,
+//! 16·D²·c/2; its factor, a fill of c·log₂n/2 by nested dissection in the plane and c/2 on a line,
+//! twice (numbers and scratch); a dozen state vectors.
 
 use carom_solid::Element;
 
@@ -49,9 +50,12 @@ impl Check<'_> {
             MeshSpec::Interval { .. } | MeshSpec::Rectangle { .. } => "cells",
             _ => "size",
         };
-        let what =
-            format!("the mesh of `{}` is too big for the memory: {nodes:.3e} nodes in {cells:.3e} cells", body.name);
-        let why = format!("the model needs about {}, and {} are available", gibibytes(total), gibibytes(available));
+        let what = format!(
+            "the mesh of `{}` is too big for the memory: {nodes:.3e} nodes in {cells:.3e} cells",
+            body.name
+        );
+        let why =
+            format!("the model needs about {}, and {} are available", gibibytes(total), gibibytes(available));
         let path = format!("body[{i}].mesh.{key}");
         self.add(path, what, why, "use a coarser mesh or an element of lower degree");
     }

@@ -63,7 +63,8 @@ impl<'a> Check<'a> {
     fn names(&self, list: &str) -> Option<Vec<&'a str>> {
         let tables = self.tables(list);
         let root = &self.document.root().0;
-        if root.iter().any(|e| keys::CASE.key(&e.key).is_none() && suggest::nearest(&e.key, [list]).is_some()) {
+        if root.iter().any(|e| keys::CASE.key(&e.key).is_none() && suggest::nearest(&e.key, [list]).is_some())
+        {
             return None;
         }
         let names: Option<Vec<_>> = tables.iter().map(|n| n.table()?.get("name")?.text()).collect();
@@ -78,7 +79,12 @@ impl<'a> Check<'a> {
             } else {
                 "space has 1 or 2 dimensions here"
             };
-            self.add("dimension", format!("this version has no dimension {d}"), why, "use dimension = 1 or 2");
+            self.add(
+                "dimension",
+                format!("this version has no dimension {d}"),
+                why,
+                "use dimension = 1 or 2",
+            );
         }
         let plane = self.document.root().get("plane").and_then(Node::text);
         if given == Some(1) && plane == Some("stress") {
@@ -92,8 +98,10 @@ impl<'a> Check<'a> {
         for (i, name) in names.iter().enumerate() {
             if let Some(first) = name.and_then(|_| names[..i].iter().position(|n| n == name)) {
                 let name = name.unwrap_or_default();
-                let why =
-                    format!("{list} number {} has this name already, and everything is referred to by name", first + 1);
+                let why = format!(
+                    "{list} number {} has this name already, and everything is referred to by name",
+                    first + 1
+                );
                 self.add(
                     format!("{list}[{i}].name"),
                     format!("two tables [[{list}]] are named `{name}`"),
@@ -108,7 +116,12 @@ impl<'a> Check<'a> {
     fn reference(&mut self, list: &str, name: &str, path: String) {
         let Some(names) = self.names(list).filter(|names| !names.contains(&name)) else { return };
         let why = format!("each {list} is a table [[{list}]] with a name; there are: {}", names.join(", "));
-        self.add(path, format!("there is no {list} `{name}`"), why, suggest::help(name, names.iter().copied()));
+        self.add(
+            path,
+            format!("there is no {list} `{name}`"),
+            why,
+            suggest::help(name, names.iter().copied()),
+        );
     }
 
     /// The body a side belongs to; reports a side that is not there.
@@ -128,7 +141,12 @@ impl<'a> Check<'a> {
                 || format!("the bodies are: {}", bodies.join(", ")),
                 |near| format!("did you mean `{near}.{part}`?"),
             );
-            self.add(path, format!("there is no body `{name}`"), format!("the side `{side}` is one of a body"), help);
+            self.add(
+                path,
+                format!("there is no body `{name}`"),
+                format!("the side `{side}` is one of a body"),
+                help,
+            );
             return None;
         }
         let body = self.body(name)?;
@@ -180,10 +198,16 @@ impl<'a> Check<'a> {
             for (j, side) in texts("on") {
                 self.side(side, format!("support[{i}].on[{j}]"));
             }
-            for (j, _) in texts("fix").filter(|(_, d)| *d == "y" && self.draft.dimension == Some(1)).collect::<Vec<_>>()
+            for (j, _) in
+                texts("fix").filter(|(_, d)| *d == "y" && self.draft.dimension == Some(1)).collect::<Vec<_>>()
             {
                 let why = "the case has dimension = 1";
-                self.add(format!("support[{i}].fix[{j}]"), "there is no direction y", why, "use fix = [\"x\"]");
+                self.add(
+                    format!("support[{i}].fix[{j}]"),
+                    "there is no direction y",
+                    why,
+                    "use fix = [\"x\"]",
+                );
             }
         }
     }

@@ -18,7 +18,8 @@ impl Check<'_> {
             self.no_restitution(spec, "the balance at the end of a step holds positions");
         }
         for (i, contact) in draft.contacts.iter().enumerate() {
-            let Some(law) = contact.as_ref().and_then(|c| c.law).filter(|law| *law != spec.contact_law()) else {
+            let Some(law) = contact.as_ref().and_then(|c| c.law).filter(|law| *law != spec.contact_law())
+            else {
                 continue;
             };
             if law == ContactLaw::Predictor && spec.nonsmooth().is_none() {
@@ -60,11 +61,15 @@ impl Check<'_> {
                     "a density > 0, or an implicit scheme of the α family",
                 );
             } else if body.mass.is_redistributed() {
-                let what = format!("body `{}` has nodes without mass, and {} divides by it", body.name, spec.kind);
+                let what =
+                    format!("body `{}` has nodes without mass, and {} divides by it", body.name, spec.kind);
                 let why = "its unknown is what forces and impulses do to velocities";
                 self.add(format!("body[{i}].mass"), what, why, "mass = \"lumped\"");
             } else if spec.is_explicit() && body.mass == MassKind::Consistent {
-                let what = format!("{} needs a lumped mass, and that of body `{}` is consistent", spec.kind, body.name);
+                let what = format!(
+                    "{} needs a lumped mass, and that of body `{}` is consistent",
+                    spec.kind, body.name
+                );
                 let why = "an explicit step divides each force by the mass of its node; a consistent mass couples nodes and would \
                            be a system to solve in every step";
                 let path = format!("body[{i}]");
@@ -87,16 +92,25 @@ impl Check<'_> {
         }
     }
 
-    /// Rules about averages and projections, where they are given and there is nothing they could mean.
+    /// Rules about averages and projections, where they are given and there is nothing they could
+    /// mean.
     fn rules_of_stages(&mut self, spec: &SchemeSpec) {
         for (i, contact) in self.tables("contact").iter().enumerate() {
             let word = |key| contact.table().and_then(|t| t.get(key)?.text());
             if word("force") == Some("end") {
                 let why = format!("{} averages no forces: there is one per step, or one impulse", spec.kind);
-                self.add(format!("contact[{i}].force"), "force = \"end\" has no meaning here", why, "leave it out");
+                self.add(
+                    format!("contact[{i}].force"),
+                    "force = \"end\" has no meaning here",
+                    why,
+                    "leave it out",
+                );
             }
             if word("enforcement") == Some("penalty") {
-                let why = format!("{} has its own rule for contact, by forces or impulses without springs", spec.kind);
+                let why = format!(
+                    "{} has its own rule for contact, by forces or impulses without springs",
+                    spec.kind
+                );
                 let what = "enforcement = \"penalty\" has no meaning here";
                 self.add(format!("contact[{i}].enforcement"), what, why, "leave it out");
             }
@@ -118,8 +132,7 @@ impl Check<'_> {
         for (i, contact) in self.draft.contacts.iter().enumerate() {
             if let Some(e) = contact.as_ref().map(|c| c.restitution).filter(|e| *e != 0.0) {
                 let what = format!("{} has no restitution, and e = {e} was given", spec.kind);
-                let help =
-                    "leave restitution out, or use scheme moreau-jean, nonsmooth-generalized-alpha or paoli-schatzman";
+                let help = "leave restitution out, or use scheme moreau-jean, nonsmooth-generalized-alpha or paoli-schatzman";
                 self.add(format!("contact[{i}].restitution"), what, why, help);
             }
         }

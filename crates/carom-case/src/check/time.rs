@@ -4,11 +4,13 @@ use super::super::TimeSpec;
 use super::super::problem::rounded;
 use super::Check;
 
-/// More steps than any run will take: 10⁹ of a microsecond each are a quarter of an hour, of a millisecond twelve days.
+/// More steps than any run will take: 10⁹ of a microsecond each are a quarter of an hour, of a
+/// millisecond twelve days.
 const MOST_STEPS: f64 = 1e9;
 
 impl TimeSpec {
-    /// Number of steps to the end; the reader has checked that `end` is a multiple of `step` within 10⁻⁶ of a step's share.
+    /// Number of steps to the end; the reader has checked that `end` is a multiple of `step` within
+    /// 10⁻⁶ of a step's share.
     pub fn steps(&self) -> usize {
         (self.end / self.step).round() as usize
     }
@@ -24,10 +26,20 @@ impl Check<'_> {
         let steps = (end / step).round();
         if end < step * (1.0 - 1e-6) {
             let why = format!("the run ends at {end} and would not take one step");
-            self.add("time.step", format!("the step {step} is longer than the run"), why, "choose step ≤ end");
+            self.add(
+                "time.step",
+                format!("the step {step} is longer than the run"),
+                why,
+                "choose step ≤ end",
+            );
         } else if steps > MOST_STEPS {
             let why = format!("end / step = {:.3e}; at most {MOST_STEPS:e} steps are taken", end / step);
-            self.add("time.step", "the run has too many steps", why, "choose a longer step or an earlier end");
+            self.add(
+                "time.step",
+                "the run has too many steps",
+                why,
+                "choose a longer step or an earlier end",
+            );
         } else if (end / step - steps).abs() > 1e-6 * steps {
             let (below, above) = ((end / step).floor(), (end / step).ceil());
             let why = format!("times are n·step, and end / step = {}", rounded(end / step));
@@ -40,7 +52,12 @@ impl Check<'_> {
             );
             self.add("time.end", format!("the end {end} is not a multiple of the step {step}"), why, help);
         }
-        let times = self.document.root().get("output").and_then(|o| o.table()?.get("at_times")?.list()).unwrap_or(&[]);
+        let times = self
+            .document
+            .root()
+            .get("output")
+            .and_then(|o| o.table()?.get("at_times")?.list())
+            .unwrap_or(&[]);
         for (i, t) in times.iter().enumerate() {
             if let Some(t) = t.number().filter(|t| t.is_finite() && !(0.0..=end).contains(t)) {
                 let what = format!("{t} is not a time of this run");

@@ -1,4 +1,5 @@
-//! The keys of a case file, once: what the reader accepts, what the schema and the documentation say.
+//! The keys of a case file, once: what the reader accepts, what the schema and the documentation
+//! say.
 
 mod schemes;
 mod shapes;
@@ -58,7 +59,8 @@ pub enum Default {
 pub enum Kind {
     /// Any text.
     Text,
-    /// A name: no dots, blanks, slashes, commas or quotes, since columns and sides are made from it.
+    /// A name: no dots, blanks, slashes, commas or quotes, since columns and sides are made from
+    /// it.
     Name,
     /// One of these words; a later version also takes the second list.
     Choice(&'static [&'static str], &'static [&'static str]),

@@ -1,4 +1,5 @@
-//! Kinds of schemes, made from the table of `carom-time`: a scheme declares its parameters beside its formula.
+//! Kinds of schemes, made from the table of `carom-time`: a scheme declares its parameters beside
+//! its formula.
 
 use std::ops::Bound;
 use std::sync::LazyLock;
@@ -41,6 +42,12 @@ fn table(kind: &KindInfo) -> Table {
         let key = key(parameter.key, Number(range), parameter.meaning).example(parameter.example);
         if kind.sets.len() > 1 { key.optional() } else { key }
     };
-    let keys: Vec<Key> = kind.parameters().into_iter().map(number).chain(kind.is_alpha().then_some(FORCES)).collect();
-    Table { name: format!("scheme \"{}\"", kind.name).leak(), doc: kind.summary, keys: keys.leak(), later: &[] }
+    let keys: Vec<Key> =
+        kind.parameters().into_iter().map(number).chain(kind.is_alpha().then_some(FORCES)).collect();
+    Table {
+        name: format!("scheme \"{}\"", kind.name).leak(),
+        doc: kind.summary,
+        keys: keys.leak(),
+        later: &[],
+    }
 }

@@ -1,10 +1,12 @@
 //! Every key of every table: name, values, unit, default, meaning, example.
 
 use super::Kind::{
-    Choice, Choices, Count, Formula, Formulas, FormulasOr, Name, Number, NumberOrFalse, Numbers, Side, SideOr, Sides,
-    Tables, Text, Truth, Variant, Vector,
+    Choice, Choices, Count, Formula, Formulas, FormulasOr, Name, Number, NumberOrFalse, Numbers, Side,
+    SideOr, Sides, Tables, Text, Truth, Variant, Vector,
 };
-use super::{ANY, IN_SPACE, IN_SPACE_AND_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, schemes, shapes};
+use super::{
+    ANY, IN_SPACE, IN_SPACE_AND_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, schemes, shapes,
+};
 
 /// The whole file.
 pub const CASE: Table = Table {
@@ -78,8 +80,12 @@ const MATERIAL: Table = Table {
     doc: "A hyperelastic material: lambda and mu, or young and poisson.",
     keys: &[
         key("name", Name, "Name bodies refer to.").example("\"rubber\""),
-        key("law", Choice(&["neo-hookean", "saint-venant-kirchhoff", "linear-elastic"], &[]), "Constitutive law.")
-            .example("\"neo-hookean\""),
+        key(
+            "law",
+            Choice(&["neo-hookean", "saint-venant-kirchhoff", "linear-elastic"], &[]),
+            "Constitutive law.",
+        )
+        .example("\"neo-hookean\""),
         key("density", Number(NOT_NEGATIVE), "Mass per reference volume; 0: massless.")
             .unit("mass/length³")
             .example("0.25"),
@@ -158,7 +164,9 @@ const VELOCITY: Table = Table {
             .unit("length/time")
             .optional()
             .example("[0.0, -1.0]"),
-        key("angular", Number(ANY), "Angular velocity, anticlockwise, in dimension 2.").unit("1/time").default("0.0"),
+        key("angular", Number(ANY), "Angular velocity, anticlockwise, in dimension 2.")
+            .unit("1/time")
+            .default("0.0"),
         key("about", Vector, "Centre of the rotation, needed with angular.")
             .unit("length")
             .optional()
@@ -206,8 +214,14 @@ const MOVE: Table = Table {
     name: "move",
     doc: "Displacements of a side from its reference position.",
     keys: &[
-        key("x", Formula(IN_SPACE_AND_TIME), "Displacement along x.").unit("length").optional().example("\"0.1*t\""),
-        key("y", Formula(IN_SPACE_AND_TIME), "Displacement along y.").unit("length").optional().example("\"-0.1*t\""),
+        key("x", Formula(IN_SPACE_AND_TIME), "Displacement along x.")
+            .unit("length")
+            .optional()
+            .example("\"0.1*t\""),
+        key("y", Formula(IN_SPACE_AND_TIME), "Displacement along y.")
+            .unit("length")
+            .optional()
+            .example("\"-0.1*t\""),
     ],
     later: &[],
 };
@@ -217,23 +231,33 @@ const LOAD: Table = Table {
     doc: "Forces on sides (on, with traction or pressure) or in a body (body, with body_force). Formulas in X, Y (reference place) and t.",
     keys: &[
         key("name", Name, "Name in messages.").optional().example("\"press\""),
-        key("on", Sides, "Sides that are loaded, with traction or pressure.").optional().example("[\"prism.top\"]"),
+        key("on", Sides, "Sides that are loaded, with traction or pressure.")
+            .optional()
+            .example("[\"prism.top\"]"),
         key("body", Name, "Body that is loaded, with body_force.").optional().example("\"prism\""),
         key("traction", Formulas(IN_SPACE_AND_TIME), "Dead force per reference area.")
             .unit("mass/(length·time²)")
             .optional()
             .example("[\"0\", \"-5*min(t/0.1, 1)\"]"),
-        key("pressure", Formula(IN_SPACE_AND_TIME), "Follower force per current area, against the outward normal.")
-            .unit("mass/(length·time²)")
-            .optional()
-            .example("\"2*t\""),
+        key(
+            "pressure",
+            Formula(IN_SPACE_AND_TIME),
+            "Follower force per current area, against the outward normal.",
+        )
+        .unit("mass/(length·time²)")
+        .optional()
+        .example("\"2*t\""),
         key("body_force", Formulas(IN_SPACE_AND_TIME), "Dead force per reference volume.")
             .unit("mass/(length²·time²)")
             .optional()
             .example("[\"0\", \"-3*X\"]"),
-        key("table", Text, "CSV file with columns t, value: a factor, linear between its lines, on the load.")
-            .optional()
-            .example("\"amplitude.csv\""),
+        key(
+            "table",
+            Text,
+            "CSV file with columns t, value: a factor, linear between its lines, on the load.",
+        )
+        .optional()
+        .example("\"amplitude.csv\""),
     ],
     later: &[],
 };
@@ -242,8 +266,10 @@ const INITIAL: Table = Table {
     name: "[initial]",
     doc: "Start from the end of another run of the same meshes; time begins at 0 anew.",
     keys: &[
-        key("from", Text, "Directory of the finished run, from the folder of the case.").example("\"runs/preload\""),
-        key("velocities", Choice(&["keep", "zero"], &[]), "Whether its velocities are taken over.").default("\"keep\""),
+        key("from", Text, "Directory of the finished run, from the folder of the case.")
+            .example("\"runs/preload\""),
+        key("velocities", Choice(&["keep", "zero"], &[]), "Whether its velocities are taken over.")
+            .default("\"keep\""),
     ],
     later: &[],
 };
@@ -324,9 +350,8 @@ const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true
 const RIGID: Table = Table {
     name: "a rigid primary",
     doc: "A primary that does not deform.",
-    keys: &[
-        key("plane", Kind::Table(&PLANE), "A rigid half-space.").example("{ point = [0.0, 0.0], normal = [0.0, 1.0] }")
-    ],
+    keys: &[key("plane", Kind::Table(&PLANE), "A rigid half-space.")
+        .example("{ point = [0.0, 0.0], normal = [0.0, 1.0] }")],
     later: &["circle", "motion"],
 };
 
@@ -349,7 +374,8 @@ const TIME: Table = Table {
             .unit("time")
             .example("1.875e-3")
             .later("a table { initial, min, max, … }"),
-        key("scheme", Variant(schemes), "Time integrator.").example("{ kind = \"chung-hulbert\", rho_inf = 0.1 }"),
+        key("scheme", Variant(schemes), "Time integrator.")
+            .example("{ kind = \"chung-hulbert\", rho_inf = 0.1 }"),
         key(
             "energy_guard",
             NumberOrFalse(POSITIVE),
@@ -374,10 +400,10 @@ const NEWTON: Table = Table {
         key("max_iterations", Count(1), "Iterations before a step is rejected.").default("20"),
         key(
             "tangent",
-            Choice(&["kept", "kept-double", "full"], &[]),
+            Choice(&["frozen", "frozen-double", "full"], &[]),
             "A factored tangent is kept over iterations and steps as a preconditioner while that pays (factors of 10 000 unknowns and more in single precision where that is enough, or all in double), or the tangent is formed and factored in every iteration.",
         )
-        .default("\"kept\""),
+        .default("\"frozen\""),
         key(
             "mixing",
             Count(0),
@@ -395,8 +421,12 @@ const PROBE: Table = Table {
         key("name", Name, "Name; columns are name.quantity.").example("\"A\""),
         key("at", Vector, "Reference point of the body.").unit("length").example("[0.0, 1.5]"),
         key("body", Name, "Body it belongs to.").example("\"cylinder\""),
-        key("record", Choices(QUANTITIES), "Displacement, velocity, acceleration, Cauchy stress, volume ratio.")
-            .example("[\"uy\", \"sigma_yy\"]"),
+        key(
+            "record",
+            Choices(QUANTITIES),
+            "Displacement, velocity, acceleration, Cauchy stress, volume ratio.",
+        )
+        .example("[\"uy\", \"sigma_yy\"]"),
     ],
     later: &[],
 };

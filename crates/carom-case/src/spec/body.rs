@@ -76,9 +76,11 @@ pub enum MassKind {
     Consistent,
     /// Diagonal scaling (HRZ).
     Lumped,
-    /// None on the nodes of contacts; total, centre and second moments kept by the least change of the others.
+    /// None on the nodes of contacts; total, centre and second moments kept by the least change of
+    /// the others.
     Redistributed,
-    /// None on the nodes of contacts; what they lose goes to the next nodes, and the centre is not kept.
+    /// None on the nodes of contacts; what they lose goes to the next nodes, and the centre is not
+    /// kept.
     RedistributedNearest,
 }
 

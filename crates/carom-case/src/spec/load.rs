@@ -1,4 +1,5 @@
-//! What acts on bodies from outside: supports that hold or move them, forces on sides and in bodies.
+//! What acts on bodies from outside: supports that hold or move them, forces on sides and in
+//! bodies.
 
 use serde::{Deserialize, Serialize};
 
@@ -42,7 +43,9 @@ impl LoadSpec {
     pub fn label(&self) -> String {
         match (&self.name, &self.kind) {
             (Some(name), _) => name.clone(),
-            (None, LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. }) => format!("on {}", on.join(", ")),
+            (None, LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. }) => {
+                format!("on {}", on.join(", "))
+            }
             (None, LoadKind::BodyForce { body, .. }) => format!("in {body}"),
         }
     }
@@ -75,7 +78,8 @@ pub enum LoadKind {
     },
 }
 
-/// A factor over time, linear between its lines; kept whole, so that a run goes on without the file.
+/// A factor over time, linear between its lines; kept whole, so that a run goes on without the
+/// file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TableSpec {
     /// The file, as it was named.

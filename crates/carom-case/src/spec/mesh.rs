@@ -66,7 +66,8 @@ pub enum MeshSpec {
         /// Places with finer cells.
         refine: Vec<RefineSpec>,
     },
-    /// A named physical surface (dimension 1: curve) of a .msh file; sides are its named physical curves (points).
+    /// A named physical surface (dimension 1: curve) of a .msh file; sides are its named physical
+    /// curves (points).
     File {
         /// Absolute path.
         file: PathBuf,

@@ -13,7 +13,8 @@ pub struct TimeSpec {
     pub step: f64,
     /// Time integrator as given.
     pub scheme: SchemeSpec,
-    /// Fraction of the largest energy so far that may be created before the run stops; none: reported only.
+    /// Fraction of the largest energy so far that may be created before the run stops; none:
+    /// reported only.
     pub energy_guard: Option<f64>,
 }
 
@@ -39,7 +40,8 @@ pub struct NewtonSpec {
     /// Whether factors are kept over iterations and steps.
     #[serde(default)]
     pub tangent: TangentRule,
-    /// Earlier iterations with the same factor that each correction is improved by. Runs of versions without this had none.
+    /// Earlier iterations with the same factor that each correction is improved by. Runs of
+    /// versions without this had none.
     #[serde(default)]
     pub mixing: usize,
 }
@@ -50,9 +52,9 @@ pub struct NewtonSpec {
 pub enum TangentRule {
     /// When the kept one no longer pays; large factors in single precision.
     #[default]
-    Kept,
+    Frozen,
     /// The same, every factor in double precision.
-    KeptDouble,
+    FrozenDouble,
     /// In every iteration.
     Full,
 }

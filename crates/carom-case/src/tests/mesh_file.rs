@@ -1,4 +1,5 @@
-//! Meshes from files: found from the case's folder, known by their hash, their faults placed under the key that named them.
+//! Meshes from files: found from the case's folder, known by their hash, their faults placed under
+//! the key that named them.
 
 use super::*;
 
@@ -31,7 +32,9 @@ fn the_shipped_case_knows_its_meshes() {
 #[test]
 fn what_is_wrong_stands_under_its_key() {
     let missing = told("body.prism.mesh.file=nowhere.msh");
-    assert!(missing.what.contains("\"nowhere.msh\" cannot be read") && missing.why.contains("there is no file"));
+    assert!(
+        missing.what.contains("\"nowhere.msh\" cannot be read") && missing.why.contains("there is no file")
+    );
     assert!(told("body.prism.mesh.file=../gmsh").why.contains("is not a file"));
     assert!(told("body.prism.mesh.file=gmsh.toml").what.contains("this is no Gmsh mesh"));
     let name = told("body.prism.mesh.surface=prisma");

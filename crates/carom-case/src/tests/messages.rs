@@ -40,7 +40,10 @@ try: write for example `rho_inf = 0.8`"
 const IMPACTS: &[(&[&str], &[&str])] = &[
     // types and ranges
     (&["material.rubber.density=heavy"], &["`density` must be a number ≥ 0, not the text \"heavy\""]),
-    (&["material.rubber.density=-0.25"], &["must be a number ≥ 0, not -0.25", "did you mean `density = 0.25`?"]),
+    (
+        &["material.rubber.density=-0.25"],
+        &["must be a number ≥ 0, not -0.25", "did you mean `density = 0.25`?"],
+    ),
     (&["time.end=nan"], &["`end` is NaN", "every number of a case is finite"]),
     (&["body.cylinder.gravity=[0.0, -inf]"], &["`gravity` is -inf"]),
     (&["body.cylinder.gravity=[0.0]"], &["must be a list of 2 numbers, not a list of 1 values"]),
@@ -71,12 +74,18 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     // schemes
     (&["time.scheme.kind=chung-hulber"], &["did you mean `chung-hulbert`?"]),
     (&["time.scheme={ kind = \"bathe\", rho_inf = 1.5 }"], &["`rho_inf` must be a number in [0, 1]"]),
-    (&["time.scheme={ kind = \"hu\", rho_inf = 0.5 }"], &["unknown key `rho_inf` in scheme \"hu\"", "scheme \"wbz\""]),
+    (
+        &["time.scheme={ kind = \"hu\", rho_inf = 0.5 }"],
+        &["unknown key `rho_inf` in scheme \"hu\"", "scheme \"wbz\""],
+    ),
     (&["time.scheme={ kind = \"newmark\", beta = 0.25 }"], &["needs `gamma`"]),
     (&["time.scheme={ kind = \"hht\", alpha = -0.1 }"], &["did you mean `alpha = 0.1`?"]),
     (&["time.scheme=hu"], &["`scheme` must be a table { kind = \"…\", … }, not the text \"hu\""]),
     // steps
-    (&["time.step=7e-3"], &["is not a multiple of the step", "end / step = 107.142857", "end = 0.749 or end = 0.756"]),
+    (
+        &["time.step=7e-3"],
+        &["is not a multiple of the step", "end / step = 107.142857", "end = 0.749 or end = 0.756"],
+    ),
     (&["time.step=1.0"], &["the step 1 is longer than the run"]),
     (&["time.step=7.5e-13"], &["too many steps"]),
     (&["output.at_times=[0.1, 0.8]"], &["0.8 is not a time of this run"]),
@@ -87,28 +96,46 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["probe.A.body=cylindr"], &["there is no body `cylindr`", "did you mean `cylinder`?"]),
     (&["contact.strike.secondary=prism.left"], &["both sides of `strike` belong to the body `prism`"]),
     (&["contact.strike.secondary=cylinder"], &["`cylinder` is not a side", "cylinder.arc, cylinder.axis"]),
-    (&["contact.strike.secondary=cylindr.arc"], &["there is no body `cylindr`", "did you mean `cylinder.arc`?"]),
+    (
+        &["contact.strike.secondary=cylindr.arc"],
+        &["there is no body `cylindr`", "did you mean `cylinder.arc`?"],
+    ),
     (&["body.cylindr.element=T6"], &["no `body` is named `cylindr`", "did you mean `body.cylinder`?"]),
     (&["expect=[{ what = \"min A.ux\", at_most = 0 }]"], &["no column `A.ux`", "did you mean `A.uy`?"]),
     (&["expect=[{ what = \"at 0.9 A.uy\", at_most = 0 }]"], &["`0.9` is not a time of this run"]),
     (&["expect=[{ what = \"lowest A.uy\", at_most = 0 }]"], &["is not a quantity to expect"]),
-    (&["expect=[{ what = \"restitutoin\", at_most = 1 }]"], &["there is no metric `restitutoin`", "`restitution`?"]),
-    (&["expect=[{ what = \"rms [ A.uy - A.uz ]\", at_most = 0 }]"], &["no column `A.uz`", "did you mean `A.uy`?"]),
+    (
+        &["expect=[{ what = \"restitutoin\", at_most = 1 }]"],
+        &["there is no metric `restitutoin`", "`restitution`?"],
+    ),
+    (
+        &["expect=[{ what = \"rms [ A.uy - A.uz ]\", at_most = 0 }]"],
+        &["no column `A.uz`", "did you mean `A.uy`?"],
+    ),
     (&["expect=[{ what = \"A.uy\", at_most = 0 }]"], &["no metric `A.uy`", "write for example `last A.uy`"]),
     (&["expect=[{ what = \"last A.uy of 'x'\", at_most = 0 }]"], &["no arm \"x\"", "only a study has arms"]),
     (
         &["expect=[{ what = \"A.uy\", formula = \"2*sun(t)\", tolerance = 0 }]"],
         &["no function `sun`", "did you mean `sin`"],
     ),
-    (&["expect=[{ what = \"last A.uy\", formula = \"t\", tolerance = 0 }]"], &["is not a quantity to expect"]),
+    (
+        &["expect=[{ what = \"last A.uy\", formula = \"t\", tolerance = 0 }]"],
+        &["is not a quantity to expect"],
+    ),
     (&["expect=[{ what = \"last A.uy\", norm = \"rms\", at_most = 0 }]"], &["`norm` without `formula`"]),
     (
         &["expect=[{ what = \"order\", of = \"last A.uy\", against = \"time.step\", at_least = 2 }]"],
         &["no number of one run", "of a study"],
     ),
-    (&["expect=[{ what = \"last A.uy\", against = \"time.step\", at_most = 0 }]"], &["`against` without an order"]),
+    (
+        &["expect=[{ what = \"last A.uy\", against = \"time.step\", at_most = 0 }]"],
+        &["`against` without an order"],
+    ),
     (&["expect=[{ what = \"min A.uy\", slow = 1, at_most = 0 }]"], &["`slow`", "true or false"]),
-    (&["expect=[{ what = \"A.uy\", formula = \"exact\", tolerance = 0 }]"], &["no exact formula of `A.uy`", "[exact]"]),
+    (
+        &["expect=[{ what = \"A.uy\", formula = \"exact\", tolerance = 0 }]"],
+        &["no exact formula of `A.uy`", "[exact]"],
+    ),
     (&["exact={ \"A.uz\" = \"t\" }"], &["no column `A.uz`", "did you mean `A.uy`?"]),
     (&["exact={ \"A.uy\" = \"s\" }"], &["no variable `s`"]),
     (&["expect=[{ what = \"min A.uy\", value = 0 }]"], &["does not set one bound", "it has value"]),
@@ -122,13 +149,28 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
         ],
     ),
     (&["load=[{ on = [\"prism.top\"], traction = [\"X +\", 1] }]"], &["the formula ends where a number"]),
-    (&["load=[{ on = [\"prism.top\"], traction = [\"Z\", 1] }]"], &["no variable `Z`: the variables are X, Y, t"]),
-    (&["load=[{ on = [\"prism.top\"], traction = [1.0] }]"], &["`traction` must be a list of 2 numbers or formulas"]),
-    (&["load=[{ on = [\"prism.topp\"], pressure = 1 }]"], &["body `prism` has no side `topp`", "`prism.top`?"]),
-    (&["load=[{ body = \"prisma\", body_force = [0, 1] }]"], &["there is no body `prisma`", "did you mean `prism`?"]),
+    (
+        &["load=[{ on = [\"prism.top\"], traction = [\"Z\", 1] }]"],
+        &["no variable `Z`: the variables are X, Y, t"],
+    ),
+    (
+        &["load=[{ on = [\"prism.top\"], traction = [1.0] }]"],
+        &["`traction` must be a list of 2 numbers or formulas"],
+    ),
+    (
+        &["load=[{ on = [\"prism.topp\"], pressure = 1 }]"],
+        &["body `prism` has no side `topp`", "`prism.top`?"],
+    ),
+    (
+        &["load=[{ body = \"prisma\", body_force = [0, 1] }]"],
+        &["there is no body `prisma`", "did you mean `prism`?"],
+    ),
     (&["load=[{ on = [\"prism.top\"] }]"], &["does not say one force and its place: it has no force and on"]),
     (&["load=[{ body = \"prism\", pressure = 1 }]"], &["it has pressure and body"]),
-    (&["load=[{ on = [\"prism.top\"], pressure = 1, table = \"no.csv\" }]"], &["the table \"no.csv\" cannot be used"]),
+    (
+        &["load=[{ on = [\"prism.top\"], pressure = 1, table = \"no.csv\" }]"],
+        &["the table \"no.csv\" cannot be used"],
+    ),
     (&["support=[{ on = [\"prism.bottom\"] }]"], &["the support neither holds nor moves"]),
     (
         &["support=[{ on = [\"prism.bottom\"], fix = [\"y\"], move = { y = \"t\" } }]"],
@@ -153,7 +195,10 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["manufactured.y=[\"X\"]"], &["`y` must be a list of 2 numbers or formulas"]),
     (&["expect=[{ what = \"last error_l2\", at_most = 0 }]"], &["no column `error_l2`"]),
     // contact without mass
-    (&["material.rubber.density=0"], &["nothing that touches in `strike` has mass", "persistency = \"none\""]),
+    (
+        &["material.rubber.density=0"],
+        &["nothing that touches in `strike` has mass", "persistency = \"none\""],
+    ),
     // combinations without meaning
     (
         &["contact.strike.law=predictor", "time.scheme.kind=bathe"],
@@ -163,14 +208,23 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
         &["contact.strike.law=predictor", "contact.strike.enforcement=penalty"],
         &["a penalty has no predictor to project"],
     ),
-    (&["contact.strike.law=predictor", "contact.strike.persistency=project"], &["this projection has no meaning"]),
+    (
+        &["contact.strike.law=predictor", "contact.strike.persistency=project"],
+        &["this projection has no meaning"],
+    ),
     (
         &["contact.strike.stiffness=3.0"],
         &["this stiffness has no meaning", "only enforcement = \"penalty\" has springs"],
     ),
     // schemes with a contact law of their own
-    (&["contact.strike.restitution=0.5"], &["chung-hulbert has no restitution, and e = 0.5 was given", "moreau-jean"]),
-    (&["contact.strike.law=velocity"], &["law = \"velocity\" holds velocities", "the unknowns of chung-hulbert"]),
+    (
+        &["contact.strike.restitution=0.5"],
+        &["chung-hulbert has no restitution, and e = 0.5 was given", "moreau-jean"],
+    ),
+    (
+        &["contact.strike.law=velocity"],
+        &["law = \"velocity\" holds velocities", "the unknowns of chung-hulbert"],
+    ),
     (&["time.scheme={ kind = \"moreau-jean\", theta = 0.4 }"], &["`theta` must be a number in [0.5, 1]"]),
     (
         &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.law=position"],
@@ -182,10 +236,17 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     ),
     (
         &["time.scheme={ kind = \"central-difference\" }"],
-        &["central-difference needs a lumped mass, and that of body `cylinder` is consistent", "mass = \"lumped\""],
+        &[
+            "central-difference needs a lumped mass, and that of body `cylinder` is consistent",
+            "mass = \"lumped\"",
+        ],
     ),
     (
-        &["time.scheme={ kind = \"paoli-schatzman\" }", "material.rubber.density=0", "contact.strike.persistency=none"],
+        &[
+            "time.scheme={ kind = \"paoli-schatzman\" }",
+            "material.rubber.density=0",
+            "contact.strike.persistency=none",
+        ],
         &["body `cylinder` has no mass, and paoli-schatzman divides by it"],
     ),
     (
@@ -214,8 +275,14 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
         &["body.prism.mesh={ shape = \"ring\", inner = 1.0, outer = 1.0, center = [0, 0], size = 1 }"],
         &["`outer` = 1 is not"],
     ),
-    (&["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 1]], size = 1 }"], &["at least 3 points"]),
-    (&["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 1], [2]], size = 1 }"], &["`points` must be"]),
+    (
+        &["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 1]], size = 1 }"],
+        &["at least 3 points"],
+    ),
+    (
+        &["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 1], [2]], size = 1 }"],
+        &["`points` must be"],
+    ),
     (
         &["body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [1, 1], [1, 0], [0, 1]], size = 1 }"],
         &["side1 and side3 of the polygon cross", "list its corners in order"],
@@ -232,7 +299,10 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     // keys of other tables
     (&["time.tolerance=1e-9"], &["unknown key `tolerance` in [time]", "is a key of [newton]"]),
     // memory
-    (&["body.prism.mesh.cells=[10000000000, 1]"], &["too big for the memory: 1.200e11 nodes in 2.000e10 cells"]),
+    (
+        &["body.prism.mesh.cells=[10000000000, 1]"],
+        &["too big for the memory: 1.200e11 nodes in 2.000e10 cells"],
+    ),
     (&["body.prism.mesh.cells=[9223372036854775807, 9223372036854775807]"], &["too big for the memory"]),
     (&["body.cylinder.mesh.size=1e-300"], &["the mesh of `cylinder` is too big"]),
     // overrides themselves
@@ -261,7 +331,11 @@ fn wrong_bars() {
         ("\"sigma_xx\"]", "\"sigma_yy\"]", &["there is no quantity sigma_yy"]),
         ("[\"ux\", ", "[\"sigma_xx\", ", &["sigma_xx is recorded twice"]),
         ("normal = [2]", "normal = [0]", &["the normal is zero"]),
-        ("shape = \"interval\", min = 0,", "shape = \"disc\", min = 0,", &["the shape \"disc\" is of dimension 2"]),
+        (
+            "shape = \"interval\", min = 0,",
+            "shape = \"disc\", min = 0,",
+            &["the shape \"disc\" is of dimension 2"],
+        ),
         ("poisson = 0.3", "poisson = 0.5", &["`poisson` must be a number in (-1, 0.5), not 0.5"]),
         ("[[support]]", "[support]", &["write its header in double brackets: [[support]]"]),
         (
@@ -291,7 +365,10 @@ fn pairs_are_contacts_once() {
 #[test]
 fn all_problems_in_one_pass() {
     let told = shown(
-        &IMPACT.replace("density", "densty").replace("prism.top\"", "prism.topp\"").replace("end = 0.75", "end = -1"),
+        &IMPACT
+            .replace("density", "densty")
+            .replace("prism.top\"", "prism.topp\"")
+            .replace("end = 0.75", "end = -1"),
         &["time.scheme.rho_inf=2"],
     );
     for part in ["densty", "topp", "`end` must be", "`rho_inf` must be"] {
@@ -340,9 +417,15 @@ fn tables_of_loads() {
         document.diagnose_all(&read(&document).unwrap_err()).to_string()
     };
     for (table, messages) in [
-        ("t,force\n0,1\n9,1\n", ["the table \"a.csv\" cannot be used", "a.csv:1: there is no column `value`"]),
+        (
+            "t,force\n0,1\n9,1\n",
+            ["the table \"a.csv\" cannot be used", "a.csv:1: there is no column `value`"],
+        ),
         ("t,value\n0,1\n0.5,1\n", ["the table \"a.csv\" does not cover the run", "its last t = 0.5"]),
-        ("t,value\n0.1,1\n9,1\n", ["the table \"a.csv\" does not cover the run", "its first line is t = 0.1"]),
+        (
+            "t,value\n0.1,1\n9,1\n",
+            ["the table \"a.csv\" does not cover the run", "its first line is t = 0.1"],
+        ),
     ] {
         let told = told(table);
         assert!(told.contains(&format!("case.toml:{line}:9: ")), "{told}");

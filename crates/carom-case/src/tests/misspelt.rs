@@ -1,4 +1,5 @@
-//! Every key of every shipped case, misspelt in three ways: one error, whose help names the key that was meant.
+//! Every key of every shipped case, misspelt in three ways: one error, whose help names the key
+//! that was meant.
 
 use super::super::Document;
 use super::{BARS, resolved_as};
@@ -23,7 +24,8 @@ fn values(node: &Node, found: &mut Vec<(std::ops::Range<usize>, String)>) {
     }
 }
 
-/// Every case of a directory and those inside it; files of several runs have an `[[arm]]` or a `[grid]` and are none.
+/// Every case of a directory and those inside it; files of several runs have an `[[arm]]` or a
+/// `[grid]` and are none.
 fn shipped(directory: &std::path::Path) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(directory).unwrap() {
@@ -51,13 +53,15 @@ fn every_misspelt_key_is_recognised() {
         for (span, key) in found {
             let doubled = format!("{key}{}", &key[key.len() - 1..]);
             // Keys of one letter, `x` and `y`, have nothing to swap.
-            let swapped =
-                key.get(1..2).map_or_else(|| doubled.clone(), |second| format!("{second}{}{}", &key[..1], &key[2..]));
+            let swapped = key
+                .get(1..2)
+                .map_or_else(|| doubled.clone(), |second| format!("{second}{}{}", &key[..1], &key[2..]));
             let capital = format!("{}{}", key[..1].to_uppercase(), &key[1..]);
             for wrong in [doubled, swapped, capital].into_iter().filter(|wrong| *wrong != key) {
                 let text = format!("{}{wrong}{}", &text[..span.start], &text[span.end..]);
                 let problems = resolved_as(name, &text, &[]).expect_err(&wrong);
-                // A header of a list that is misspelt leaves the others of the list: one problem all the same.
+                // A header of a list that is misspelt leaves the others of the list: one problem
+                // all the same.
                 let told: Vec<_> = problems.iter().map(|p| format!("{} / {}", p.what, p.help)).collect();
                 assert_eq!(problems.len(), 1, "{wrong} for {key}: {told:#?}");
                 assert!(problems[0].what.starts_with(&format!("unknown key `{wrong}`")), "{told:?}");

@@ -7,18 +7,22 @@ const POLYGON: &str = "body.prism.mesh={ shape = \"polygon\", points = [[0, 0], 
 
 #[test]
 fn shapes_are_resolved_and_survive_json() {
-    let ring = "body.prism.mesh={ shape = \"ring\", inner = 0.4, outer = 0.5, center = [0, -0.5], size = 0.1 }";
+    let ring =
+        "body.prism.mesh={ shape = \"ring\", inner = 0.4, outer = 0.5, center = [0, -0.5], size = 0.1 }";
     for (mesh, sides) in [(ring, &["inner", "outer"][..]), (POLYGON, &["side1", "side2", "side3"])] {
         let sides_named = format!("support=[{{ on = [\"prism.{}\"], fix = [\"x\"] }}]", sides[1]);
         let primary = format!("contact.strike.primary=prism.{}", sides[0]);
         let probes = "probe=[{ name = \"A\", at = [0.0, 1.5], body = \"cylinder\", record = [\"uy\"] }]";
-        let case =
-            resolved(IMPACT, &[mesh, &sides_named, &primary, probes, "expect=[{ what = \"last A.uy\", at_most = 1 }]"]);
+        let case = resolved(
+            IMPACT,
+            &[mesh, &sides_named, &primary, probes, "expect=[{ what = \"last A.uy\", at_most = 1 }]"],
+        );
         let case = case.unwrap_or_else(|p| panic!("{}", p[0]));
         assert_eq!(case.bodies[1].mesh.sides(), sides);
         let written = serde_json::to_string(&case).unwrap();
         assert_eq!(serde_json::from_str::<Case>(&written).unwrap(), case);
-        // The estimate made before the mesh is good to a factor of three: places refined at a corner have fewer cells.
+        // The estimate made before the mesh is good to a factor of three: places refined at a
+        // corner have fewer cells.
         let mesh = case.bodies[1].make_mesh(2).unwrap();
         let (cells, nodes) = case.bodies[1].mesh.estimate(mesh.element);
         for (guess, made) in [(cells, mesh.cell_count()), (nodes, mesh.nodes.len())] {

@@ -1,8 +1,11 @@
-//! `carom check`: reads and resolves a case or a study, says what is wrong and where; runs nothing, writes nothing.
+//! `carom check`: reads and resolves a case or a study, says what is wrong and where; runs nothing,
+//! writes nothing.
 
 use std::path::PathBuf;
 
-use carom::case::{Case, Document, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec};
+use carom::case::{
+    Case, Document, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec,
+};
 use carom::stability::SAFETY;
 use carom_study::Plan;
 use carom_time::Explained;
@@ -57,7 +60,8 @@ fn study(arguments: &Arguments) -> Result<Exit, Failure> {
         out::event(&serde_json::json!({ "event": "check", "study": manifest }))?;
         return Ok(Exit::Done);
     }
-    let mut lines = vec![format!("{} ({} runs of {})", manifest.title, arms.len(), manifest.source.case_path)];
+    let mut lines =
+        vec![format!("{} ({} runs of {})", manifest.title, arms.len(), manifest.source.case_path)];
     for (arm, planned) in manifest.arms.iter().zip(&arms) {
         let time = &planned.case.time;
         let role = if manifest.reference.as_ref() == Some(&arm.name) { ", the reference" } else { "" };
@@ -116,7 +120,11 @@ fn table(case: &Case, facts: &Facts) -> String {
     let transit = short(facts.transit_steps);
     lines.push(format!("           a pressure wave crosses the smallest body in {transit} steps"));
     if let Some(stable) = facts.stable_step {
-        lines.push(format!("           the longest stable step is {}, of which {} is accepted", short(stable), SAFETY));
+        lines.push(format!(
+            "           the longest stable step is {}, of which {} is accepted",
+            short(stable),
+            SAFETY
+        ));
     }
     lines.extend(case.warnings().iter().map(|warning| format!("  warning  {warning}")));
     lines.join("\n")
@@ -124,7 +132,11 @@ fn table(case: &Case, facts: &Facts) -> String {
 
 fn told_scheme(scheme: &SchemeSpec) -> String {
     let parameters = scheme.parameters.iter().map(|(key, value)| format!("{key} = {value}"));
-    std::iter::once(scheme.kind.clone()).chain(parameters).chain(derived(scheme)).collect::<Vec<_>>().join(", ")
+    std::iter::once(scheme.kind.clone())
+        .chain(parameters)
+        .chain(derived(scheme))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 fn told_load(load: &LoadSpec) -> String {

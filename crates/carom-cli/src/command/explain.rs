@@ -41,7 +41,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             help: "carom explain lists the time integrators".into(),
         });
     }
-    let scheme = spec.integrator().map_err(|e| Failure::Argument { what: e.to_string(), help: String::new() })?;
+    let scheme =
+        spec.integrator().map_err(|e| Failure::Argument { what: e.to_string(), help: String::new() })?;
     tell(&scheme.explain(), arguments.json)
 }
 

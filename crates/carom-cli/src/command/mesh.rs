@@ -19,7 +19,8 @@ Examples:
 pub(crate) struct Arguments {
     /// The case file
     case: PathBuf,
-    /// File to write, .msh (Gmsh 4.1, with the names of bodies and sides) or .vtu; must not exist yet
+    /// File to write, .msh (Gmsh 4.1, with the names of bodies and sides) or .vtu; must not exist
+    /// yet
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// Replace a value of the case, as in `carom run`
@@ -34,11 +35,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some("msh") => true,
         Some("vtu") => false,
         _ => {
-            return argument(format!("{} is neither .msh nor .vtu", path.display()), "the ending says what is written");
+            return argument(
+                format!("{} is neither .msh nor .vtu", path.display()),
+                "the ending says what is written",
+            );
         }
     };
     if path.exists() {
-        return argument(format!("{} exists already and is not overwritten", path.display()), "name another file");
+        return argument(
+            format!("{} exists already and is not overwritten", path.display()),
+            "name another file",
+        );
     }
     let (case, document) = super::case(&arguments.case, &arguments.sets)?;
     let bytes = match (case.dimension, msh) {
@@ -70,7 +77,9 @@ fn vtu(case: &Case, meshes: &[Mesh]) -> Result<Vec<u8>, Failure> {
     let mut fields = FieldSet::default();
     for (spec, mesh) in case.bodies.iter().zip(meshes) {
         let first = fields.points.len();
-        fields.points.extend(mesh.nodes.iter().map(|x| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))));
+        fields
+            .points
+            .extend(mesh.nodes.iter().map(|x| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))));
         fields.blocks.push(Block {
             body: spec.name.clone(),
             cell: match mesh.element {

@@ -58,28 +58,36 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let folder = &arguments.name;
     let argument = |what: String, help: &str| Failure::Argument { what, help: help.to_owned() };
     let Some(name) = folder.file_name().and_then(|n| n.to_str()) else {
-        return Err(argument(format!("{} names no folder", folder.display()), "give a name such as `carom new drop`"));
+        return Err(argument(
+            format!("{} names no folder", folder.display()),
+            "give a name such as `carom new drop`",
+        ));
     };
     if let Some(parent) = folder.parent().filter(|p| !p.as_os_str().is_empty()) {
         std::fs::create_dir_all(parent).map_err(|e| refused("make", parent, &e))?;
     }
     std::fs::create_dir(folder).map_err(|error| match error.kind() {
-        ErrorKind::AlreadyExists => {
-            argument(format!("{} exists already and is not overwritten", folder.display()), "choose another name")
-        }
+        ErrorKind::AlreadyExists => argument(
+            format!("{} exists already and is not overwritten", folder.display()),
+            "choose another name",
+        ),
         _ => refused("make", folder, &error),
     })?;
     let schema = serde_json::to_string_pretty(&carom::case::schema()).map_err(std::io::Error::from)?;
     let case = format!("{name}.toml");
-    let mut files = vec![(case.as_str(), arguments.template.case().as_bytes()), ("schema.json", schema.as_bytes())];
+    let mut files =
+        vec![(case.as_str(), arguments.template.case().as_bytes()), ("schema.json", schema.as_bytes())];
     files.extend(arguments.template.files());
     for (file, bytes) in files {
         let path = folder.join(file);
         std::fs::write(&path, bytes).map_err(|e| refused("write", &path, &e))?;
     }
     let case = folder.join(case);
-    let quoted =
-        if case.to_string_lossy().contains(' ') { format!("'{}'", case.display()) } else { case.display().to_string() };
+    let quoted = if case.to_string_lossy().contains(' ') {
+        format!("'{}'", case.display())
+    } else {
+        case.display().to_string()
+    };
     out::line(&format!(
         "{}\n\nnext:\n  carom check {quoted}\n  carom run {quoted}\n\n\
          An editor that knows TOML schemas (Taplo, Even Better TOML) completes and explains keys by {}.",

@@ -32,5 +32,8 @@ pub(super) fn run_directory(directory: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     let what = format!("{} is no run directory: it has no manifest.json", directory.display());
-    Err(Failure::Argument { what, help: "name a directory that `carom run` made, for example runs/impact".to_owned() })
+    Err(Failure::Argument {
+        what,
+        help: "name a directory that `carom run` made, for example runs/impact".to_owned(),
+    })
 }

@@ -23,7 +23,8 @@ pub(crate) struct Arguments {
     /// Threads of a run; the results are the same bits for any number [default: one for each core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZero<usize>>,
-    /// Arms of a study computed at the same time; the results are the same bits for any number [default: all cores]
+    /// Arms of a study computed at the same time; the results are the same bits for any number
+    /// [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     /// Make no figures and no page
@@ -46,7 +47,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                         the time of an arm is in its manifest.json";
             return Err(Failure::Argument { what, help: help.to_owned() });
         }
-        return super::study::resume(&arguments.directory, arguments.jobs, !arguments.no_report, arguments.json);
+        return super::study::resume(
+            &arguments.directory,
+            arguments.jobs,
+            !arguments.no_report,
+            arguments.json,
+        );
     }
     if arguments.jobs.is_some() {
         let what = format!("--jobs is for a study, and {} is none", arguments.directory.display());

@@ -51,7 +51,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let stop = stop_on_signal()?;
     if arguments.json {
         let steps = case.time.steps();
-        out::event(&json!({ "event": "start", "title": case.title, "directory": directory, "steps": steps }))?;
+        out::event(
+            &json!({ "event": "start", "title": case.title, "directory": directory, "steps": steps }),
+        )?;
     }
     let mut live = Live::new(arguments.json);
     live.warn(&case.warnings());

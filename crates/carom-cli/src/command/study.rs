@@ -33,7 +33,8 @@ pub(crate) struct Arguments {
     /// Directory of the study; must not exist yet [default: runs/NAME, runs/NAME-2, …]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Arms computed at the same time; the results are the same bits for any number [default: all cores]
+    /// Arms computed at the same time; the results are the same bits for any number [default: all
+    /// cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     /// Make no figures and no page
@@ -59,14 +60,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 /// Goes on with a study that was stopped; `page`: with figures and page at the end.
-pub(crate) fn resume(directory: &Path, asked: Option<NonZero<usize>>, page: bool, json: bool) -> Result<Exit, Failure> {
+pub(crate) fn resume(
+    directory: &Path,
+    asked: Option<NonZero<usize>>,
+    page: bool,
+    json: bool,
+) -> Result<Exit, Failure> {
     let manifest = StudyManifest::read(directory).map_err(|e| failure(e.into()))?;
     let mut seen = Seen::new(&manifest, json);
     let stop = stop_on_signal()?;
     if json {
         out::event(&json!({ "event": "resume", "directory": directory, "arms": seen.names }))?;
     }
-    let done = carom_study::go_on(directory, jobs(asked), &mut |e| seen.event(e), &stop);
+    let done = carom_study::resume(directory, jobs(asked), &mut |e| seen.event(e), &stop);
     conclude(done, seen, directory, page)
 }
 
@@ -99,13 +105,19 @@ pub(super) fn failure(error: StudyError) -> Failure {
         StudyError::Arm { source: carom::recording::RunError::Record(ref e), .. } if e.exit_code() == 4 => {
             Failure::Refused { what: error.to_string() }
         }
-        error => {
-            Failure::Argument { what: error.to_string(), help: "run the study again, into another directory".into() }
-        }
+        error => Failure::Argument {
+            what: error.to_string(),
+            help: "run the study again, into another directory".into(),
+        },
     }
 }
 
-fn conclude(done: Result<Outcome, StudyError>, seen: Seen, directory: &Path, page: bool) -> Result<Exit, Failure> {
+fn conclude(
+    done: Result<Outcome, StudyError>,
+    seen: Seen,
+    directory: &Path,
+    page: bool,
+) -> Result<Exit, Failure> {
     let json = seen.json;
     drop(seen);
     let outcome = done.map_err(failure)?;
@@ -146,7 +158,13 @@ fn text(study: &Study) -> String {
     }
     for v in &study.verdicts {
         let value = |x: Option<f64>| x.map_or("–".into(), short);
-        lines.push(format!("{:9}  {}  ({} against {})", v.word(), v.claim.text, value(v.left), value(v.right)));
+        lines.push(format!(
+            "{:9}  {}  ({} against {})",
+            v.word(),
+            v.claim.text,
+            value(v.left),
+            value(v.right)
+        ));
     }
     let arms = study.rows.iter().flat_map(|row| row.expectations.iter().map(move |e| (Some(&row.name), e)));
     for (arm, e) in arms.chain(study.expectations.iter().map(|e| (None, e))) {
@@ -188,7 +206,7 @@ impl Seen {
 
     fn event(&mut self, event: &Event) {
         let told = match event {
-            Event::Kept(i) => {
+            Event::AlreadyDone(i) => {
                 (self.done[*i], self.ended) = (self.steps[*i], self.ended + 1);
                 json!({ "event": "kept", "arm": self.names[*i] })
             }
@@ -217,7 +235,8 @@ impl Seen {
 
     /// `  37 %  2 of 4 arms  longest left 3 min 2 s`
     fn line(&self) -> String {
-        let percent = 100.0 * self.done.iter().sum::<u64>() as f64 / self.steps.iter().sum::<u64>().max(1) as f64;
+        let percent =
+            100.0 * self.done.iter().sum::<u64>() as f64 / self.steps.iter().sum::<u64>().max(1) as f64;
         let left = self.left.iter().flatten().copied().reduce(f64::max);
         let left = left.map_or_else(String::new, |left| format!("  longest left {}", duration(left)));
         format!("{percent:4.0} %  {} of {} arms{left}", self.ended, self.names.len())

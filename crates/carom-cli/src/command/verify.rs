@@ -77,7 +77,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return Err(Failure::Argument { what: "nothing here carries an expectation".to_owned(), help });
     }
     std::fs::create_dir_all(&directory)?;
-    let options = VerifyOptions { jobs: jobs(arguments.jobs), whole: arguments.report, fail_fast: arguments.fail_fast };
+    let options =
+        VerifyOptions { jobs: jobs(arguments.jobs), whole: arguments.report, fail_fast: arguments.fail_fast };
     let stop = stop_on_signal()?;
     let seen = std::cell::RefCell::new(Seen::new(arguments.json, arguments.csv));
     let mut begin = |runs: &[Named]| seen.borrow_mut().begin(runs);
@@ -101,7 +102,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     tell(&verification, arguments, &page)?;
     let unjudged = suite.items.len() - verification.set_ups.len();
     if unjudged > 0 && !arguments.json && !arguments.csv {
-        out::line(&format!("ended at the first miss: {unjudged} of {} set-ups were not judged", suite.items.len()))?;
+        out::line(&format!(
+            "ended at the first miss: {unjudged} of {} set-ups were not judged",
+            suite.items.len()
+        ))?;
     }
     Ok(match (verification.stopped(), verification.missed()) {
         (0, 0) => Exit::Done,
@@ -162,7 +166,8 @@ fn table(v: &Verification) -> String {
     };
     let mut cells = vec![HEADS.map(str::to_owned)];
     cells.extend(v.rows().map(line));
-    let widths: [usize; 8] = std::array::from_fn(|i| cells.iter().map(|row| row[i].chars().count()).max().unwrap_or(0));
+    let widths: [usize; 8] =
+        std::array::from_fn(|i| cells.iter().map(|row| row[i].chars().count()).max().unwrap_or(0));
     let mut lines: Vec<String> = Vec::new();
     for row in cells {
         let padded = row.iter().zip(widths).enumerate().map(|(i, (cell, width))| match i {
@@ -173,7 +178,9 @@ fn table(v: &Verification) -> String {
         lines.push(padded.collect::<Vec<_>>().join("  ").trim_end().to_owned());
     }
     for set_up in &v.set_ups {
-        lines.extend(set_up.stopped.iter().map(|why| format!("{}/{} stopped: {why}", set_up.family, set_up.name)));
+        lines.extend(
+            set_up.stopped.iter().map(|why| format!("{}/{} stopped: {why}", set_up.family, set_up.name)),
+        );
     }
     lines.push(format!(
         "{} set-ups, {} with dynamic contact; {} expected values, {} missed; {}",
@@ -186,7 +193,8 @@ fn table(v: &Verification) -> String {
     lines.join("\n")
 }
 
-/// What is seen while a suite runs: a line on a terminal, else a line for every run that ended, on standard error.
+/// What is seen while a suite runs: a line on a terminal, else a line for every run that ended, on
+/// standard error.
 struct Seen {
     runs: Vec<Named>,
     done: Vec<u64>,
@@ -221,8 +229,12 @@ impl Seen {
                 if !self.terminal && !self.json && !self.quiet {
                     let how = if ended.status == Status::Finished { "done" } else { "stopped" };
                     let count = format!("{}/{}", self.ended, self.runs.len());
-                    let _ =
-                        writeln!(io::stderr(), "{count:>9}  {how} in {}  {}", duration(ended.wall), self.runs[*i].name);
+                    let _ = writeln!(
+                        io::stderr(),
+                        "{count:>9}  {how} in {}  {}",
+                        duration(ended.wall),
+                        self.runs[*i].name
+                    );
                 }
                 json!({ "event": "ended", "run": self.runs[*i].name, "status": ended.status, "reason": ended.reason, "wall": ended.wall })
             }
@@ -234,7 +246,7 @@ impl Seen {
                 self.last = Some(Instant::now());
                 json!({ "event": "progress", "run": self.runs[*i].name, "step": p.step, "steps": p.steps, "left": p.left })
             }
-            Event::Kept(_) => return,
+            Event::AlreadyDone(_) => return,
         };
         if self.json {
             let _ = out::event(&told);

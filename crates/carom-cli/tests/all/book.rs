@@ -1,4 +1,5 @@
-//! The examples of the book run as the book says, and give what they expect; every kind of scheme has its page, and its rows in the verification.
+//! The examples of the book run as the book says, and give what they expect; every kind of scheme
+//! has its page, and its rows in the verification.
 
 use crate::common::{Place, text};
 
@@ -7,7 +8,8 @@ fn example(name: &str) -> String {
     concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/book/examples/").to_owned() + name
 }
 
-/// A block is pressed, and another run begins where that one ended: there the block stays in equilibrium until a disc strikes it.
+/// A block is pressed, and another run begins where that one ended: there the block stays in
+/// equilibrium until a disc strikes it.
 #[test]
 fn a_run_that_starts_from_another() {
     let place = Place::new("book");
@@ -40,8 +42,14 @@ fn every_scheme_has_a_page_and_rows_in_the_suite() {
     let damping = read("cases/order/damping.toml");
     for kind in carom_time::KINDS {
         let (name, row) = (kind.name, format!("kind = \"{}\"", kind.name));
-        assert!(contents.contains(&format!("(integrators/{name}.md)")), "SUMMARY.md has no integrators/{name}.md");
-        assert!(read(&format!("docs/book/src/integrators/{name}.md")).contains(&row), "{name}.md shows no {row}");
+        assert!(
+            contents.contains(&format!("(integrators/{name}.md)")),
+            "SUMMARY.md has no integrators/{name}.md"
+        );
+        assert!(
+            read(&format!("docs/book/src/integrators/{name}.md")).contains(&row),
+            "{name}.md shows no {row}"
+        );
         if name != carom_time::STATIC {
             assert!(orders.contains(&row), "neither cases/order/orders.toml nor nonsmooth.toml has {row}");
             assert!(damping.contains(&row), "cases/order/damping.toml has no {row}");

@@ -1,4 +1,5 @@
-//! The binary from outside: exit codes, what is said where, and that a wrong case leaves nothing behind.
+//! The binary from outside: exit codes, what is said where, and that a wrong case leaves nothing
+//! behind.
 
 use std::process::Stdio;
 
@@ -7,7 +8,11 @@ use crate::common::{IMPACT, Place, text};
 #[test]
 fn wrong_cases_exit_2_say_where_and_write_nothing() {
     let cases: &[(&str, Vec<u8>, &[&str])] = &[
-        ("key", IMPACT.replace("density", "densty").into(), &["unknown key `densty`", "case.toml:11:1", "`density`?"]),
+        (
+            "key",
+            IMPACT.replace("density", "densty").into(),
+            &["unknown key `densty`", "case.toml:11:1", "`density`?"],
+        ),
         (
             "side",
             IMPACT.replace("prism.top", "prism.topp").into(),
@@ -19,14 +24,22 @@ fn wrong_cases_exit_2_say_where_and_write_nothing() {
             &["`density` must be a number", "case.toml:11:11"],
         ),
         ("negative", IMPACT.replace("density = ", "density = -").into(), &["not -0.25", "case.toml:11:11"]),
-        ("radius", IMPACT.replace("rho_inf = 0.1", "rho_inf = 1.2").into(), &["in [0, 1], not 1.2", "case.toml:44:46"]),
+        (
+            "radius",
+            IMPACT.replace("rho_inf = 0.1", "rho_inf = 1.2").into(),
+            &["in [0, 1], not 1.2", "case.toml:44:46"],
+        ),
         ("nan", IMPACT.replace("1.875e-3", "nan").into(), &["`step` is NaN", "case.toml:43:8"]),
         ("memory", IMPACT.replace("[8, 4]", "[10000000000, 1]").into(), &["too big for the memory", "GiB"]),
         ("empty", Vec::new(), &["the case is empty", "case.toml"]),
         ("binary", b"\x7fELF\x02\xff\xfe".to_vec(), &["not text", "byte 6", "UTF-8"]),
         ("syntax", IMPACT.replace("dimension = 2", "dimension 2").into(), &["not TOML", "case.toml:5:"]),
         ("scheme", IMPACT.replace("chung-hulbert", "chung-hulbart").into(), &["`chung-hulbert`?"]),
-        ("dimension", IMPACT.replace("dimension = 2", "dimension = 1").into(), &["dimension 2", "dimension = 1"]),
+        (
+            "dimension",
+            IMPACT.replace("dimension = 2", "dimension = 1").into(),
+            &["dimension 2", "dimension = 1"],
+        ),
     ];
     for (name, bytes, parts) in cases {
         let place = Place::new(name);
@@ -54,7 +67,9 @@ fn wrong_cases_exit_2_say_where_and_write_nothing() {
 fn a_study_is_checked_as_a_study_and_not_run_as_a_case() {
     let place = Place::new("study-as-case");
     let arms = "[[arm]]\nname = \"as it is\"\n[[arm]]\nname = \"Hu\"\nset = { \"time.scheme\" = { kind = \"hu\" } }\n";
-    place.file("case.toml", IMPACT).file("study.toml", format!("title = \"Two\"\ncase = \"case.toml\"\n{arms}"));
+    place
+        .file("case.toml", IMPACT)
+        .file("study.toml", format!("title = \"Two\"\ncase = \"case.toml\"\n{arms}"));
     let done = place.carom(&["check", "study.toml"]);
     let told = text(&done.stdout);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
@@ -157,7 +172,8 @@ fn check_tells_the_case() {
     let done = place.carom(&["check", "case.toml", "--set", "body.cylinder.element=T6"]);
     let told = text(&done.stdout);
     assert_eq!((done.status.code(), done.stderr.len()), (Some(0), 0));
-    for part in ["Cylinder falling on a prism", "T6 of rubber", "cylinder.arc against prism.top", "400 steps"] {
+    for part in ["Cylinder falling on a prism", "T6 of rubber", "cylinder.arc against prism.top", "400 steps"]
+    {
         assert!(told.contains(part), "{part:?} not in\n{told}");
     }
     let done = place.carom(&["check", "case.toml", "--json", "--set", "preset=paper"]);

@@ -9,7 +9,8 @@ use std::process::{Command, Output, Stdio};
 pub(crate) const IMPACT: &str = include_str!("../../../../cases/impact/impact.toml");
 
 /// The impact on a coarse mesh: 400 steps, about half a second.
-pub(crate) const COARSE: [&str; 4] = ["--set", "body.cylinder.mesh.size=0.25", "--set", "body.prism.mesh.cells=[4,2]"];
+pub(crate) const COARSE: [&str; 4] =
+    ["--set", "body.cylinder.mesh.size=0.25", "--set", "body.prism.mesh.cells=[4,2]"];
 
 /// A directory of its own per test, removed when it ends.
 pub(crate) struct Place(pub(crate) PathBuf);
@@ -37,7 +38,9 @@ impl Place {
     }
 
     pub(crate) fn entries(&self) -> Vec<String> {
-        let names = std::fs::read_dir(&self.0).unwrap().map(|e| e.unwrap().file_name().to_string_lossy().into_owned());
+        let names = std::fs::read_dir(&self.0)
+            .unwrap()
+            .map(|e| e.unwrap().file_name().to_string_lossy().into_owned());
         let mut names: Vec<_> = names.collect();
         names.sort();
         names

@@ -28,7 +28,10 @@ fn meshes_are_written_once_and_read_back() {
     let file = gmsh::read(&bytes).unwrap();
     let prism = generate::rectangle(Element::T10, [0.0, -0.5], [1.0, 0.0], [8, 4]).unwrap();
     assert_eq!(file.body("prism").unwrap(), prism);
-    assert_eq!(file.body("cylinder").unwrap(), generate::half_disc(Element::T10, 0.5, [0.0, 1.0], 0.1).unwrap());
+    assert_eq!(
+        file.body("cylinder").unwrap(),
+        generate::half_disc(Element::T10, 0.5, [0.0, 1.0], 0.1).unwrap()
+    );
 
     let again = mesh("impact/impact.toml", &msh);
     assert_eq!(again.status.code(), Some(2));
@@ -61,10 +64,15 @@ fn repairs_are_logged_once() {
     std::fs::write(place.join("square.msh"), SQUARE).unwrap();
     std::fs::write(place.join("case.toml"), FALL).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_carom"));
-    let done = command.current_dir(&place).args(["run", "case.toml", "--out", "run", "--no-report"]).output().unwrap();
+    let done = command
+        .current_dir(&place)
+        .args(["run", "case.toml", "--out", "run", "--no-report"])
+        .output()
+        .unwrap();
     assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
     let log = std::fs::read_to_string(place.join("run/log.jsonl")).unwrap();
-    let events: Vec<serde_json::Value> = log.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let events: Vec<serde_json::Value> =
+        log.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let repairs: Vec<_> = events.iter().filter(|e| e["kind"] == "repair").collect();
     assert_eq!(repairs.len(), 1, "{log}");
     assert_eq!((&repairs[0]["step"], &repairs[0]["body"]), (&0.into(), &"b".into()));

@@ -1,5 +1,5 @@
-//! Every case and study of the repository is read, and every misspelling of every key in them refused. That the schema says the same is checked from outside
-//! (`scripts/check_schema.py`).
+//! Every case and study of the repository is read, and every misspelling of every key in them
+//! refused. That the schema says the same is checked from outside (`scripts/check_schema.py`).
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -32,14 +32,16 @@ fn is_study(text: &str) -> bool {
     text.lines().any(|line| line.starts_with("case ") || line.starts_with("case="))
 }
 
-/// Every variant of a document with one key misspelt, and where; of a list's tables that have a key in common, the first has it misspelt.
+/// Every variant of a document with one key misspelt, and where; of a list's tables that have a key
+/// in common, the first has it misspelt.
 fn misspelt(document: &Value) -> Vec<(String, Value)> {
     let mut found = Vec::new();
     match document {
         Value::Object(map) => {
             for (key, value) in map {
                 let wrong = format!("{key}{}", &key[key.len() - 1..]);
-                let renamed = |(k, v): (&String, &Value)| (if k == key { &wrong } else { k }.clone(), v.clone());
+                let renamed =
+                    |(k, v): (&String, &Value)| (if k == key { &wrong } else { k }.clone(), v.clone());
                 found.push((wrong.clone(), Value::Object(map.iter().map(renamed).collect())));
                 let inner = if key == "exact" { Vec::new() } else { misspelt(value) };
                 for (wrong, inner) in inner {
@@ -52,7 +54,9 @@ fn misspelt(document: &Value) -> Vec<(String, Value)> {
         Value::Array(list) => {
             let mut seen = BTreeSet::new();
             for (i, value) in list.iter().enumerate() {
-                for (wrong, inner) in misspelt(value).into_iter().filter(|(wrong, _)| seen.insert(wrong.clone())) {
+                for (wrong, inner) in
+                    misspelt(value).into_iter().filter(|(wrong, _)| seen.insert(wrong.clone()))
+                {
                     let mut list = list.clone();
                     list[i] = inner;
                     found.push((wrong, Value::Array(list)));
@@ -82,7 +86,8 @@ fn no_misspelt_key_of_a_case_passes() {
     let mut checked = (0, 0);
     for (path, text) in shipped().iter().filter(|(_, text)| !is_study(text)) {
         let reads = |text: &str| {
-            let document = Document::parse(path.to_str().unwrap(), text, &[]).map_err(|e| format!("{e:?}"))?;
+            let document =
+                Document::parse(path.to_str().unwrap(), text, &[]).map_err(|e| format!("{e:?}"))?;
             read(&document).map(|_| ()).map_err(|problems| format!("{problems:#?}"))
         };
         checked = (checked.0 + 1, checked.1 + refused(path, text, &reads));

@@ -21,7 +21,8 @@ fn every_template_reads_and_runs() {
         let schema = std::fs::read(scratch.path().join(&folder).join("schema.json")).unwrap();
         assert_eq!(serde_json::from_slice::<serde_json::Value>(&schema).unwrap()["title"], "Carom case");
 
-        let (out, step) = (format!("run-{template}"), text.lines().find_map(|l| l.strip_prefix("step = ")).unwrap());
+        let (out, step) =
+            (format!("run-{template}"), text.lines().find_map(|l| l.strip_prefix("step = ")).unwrap());
         let step: f64 = step.split_whitespace().next().unwrap().parse().unwrap();
         let short = format!("time.end={:?}", 3.0 * step);
         let done = carom(scratch.path(), &["run", &case, "--set", &short, "--out", &out]);
@@ -35,7 +36,8 @@ fn nothing_is_overwritten() {
     let scratch = tempfile::tempdir().unwrap();
     std::fs::write(scratch.path().join("taken"), "mine").unwrap();
     std::fs::create_dir(scratch.path().join("empty")).unwrap();
-    for (name, part) in [("taken", "exists already"), ("empty", "exists already"), ("..", "names no folder")] {
+    for (name, part) in [("taken", "exists already"), ("empty", "exists already"), ("..", "names no folder")]
+    {
         let done = carom(scratch.path(), &["new", name]);
         assert_eq!(done.status.code(), Some(2), "{name}");
         assert!(String::from_utf8(done.stderr).unwrap().contains(part), "{name}");

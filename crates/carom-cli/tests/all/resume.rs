@@ -17,7 +17,10 @@ fn place(name: &str) -> Place {
 /// `carom run` of the coarse impact into `out`.
 fn run(place: &Place, out: &str, more: &[&str]) -> Command {
     let mut command = place.command(&["run", "case.toml", "--no-report", "--out", out]);
-    command.args(COARSE).args(["--set", "output.checkpoint_every=7", "--set", "output.fields_every=10"]).args(more);
+    command
+        .args(COARSE)
+        .args(["--set", "output.checkpoint_every=7", "--set", "output.fields_every=10"])
+        .args(more);
     command
 }
 
@@ -25,7 +28,8 @@ fn resume(place: &Place, out: &str) -> Command {
     place.command(&["resume", out, "--no-report"])
 }
 
-/// What must be the same: rows, events, fields. The manifest has wall times, checkpoints of an interrupted run fall elsewhere.
+/// What must be the same: rows, events, fields. The manifest has wall times, checkpoints of an
+/// interrupted run fall elsewhere.
 fn record(place: &Place, out: &str) -> Files {
     let kept = |name: &String| name.starts_with("fields") || !name.contains('/') && name != "manifest.json";
     files(&place.0.join(out)).into_iter().filter(|(name, _)| kept(name)).collect()
@@ -95,7 +99,8 @@ fn twenty_kills_leave_the_same_bytes() {
                 ended(&mut command, 0);
                 break;
             }
-            // The first one falls at once; the others are spread so that about twenty fit into one run.
+            // The first one falls at once; the others are spread so that about twenty fit into one
+            // run.
             let delay = if kills == 0 { Duration::ZERO } else { wall.mul_f64(0.15 * random(&mut seed)) };
             let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
             std::thread::sleep(delay);
@@ -119,7 +124,8 @@ fn twenty_kills_leave_the_same_bytes() {
 fn interrupted_runs_exit_130_and_go_on() {
     let place = place("interrupt");
     let (expected, _) = whole(&place);
-    let mut child = run(&place, "stopped", &["--json"]).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    let mut child =
+        run(&place, "stopped", &["--json"]).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
     assert!(lines.any(|line| line.contains("\"progress\"")));
     let kill = format!("kill -INT {}", child.id());
@@ -151,8 +157,14 @@ fn threads_and_outputs_change_no_bit() {
     ended(&mut run(&place, "two", &["--threads", "2"]), 0);
     assert_same(&expected, &record(&place, "two"), "--threads 2");
 
-    let sparse =
-        ["--set", "output.fields_every=0", "--set", "output.history_every=3", "--set", "output.checkpoint_every=50"];
+    let sparse = [
+        "--set",
+        "output.fields_every=0",
+        "--set",
+        "output.history_every=3",
+        "--set",
+        "output.checkpoint_every=50",
+    ];
     ended(&mut run(&place, "sparse", &sparse), 0);
     let sparse = record(&place, "sparse");
     assert!(!sparse.keys().any(|name| name.starts_with("fields/")));
@@ -167,7 +179,8 @@ fn threads_and_outputs_change_no_bit() {
     }
 }
 
-/// Trapezoidal rule without dissipation: contact creates energy unless velocities are projected where it begins.
+/// Trapezoidal rule without dissipation: contact creates energy unless velocities are projected
+/// where it begins.
 #[test]
 fn created_energy_stops_the_run_with_exit_3() {
     let place = place("guard");
@@ -182,7 +195,8 @@ fn created_energy_stops_the_run_with_exit_3() {
     for part in ["energy was created", "the last good state is kept in plain", "persistency = \"project\""] {
         assert!(told.contains(part), "{part:?} not in\n{told}");
     }
-    let manifest: serde_json::Value = serde_json::from_slice(&files(&place.0.join("plain"))["manifest.json"]).unwrap();
+    let manifest: serde_json::Value =
+        serde_json::from_slice(&files(&place.0.join("plain"))["manifest.json"]).unwrap();
     assert_eq!(manifest["status"], "failed");
     assert!(manifest["reason"].as_str().unwrap().contains("energy was created"));
 }

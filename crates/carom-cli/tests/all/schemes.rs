@@ -1,4 +1,5 @@
-//! One impact under every kind of scheme, with its sides swapped, and twice as large: each runs to its end, and to the same rebound.
+//! One impact under every kind of scheme, with its sides swapped, and twice as large: each runs to
+//! its end, and to the same rebound.
 
 use crate::common::{COARSE, IMPACT, Place, text};
 use serde_json::Value;
@@ -6,7 +7,8 @@ use serde_json::Value;
 /// Last event of a run of the impact: extremes of the probes, expectations.
 fn outcome(place: &Place, sets: &[&str]) -> Value {
     let sets = sets.iter().flat_map(|set| ["--set", set]);
-    let arguments: Vec<&str> = ["run", "case.toml", "--no-report", "--json"].into_iter().chain(sets).collect();
+    let arguments: Vec<&str> =
+        ["run", "case.toml", "--no-report", "--json"].into_iter().chain(sets).collect();
     let done = place.carom(&arguments);
     assert_eq!(done.status.code(), Some(0), "{arguments:?}: {}", text(&done.stderr));
     serde_json::from_str(text(&done.stdout).lines().last().unwrap()).unwrap()
@@ -23,7 +25,8 @@ fn near(got: f64, wanted: f64, tolerance: f64, what: &str) {
     assert!((got - wanted).abs() <= tolerance, "{what}: {got}, not {wanted} ± {tolerance}");
 }
 
-/// Bands of two unrelated codes on finer meshes; Hu's scheme is of order 1 and falls short by a little more.
+/// Bands of two unrelated codes on finer meshes; Hu's scheme is of order 1 and falls short by a
+/// little more.
 #[test]
 fn the_impact_under_every_scheme() {
     let place = Place::new("schemes");
@@ -57,10 +60,13 @@ fn the_larger_impact_from_two_heights() {
     let place = Place::new("larger");
     place.file("case.toml", IMPACT);
     let prism = "body.prism.mesh={shape=\"rectangle\",min=[0.0,-1.0],max=[2.0,0.0],cells=[4,2]}";
-    // From gap 0.5: benchmark values of an explicit code with penalty. From 1.0: the two schemes against each other.
+    // From gap 0.5: benchmark values of an explicit code with penalty. From 1.0: the two schemes
+    // against each other.
     for (gap, lowest, end) in [(0.5, -1.146, 0.830), (1.0, -1.746, 0.901)] {
-        let cylinder =
-            format!("body.cylinder.mesh={{shape=\"half-disc\",radius=1.0,center=[0.0,{:?}],size=0.5}}", 1.0 + gap);
+        let cylinder = format!(
+            "body.cylinder.mesh={{shape=\"half-disc\",radius=1.0,center=[0.0,{:?}],size=0.5}}",
+            1.0 + gap
+        );
         let top = format!("probe.A.at=[0.0,{:?}]", 2.0 + gap);
         for rho in ["0.1", "0.8"] {
             let scheme = format!("time.scheme.rho_inf={rho}");

@@ -66,7 +66,9 @@ fn fast_cases_are_met_and_written() {
     let table = std::fs::read_to_string(out.join("verify.csv")).unwrap();
     assert_eq!(table.lines().count(), 4);
     assert!(
-        table.starts_with("family,case,arm,quantity,expected,got,error,tolerance,source,pass,directory\nflight,free,,"),
+        table.starts_with(
+            "family,case,arm,quantity,expected,got,error,tolerance,source,pass,directory\nflight,free,,"
+        ),
         "{table}"
     );
     for file in ["verify.json", "verify.html", "flight/free/history.csv", "wall/study/study.csv"] {
@@ -86,7 +88,10 @@ fn a_missed_expectation_is_one() {
     assert_eq!(done.status.code(), Some(1));
     let table = text(&done.stdout);
     assert_eq!(table.lines().count(), 3, "{table}");
-    assert!(table.contains("flight,free,,last A.ux,1 ± 0.1,") && table.contains(",MISSED,flight/free"), "{table}");
+    assert!(
+        table.contains("flight,free,,last A.ux,1 ± 0.1,") && table.contains(",MISSED,flight/free"),
+        "{table}"
+    );
     assert!(place.0.join("there/flight/free/report.html").is_file());
     let done = place.carom(&["verify", "cases/flight/free.toml", "--json", "--out", "again"]);
     let events = text(&done.stdout);
@@ -101,7 +106,9 @@ fn the_first_miss_can_end_it() {
     let told = text(&done.stdout);
     assert_eq!(done.status.code(), Some(1), "{told}");
     assert!(told.contains("ended at the first miss: 1 of 2 set-ups were not judged"), "{told}");
-    assert!(place.0.join("there/flight/free").is_dir() && !place.0.join("there/wall/study/study.csv").exists());
+    assert!(
+        place.0.join("there/flight/free").is_dir() && !place.0.join("there/wall/study/study.csv").exists()
+    );
 }
 
 #[test]

@@ -1,12 +1,14 @@
-//! Springs that conserve energy: the discrete gradient of U(g) = k/2 min(g, 0)² along a gap that is itself carried from step
-//! to step (F. Armero, E. Petőcz, Comput. Methods Appl. Mech. Engrg. 158 (1998) 269–300).
+//! Springs that conserve energy: the discrete gradient of U(g) = k/2 min(g, 0)² along a gap that is
+//! itself carried from step to step (F. Armero, E. Petőcz, Comput. Methods Appl. Mech. Engrg. 158
+//! (1998) 269–300).
 //!
 //! ```text
 //! g₁ = g₀ + ∇g(y_m)·Δy,   λ = (U(g₁) − U(g₀)) / (g₁ − g₀)   (U'(g₀) where they are equal),   f = λ ∇g(y_m),   y_m = (y₀ + y₁)/2
 //! ```
 //!
-//! so that f·Δy = U(g₁) − U(g₀) exactly, and force and moment balance at y_m as those of any Σ λ ∇g do. Where g is linear in y, g₁ is the gap; else it
-//! departs from it by terms of third order in Δy, and begins anew with each contact.
+//! so that f·Δy = U(g₁) − U(g₀) exactly, and force and moment balance at y_m as those of any Σ λ ∇g
+//! do. Where g is linear in y, g₁ is the gap; else it departs from it by terms of third order in
+//! Δy, and begins anew with each contact.
 
 use super::{Answer, Interface, Point};
 

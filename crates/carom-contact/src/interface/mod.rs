@@ -1,5 +1,5 @@
-//! What a contact answers to its gap: traction, what is left of its condition, and both derivatives. Any interface
-//! goes with any kinematics.
+//! What a contact answers to its gap: traction, what is left of its condition, and both
+//! derivatives. Any interface goes with any kinematics.
 //!
 //! ```text
 //! [ K   Gᵀ ] [Δy]   [ −r ]
@@ -36,7 +36,8 @@ pub struct Answer {
     pub active: bool,
     /// Traction λ ≤ 0 on the gap.
     pub lambda: f64,
-    /// What the row has yet to close: the gap of a constraint; nothing where the traction is that of the gap already.
+    /// What the row has yet to close: the gap of a constraint; nothing where the traction is that
+    /// of the gap already.
     pub open: f64,
     /// ∂g/∂λ: 0 of a constraint.
     pub compliance: f64,
@@ -49,7 +50,8 @@ pub trait Interface: Send + Sync {
     /// Whether its pairs are constraints: an active set decides which of them press.
     fn is_constraint(&self) -> bool;
 
-    /// Whether the force acts along the gradient in the middle of the step, and works from the gap at its start to that at its end.
+    /// Whether the force acts along the gradient in the middle of the step, and works from the gap
+    /// at its start to that at its end.
     fn acts_between(&self) -> bool {
         false
     }

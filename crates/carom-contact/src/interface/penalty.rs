@@ -25,7 +25,13 @@ impl Interface for Penalty {
         if at.gap >= 0.0 {
             return Answer::default();
         }
-        Answer { active: true, lambda: k * at.gap, open: 0.0, compliance: k.recip(), energy: 0.5 * k * at.gap * at.gap }
+        Answer {
+            active: true,
+            lambda: k * at.gap,
+            open: 0.0,
+            compliance: k.recip(),
+            energy: 0.5 * k * at.gap * at.gap,
+        }
     }
 
     fn stiffness(&self, node: usize) -> Option<f64> {

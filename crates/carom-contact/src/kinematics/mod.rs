@@ -1,5 +1,5 @@
-//! Where two surfaces are to each other: pairs worth watching, their gaps and the gaps' derivatives, at given
-//! positions. Knows no time step, no law and no matrix.
+//! Where two surfaces are to each other: pairs worth watching, their gaps and the gaps'
+//! derivatives, at given positions. Knows no time step, no law and no matrix.
 //!
 //! Positions are flat over all nodes, `dimension` components each.
 
@@ -27,16 +27,20 @@ pub trait Kinematics: Send + Sync {
     /// Most nodes that one gap depends on.
     fn stencil(&self) -> usize;
 
-    /// Signed distance of a secondary node (its place) to the nearest point of the primary side; `None` where no facet faces it.
+    /// Signed distance of a secondary node (its place) to the nearest point of the primary side;
+    /// `None` where no facet faces it.
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64>;
 
-    /// Brings the pairs worth watching between positions `before` (no penetration) and `now` up to date: adds those that came near, hands over
-    /// those that slid off their facet, drops those that left. Whether anything but an open pair changed is returned.
-    fn search(&self, before: &[f64], now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool;
+    /// Brings the pairs worth watching between positions `before` (no penetration) and `now` up to
+    /// date: adds those that came near, hands over those that slid off their facet, drops those
+    /// that left. Whether anything but an open pair changed is returned.
+    fn search(&self, before: &[f64], now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>)
+    -> bool;
 
-    /// Hands over active pairs that have slid well past the end of their facet while the iteration goes on: what a facet extrapolates to there is no
-    /// surface. Unlike [`search`](Self::search), it lets a pair come back. Whether there was one is returned.
-    fn follow(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
+    /// Hands over active pairs that have slid well past the end of their facet while the iteration
+    /// goes on: what a facet extrapolates to there is no surface. Unlike [`search`](Self::search),
+    /// it lets a pair come back. Whether there was one is returned.
+    fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
         let _ = (now, pairing, events);
         false
     }
@@ -47,7 +51,8 @@ pub trait Kinematics: Send + Sync {
     /// There is no unique closest point; nothing was added.
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError>;
 
-    /// ∂²g/∂y∂y of a pair that was measured at `y`, over the nodes of its row: overwrites the first `(n·D)²` of `curvature`, row-major.
+    /// ∂²g/∂y∂y of a pair that was measured at `y`, over the nodes of its row: overwrites the first
+    /// `(n·D)²` of `curvature`, row-major.
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]);
 }
 

@@ -1,14 +1,17 @@
-//! Secondary nodes against a primary side of facets: curved ones of any order in the plane, a point at the end of a bar.
+//! Secondary nodes against a primary side of facets: curved ones of any order in the plane, a point
+//! at the end of a bar.
 //!
-//! Gap at the closest point ξ of the pair's facet, with t = y_S', J = |t|, n = t turned right / J, κ = n·y_S'', a = J² − gκ (theory.md §1):
+//! Gap at the closest point ξ of the pair's facet, with t = y_S', J = |t|, n = t turned right / J,
+//! κ = n·y_S'', a = J² − gκ (theory.md §1):
 //!
 //! ```text
 //! g = (y_N − y_S(ξ))·n        ∇g = N_n = (n; −φᵅ n)
 //! ∇²g = −(N_t T_nᵀ + T_n N_tᵀ)/a − κ/(a J²) N_t N_tᵀ − (g/a) T_n T_nᵀ,    N_t = (t; −φᵅ t),  T_n = (0; φ'ᵅ n)
 //! ```
 //!
-//! Of a point n = ±1, the direction out of its body, and ∇²g = 0. ξ is solved again in every call, up to |ξ| = 1.2 beyond an end; the pair is handed to
-//! the neighbour only between solves, and never back within a step.
+//! Of a point n = ±1, the direction out of its body, and ∇²g = 0. ξ is solved again in every call,
+//! up to |ξ| = 1.2 beyond an end; the pair is handed to the neighbour only between solves, and
+//! never back within a step.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -30,9 +33,11 @@ const WANDER: f64 = 3.0;
 /// Beyond this a pair is handed over while Newton is on its way, and beyond that also back.
 const FOLLOWED: f64 = 1.02;
 const FOLLOWED_BACK: f64 = 1.1;
-/// Cosine of the kink between neighbouring facets above which a node past both ends has left the side (a corner's vertex cone).
+/// Cosine of the kink between neighbouring facets above which a node past both ends has left the
+/// side (a corner's vertex cone).
 const CORNER_COSINE: f64 = 0.87;
-/// A node this much behind a facet (times the facet's length) at the start of a step came from elsewhere, not through the facet.
+/// A node this much behind a facet (times the facet's length) at the start of a step came from
+/// elsewhere, not through the facet.
 const BEHIND: f64 = 1e-6;
 
 /// Which gap decides that a node has reached the primary.
@@ -54,7 +59,8 @@ pub struct NodeToFacet {
 }
 
 impl NodeToFacet {
-    /// Secondary nodes and primary surface in global node numbers; a node of the primary itself is left out of the secondary.
+    /// Secondary nodes and primary surface in global node numbers; a node of the primary itself is
+    /// left out of the secondary.
     pub fn new(secondary: Vec<usize>, primary: Surface, detection: Detection) -> Self {
         let search = Mutex::new(Search::new(&primary));
         Self { secondary, primary, detection, search }
@@ -69,8 +75,15 @@ impl NodeToFacet {
         (y.at(node) - c.position).dot(&c.normal)
     }
 
-    /// Facet and ξ where a node may touch: the first crossing of trajectories, else the closest facet at `now` that the node was not behind before.
-    fn candidate(&self, search: &mut Search, node: usize, before: Places, now: Places) -> Option<(usize, f64, bool)> {
+    /// Facet and ξ where a node may touch: the first crossing of trajectories, else the closest
+    /// facet at `now` that the node was not behind before.
+    fn candidate(
+        &self,
+        search: &mut Search,
+        node: usize,
+        before: Places,
+        now: Places,
+    ) -> Option<(usize, f64, bool)> {
         let mut first: Option<(f64, usize, f64)> = None;
         let mut closest: Option<(f64, usize, f64)> = None;
         for &facet in search.near(node, before, now) {
@@ -92,8 +105,8 @@ impl NodeToFacet {
         }
         let (_, facet, xi) = closest?;
         let start = self.primary.facet(facet).closest_point(before, before.at(node), REACH);
-        let came_from_behind =
-            start.is_some_and(|s| self.gap(node, facet, s, before) < -BEHIND * self.primary.length(facet, before));
+        let came_from_behind = start
+            .is_some_and(|s| self.gap(node, facet, s, before) < -BEHIND * self.primary.length(facet, before));
         (!came_from_behind).then_some((facet, xi, false))
     }
 
@@ -116,7 +129,8 @@ impl NodeToFacet {
                 return Next::HandOver(neighbour, xi);
             }
         }
-        // Past both ends: the vertex cone of a convex kink. A blunt one is bridged by extrapolation, at a corner the node is free.
+        // Past both ends: the vertex cone of a convex kink. A blunt one is bridged by
+        // extrapolation, at a corner the node is free.
         let end = if forward { 1.0 } else { -1.0 };
         let here = self.primary.facet(pair.facet).at(y, end).tangent;
         let there = self.primary.facet(neighbour).at(y, -end).tangent;
@@ -154,7 +168,13 @@ impl Kinematics for NodeToFacet {
             .min_by(|a, b| a.abs().total_cmp(&b.abs()))
     }
 
-    fn search(&self, before: &[f64], now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
+    fn search(
+        &self,
+        before: &[f64],
+        now: &[f64],
+        pairing: &mut Pairing,
+        events: &mut Vec<PairEvent>,
+    ) -> bool {
         if self.primary.shape() == FacetShape::Point {
             // A point has no neighbours to search among, and cannot be slid off.
             watch_every_node(self.secondary.len(), &mut pairing.pairs);
@@ -165,7 +185,8 @@ impl Kinematics for NodeToFacet {
         let mut changed = false;
         pairs.retain_mut(|pair| {
             let node = self.secondary[pair.node];
-            // Neighbours in turn until the closest point lies on the facet; bounded by the facets there are.
+            // Neighbours in turn until the closest point lies on the facet; bounded by the facets
+            // there are.
             for _ in 0..=self.primary.facets() {
                 match self.next_facet(pair, left.get(&pair.node).copied(), now) {
                     Next::Stay => return true,
@@ -173,7 +194,8 @@ impl Kinematics for NodeToFacet {
                         if pair.active {
                             events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
                         }
-                        // In a concave joint an open pair may be in front of the one facet and behind the other.
+                        // In a concave joint an open pair may be in front of the one facet and
+                        // behind the other.
                         changed |= pair.active || self.gap(node, facet, xi, now) < 0.0;
                         left.insert(pair.node, pair.facet);
                         (pair.facet, pair.xi) = (facet, xi);
@@ -199,7 +221,9 @@ impl Kinematics for NodeToFacet {
                     next += 1;
                     continue;
                 }
-                let Some((facet, xi, crossed)) = self.candidate(&mut search, node, before, now) else { continue };
+                let Some((facet, xi, crossed)) = self.candidate(&mut search, node, before, now) else {
+                    continue;
+                };
                 let pair = Pair::open(k, facet, xi);
                 let gap = self.gap(node, facet, xi, now);
                 match self.detection {
@@ -208,7 +232,8 @@ impl Kinematics for NodeToFacet {
                         changed |= gap < 0.0;
                         pairs.push(pair);
                     }
-                    // Eq. (8) decides at the crossing. A node that was already in by round-off crosses nothing: its closest point decides.
+                    // Eq. (8) decides at the crossing. A node that was already in by round-off
+                    // crosses nothing: its closest point decides.
                     Detection::Trajectory if gap < 0.0 || (crossed && gap == 0.0) => {
                         changed = true;
                         pairs.push(Pair { active: true, ..pair });
@@ -221,7 +246,7 @@ impl Kinematics for NodeToFacet {
         changed
     }
 
-    fn follow(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
+    fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
         let now = self.places(now);
         let Pairing { pairs, left, .. } = pairing;
         let mut changed = false;
@@ -250,8 +275,10 @@ impl Kinematics for NodeToFacet {
         let facet = self.primary.facet(pair.facet);
         let from = y.at(node);
         let lost = ContactError::Lost { node, facet: pair.facet, xi: pair.xi };
-        pair.xi =
-            facet.closest_from(y, from, pair.xi, WANDER).or_else(|| facet.closest_point(y, from, REACH)).ok_or(lost)?;
+        pair.xi = facet
+            .closest_from(y, from, pair.xi, WANDER)
+            .or_else(|| facet.closest_point(y, from, REACH))
+            .ok_or(lost)?;
         let c = facet.at(y, pair.xi);
         let gap = (from - c.position).dot(&c.normal);
         let a = c.measure * c.measure - gap * c.normal.dot(&c.second);

@@ -1,4 +1,5 @@
-//! Closest point of a curved facet: ξ with (y_N − y_S(ξ))·y_S'(ξ) = 0, a minimum of the distance (theory.md §1).
+//! Closest point of a curved facet: ξ with (y_N − y_S(ξ))·y_S'(ξ) = 0, a minimum of the distance
+//! (theory.md §1).
 //!
 //! The derivative of −(y_N − y_S)·t is a = J² − (y_N − y_S)·y_S''; a > 0 marks a minimum.
 
@@ -78,7 +79,8 @@ impl Facet<'_> {
         None
     }
 
-    /// Closest stationary point within |ξ| ≤ `reach`, by sampling and refinement; `None` where the distance only falls towards an end.
+    /// Closest stationary point within |ξ| ≤ `reach`, by sampling and refinement; `None` where the
+    /// distance only falls towards an end.
     pub(crate) fn closest_point(&self, y: Places, from: Vector<2>, reach: f64) -> Option<f64> {
         const SAMPLES: usize = 12;
         if self.is_point() {
@@ -128,7 +130,8 @@ mod tests {
 
     #[test]
     fn finds_the_nearest_of_two_valleys() {
-        // A cubic through (−1, 1) (1, 1) with interior nodes pulled down unevenly: compare with a dense scan.
+        // A cubic through (−1, 1) (1, 1) with interior nodes pulled down unevenly: compare with a
+        // dense scan.
         let y = [-1.0, 1.0, 1.0, 1.0, -0.4, -0.3, 0.4, -0.6];
         let y = Places::new(&y, 2);
         let facet = Facet { shape: FacetShape::L4, nodes: &[0, 1, 2, 3], orientation: 1.0 };

@@ -1,4 +1,5 @@
-//! A primary side as a chain of curved facets in global node numbers, with neighbours, and the search for those that a node's path comes near.
+//! A primary side as a chain of curved facets in global node numbers, with neighbours, and the
+//! search for those that a node's path comes near.
 
 use std::collections::HashMap;
 
@@ -17,7 +18,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Facets as lists of global nodes (start, end, interior), walked with the body on their left; `orientations` counts for points alone
+    /// Facets as lists of global nodes (start, end, interior), walked with the body on their left;
+    /// `orientations` counts for points alone
     /// ([`Mesh::orientation`](carom_solid::Mesh::orientation)).
     pub fn new(shape: FacetShape, facets: &[Vec<usize>], orientations: &[f64]) -> Self {
         let end = |facet: &[usize]| facet[shape.nodes().min(2) - 1];
@@ -64,8 +66,9 @@ impl Surface {
     }
 }
 
-/// Facets by the boxes of their paths during a step, which hold them wherever they are curved to: nothing that comes near is missed.
-/// A cache that never changes a result; O(facets) to bring up to date, O(log facets) to ask.
+/// Facets by the boxes of their paths during a step, which hold them wherever they are curved to:
+/// nothing that comes near is missed. A cache that never changes a result; O(facets) to bring up to
+/// date, O(log facets) to ask.
 #[derive(Debug)]
 pub(crate) struct Search {
     hull: Hull,
@@ -79,8 +82,8 @@ impl Search {
         Self { hull: Hull::line(surface.shape.nodes(), 1.0), tree: None, found: Vec::new() }
     }
 
-    /// Takes motion from `before` to `now` up, with a `margin` around facets as a share of their size; whether the path of any of these nodes comes near
-    /// the path of any facet.
+    /// Takes motion from `before` to `now` up, with a `margin` around facets as a share of their
+    /// size; whether the path of any of these nodes comes near the path of any facet.
     pub(crate) fn update(
         &mut self,
         surface: &Surface,

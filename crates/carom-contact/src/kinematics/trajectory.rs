@@ -1,14 +1,17 @@
-//! Crossing of trajectories, eqs. (6)–(8): y_N(θ) = y_S(ξ, θ), both moving on straight lines from θ = 0 to θ = 1.
+//! Crossing of trajectories, eqs. (6)–(8): y_N(θ) = y_S(ξ, θ), both moving on straight lines from θ
+//! = 0 to θ = 1.
 //!
-//! The facet is cut into chords; a chord's ends and the node move linearly, so "on the chord's line" is a quadratic in θ and every root is found.
-//! Each root starts a Newton iteration on the curve itself. The smallest admissible θ wins.
+//! The facet is cut into chords; a chord's ends and the node move linearly, so "on the chord's
+//! line" is a quadratic in θ and every root is found. Each root starts a Newton iteration on the
+//! curve itself. The smallest admissible θ wins.
 
 use carom_algebra::Vector;
 
 use super::projection::Facet;
 use crate::places::Places;
 
-/// θ may lie outside [0, 1], and |ξ| above 1, by this much: a node exactly on the surface must not slip through.
+/// θ may lie outside [0, 1], and |ξ| above 1, by this much: a node exactly on the surface must not
+/// slip through.
 const TOLERANCE: f64 = 1e-6;
 const CHORDS: usize = 6;
 
@@ -67,7 +70,8 @@ fn linear_cross_roots(e0: Vector<2>, e1: Vector<2>, p0: Vector<2>, p1: Vector<2>
     [admissible(q / a), if q == 0.0 { None } else { admissible(c / q) }]
 }
 
-/// Newton on the curve from a chord's root. Only crossings inwards count: the node's velocity relative to the surface points against its normal.
+/// Newton on the curve from a chord's root. Only crossings inwards count: the node's velocity
+/// relative to the surface points against its normal.
 fn polished(facet: Facet, before: Places, now: Places, node: usize, start: Crossing) -> Option<Crossing> {
     let Crossing { mut theta, mut xi } = start;
     for _ in 0..20 {

@@ -1,4 +1,5 @@
-//! Gap derivatives of contact with curved facets of every order against differences; balance of force and moment; objectivity.
+//! Gap derivatives of contact with curved facets of every order against differences; balance of
+//! force and moment; objectivity.
 
 use carom_algebra::{Vector, jacobian_error};
 use carom_contact::{Detection, Kinematics, NodeToFacet, Pair, PairEvent, Pairing, Rows, Surface};
@@ -99,7 +100,8 @@ fn the_gap_does_not_see_a_rigid_motion() {
     assert!((gap(&contact, &y) - gap(&contact, &moved)).abs() < 1e-13);
 }
 
-/// A chain of straight facets walked from right to left (body below): y = 0 for x > 0, rising to the left by `kink`.
+/// A chain of straight facets walked from right to left (body below): y = 0 for x > 0, rising to
+/// the left by `kink`.
 fn chain(kink: f64) -> (Surface, Vec<f64>) {
     let y = vec![1.0, 0.0, 0.0, 0.0, -1.0, kink];
     (Surface::new(FacetShape::L2, &[vec![0, 1], vec![1, 2]], &[1.0; 2]), y)
@@ -113,7 +115,10 @@ fn a_sliding_node_is_handed_over_once_and_not_back() {
     let mut pairing = Pairing::new(vec![Pair { xi: 1.3, ..pair() }]);
     let mut events = Vec::new();
     assert!(contact.search(&y, &y, &mut pairing, &mut events));
-    assert_eq!((pairing.pairs[0].facet, &events[..]), (1, &[PairEvent::HandOver { node: 3, from: 0, to: 1 }][..]));
+    assert_eq!(
+        (pairing.pairs[0].facet, &events[..]),
+        (1, &[PairEvent::HandOver { node: 3, from: 0, to: 1 }][..])
+    );
     pairing.pairs[0].xi = -1.1;
     y[6] = 0.1;
     contact.search(&y, &y, &mut pairing, &mut events);
@@ -122,7 +127,8 @@ fn a_sliding_node_is_handed_over_once_and_not_back() {
 
 #[test]
 fn a_fast_node_is_caught_on_a_closed_thin_body() {
-    // A plate of thickness 0.01, all four sides one loop; the node flies right through it in one step.
+    // A plate of thickness 0.01, all four sides one loop; the node flies right through it in one
+    // step.
     let plate = [-1.0, 0.0, 1.0, 0.0, 1.0, 0.01, -1.0, 0.01];
     let [y0, y1] = [[0.3, 2.0], [0.31, -2.0]].map(|node| [&plate[..], &node].concat());
     let loop_ = Surface::new(FacetShape::L2, &[vec![0, 1], vec![1, 2], vec![2, 3], vec![3, 0]], &[1.0; 4]);
@@ -144,7 +150,8 @@ fn a_node_behind_a_plate_that_never_crossed_its_upper_side_is_left_alone() {
     assert!(pairing.pairs.is_empty());
 }
 
-/// A node that round-off left inside crosses no surface any more; missing it once would be missing it for ever.
+/// A node that round-off left inside crosses no surface any more; missing it once would be missing
+/// it for ever.
 #[test]
 fn a_node_inside_by_round_off_is_found_under_both_rules() {
     for detection in [Detection::ClosestPoint, Detection::Trajectory] {

@@ -3,4 +3,4 @@
 #![allow(clippy::unwrap_used)]
 
 mod derivatives;
-mod follow;
+mod update_facets;

@@ -3,7 +3,8 @@
 use carom_contact::{Interface, Kinematics};
 use carom_solid::FacetShape;
 
-/// A contact: where its surfaces are to each other, what its gaps are answered with, and what schemes are to do about it.
+/// A contact: where its surfaces are to each other, what its gaps are answered with, and what
+/// schemes are to do about it.
 #[allow(clippy::struct_excessive_bools)] // Each is a choice of the case, independent of the others.
 pub struct Contact {
     /// Name in the case.
@@ -22,7 +23,8 @@ pub struct Contact {
     pub predictor: bool,
     /// Nodes of both sides, ascending.
     pub surface: Vec<usize>,
-    /// Whether its force is all taken at the end of the step, not averaged with the scheme's weights.
+    /// Whether its force is all taken at the end of the step, not averaged with the scheme's
+    /// weights.
     pub at_the_end: bool,
     /// Whether velocities and accelerations are projected where it begins.
     pub projects: bool,

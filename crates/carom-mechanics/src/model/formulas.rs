@@ -1,4 +1,5 @@
-//! Formulas of place and time: evaluated with their arguments, and refused with them where they have no value.
+//! Formulas of place and time: evaluated with their arguments, and refused with them where they
+//! have no value.
 
 use carom_formula::Formula;
 
@@ -46,7 +47,13 @@ pub fn value(formula: &Formula, what: &str, place: &[f64], time: f64) -> Result<
 }
 
 /// The value, if it is finite.
-pub(super) fn finite(value: f64, formula: &Formula, what: &str, place: &[f64], time: f64) -> Result<f64, NoValue> {
+pub(super) fn finite(
+    value: f64,
+    formula: &Formula,
+    what: &str,
+    place: &[f64],
+    time: f64,
+) -> Result<f64, NoValue> {
     if value.is_finite() {
         return Ok(value);
     }

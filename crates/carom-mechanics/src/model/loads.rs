@@ -1,12 +1,13 @@
-//! Loads as nodal forces f_ext(y, t), gravity apart: dead tractions and body forces, known when the time is, and follower
-//! pressures, which turn with the side (`carom_solid::LoadedSide`). Where the motion is given, the load that makes it one is the only load.
+//! Loads as nodal forces f_ext(y, t), gravity apart: dead tractions and body forces, known when the
+//! time is, and follower pressures, which turn with the side (`carom_solid::LoadedSide`). Where the
+//! motion is given, the load that makes it one is the only load.
 
 use carom_formula::Formula;
 use carom_solid::LoadedSide;
 
+use super::body_instance::BodyInstance;
 use super::formulas::{NoValue, value};
 use super::manufactured::Manufactured;
-use super::part::Part;
 
 /// A factor over time.
 pub type Amplitude = Box<dyn Fn(f64) -> f64 + Send + Sync>;
@@ -81,7 +82,7 @@ impl Loads {
     }
 
     /// Whether some depend on the positions.
-    pub fn follow(&self) -> bool {
+    pub fn follow_sides(&self) -> bool {
         !self.pressures.is_empty()
     }
 
@@ -89,7 +90,13 @@ impl Loads {
     ///
     /// # Errors
     /// The first formula without a finite value.
-    pub fn at(&self, parts: &[Part], dofs: usize, time: f64, out: &mut LoadsAt) -> Result<(), NoValue> {
+    pub fn at(
+        &self,
+        parts: &[BodyInstance],
+        dofs: usize,
+        time: f64,
+        out: &mut LoadsAt,
+    ) -> Result<(), NoValue> {
         out.dead.clear();
         out.dead.resize(dofs, 0.0);
         for load in &self.tractions {
@@ -127,7 +134,8 @@ impl Loads {
         }
     }
 
-    /// Calls `visit(nodes, tangent)` for every facet under pressure, tangent = ∂f_ext/∂y (`(n·D)²`, row-major); without `at`, of zeros.
+    /// Calls `visit(nodes, tangent)` for every facet under pressure, tangent = ∂f_ext/∂y (`(n·D)²`,
+    /// row-major); without `at`, of zeros.
     pub(crate) fn each_facet_tangent(
         &self,
         dimension: usize,

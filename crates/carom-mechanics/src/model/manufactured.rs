@@ -1,17 +1,20 @@
-//! A motion given by formulas, and the load that makes it a solution: the method of manufactured solutions.
+//! A motion given by formulas, and the load that makes it a solution: the method of manufactured
+//! solutions.
 //!
 //! ```text
 //! b = ρ₀ ÿ − Div P(∂y/∂X)          per reference volume; ÿ, ∂y/∂X and ∂²y/∂X² are the formulas' own derivatives
 //! error_l2 = √∫ |y_h − y|² dΩ₀,   error_h1 = √∫ |∂y_h/∂X − ∂y/∂X|² dΩ₀
 //! ```
 //!
-//! All nodes of the boundary are moved as the formulas say, and the bodies start with their positions and velocities. With cells of degree k the
-//! errors fall with the orders k + 1 and k (P. J. Roache, "Code verification by the method of manufactured solutions", J. Fluids Eng. 124, 2002).
+//! All nodes of the boundary are moved as the formulas say, and the bodies start with their
+//! positions and velocities. With cells of degree k the errors fall with the orders k + 1 and k (P.
+//! J. Roache, "Code verification by the method of manufactured solutions", J. Fluids Eng. 124,
+//! 2002).
 
 use carom_formula::Formula;
 
+use super::body_instance::BodyInstance;
 use super::formulas::{Arguments, NoValue, finite};
-use super::part::Part;
 
 const WHAT: &str = "the motion of [manufactured]";
 
@@ -65,7 +68,13 @@ impl Manufactured {
     }
 
     /// Force per reference volume at a place.
-    fn load_into(&self, part: &Part, place: &[f64], time: f64, load: &mut [f64]) -> Result<(), NoValue> {
+    fn load_into(
+        &self,
+        part: &BodyInstance,
+        place: &[f64],
+        time: f64,
+        load: &mut [f64],
+    ) -> Result<(), NoValue> {
         let Bent { h, second, .. } = self.bent(place, time)?;
         part.body.stress_divergence(&h, &second, load).map_err(|det_f| {
             let formula = self.y.iter().map(Formula::text).collect::<Vec<_>>().join(", ");
@@ -73,7 +82,8 @@ impl Manufactured {
             NoValue { what, formula, place: place.to_vec(), time, value: det_f }
         })?;
         for (load, formula) in load.iter_mut().zip(&self.y) {
-            let [.., acceleration] = formula.with_derivatives(Arguments::new(place, time).as_slice(), place.len());
+            let [.., acceleration] =
+                formula.with_derivatives(Arguments::new(place, time).as_slice(), place.len());
             *load = part.body.density() * finite(acceleration, formula, WHAT, place, time)? - *load;
         }
         Ok(())
@@ -83,14 +93,19 @@ impl Manufactured {
     ///
     /// # Errors
     /// The first place where the load has no value.
-    pub(super) fn add_load(&self, parts: &[Part], time: f64, force: &mut [f64]) -> Result<(), NoValue> {
-        parts
-            .iter()
-            .try_for_each(|part| part.add_body_force(|place, load| self.load_into(part, place, time, load), force))
+    pub(super) fn add_load(
+        &self,
+        parts: &[BodyInstance],
+        time: f64,
+        force: &mut [f64],
+    ) -> Result<(), NoValue> {
+        parts.iter().try_for_each(|part| {
+            part.add_body_force(|place, load| self.load_into(part, place, time, load), force)
+        })
     }
 
     /// Errors of positions in L² and of their gradients at a time.
-    pub fn errors(&self, parts: &[Part], y: &[f64], time: f64) -> [f64; 2] {
+    pub fn errors(&self, parts: &[BodyInstance], y: &[f64], time: f64) -> [f64; 2] {
         let mut squares = [0.0; 2];
         let square = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
         for part in parts {

@@ -3,7 +3,7 @@
 use carom_algebra::Threads;
 use carom_solid::cell_lumped_mass;
 
-use super::part::Part;
+use super::body_instance::BodyInstance;
 
 /// Nodes whose products a thread computes at once.
 const BLOCK: usize = 2048;
@@ -20,7 +20,7 @@ pub struct Mass {
 
 impl Mass {
     /// Assembles the bodies' masses, consistent or lumped: `lumped` has one entry per body.
-    pub fn assemble(dimension: usize, parts: &[Part], lumped: &[bool]) -> Self {
+    pub fn assemble(dimension: usize, parts: &[BodyInstance], lumped: &[bool]) -> Self {
         let count: usize = parts.iter().map(|p| p.body.mesh().nodes.len()).sum();
         let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];
         for (part, lumped) in parts.iter().zip(lumped) {
@@ -41,7 +41,8 @@ impl Mass {
                 for p in 0..n {
                     for q in 0..n {
                         if local[p * n + q] != 0.0 {
-                            rows[part.first_node + nodes[p]].push((part.first_node + nodes[q], local[p * n + q]));
+                            rows[part.first_node + nodes[p]]
+                                .push((part.first_node + nodes[q], local[p * n + q]));
                         }
                     }
                 }
@@ -70,7 +71,10 @@ impl Mass {
     /// Entries (row, column, value) of a node's row, columns ascending.
     pub fn row(&self, node: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let range = self.starts[node]..self.starts[node + 1];
-        self.columns[range.clone()].iter().map(|&column| column as usize).zip(self.values[range].iter().copied())
+        self.columns[range.clone()]
+            .iter()
+            .map(|&column| column as usize)
+            .zip(self.values[range].iter().copied())
     }
 
     /// The same for change.

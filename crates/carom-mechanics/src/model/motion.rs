@@ -1,5 +1,6 @@
-//! Supports that move: y = X + u(X, t) with v = u̇ and a = ü by the formula's own derivatives. The scheme's relations between d, v and a are not
-//! used for these dofs, so they cannot ring, and their inertia M a acts on their neighbours.
+//! Supports that move: y = X + u(X, t) with v = u̇ and a = ü by the formula's own derivatives. The
+//! scheme's relations between d, v and a are not used for these dofs, so they cannot ring, and
+//! their inertia M a acts on their neighbours.
 
 use carom_formula::Formula;
 
@@ -31,9 +32,13 @@ pub struct Prescribed {
 }
 
 impl Motions {
-    /// Displacements of dofs by formulas of place and time: formulas with their names in messages, and each moved dof once, ascending,
-    /// with the place of its formula and its reference position.
-    pub fn new(formulas: Vec<(String, Formula)>, moved: impl IntoIterator<Item = (usize, usize, Vec<f64>)>) -> Self {
+    /// Displacements of dofs by formulas of place and time: formulas with their names in messages,
+    /// and each moved dof once, ascending, with the place of its formula and its reference
+    /// position.
+    pub fn new(
+        formulas: Vec<(String, Formula)>,
+        moved: impl IntoIterator<Item = (usize, usize, Vec<f64>)>,
+    ) -> Self {
         let moved = moved.into_iter().map(|(dof, formula, place)| Moved { dof, formula, place }).collect();
         Self { formulas, moved }
     }
@@ -56,7 +61,8 @@ impl Motions {
         out.clear();
         for moved in &self.moved {
             let (label, formula) = &self.formulas[moved.formula];
-            let motion = formula.with_derivatives(Arguments::new(&moved.place, time).as_slice(), moved.place.len());
+            let motion =
+                formula.with_derivatives(Arguments::new(&moved.place, time).as_slice(), moved.place.len());
             for value in motion {
                 finite(value, formula, label, &moved.place, time)?;
             }

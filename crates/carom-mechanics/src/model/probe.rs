@@ -1,12 +1,14 @@
-//! Points whose quantities become columns: interpolated in their cell; a stress at a node is the mean over its cells.
+//! Points whose quantities become columns: interpolated in their cell; a stress at a node is the
+//! mean over its cells.
 //!
-//! A state is accepted when J > 0 at every quadrature point; in a corner of a badly bent cell it may still be ≤ 0, and the law has no stress
-//! there. Such a cell is left out of the mean; where no cell is left the stress is NaN, and the log says when that begins. J itself is always
-//! the mean over all cells, of whatever sign.
+//! A state is accepted when J > 0 at every quadrature point; in a corner of a badly bent cell it
+//! may still be ≤ 0, and the law has no stress there. Such a cell is left out of the mean; where no
+//! cell is left the stress is NaN, and the log says when that begins. J itself is always the mean
+//! over all cells, of whatever sign.
 
 use carom_solid::Body;
 
-use super::part::Part;
+use super::body_instance::BodyInstance;
 
 /// What can be recorded at a point; axes count from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,8 +41,9 @@ pub struct Probe {
 }
 
 impl Probe {
-    /// The recorded quantities at positions, velocities and accelerations of all nodes, in order; a stress is NaN where no cell at the point has one.
-    pub fn values(&self, parts: &[Part], reference: &[f64], motion: [&[f64]; 3], out: &mut Vec<f64>) {
+    /// The recorded quantities at positions, velocities and accelerations of all nodes, in order; a
+    /// stress is NaN where no cell at the point has one.
+    pub fn values(&self, parts: &[BodyInstance], reference: &[f64], motion: [&[f64]; 3], out: &mut Vec<f64>) {
         let (part, [y, v, a]) = (&parts[self.part], motion);
         let nodal = |field: &[f64], i: usize| {
             let (cell, xi) = &self.places[0];
@@ -57,7 +60,7 @@ impl Probe {
     }
 
     /// Whether the stresses it records, if any, exist at positions.
-    pub fn has_stress(&self, parts: &[Part], y: &[f64]) -> bool {
+    pub fn has_stress(&self, parts: &[BodyInstance], y: &[f64]) -> bool {
         let part = &parts[self.part];
         let y = part.of(y);
         !self.record.iter().any(|q| is_stress(*q))

@@ -1,15 +1,17 @@
-//! A mass matrix without mass on the nodes of contacts (H. B. Khenous, P. Laborde, Y. Renard, Eur. J. Mech. A/Solids 27 (2008) 918–932): the index of the
-//! constrained equations drops, the contact force depends continuously on time, and nothing rings.
+//! A mass matrix without mass on the nodes of contacts (H. B. Khenous, P. Laborde, Y. Renard, Eur.
+//! J. Mech. A/Solids 27 (2008) 918–932): the index of the constrained equations drops, the contact
+//! force depends continuously on time, and nothing rings.
 //!
-//! Rows and columns of the light nodes are zeroed, M → M'. The others get δ on their diagonals, the smallest change relative to M_nn that keeps the mass,
-//! the centre and the second moments, and so the momenta and energies of every affine motion:
+//! Rows and columns of the light nodes are zeroed, M → M'. The others get δ on their diagonals, the
+//! smallest change relative to M_nn that keeps the mass, the centre and the second moments, and so
+//! the momenta and energies of every affine motion:
 //!
 //! ```text
 //! min Σ δ_n²/M_nn   with   Σ δ_n f(X_n) h(X_n) = fᵀM h − fᵀM'h   for all f, h ∈ {1, X, Y}
 //! ```
 //!
-//! or, nearest, every entry that was zeroed goes to the heavy node it belongs to, an entry between light nodes to their heavy neighbours: mass is kept, the
-//! centre is not.
+//! or, nearest, every entry that was zeroed goes to the heavy node it belongs to, an entry between
+//! light nodes to their heavy neighbours: mass is kept, the centre is not.
 
 use super::mass::Mass;
 
@@ -27,13 +29,15 @@ pub fn redistribute(
 ) -> Result<(), String> {
     let count = nodes.len() as f64;
     let at = |n: usize, i: usize| positions[n * dimension + i];
-    let center: Vec<f64> = (0..dimension).map(|i| nodes.clone().map(|n| at(n, i)).sum::<f64>() / count).collect();
+    let center: Vec<f64> =
+        (0..dimension).map(|i| nodes.clone().map(|n| at(n, i)).sum::<f64>() / count).collect();
     let away = |n: usize, i: usize| at(n, i) - center[i];
     let axes = nodes.clone().flat_map(|n| (0..dimension).map(move |i| (n, i)));
     let reach = axes.map(|(n, i)| away(n, i).abs()).fold(0.0, f64::max);
     // 1, X, Y of a node, of order one.
     let function = |n: usize, i: usize| if i == 0 { 1.0 } else { away(n, i - 1) / reach };
-    let products: Vec<(usize, usize)> = (0..=dimension).flat_map(|i| (i..=dimension).map(move |j| (i, j))).collect();
+    let products: Vec<(usize, usize)> =
+        (0..=dimension).flat_map(|i| (i..=dimension).map(move |j| (i, j))).collect();
 
     let mut lost = vec![0.0; products.len()];
     let mut given = vec![0.0; nodes.end];

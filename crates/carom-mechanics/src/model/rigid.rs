@@ -1,12 +1,14 @@
-//! Rigid motions that supports leave to a body: where there is no inertia, only contact can hold them, and what holds nothing has no equilibrium.
+//! Rigid motions that supports leave to a body: where there is no inertia, only contact can hold
+//! them, and what holds nothing has no equilibrium.
 //!
-//! The rigid motions of a body are its translations and rotations about its middle, u = t + ω × (x − c)/size: one in dimension 1, three in the
-//! plane, six in space. Held dofs (supports) and active contacts (their gradients) are rows over these few unknowns; what is orthogonal to all rows
-//! is free.
+//! The rigid motions of a body are its translations and rotations about its middle, u = t + ω × (x
+//! − c)/size: one in dimension 1, three in the plane, six in space. Held dofs (supports) and active
+//! contacts (their gradients) are rows over these few unknowns; what is orthogonal to all rows is
+//! free.
 
 use carom_contact::Row;
 
-use super::part::Part;
+use super::body_instance::BodyInstance;
 
 /// Rows shorter than this (they are of order one) hold nothing.
 const SHORT: f64 = 1e-8;
@@ -28,7 +30,7 @@ pub struct Mode {
     "body \"{body}\" is free to {motion}: supports do not hold it there, and no closed contact does. Hold it with a [[support]], press it with \
      a support's `move` instead of a force, let it touch at the start, or take a scheme with inertia"
 )]
-pub struct Unheld {
+pub struct Unconstrained {
     /// Its name.
     pub body: String,
     /// What it is free to do.
@@ -46,13 +48,14 @@ fn axes(dimension: usize) -> (&'static [usize], &'static [usize]) {
 
 impl Mode {
     /// All rigid motions of a body.
-    fn all(place: usize, part: &Part) -> Vec<Self> {
+    fn all(place: usize, part: &BodyInstance) -> Vec<Self> {
         let mesh = part.body.mesh();
         let mut centre = [0.0; 3];
         for i in 0..mesh.dimension() {
             centre[i] = mesh.nodes.iter().map(|x| x[i]).sum::<f64>() / mesh.nodes.len() as f64;
         }
-        let still = Self { part: place, translation: [0.0; 3], rotation: [0.0; 3], centre, size: mesh.diameter() };
+        let still =
+            Self { part: place, translation: [0.0; 3], rotation: [0.0; 3], centre, size: mesh.diameter() };
         let unit = |axis: usize| std::array::from_fn(|i| f64::from(u8::from(i == axis)));
         let (along, about) = axes(mesh.dimension());
         let translations = along.iter().map(|&i| Self { translation: unit(i), ..still.clone() });
@@ -85,7 +88,7 @@ impl Mode {
 }
 
 /// Rigid motions that held dofs leave to the bodies.
-pub fn free_motions(parts: &[Part], fixed: &[bool]) -> Vec<Mode> {
+pub fn free_motions(parts: &[BodyInstance], fixed: &[bool]) -> Vec<Mode> {
     let mut free = Vec::new();
     for (place, part) in parts.iter().enumerate() {
         let (mesh, modes) = (part.body.mesh(), Mode::all(place, part));
@@ -94,7 +97,9 @@ pub fn free_motions(parts: &[Part], fixed: &[bool]) -> Vec<Mode> {
         let row = |(node, axis): (usize, usize)| {
             modes.iter().map(|m| m.at(&mesh.nodes[node - part.first_node], axis)).collect::<Vec<f64>>()
         };
-        free.extend(null_space(modes.len(), held.map(row)).iter().map(|shares| Mode::combined(&modes, shares)));
+        free.extend(
+            null_space(modes.len(), held.map(row)).iter().map(|shares| Mode::combined(&modes, shares)),
+        );
     }
     free
 }
@@ -131,16 +136,17 @@ fn null_space(size: usize, rows: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>
     basis.split_off(spanned)
 }
 
-/// Refuses pressing contacts, by their rows at positions `y`, that leave a body free to move as its supports do.
+/// Refuses pressing contacts, by their rows at positions `y`, that leave a body free to move as its
+/// supports do.
 ///
 /// # Errors
 /// The body and its motion.
 pub(crate) fn check_held<'a>(
-    parts: &[Part],
+    parts: &[BodyInstance],
     free: &[Mode],
     y: &[f64],
     rows: impl Iterator<Item = Row<'a>>,
-) -> Result<(), Unheld> {
+) -> Result<(), Unconstrained> {
     if free.is_empty() {
         return Ok(());
     }
@@ -156,5 +162,5 @@ pub(crate) fn check_held<'a>(
     let Some(left) = null_space(free.len(), rows.map(row)).into_iter().next() else { return Ok(()) };
     let largest = (0..left.len()).max_by(|a, b| left[*a].abs().total_cmp(&left[*b].abs())).unwrap_or(0);
     let mode = &free[largest];
-    Err(Unheld { body: parts[mode.part].name.clone(), motion: mode.motion() })
+    Err(Unconstrained { body: parts[mode.part].name.clone(), motion: mode.motion() })
 }

@@ -1,14 +1,15 @@
-//! Everything a step needs to know that does not change, as plain numbers. Every vector over nodes is flat, `dimension` components a node.
+//! Everything a step needs to know that does not change, as plain numbers. Every vector over nodes
+//! is flat, `dimension` components a node.
 
 use carom_algebra::Threads;
 use carom_solid::Inverted;
 
+use super::body_instance::BodyInstance;
 use super::contact::Contact;
 use super::formulas::NoValue;
 use super::loads::{Loads, LoadsAt};
 use super::mass::Mass;
 use super::motion::Motions;
-use super::part::Part;
 use super::probe::Probe;
 use super::rigid::Mode;
 use crate::cells;
@@ -27,7 +28,7 @@ pub struct Model {
     /// Components of a position: 1 or 2.
     pub dimension: usize,
     /// Bodies, nodes numbered through in this order.
-    pub parts: Vec<Part>,
+    pub parts: Vec<BodyInstance>,
     /// Reference positions X, flat.
     pub reference: Vec<f64>,
     /// Positions at t = 0, flat.
@@ -51,7 +52,7 @@ pub struct Model {
     /// Supports that move.
     pub motions: Motions,
     /// Rigid motions that supports leave to bodies; only looked for where there is no inertia.
-    pub unheld: Vec<Mode>,
+    pub unconstrained: Vec<Mode>,
     /// Contacts.
     pub contacts: Vec<Contact>,
     /// Named supports.
@@ -75,7 +76,8 @@ impl Model {
         Some(self.unknown[dof]).filter(|&place| place != usize::MAX)
     }
 
-    /// Internal forces ∂U/∂y at positions `y`, overwriting `force`; the strain energy U is returned.
+    /// Internal forces ∂U/∂y at positions `y`, overwriting `force`; the strain energy U is
+    /// returned.
     ///
     /// # Errors
     /// The body's name and the cell that is inverted.
@@ -83,15 +85,24 @@ impl Model {
         self.add_cells(force, |part, cell, local| part.body.cell_force(cell, part.of(y), local))
     }
 
-    /// Discrete gradient of the strain energy between positions, overwriting `force`; U(now) is returned.
+    /// Discrete gradient of the strain energy between positions, overwriting `force`; U(now) is
+    /// returned.
     ///
     /// # Errors
     /// The body's name and the cell that is inverted.
-    pub fn internal_between(&self, before: &[f64], now: &[f64], force: &mut [f64]) -> Result<f64, (String, Inverted)> {
-        self.add_cells(force, |part, cell, local| part.body.cell_between(cell, part.of(before), part.of(now), local))
+    pub fn internal_between(
+        &self,
+        before: &[f64],
+        now: &[f64],
+        force: &mut [f64],
+    ) -> Result<f64, (String, Inverted)> {
+        self.add_cells(force, |part, cell, local| {
+            part.body.cell_between(cell, part.of(before), part.of(now), local)
+        })
     }
 
-    /// ∂f_int/∂y · `change` at `y`, overwriting `product`; with `before`, of the discrete gradient from there.
+    /// ∂f_int/∂y · `change` at `y`, overwriting `product`; with `before`, of the discrete gradient
+    /// from there.
     ///
     /// # Errors
     /// The body's name and the cell that is inverted.
@@ -102,8 +113,10 @@ impl Model {
         change: &[f64],
         product: &mut [f64],
     ) -> Result<(), (String, Inverted)> {
-        let of_cell = |part: &Part, cell: usize, local: &mut [f64]| {
-            part.body.cell_product(cell, before.map(|y| part.of(y)), part.of(y), part.of(change), local).map(|()| 0.0)
+        let of_cell = |part: &BodyInstance, cell: usize, local: &mut [f64]| {
+            part.body
+                .cell_product(cell, before.map(|y| part.of(y)), part.of(y), part.of(change), local)
+                .map(|()| 0.0)
         };
         self.add_cells(product, of_cell).map(|_| ())
     }
@@ -111,7 +124,7 @@ impl Model {
     fn add_cells(
         &self,
         force: &mut [f64],
-        of_cell: impl Fn(&Part, usize, &mut [f64]) -> Result<f64, Inverted> + Sync,
+        of_cell: impl Fn(&BodyInstance, usize, &mut [f64]) -> Result<f64, Inverted> + Sync,
     ) -> Result<f64, (String, Inverted)> {
         force.fill(0.0);
         let mut strain = 0.0;
@@ -133,7 +146,13 @@ impl Model {
     ///
     /// # Errors
     /// A formula without a finite value.
-    pub fn loads_into(&self, time: f64, y: &[f64], at: &mut LoadsAt, force: &mut [f64]) -> Result<(), NoValue> {
+    pub fn loads_into(
+        &self,
+        time: f64,
+        y: &[f64],
+        at: &mut LoadsAt,
+        force: &mut [f64],
+    ) -> Result<(), NoValue> {
         if !self.loads.is_empty() {
             self.loads.at(&self.parts, self.dofs(), time, at)?;
             self.loads.force_into(at, y, force);

@@ -1,22 +1,27 @@
-//! Central differences with a lumped mass, contact by forward increments (Carpenter, Taylor, Katona 1991), and Paoli and Schatzman's law (2002).
+//! Central differences with a lumped mass, contact by forward increments (Carpenter, Taylor, Katona
+//! 1991), and Paoli and Schatzman's law (2002).
 //!
 //! ```text
 //! M (v_{n+½} − v_{n−½}) = Δt (f_n + G_nᵀP_n),   y_{n+1} = y_n + Δt v_{n+½}
 //! 0 ≤ P_n ⊥ g(ȳ) ≥ 0,   ȳ = (y_{n+1} + e y_{n−1})/(1 + e),   central-difference: e = 0
 //! ```
 //!
-//! P_n keeps y_{n+1} out, and is the force at t_n: it acts along G_n = ∇g(y_n), as in SHAKE (Ryckaert, Ciccotti, Berendsen 1977), so that force and moment
-//! balance at t_n. With g linearised, P solves a small complementarity problem with G M⁻¹Gᵀ; the linearisation is repeated until every gap agrees to 1e-12 L.
+//! P_n keeps y_{n+1} out, and is the force at t_n: it acts along G_n = ∇g(y_n), as in SHAKE
+//! (Ryckaert, Ciccotti, Berendsen 1977), so that force and moment balance at t_n. With g
+//! linearised, P solves a small complementarity problem with G M⁻¹Gᵀ; the linearisation is repeated
+//! until every gap agrees to 1e-12 L.
 //!
-//! The state at t_n therefore looks ahead: it holds v_{n+½} and with it P_n, v_n = (v_{n−½} + v_{n+½})/2 = (y_{n+1} − y_{n−1})/2Δt, and a_n, and
-//! M a_n + f_int − f_ext − G_nᵀP_n = 0 in every row of the record. Works and the impulse of contact are those of the trapezoidal rule, which is exact for momentum
-//! and leaves, with R = M a,
+//! The state at t_n therefore looks ahead: it holds v_{n+½} and with it P_n, v_n = (v_{n−½} +
+//! v_{n+½})/2 = (y_{n+1} − y_{n−1})/2Δt, and a_n, and M a_n + f_int − f_ext − G_nᵀP_n = 0 in every
+//! row of the record. Works and the impulse of contact are those of the trapezoidal rule, which is
+//! exact for momentum and leaves, with R = M a,
 //!
 //! ```text
 //! Δ dissipation = Δy·½(f_int,n + f_int,n+1) − ΔU − Δt²/8 Δ(a·M a)
 //! ```
 //!
-//! The first step, and one of another size, begins anew: v_{n−½} := v_n − Δt/2 M⁻¹f_n, and a contact force at t_n then acts over a whole step.
+//! The first step, and one of another size, begins anew: v_{n−½} := v_n − Δt/2 M⁻¹f_n, and a
+//! contact force at t_n then acts over a whole step.
 
 use carom_algebra::complementarity;
 use carom_contact::{Pairing, Rows};
@@ -61,30 +66,39 @@ impl Explicit {
 }
 
 impl Stepper for Explicit {
-    fn step(&self, model: &Model, state: &State, dt: f64, to: f64, work: &mut Workspace) -> Result<Accepted, Rejected> {
+    fn step(
+        &self,
+        model: &Model,
+        state: &State,
+        dt: f64,
+        to: f64,
+        work: &mut Workspace,
+    ) -> Result<Accepted, Rejected> {
         let mut report = StepReport::default();
         let mut begun = None;
-        if state.ahead.dt != dt {
+        if state.half_step.dt != dt {
             let mut state = work.copy(state);
             self.begin(model, &mut state, dt, work, &mut report)?;
             begun = Some(state);
         }
         let start = begun.as_ref().unwrap_or(state);
         let mut next = work.copy(start);
-        for (y, v) in next.y.iter_mut().zip(&start.ahead.velocity) {
+        for (y, v) in next.y.iter_mut().zip(&start.half_step.velocity) {
             *y += dt * v;
         }
-        next.ledger.strain = timed(&mut work.timings.assembly, || model.internal_force(&next.y, &mut next.f_internal))
-            .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+        next.ledger.strain =
+            timed(&mut work.timings.assembly, || model.internal_force(&next.y, &mut next.f_internal))
+                .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
         model.loads_into(to, &next.y, &mut work.explicit.loads, &mut next.f_external)?;
         next.time = to;
-        self.look_ahead(model, &mut next, &start.ahead.velocity, dt, work, &mut report)?;
+        self.look_ahead(model, &mut next, &start.half_step.velocity, dt, work, &mut report)?;
         self.book(model, start, &mut next, dt);
 
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
-        // Positions were made admissible when they were looked ahead at; a node handed over since may be behind its new facet by a share of what it slid.
-        let bound = depth(model, start) + approach(model, &start.ahead.velocity, dt);
+        // Positions were made admissible when they were looked ahead at; a node handed over since
+        // may be behind its new facet by a share of what it slid.
+        let bound = depth(model, start) + approach(model, &start.half_step.velocity, dt);
         let deepest = depth(model, &next);
         if let Some(state) = begun {
             work.put(state);
@@ -99,14 +113,17 @@ impl Explicit {
         let ledger = &mut next.ledger;
         if !model.loads.is_empty() {
             for (i, (before, now)) in start.f_external.iter().zip(&next.f_external).enumerate() {
-                // v_n is a mean of half steps: of M v·v/2 a load has made Δt²/8 f·M⁻¹f before its work is booked.
+                // v_n is a mean of half steps: of M v·v/2 a load has made Δt²/8 f·M⁻¹f before its
+                // work is booked.
                 ledger.open += 0.125 * dt * dt * self.inverse_mass[i] * (now * now - before * before);
-                ledger.external_work += dt * start.ahead.velocity[i] * 0.5 * (before + now);
+                ledger.external_work += dt * start.half_step.velocity[i] * 0.5 * (before + now);
             }
         }
         let touching = |state: &State| state.pairs.iter().flatten().any(|pair| pair.active);
         if touching(start) || touching(next) {
-            for (v, (before, now)) in start.ahead.velocity.iter().zip(start.f_contact.iter().zip(&next.f_contact)) {
+            for (v, (before, now)) in
+                start.half_step.velocity.iter().zip(start.f_contact.iter().zip(&next.f_contact))
+            {
                 next.ledger.contact_work -= dt * v * 0.5 * (before + now);
             }
         }
@@ -128,7 +145,8 @@ impl Explicit {
         work: &mut Workspace,
         report: &mut StepReport,
     ) -> Result<(), Rejected> {
-        let free = |i: usize| self.inverse_mass[i] * (model.gravity[i] + state.f_external[i] - state.f_internal[i]);
+        let free =
+            |i: usize| self.inverse_mass[i] * (model.gravity[i] + state.f_external[i] - state.f_internal[i]);
         let before: Vec<f64> = (0..state.v.len()).map(|i| state.v[i] - 0.5 * dt * free(i)).collect();
         let (velocity, kinetic) = (state.v.clone(), state.ledger.kinetic);
         self.look_ahead(model, state, &before, dt, work, report)?;
@@ -159,9 +177,10 @@ impl Explicit {
         report: &mut StepReport,
     ) -> Result<(), Rejected> {
         for i in 0..state.a.len() {
-            state.a[i] = self.inverse_mass[i] * (model.gravity[i] + state.f_external[i] - state.f_internal[i]);
+            state.a[i] =
+                self.inverse_mass[i] * (model.gravity[i] + state.f_external[i] - state.f_internal[i]);
         }
-        let mut ahead = std::mem::take(&mut state.ahead.velocity);
+        let mut ahead = std::mem::take(&mut state.half_step.velocity);
         let Workspace { explicit: scratch, timings, .. } = work;
         timed(&mut timings.contact, || self.contact(model, state, before, dt, &mut ahead, scratch, report))?;
 
@@ -175,11 +194,12 @@ impl Explicit {
             state.v[i] = before[i] + 0.5 * dt * state.a[i];
         }
         book_contact_forces(model, state);
-        (state.ahead.velocity, state.ahead.dt) = (ahead, dt);
+        (state.half_step.velocity, state.half_step.dt) = (ahead, dt);
         Ok(())
     }
 
-    /// Pairs with the forces that make y_n + Δt v_{n+½} admissible, and that velocity; the gradients of their rows are those at y_n.
+    /// Pairs with the forces that make y_n + Δt v_{n+½} admissible, and that velocity; the
+    /// gradients of their rows are those at y_n.
     #[allow(clippy::too_many_arguments)]
     fn contact(
         &self,
@@ -203,7 +223,8 @@ impl Explicit {
             place(state, before, dt, 0.0, ahead, at);
             let changed = search(model, &state.y, at, pairings, &mut report.events);
             measure_into(model, &state.y, pairings, rows)?;
-            // Gaps where the law looks, in the place of those at y_n; a pair that is wrong joins the working set and stays.
+            // Gaps where the law looks, in the place of those at y_n; a pair that is wrong joins
+            // the working set and stays.
             let mut worst = 0.0_f64;
             for (k, contact) in model.contacts.iter().enumerate() {
                 if pairings[k].pairs.is_empty() {
@@ -255,7 +276,8 @@ impl Explicit {
         Ok(())
     }
 
-    /// G M⁻¹Gᵀ over the rows, and what it has to make of the linearised gaps: (1 + e) g/Δt² − G M⁻¹Gᵀ P.
+    /// G M⁻¹Gᵀ over the rows, and what it has to make of the linearised gaps: (1 + e) g/Δt² − G
+    /// M⁻¹Gᵀ P.
     fn problem(
         &self,
         model: &Model,
@@ -279,7 +301,8 @@ impl Explicit {
         }
         let right = places.iter().enumerate().map(|(i, &(k, p))| {
             let force = |&(l, q): &(usize, usize)| pairings[l].pairs[q].lambda;
-            let done: f64 = places.iter().enumerate().map(|(j, place)| -matrix[i * count + j] * force(place)).sum();
+            let done: f64 =
+                places.iter().enumerate().map(|(j, place)| -matrix[i * count + j] * force(place)).sum();
             (1.0 + model.contacts[k].restitution) * rows[k].row(p).gap / (dt * dt) - done
         });
         let right = right.collect();

@@ -1,4 +1,5 @@
-//! Every kernel that is a list of implicit stages: guess, solve, account, and where contact begins project.
+//! Every kernel that is a list of implicit stages: guess, solve, account, and where contact begins
+//! project.
 
 use carom_contact::{Pairing, Rows};
 use carom_time::{Before, Kernel, Memory, Stage, Weights};
@@ -37,7 +38,14 @@ struct Point {
 }
 
 impl Stepper for Implicit {
-    fn step(&self, model: &Model, state: &State, dt: f64, to: f64, work: &mut Workspace) -> Result<Accepted, Rejected> {
+    fn step(
+        &self,
+        model: &Model,
+        state: &State,
+        dt: f64,
+        to: f64,
+        work: &mut Workspace,
+    ) -> Result<Accepted, Rejected> {
         let previous = state.previous.as_ref().filter(|previous| previous.dt == dt);
         let mut next = work.copy(state);
         let mut report = StepReport::default();
@@ -58,10 +66,11 @@ impl Stepper for Implicit {
             let before = finished.last().map_or(&state.y, |point| &point.y);
             guess.predict(&next.v, &next.a, (equations.stage.end - end) * dt);
             end = equations.stage.end;
-            let (solved, effort) = solve_stage(&equations, &next.kept, before, &self.settings, guess, work)?;
+            let (solved, effort) =
+                solve_stage(&equations, &next.frozen, before, &self.settings, guess, work)?;
             report.newton += effort.iterations;
             report.events.extend(effort.events);
-            next.kept = effort.kept;
+            next.frozen = effort.frozen;
             ledger::add_stage(&equations, &solved, previous, dt, &mut means);
             next.a.clone_from(&solved.acceleration);
             equations.stage.velocity.value_into(&solved.at.increment, &mut next.v);
@@ -74,13 +83,16 @@ impl Stepper for Implicit {
                 last = Some((equations, solved));
             }
         }
-        let Some((equations, solved)) = last else { return Err(Rejected::NotFinite { what: "a scheme of no stages" }) };
+        let Some((equations, solved)) = last else {
+            return Err(Rejected::NotFinite { what: "a scheme of no stages" });
+        };
 
         next.time = to;
         next.y.clone_from(&solved.y);
         for (i, massless) in model.massless.iter().enumerate() {
             if *massless && !equations.stage.is_static() {
-                // Without inertia there is nothing to integrate: the velocity is the mean one, the acceleration zero.
+                // Without inertia there is nothing to integrate: the velocity is the mean one, the
+                // acceleration zero.
                 (next.v[i], next.a[i]) = (solved.at.increment[i] / dt, 0.0);
             }
         }
@@ -98,13 +110,16 @@ impl Stepper for Implicit {
         averaged_contact_into(model, &mut next, &solved.rows);
         ledger::account(&equations, &solved, &mut next, strain, dt, &means);
         if let Some(shift) = &shift {
-            // Positions moved by the predictor's contact, against the forces of the step: M (v − v_s)/Δt is their sum.
+            // Positions moved by the predictor's contact, against the forces of the step: M (v −
+            // v_s)/Δt is their sum.
             let change: Vec<f64> = next.v.iter().zip(&state.v).map(|(v, old)| (v - old) / dt).collect();
             let mut forces = vec![0.0; model.dofs()];
             model.mass.multiply_into(&change, &mut forces);
             next.ledger.contact_work -= dot(shift, &forces);
         }
-        for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.acts_between()) {
+        for (k, contact) in
+            model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.acts_between())
+        {
             debug_assert_eq!(next.pairs[k].len(), solved.rows[k].len(), "contact {}", contact.name);
             // The next step goes on from the gap that was counted.
             let gaps = solved.rows[k].iter().map(|row| Some(row.gap));
@@ -128,14 +143,16 @@ impl Stepper for Implicit {
 }
 
 impl Implicit {
-    /// The law "predictor" (P. Deuflhard, R. Krause, S. Ertel, Int. J. Numer. Meth. Engng 73 (2008) 1274–1290): in place of y_s + Δt v_s in Newmark's
-    /// formula stands the nearest point, in the mass, without penetration,
+    /// The law "predictor" (P. Deuflhard, R. Krause, S. Ertel, Int. J. Numer. Meth. Engng 73 (2008)
+    /// 1274–1290): in place of y_s + Δt v_s in Newmark's formula stands the nearest point, in the
+    /// mass, without penetration,
     ///
     /// ```text
     /// min ½ ‖q − (y_s + Δt v_s)‖²_M   with   g(q) ≥ 0
     /// ```
     ///
-    /// and velocities do not see the difference. It is solved as a stage of its own; q − (y_s + Δt v_s) is returned, none where nothing would penetrate.
+    /// and velocities do not see the difference. It is solved as a stage of its own; q − (y_s + Δt
+    /// v_s) is returned, none where nothing would penetrate.
     fn predictor_shift(
         &self,
         model: &Model,
@@ -166,7 +183,7 @@ impl Implicit {
         if !penetrates(model, &state.y, &y, &mut guess.pairings) {
             return Ok(None);
         }
-        let (solved, _) = solve_stage(&equations, &state.kept, &state.y, &self.settings, guess, work)?;
+        let (solved, _) = solve_stage(&equations, &state.frozen, &state.y, &self.settings, guess, work)?;
         let shift = solved.at.increment.iter().zip(&free).map(|(d, free)| d - free).collect();
         work.spare.put(solved);
         Ok(Some(shift))

@@ -1,19 +1,21 @@
-//! Schemes whose contact is an impulse (Moreau and Jean's θ-method, the nonsmooth generalised α): Newton on d with the complementarity of impulses and
-//! velocities inside.
+//! Schemes whose contact is an impulse (Moreau and Jean's θ-method, the nonsmooth generalised α):
+//! Newton on d with the complementarity of impulses and velocities inside.
 //!
 //! ```text
 //! w.mass M a(d) + w.internal f_int − w.external f_ext + known − s GᵀP = 0            s, c: carom_time::ImpulseShares
 //! 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0,   v_{n+1} = v(d) + c M⁻¹GᵀP
 //! ```
 //!
-//! G and the gaps that decide who takes part are those at the predicted positions. In each iteration, with K the tangent of the balance at P = 0,
+//! G and the gaps that decide who takes part are those at the predicted positions. In each
+//! iteration, with K the tangent of the balance at P = 0,
 //!
 //! ```text
 //! d := d − K⁻¹r₀ + s K⁻¹GᵀP,    G v_{n+1} = b + D P,    D = v' s G K⁻¹Gᵀ + c G M⁻¹Gᵀ
 //! ```
 //!
-//! so that P solves a small complementarity problem, exactly, and Newton's method converges as without contact. D is symmetric and positive definite.
-//! Velocities are held, not positions: a node penetrates by up to Δt times its speed when it arrives, and that is recorded as it is.
+//! so that P solves a small complementarity problem, exactly, and Newton's method converges as
+//! without contact. D is symmetric and positive definite. Velocities are held, not positions: a
+//! node penetrates by up to Δt times its speed when it arrives, and that is recorded as it is.
 
 use carom_algebra::complementarity;
 use carom_contact::Pairing;
@@ -67,7 +69,14 @@ impl Impulsive {
 }
 
 impl Stepper for Impulsive {
-    fn step(&self, model: &Model, state: &State, dt: f64, to: f64, work: &mut Workspace) -> Result<Accepted, Rejected> {
+    fn step(
+        &self,
+        model: &Model,
+        state: &State,
+        dt: f64,
+        to: f64,
+        work: &mut Workspace,
+    ) -> Result<Accepted, Rejected> {
         let mut stage = Stage::default();
         let memory = Memory { states: &[(&state.y, &state.v, &state.a)], before: None };
         self.scheme.stage_into(0, dt, &memory, &mut stage);
@@ -77,11 +86,13 @@ impl Stepper for Impulsive {
         let mut report = StepReport::default();
         let mut pairings = Vec::new();
         carry_into(model, state, Pairing::new, &mut pairings);
-        let mut increment: Vec<f64> = (0..state.v.len()).map(|i| dt * (state.v[i] + 0.5 * dt * state.a[i])).collect();
+        let mut increment: Vec<f64> =
+            (0..state.v.len()).map(|i| dt * (state.v[i] + 0.5 * dt * state.a[i])).collect();
         let mut impulses = Impulses::none(model.dimension);
         let mut solved = None;
         let predicted: Vec<f64> = if self.scheme.predicts_by_solving() {
-            let free = self.solve(&equations, shares, increment.clone(), &mut impulses, &mut report.newton, work)?;
+            let free =
+                self.solve(&equations, shares, increment.clone(), &mut impulses, &mut report.newton, work)?;
             increment.clone_from(&free.at.increment);
             let predicted = free.y.clone();
             solved = Some(free);
@@ -180,8 +191,8 @@ impl Impulsive {
             let Workspace { system, timings, .. } = work;
             let point = equations.point(&now.place, &[]);
             timed(&mut timings.factor, || -> Result<(), Rejected> {
-                system.hold(model, &point, true)?;
-                Ok(system.kept.prepare(model, &none).map(|_| ())?)
+                system.factor_at(model, &point, true)?;
+                Ok(system.factor.prepare(model, &none).map(|_| ())?)
             })?;
             // −r₀: the residual without the impulses.
             for (right, (contact, r)) in right.iter_mut().zip(now.forces.contact.iter().zip(&now.residual)) {
@@ -189,11 +200,11 @@ impl Impulsive {
             }
             timed(&mut timings.solve, || -> Result<(), Rejected> {
                 let multipliers = &mut Vec::new();
-                system.kept.solve(model, &right, &[], &mut correction, multipliers)?;
+                system.factor.solve(model, &right, &[], &mut correction, multipliers)?;
                 for (row, column) in impulses.rows.rows.iter().zip(&mut columns) {
                     right.fill(0.0);
                     row.add_to(1.0, &mut right);
-                    system.kept.solve(model, &right, &[], column, multipliers)?;
+                    system.factor.solve(model, &right, &[], column, multipliers)?;
                 }
                 Ok(())
             })?;
@@ -261,8 +272,11 @@ fn evaluate(
     work: &mut Workspace,
 ) -> Result<Evaluation, Rejected> {
     let model = equations.model;
-    let mut now =
-        equations.evaluate(Iterate { increment, pairings: Vec::new() }, &mut work.spare, &mut work.timings)?;
+    let mut now = equations.evaluate(
+        Iterate { increment, pairings: Vec::new() },
+        &mut work.spare,
+        &mut work.timings,
+    )?;
     for (row, impulse) in impulses.rows.rows.iter().zip(&impulses.values) {
         row.add_to(-shares.force * impulse, &mut now.forces.contact);
     }
@@ -299,7 +313,8 @@ impl Impulses {
             }
         }
         let places = independent_rows(model, active(pairings), &measured);
-        let rows = Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), measured[k].row(p))));
+        let rows =
+            Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), measured[k].row(p))));
         let mut released = Vec::new();
         if !rows.is_empty() && (shares.velocity != 0.0 || shares.acceleration != 0.0) {
             work.system.factor_mass(model, &Constraints::none(model.dimension))?;
@@ -308,7 +323,7 @@ impl Impulses {
                 force.fill(0.0);
                 row.add_to(1.0, &mut force);
                 let mut column = vec![0.0; model.dofs()];
-                work.system.kept.solve(model, &force, &[], &mut column, &mut Vec::new())?;
+                work.system.factor.solve(model, &force, &[], &mut column, &mut Vec::new())?;
                 released.push(column);
             }
         }
@@ -330,7 +345,8 @@ impl Impulses {
         }
     }
 
-    /// Impulses into the ledger and, as the forces P/Δt, into those of the contacts: work ½(Gv⁻ + Gv⁺)·P.
+    /// Impulses into the ledger and, as the forces P/Δt, into those of the contacts: work ½(Gv⁻ +
+    /// Gv⁺)·P.
     fn book(&self, dt: f64, next: &mut State) {
         next.contact_forces.fill([0.0; 3]);
         for (r, (row, impulse)) in self.rows.rows.iter().zip(&self.values).enumerate() {

@@ -43,7 +43,9 @@ pub struct Accepted {
 impl Accepted {
     /// Checks the last things a result must hold to.
     fn new(state: State, report: StepReport) -> Result<Self, Rejected> {
-        for (what, values) in [("a position", &state.y), ("a velocity", &state.v), ("an acceleration", &state.a)] {
+        for (what, values) in
+            [("a position", &state.y), ("a velocity", &state.v), ("an acceleration", &state.a)]
+        {
             if values.iter().any(|x| !x.is_finite()) {
                 return Err(Rejected::NotFinite { what });
             }
@@ -67,8 +69,16 @@ impl Accepted {
 
 /// A time stepper.
 pub trait Stepper: Send + Sync {
-    /// One step of size `dt` from `state` to the time `to`. The grid index of the result is the caller's to set.
-    fn step(&self, model: &Model, state: &State, dt: f64, to: f64, work: &mut Workspace) -> Result<Accepted, Rejected>;
+    /// One step of size `dt` from `state` to the time `to`. The grid index of the result is the
+    /// caller's to set.
+    fn step(
+        &self,
+        model: &Model,
+        state: &State,
+        dt: f64,
+        to: f64,
+        work: &mut Workspace,
+    ) -> Result<Accepted, Rejected>;
 }
 
 /// Secondary nodes active in `a` and not in `b`: (contact, global node).
@@ -76,8 +86,9 @@ fn difference(model: &Model, a: &State, b: &State) -> Vec<(usize, usize)> {
     let mut nodes = Vec::new();
     for (k, contact) in model.contacts.iter().enumerate() {
         // Pairs ascend by node.
-        let active =
-            |node: usize| b.pairs[k].binary_search_by_key(&node, |p| p.node).is_ok_and(|p| b.pairs[k][p].active);
+        let active = |node: usize| {
+            b.pairs[k].binary_search_by_key(&node, |p| p.node).is_ok_and(|p| b.pairs[k][p].active)
+        };
         for pair in a.pairs[k].iter().filter(|p| p.active && !active(p.node)) {
             nodes.push((k, contact.kinematics.secondary()[pair.node]));
         }

@@ -1,5 +1,6 @@
-//! Pairs of the steppers that treat contact themselves: found along the step, and kept from step to step while they touch or penetrate. The search takes a node
-//! behind a facet at the start of a step for one that came from elsewhere, so a law that lets nodes penetrate must not forget them.
+//! Pairs of the steppers that treat contact themselves: found along the step, and kept from step to
+//! step while they touch or penetrate. The search takes a node behind a facet at the start of a
+//! step for one that came from elsewhere, so a law that lets nodes penetrate must not forget them.
 
 use carom_contact::{Pair, Pairing, Rows};
 
@@ -7,7 +8,8 @@ use crate::model::{Contact, Model};
 use crate::rejected::Rejected;
 use crate::state::State;
 
-/// The pairs a step begins with: those that touched or are behind, released and without multiplier; `watch` says how far others are looked for.
+/// The pairs a step begins with: those that touched or are behind, released and without multiplier;
+/// `watch` says how far others are looked for.
 pub(super) fn carry_into(
     model: &Model,
     state: &State,
@@ -27,7 +29,8 @@ pub(super) fn carry_into(
     }
 }
 
-/// Gap of a pair at positions `y`, its contact point moved there; infinite where there is no unique closest point, which is far away. `row` is overwritten.
+/// Gap of a pair at positions `y`, its contact point moved there; infinite where there is no unique
+/// closest point, which is far away. `row` is overwritten.
 pub(super) fn gap_at(contact: &Contact, pair: &mut Pair, y: &[f64], row: &mut Rows) -> f64 {
     row.clear();
     let found = contact.kinematics.measure(pair, y, row);
@@ -72,7 +75,8 @@ pub(super) fn active(pairings: &[Pairing]) -> impl Iterator<Item = (usize, usize
 /// Depth of the deepest watched node at a state, ≥ 0.
 pub(super) fn depth(model: &Model, state: &State) -> f64 {
     let mut row = Rows::new(model.dimension);
-    let pairs = model.contacts.iter().zip(&state.pairs).flat_map(|(c, pairs)| pairs.iter().map(move |p| (c, p)));
+    let pairs =
+        model.contacts.iter().zip(&state.pairs).flat_map(|(c, pairs)| pairs.iter().map(move |p| (c, p)));
     pairs.map(|(contact, pair)| -gap_at(contact, &mut pair.clone(), &state.y, &mut row)).fold(0.0, f64::max)
 }
 

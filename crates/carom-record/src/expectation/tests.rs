@@ -2,8 +2,12 @@ use super::*;
 use crate::{Column, History};
 
 fn history(columns: &[(&str, Vec<f64>)]) -> History {
-    let column =
-        |name: &str| Column { name: name.into(), unit: String::new(), description: String::new(), integer: false };
+    let column = |name: &str| Column {
+        name: name.into(),
+        unit: String::new(),
+        description: String::new(),
+        integer: false,
+    };
     let (names, values) = columns.iter().map(|(name, values)| (column(name), values.clone())).unzip();
     History::new(names, values)
 }
@@ -84,7 +88,10 @@ fn deviations_from_a_formula() {
     assert_eq!(rms.got(&record), Ok(11.0_f64.sqrt()));
     let verdict = rms.verdict(rms.got(&record));
     assert!(verdict.pass);
-    assert_eq!((verdict.what.as_str(), verdict.value, verdict.tolerance), ("rms |a − (1 + t)|", Some(3.3), Some(0.02)));
+    assert_eq!(
+        (verdict.what.as_str(), verdict.value, verdict.tolerance),
+        ("rms |a − (1 + t)|", Some(3.3), Some(0.02))
+    );
     let early = Expect { before: Some(1.5), ..with(Norm::Max, 1.0, Bound::AtMost(1.0)) };
     assert_eq!(early.got(&record), Ok(1.0));
     let nowhere = Expect {

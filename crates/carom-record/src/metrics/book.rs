@@ -10,7 +10,14 @@ pub fn book_table() -> String {
     let all = history.chain(columns).chain(PRESSURE.iter().chain(&WORK).map(|x| (String::new(), &x.0)));
     let escape = |text: &str| text.replace('|', "\\|");
     let row = |(before, d): (String, &Definition)| {
-        format!("| `{before}{}` | {} | {} | {} | {} |\n", d.name, d.meaning, escape(d.formula), d.unit.word(), d.source)
+        format!(
+            "| `{before}{}` | {} | {} | {} | {} |\n",
+            d.name,
+            d.meaning,
+            escape(d.formula),
+            d.unit.word(),
+            d.source
+        )
     };
     let head = "| Metric | Definition | Formula | Unit | Source |\n| --- | --- | --- | --- | --- |\n";
     all.fold(head.to_owned(), |text, one| text + &row(one))

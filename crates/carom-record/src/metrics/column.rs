@@ -1,8 +1,9 @@
 //! Metrics of a column in the first contact episode.
 //!
-//! Roughness of a column = TV/(2·range) − 1 over the first contact episode, from the row before it to the row that ends it: TV is
-//! Σ|xᵢ₊₁ − xᵢ|, range is max − min. One hump that ends where it began has 0, a monotone column −1/2, one that goes up and down k
-//! times through its whole range k − 1. It sees rows, not steps: a coarser `history_every` hides what lies between them.
+//! Roughness of a column = TV/(2·range) − 1 over the first contact episode, from the row before it
+//! to the row that ends it: TV is Σ|xᵢ₊₁ − xᵢ|, range is max − min. One hump that ends where it
+//! began has 0, a monotone column −1/2, one that goes up and down k times through its whole range k
+//! − 1. It sees rows, not steps: a coarser `history_every` hides what lies between them.
 
 use super::episode::{Episode, first_episode};
 use super::samples::{extreme, peak_mean, total_variation};
@@ -12,12 +13,14 @@ use crate::History;
 pub fn column_roughness(history: &History, column: &str) -> Option<f64> {
     let episode = first_episode(history)?;
     let values = history.column(column)?;
-    let values = values.get(episode.start.saturating_sub(1)..episode.end.map_or(values.len(), |end| end + 1))?;
+    let values =
+        values.get(episode.start.saturating_sub(1)..episode.end.map_or(values.len(), |end| end + 1))?;
     let range = extreme(values, f64::gt)?.1 - extreme(values, f64::lt)?.1;
     (range > 0.0).then(|| total_variation(values) / (2.0 * range) - 1.0)
 }
 
-/// Largest size of a column averaged over 1/16 of the first episode, by the trapezoidal rule between rows.
+/// Largest size of a column averaged over 1/16 of the first episode, by the trapezoidal rule
+/// between rows.
 pub(super) fn peak_of_means(history: &History, column: &str) -> Option<f64> {
     let (times, values) = (history.times(), history.column(column)?);
     let mut integral = Vec::with_capacity(values.len());
@@ -47,14 +50,18 @@ mod tests {
     fn history(probe: Vec<f64>) -> History {
         let rows = probe.len();
         let active = (0..rows).map(|i| f64::from(i > 0 && i + 1 < rows)).collect();
-        let column =
-            |name: &str| Column { name: name.into(), unit: String::new(), description: String::new(), integer: false };
+        let column = |name: &str| Column {
+            name: name.into(),
+            unit: String::new(),
+            description: String::new(),
+            integer: false,
+        };
         let names = ["time", "active", "B.s"].map(column).to_vec();
         History::new(names, vec![(0..rows).map(|i| i as f64).collect(), active, probe])
     }
 
-    /// Stress −32 in every row of contact, rows 1 to 32 of 34, but 32 in the middle one: windows of two rows. The mean over rows without it is −32; across it
-    /// the trapezoids are 0.
+    /// Stress −32 in every row of contact, rows 1 to 32 of 34, but 32 in the middle one: windows of
+    /// two rows. The mean over rows without it is −32; across it the trapezoids are 0.
     #[test]
     fn mean_peaks_by_hand() {
         let mut values = vec![-32.0; 34];

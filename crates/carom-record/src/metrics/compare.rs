@@ -1,4 +1,5 @@
-//! A column held against a reference's. The reference is taken linear between its rows; only rows within its span count.
+//! A column held against a reference's. The reference is taken linear between its rows; only rows
+//! within its span count.
 //!
 //! ```text
 //! deviation          √( mean (c_i − r(t_i))² ) / range of r
@@ -10,14 +11,17 @@ use super::samples::{at, extreme};
 /// Root mean square deviation over the range of the reference.
 pub fn deviation(times: &[f64], values: &[f64], reference: (&[f64], &[f64])) -> Option<f64> {
     let range = extreme(reference.1, f64::gt)?.1 - extreme(reference.1, f64::lt)?.1;
-    let squares =
-        times.iter().zip(values).filter_map(|(&t, c)| at(reference.0, reference.1, t).map(|r| (c - r).powi(2)));
+    let squares = times
+        .iter()
+        .zip(values)
+        .filter_map(|(&t, c)| at(reference.0, reference.1, t).map(|r| (c - r).powi(2)));
     let (sum, rows) = squares.fold((0.0, 0_u32), |(sum, n), x| (sum + x, n + 1));
     let value = (sum / f64::from(rows)).sqrt() / range;
     value.is_finite().then_some(value)
 }
 
-/// By how much a column is late; none where the iteration does not settle within a quarter of the span.
+/// By how much a column is late; none where the iteration does not settle within a quarter of the
+/// span.
 pub fn phase_shift(times: &[f64], values: &[f64], reference: (&[f64], &[f64])) -> Option<f64> {
     let span = times.last()? - times.first()?;
     let width = 1e-3 * span;
@@ -26,7 +30,9 @@ pub fn phase_shift(times: &[f64], values: &[f64], reference: (&[f64], &[f64])) -
         let (mut along, mut steep) = (0.0, 0.0);
         for (t, c) in times.iter().zip(values) {
             let r = |t: f64| at(reference.0, reference.1, t);
-            let Some(((before, here), after)) = r(t - shift - width).zip(r(t - shift)).zip(r(t - shift + width)) else {
+            let Some(((before, here), after)) =
+                r(t - shift - width).zip(r(t - shift)).zip(r(t - shift + width))
+            else {
                 continue;
             };
             let slope = (after - before) / (2.0 * width);

@@ -1,4 +1,5 @@
-//! What a metric is: its definition, its unit in those of the case, and the value a record has of it.
+//! What a metric is: its definition, its unit in those of the case, and the value a record has of
+//! it.
 
 use std::borrow::Cow;
 

@@ -1,4 +1,5 @@
-//! Metrics of a record: of its history, of one of its columns, and everything a study tabulates of a run.
+//! Metrics of a record: of its history, of one of its columns, and everything a study tabulates of
+//! a run.
 
 use super::definition::{Definition, Metric, Unit};
 use super::episode::{default_bridge, episodes};
@@ -36,8 +37,9 @@ pub fn probe_columns(run: &Run) -> Vec<&str> {
 /// Impacts whose energy a study tabulates one by one.
 const IMPACTS: usize = 9;
 
-/// Everything a study tabulates: [`all`], the energy lost at each of the first impacts where there are several, the pressure at the end of a static run,
-/// then the columns of the probes, then the work.
+/// Everything a study tabulates: [`all`], the energy lost at each of the first impacts where there
+/// are several, the pressure at the end of a static run, then the columns of the probes, then the
+/// work.
 pub fn of_run(run: &Run) -> Vec<Metric> {
     let history = &run.history;
     let mut metrics = all(history);
@@ -45,7 +47,12 @@ pub fn of_run(run: &Run) -> Vec<Metric> {
     for n in 1..=if impacts > 1 { impacts } else { 0 } {
         let definition = "energy lost over the N-th episode of contact / largest kinetic + strain energy";
         let value = energy_lost_at(history, n);
-        metrics.push(Metric { name: format!("energy_lost:{n}").into(), value, unit: String::new(), definition });
+        metrics.push(Metric {
+            name: format!("energy_lost:{n}").into(),
+            value,
+            unit: String::new(),
+            definition,
+        });
     }
     for (definition, value) in PRESSURE.iter().filter_map(|(d, value)| Some((d, value(run)?))) {
         let (name, unit) = (definition.name.into(), definition.unit.label(history));
@@ -58,7 +65,8 @@ pub fn of_run(run: &Run) -> Vec<Metric> {
             metrics.push(Metric { name, value: value(history, column), unit, definition: meaning });
         }
         for (definition, value) in FREE.iter().filter_map(|(d, value)| Some((d, value(history, column)?))) {
-            let (name, unit) = (format!("{column}:{}", definition.name).into(), definition.unit.label(history));
+            let (name, unit) =
+                (format!("{column}:{}", definition.name).into(), definition.unit.label(history));
             metrics.push(Metric { name, value: Some(value), unit, definition: definition.meaning });
         }
     }

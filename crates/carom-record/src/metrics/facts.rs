@@ -1,4 +1,5 @@
-//! What the metrics of a history are made of: its episodes and the size of the contact force, found once.
+//! What the metrics of a history are made of: its episodes and the size of the contact force, found
+//! once.
 
 use std::ops::Range;
 

@@ -1,4 +1,5 @@
-//! How smooth the contact force is, and how steady contact: numbers of the first episode, or of all.
+//! How smooth the contact force is, and how steady contact: numbers of the first episode, or of
+//! all.
 //!
 //! ```text
 //! variation       TV = Σ |x_{n+1} − x_n|
@@ -6,7 +7,8 @@
 //! chatter         Σ (activations + releases) / (time in contact)
 //! ```
 //!
-//! N rows of the episode, taken as equally spaced in time. A force that is constant while contact lasts has no power above; nor has a smooth pulse.
+//! N rows of the episode, taken as equally spaced in time. A force that is constant while contact
+//! lasts has no power above; nor has a smooth pulse.
 
 use super::facts::Facts;
 use super::samples::total_variation;
@@ -14,7 +16,8 @@ use super::samples::total_variation;
 /// Cycles per episode up to which a frequency counts as low.
 const CYCLES: usize = 16;
 
-/// Share of the power of equally spaced samples above 16 cycles in their span; none for too few of them, or where all are zero.
+/// Share of the power of equally spaced samples above 16 cycles in their span; none for too few of
+/// them, or where all are zero.
 pub fn high_frequency(samples: &[f64]) -> Option<f64> {
     let n = samples.len();
     let power = samples.iter().map(|x| x * x).sum::<f64>();
@@ -48,7 +51,8 @@ pub(super) fn chatter(facts: &Facts) -> Option<f64> {
     let [activations, releases] = ["activations", "releases"].map(|name| facts.history.column(name));
     let switches = activations?.iter().chain(releases?).sum::<f64>();
     let last = facts.history.times().len().checked_sub(1)?;
-    let lasting = facts.episodes.iter().map(|e| facts.time(e.end.unwrap_or(last)) - facts.time(e.start)).sum::<f64>();
+    let lasting =
+        facts.episodes.iter().map(|e| facts.time(e.end.unwrap_or(last)) - facts.time(e.start)).sum::<f64>();
     (lasting > 0.0).then(|| switches / lasting)
 }
 
@@ -65,7 +69,8 @@ mod tests {
     use crate::metrics::all;
     use crate::{Column, History};
 
-    /// 1 + cos of k cycles in 128 samples has the power 128 + 64: above 16 cycles a third of it, up to 16 none.
+    /// 1 + cos of k cycles in 128 samples has the power 128 + 64: above 16 cycles a third of it, up
+    /// to 16 none.
     #[test]
     fn power_above_sixteen_cycles() {
         let wave = |k: f64| -> Vec<f64> {
@@ -80,11 +85,16 @@ mod tests {
         assert_eq!((high_frequency(&[1.0; 8]), high_frequency(&[0.0; 128])), (None, None));
     }
 
-    /// Contact in rows 2 to 4 and 7, Δt = 0.5: time in contact 1.5 + 0.5, three switches of each kind. Force 0 4 1 4 0 over the first episode.
+    /// Contact in rows 2 to 4 and 7, Δt = 0.5: time in contact 1.5 + 0.5, three switches of each
+    /// kind. Force 0 4 1 4 0 over the first episode.
     #[test]
     fn chatter_variation_and_depth_by_hand() {
-        let column =
-            |name: &str| Column { name: name.into(), unit: "u".into(), description: String::new(), integer: false };
+        let column = |name: &str| Column {
+            name: name.into(),
+            unit: "u".into(),
+            description: String::new(),
+            integer: false,
+        };
         let names = ["time", "active", "activations", "releases", "contact_force_x", "penetration"];
         let values = vec![
             (0..9).map(|i| 0.5 * f64::from(i)).collect(),

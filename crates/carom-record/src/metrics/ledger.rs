@@ -1,5 +1,6 @@
-//! Where the energy went, from the ledger's columns. ΔE_i = total_i − total_0 − external_work_i is what the bodies gained beyond the work of loads
-//! and supports; it is 0 for elastic bodies. The ledger splits it (its columns are exact for the integrated equations, Krenk 2006):
+//! Where the energy went, from the ledger's columns. ΔE_i = total_i − total_0 − external_work_i is
+//! what the bodies gained beyond the work of loads and supports; it is 0 for elastic bodies. The
+//! ledger splits it (its columns are exact for the integrated equations, Krenk 2006):
 //!
 //! ```text
 //! −ΔE = dissipation + (−contact_work)          the integrator's share, and that of contact forces and projections
@@ -70,13 +71,19 @@ mod tests {
     use crate::Column;
     use crate::metrics::all;
 
-    /// Two impacts by hand. Energy 10 falls to 9 in rows 1 to 3, to 8.5 in flight, rises to 8.75 in the second; the ledger says 1 of the 1.25 is the
-    /// integrator's. A load did work 0 throughout; the largest kinetic + strain energy is 10.
+    /// Two impacts by hand. Energy 10 falls to 9 in rows 1 to 3, to 8.5 in flight, rises to 8.75 in
+    /// the second; the ledger says 1 of the 1.25 is the integrator's. A load did work 0 throughout;
+    /// the largest kinetic + strain energy is 10.
     #[test]
     fn two_impacts_by_hand() {
-        let names = ["time", "active", "kinetic", "strain", "total", "external_work", "contact_work", "dissipation"];
-        let column =
-            |name: &str| Column { name: name.into(), unit: String::new(), description: String::new(), integer: false };
+        let names =
+            ["time", "active", "kinetic", "strain", "total", "external_work", "contact_work", "dissipation"];
+        let column = |name: &str| Column {
+            name: name.into(),
+            unit: String::new(),
+            description: String::new(),
+            integer: false,
+        };
         let total = vec![10.0, 10.0, 9.5, 9.0, 8.5, 8.5, 8.0, 8.75, 8.75];
         let rows = total.len();
         let values = vec![

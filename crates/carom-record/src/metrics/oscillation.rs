@@ -1,12 +1,14 @@
-//! Damping and period of a column that oscillates freely about zero, from the linear recurrence its rows follow (Prony 1795).
+//! Damping and period of a column that oscillates freely about zero, from the linear recurrence its
+//! rows follow (Prony 1795).
 //!
 //! ```text
 //! c_{n+1} = 2 Re z c_n − |z|² c_{n−1}         z: the principal eigenvalue of a step; both coefficients by least squares
 //! ξ = −ln|z|/arg z,   T = 2π Δt/arg z
 //! ```
 //!
-//! Only the second half of the record counts, where what the start excited besides is gone. It must hold a period, and the recurrence must explain all of its
-//! second differences but a hundredth: any other column is no free oscillation of one frequency.
+//! Only the second half of the record counts, where what the start excited besides is gone. It must
+//! hold a period, and the recurrence must explain all of its second differences but a hundredth:
+//! any other column is no free oscillation of one frequency.
 
 use std::f64::consts::TAU;
 
@@ -60,12 +62,20 @@ mod tests {
 
     fn history(of: fn(f64) -> f64) -> History {
         let times: Vec<f64> = (0..=90).map(|n| 0.1 * f64::from(n)).collect();
-        let name =
-            |name: &str| Column { name: name.into(), unit: String::new(), description: String::new(), integer: false };
-        History::new(["time", "c"].map(name).to_vec(), vec![times.clone(), times.into_iter().map(of).collect()])
+        let name = |name: &str| Column {
+            name: name.into(),
+            unit: String::new(),
+            description: String::new(),
+            integer: false,
+        };
+        History::new(
+            ["time", "c"].map(name).to_vec(),
+            vec![times.clone(), times.into_iter().map(of).collect()],
+        )
     }
 
-    /// e^{−0.6t} cos 2t: ξ = 0.3 and T = π, whatever decays within the first half; a parabola or a second frequency oscillates not by this rule.
+    /// e^{−0.6t} cos 2t: ξ = 0.3 and T = π, whatever decays within the first half; a parabola or a
+    /// second frequency oscillates not by this rule.
     #[test]
     fn a_decaying_cosine_has_the_damping_it_was_made_with() {
         let made = history(|t| (-0.6 * t).exp() * (2.0 * t).cos() + 5.0 * (-15.0 * t).exp());
@@ -73,7 +83,9 @@ mod tests {
         assert!((period(&made, "c").unwrap() - std::f64::consts::PI).abs() < 1e-9);
         let steady = history(|t| (2.0 * t).cos());
         assert!(damping_ratio(&steady, "c").unwrap().abs() < 1e-12);
-        for other in [history(|t| 1.0 + t * t), history(|t| t.sin() + 0.1 * (7.0 * t).sin()), history(|_| 0.0)] {
+        for other in
+            [history(|t| 1.0 + t * t), history(|t| t.sin() + 0.1 * (7.0 * t).sin()), history(|_| 0.0)]
+        {
             assert_eq!((damping_ratio(&other, "c"), period(&other, "c")), (None, None));
         }
     }

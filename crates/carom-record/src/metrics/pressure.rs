@@ -1,13 +1,16 @@
-//! Metrics of the pressure between bodies at rest: of the last recorded step of a static run, from its rows of contact.csv.
+//! Metrics of the pressure between bodies at rest: of the last recorded step of a static run, from
+//! its rows of contact.csv.
 //!
-//! Hertz's pressure of a line contact is half an ellipse, so that its square is a parabola in the tangential place s:
+//! Hertz's pressure of a line contact is half an ellipse, so that its square is a parabola in the
+//! tangential place s:
 //!
 //! ```text
 //! p² = p₀² (1 − ((s − c)/a)²)        fitted to p² at the nodes by least squares: linear in p₀², p₀²c/a², p₀²/a²
 //! ```
 //!
-//! (H. Hertz 1882; K. L. Johnson, *Contact Mechanics*, 1985, § 4.2.) Where the largest pressure is that of an outermost node the model is the
-//! half right or left of an axis of symmetry, and c is that node's place. Multipliers come as λ/weight, the mean pressure near a node. Of several
+//! (H. Hertz 1882; K. L. Johnson, *Contact Mechanics*, 1985, § 4.2.) Where the largest pressure is
+//! that of an outermost node the model is the half right or left of an axis of symmetry, and c is
+//! that node's place. Multipliers come as λ/weight, the mean pressure near a node. Of several
 //! contacts the one that carries most is meant.
 
 use super::samples::extreme;
@@ -21,7 +24,8 @@ pub fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
     let top = extreme(pressures, f64::gt).map(|(i, _)| places[i])?;
     let half = top == first || top == last;
     // Places from −1 to 1 keep the normal equations well conditioned.
-    let (middle, scale) = if half { (top, last - first) } else { (0.5 * (first + last), 0.5 * (last - first)) };
+    let (middle, scale) =
+        if half { (top, last - first) } else { (0.5 * (first + last), 0.5 * (last - first)) };
     let size = pressures.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
     let powers = |s: f64| {
         let x = (s - middle) / scale;
@@ -50,7 +54,9 @@ pub fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
 fn solved(m: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
     let det = |m: [[f64; 3]; 3]| {
         (0..3)
-            .map(|i| m[0][i] * (m[1][(i + 1) % 3] * m[2][(i + 2) % 3] - m[1][(i + 2) % 3] * m[2][(i + 1) % 3]))
+            .map(|i| {
+                m[0][i] * (m[1][(i + 1) % 3] * m[2][(i + 2) % 3] - m[1][(i + 2) % 3] * m[2][(i + 1) % 3])
+            })
             .sum::<f64>()
     };
     let whole = det(m);
@@ -79,7 +85,8 @@ fn last_rows(run: &Run) -> Vec<&ContactRow<'static>> {
     rows.into_iter().filter(|r| r.contact == most).collect()
 }
 
-/// Places along the contact and pressures there, at the end of a static run; nothing of a motion, or without contact.
+/// Places along the contact and pressures there, at the end of a static run; nothing of a motion,
+/// or without contact.
 fn at_rest(run: &Run) -> Option<(Vec<f64>, Vec<f64>)> {
     let kind = run.manifest.case.pointer("/time/scheme/kind").and_then(|k| k.as_str());
     let rows = if kind == Some("static") { last_rows(run) } else { Vec::new() };
@@ -123,7 +130,8 @@ mod tests {
         }
     }
 
-    /// By hand: p² = 4, 3, 0 at s = 0, 1, 2 is 4 − s², so p₀ = 2 and a = 2; one place, or a valley, is no ellipse.
+    /// By hand: p² = 4, 3, 0 at s = 0, 1, 2 is 4 − s², so p₀ = 2 and a = 2; one place, or a valley,
+    /// is no ellipse.
     #[test]
     fn few_points() {
         let (peak, half) = hertz(&[0.0, 1.0, 2.0], &[2.0, 3.0_f64.sqrt(), 0.0]).unwrap();

@@ -22,14 +22,16 @@ pub fn total_variation(values: &[f64]) -> f64 {
     values.windows(2).map(|w| (w[1] - w[0]).abs()).sum()
 }
 
-/// Total variation over the least a rise to the largest value and a fall needs, minus 1: 0 for a single hump. None for a constant.
+/// Total variation over the least a rise to the largest value and a fall needs, minus 1: 0 for a
+/// single hump. None for a constant.
 pub fn roughness(values: &[f64]) -> Option<f64> {
     let top = extreme(values, f64::gt)?.1;
     let least = 2.0 * top - values.first()? - values.last()?;
     (least > 0.0).then(|| total_variation(values) / least - 1.0)
 }
 
-/// Largest mean over a window of time of the quantity whose integral is given: max |P(t + w) − P(t)|/w at recorded t, per component.
+/// Largest mean over a window of time of the quantity whose integral is given: max |P(t + w) −
+/// P(t)|/w at recorded t, per component.
 pub fn peak_mean(times: &[f64], integrals: &[&[f64]], window: f64) -> Option<f64> {
     let mean = |t: f64| {
         let change = |p: &&[f64]| Some((at(times, p, t + window)? - at(times, p, t)?) / window);

@@ -10,11 +10,13 @@ use super::facts::{Facts, norms, vector};
 use super::samples::extreme;
 use crate::History;
 
-/// Name of the body whose centre is fastest in the row before the first contact (the first row, if there is none).
+/// Name of the body whose centre is fastest in the row before the first contact (the first row, if
+/// there is none).
 pub fn striker(history: &History) -> Option<&str> {
     let row = first_episode(history).map_or(0, |e| e.start.saturating_sub(1));
     let bodies = history.columns.iter().filter_map(|c| c.name.strip_suffix(".velocity_x"));
-    let speeds = bodies.filter_map(|b| Some((b, *norms(&vector(history, &format!("{b}.velocity"))).get(row)?)));
+    let speeds =
+        bodies.filter_map(|b| Some((b, *norms(&vector(history, &format!("{b}.velocity"))).get(row)?)));
     speeds.reduce(|best, next| if next.1 > best.1 { next } else { best }).map(|(body, _)| body)
 }
 
@@ -23,12 +25,14 @@ pub(super) fn restitution(history: &History, episode: Episode) -> Option<f64> {
     let (before, after) = (episode.start.checked_sub(1)?, episode.end?);
     let impulse = vector(history, "contact_impulse");
     let velocity = vector(history, &format!("{}.velocity", striker(history)?));
-    let along = |row: usize| velocity.iter().zip(&impulse).map(|(v, p)| v[row] * (p[after] - p[before])).sum::<f64>();
+    let along =
+        |row: usize| velocity.iter().zip(&impulse).map(|(v, p)| v[row] * (p[after] - p[before])).sum::<f64>();
     let value = -along(after) / along(before);
     value.is_finite().then_some(value)
 }
 
-/// Time and rise of the apex: the vertex of the parabola through the highest row and its neighbours.
+/// Time and rise of the apex: the vertex of the parabola through the highest row and its
+/// neighbours.
 pub(super) fn apex(facts: &Facts) -> Option<(f64, f64)> {
     let history = facts.history;
     let center = *vector(history, &format!("{}.center", striker(history)?)).last()?;
@@ -52,12 +56,14 @@ pub(super) fn apex(facts: &Facts) -> Option<(f64, f64)> {
     Some((t[i] - there / curvature, top - 0.5 * there * there / curvature - y[0]))
 }
 
-/// Time at which the velocity of the striker's centre along the impulse of the first episode changes its sign, linear between rows.
+/// Time at which the velocity of the striker's centre along the impulse of the first episode
+/// changes its sign, linear between rows.
 pub(super) fn turning_time(facts: &Facts) -> Option<f64> {
     let (history, rows) = (facts.history, facts.rows.clone()?);
     let impulse = [facts.impulse(0), facts.impulse(1)];
     let velocity = vector(history, &format!("{}.velocity", striker(history)?));
-    let along = |row: usize| velocity.iter().zip(impulse).map(|(v, p)| v[row] * p.unwrap_or_default()).sum::<f64>();
+    let along =
+        |row: usize| velocity.iter().zip(impulse).map(|(v, p)| v[row] * p.unwrap_or_default()).sum::<f64>();
     let before = (rows.start..rows.end - 1).find(|&i| along(i) < 0.0 && along(i + 1) >= 0.0)?;
     let (a, b) = (along(before), along(before + 1));
     Some(facts.time(before) + (facts.time(before + 1) - facts.time(before)) * a / (a - b))

@@ -1,5 +1,6 @@
-//! The table of named metrics: name, formula, unit, source and meaning of each beside the function that computes it. Reports, studies, the book and
-//! expectations know a metric by its entry here and by nothing else.
+//! The table of named metrics: name, formula, unit, source and meaning of each beside the function
+//! that computes it. Reports, studies, the book and expectations know a metric by its entry here
+//! and by nothing else.
 
 use super::column::{column_roughness, in_contact, peak_of_means};
 use super::definition::{Definition, Unit};
@@ -45,9 +46,10 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
         ),
         |f| Some(f.time(f.first()?.end?)),
     ),
-    (d("contact_duration", Unit::Time, "t_b − t_a", TABLES, "from start to end of the first episode"), |f| {
-        f.duration()
-    }),
+    (
+        d("contact_duration", Unit::Time, "t_b − t_a", TABLES, "from start to end of the first episode"),
+        |f| f.duration(),
+    ),
     (
         d(
             "contact_episodes",
@@ -229,9 +231,10 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
         ),
         ledger::by_contact,
     ),
-    (d("penetration", Unit::Length, "max (0, −g)", TABLES, "deepest penetration of a secondary node"), |f| {
-        extreme(f.history.column("penetration")?, f64::gt).map(|x| x.1)
-    }),
+    (
+        d("penetration", Unit::Length, "max (0, −g)", TABLES, "deepest penetration of a secondary node"),
+        |f| extreme(f.history.column("penetration")?, f64::gt).map(|x| x.1),
+    ),
     (
         d(
             "penetration_mean",
@@ -294,7 +297,8 @@ pub const COLUMNS: [(Definition, fn(&History, &str) -> Option<f64>); 6] = [
     ),
 ];
 
-/// Metrics of a column that oscillates freely, called like those of [`COLUMNS`]; none of any other column.
+/// Metrics of a column that oscillates freely, called like those of [`COLUMNS`]; none of any other
+/// column.
 pub const FREE: [(Definition, fn(&History, &str) -> Option<f64>); 2] = [
     (
         d(
@@ -345,7 +349,13 @@ pub const PRESSURE: [(Definition, fn(&Run) -> Option<f64>); 4] = [
         |r| pressure::ellipse(r).map(|fit| fit.0),
     ),
     (
-        d("hertz_half_width", Unit::Length, "a of that ellipse", "Johnson 1985, § 4.2", "half-width of that ellipse"),
+        d(
+            "hertz_half_width",
+            Unit::Length,
+            "a of that ellipse",
+            "Johnson 1985, § 4.2",
+            "half-width of that ellipse",
+        ),
         |r| pressure::ellipse(r).map(|fit| fit.1),
     ),
 ];
@@ -356,9 +366,10 @@ pub const WORK: [(Definition, fn(&Run) -> Option<f64>); 6] = [
     (d("newton_iterations", Unit::None, "counter newton", OWN, "Newton iterations of all steps"), |r| {
         count(r, "newton")
     }),
-    (d("rejected_steps", Unit::None, "counter rejected", OWN, "steps that were rejected and bisected"), |r| {
-        count(r, "rejected")
-    }),
+    (
+        d("rejected_steps", Unit::None, "counter rejected", OWN, "steps that were rejected and bisected"),
+        |r| count(r, "rejected"),
+    ),
     (
         d(
             "factorisations",

@@ -1,4 +1,5 @@
-//! A record whose metrics are known by hand: free fall, a parabolic force pulse of the contact, free flight.
+//! A record whose metrics are known by hand: free fall, a parabolic force pulse of the contact,
+//! free flight.
 
 use super::*;
 use crate::question::{Question, Window};
@@ -18,8 +19,9 @@ fn history(columns: &[(&str, Vec<f64>)]) -> History {
     History::new(columns.iter().map(describe).collect(), columns.iter().map(|(_, v)| v.clone()).collect())
 }
 
-/// Contact in 1 ≤ t < 2 of 0 ≤ t ≤ 4, Δt = 1/16. Impulse along y from 0 to 9: force 54 s(1 − s), peak 13.5 in the middle.
-/// The ball falls with −4 and leaves with +3 − 2(t − 2): apex 2.25 above where it leaves, at t = 3.5.
+/// Contact in 1 ≤ t < 2 of 0 ≤ t ≤ 4, Δt = 1/16. Impulse along y from 0 to 9: force 54 s(1 − s),
+/// peak 13.5 in the middle. The ball falls with −4 and leaves with +3 − 2(t − 2): apex 2.25 above
+/// where it leaves, at t = 3.5.
 fn bounce() -> History {
     let times: Vec<f64> = (0..=64).map(|i| f64::from(i) / 16.0).collect();
     let map = |f: fn(f64) -> f64| times.iter().map(|&t| f(t)).collect::<Vec<_>>();
@@ -102,7 +104,8 @@ fn no_contact_and_contact_without_an_end() {
         let times = (0..active.len()).map(|i| i as f64).collect();
         history(&[("time", times), ("active", active.to_vec())])
     };
-    let value = |history: &History, name: &str| all(history).into_iter().find(|m| m.name == name).unwrap().value;
+    let value =
+        |history: &History, name: &str| all(history).into_iter().find(|m| m.name == name).unwrap().value;
     let open = run(&[0.0; 5]);
     assert_eq!((value(&open, "contact_start"), value(&open, "contact_episodes")), (None, Some(0.0)));
     let closed = run(&[0.0, 0.0, 2.0, 1.0]);
@@ -130,8 +133,11 @@ fn the_window_may_lie_between_rows() {
 
 #[test]
 fn expectations_of_columns() {
-    let history =
-        history(&[("time", vec![0.0, 0.5, 2.0]), ("A.uy", vec![1.0, f64::NAN, 3.0]), ("B.uy", vec![1.0, -2.0, 4.0])]);
+    let history = history(&[
+        ("time", vec![0.0, 0.5, 2.0]),
+        ("A.uy", vec![1.0, f64::NAN, 3.0]),
+        ("B.uy", vec![1.0, -2.0, 4.0]),
+    ]);
     let get = |what: &str| evaluate(&history, what);
     assert_eq!(get("min B.uy"), Ok(-2.0));
     assert_eq!(get("max B.uy"), Ok(4.0));

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::design::Part;
+use super::design::Role;
 use crate::Expect;
 
 /// One simulation of a study.
@@ -18,7 +18,7 @@ pub struct Arm {
     pub steps: u64,
     /// What it is to the study.
     #[serde(default)]
-    pub part: Part,
+    pub role: Role,
     /// The case file it names instead of the study's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case_path: Option<String>,

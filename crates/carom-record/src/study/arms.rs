@@ -1,5 +1,5 @@
-//! What is asked of the arms of a study, gathered arm by arm, so that only one record is in memory at a time: metrics, and the columns
-//! somebody asks for.
+//! What is asked of the arms of a study, gathered arm by arm, so that only one record is in memory
+//! at a time: metrics, and the columns somebody asks for.
 
 use std::collections::BTreeMap;
 
@@ -99,7 +99,8 @@ impl Records for ArmRecords {
     fn column(&self, asked: &Asked) -> Result<Rows<'_>, String> {
         let arm = named(asked.arm.as_deref(), &asked.column)?;
         let found = self.columns.get(&(arm.to_owned(), asked.column.clone()));
-        let [times, steps, values] = found.ok_or_else(|| self.none(arm, &format!("column `{}`", asked.column)))?;
+        let [times, steps, values] =
+            found.ok_or_else(|| self.none(arm, &format!("column `{}`", asked.column)))?;
         Ok(Rows { times: times.into(), steps: steps.into(), values: values.into() })
     }
 }

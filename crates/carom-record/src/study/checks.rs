@@ -1,4 +1,5 @@
-//! What a study tried on one of its own arms, `checks.json`, and the fingerprint of a record by which two are told to have the same bits.
+//! What a study tried on one of its own arms, `checks.json`, and the fingerprint of a record by
+//! which two are told to have the same bits.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +11,8 @@ use crate::{RecordError, files};
 /// Tables whose every byte is a result; the others hold times of the clock.
 const TABLES: [&str; 2] = ["history.csv", "contact.csv"];
 
-/// blake3 of `history.csv` and `contact.csv` of a run directory, each with its length, in hexadecimal.
+/// blake3 of `history.csv` and `contact.csv` of a run directory, each with its length, in
+/// hexadecimal.
 ///
 /// # Errors
 /// What the machine refused.
@@ -36,10 +38,11 @@ pub struct Checks {
     pub fingerprint: String,
     /// Threads of the first repetition, and its fingerprint.
     pub threads: (usize, String),
-    /// The step after which the second repetition was stopped, to be resumed from its files, and its fingerprint.
+    /// The step after which the second repetition was stopped, to be resumed from its files, and
+    /// its fingerprint.
     pub resumed: (u64, String),
     /// Pairs that touched at that step.
-    pub touching: usize,
+    pub active_pairs: usize,
 }
 
 impl Checks {
@@ -54,7 +57,12 @@ impl Checks {
             Err(error) => Err(RecordError::io("read", &path)(error)),
             Ok(text) => serde_json::from_slice(&text).map(Some).map_err(|error| {
                 let line = Some(error.line() as u64);
-                RecordError::corrupt(&path, line, error.to_string(), "delete it: it will say nothing of restarts then")
+                RecordError::corrupt(
+                    &path,
+                    line,
+                    error.to_string(),
+                    "delete it: it will say nothing of restarts then",
+                )
             }),
         }
     }

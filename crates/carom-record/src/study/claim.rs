@@ -92,7 +92,10 @@ impl Comparison {
         };
         let found: Vec<_> = tokens.iter().enumerate().filter_map(|(i, t)| Some((i, operator(t)?))).collect();
         let [(at, operator)] = found[..] else {
-            return Err(format!("it has {} comparisons (<, <=, >, >= between blanks); it needs one", found.len()));
+            return Err(format!(
+                "it has {} comparisons (<, <=, >, >= between blanks); it needs one",
+                found.len()
+            ));
         };
         let sides = [Question::of(&tokens[..at])?, Question::of(&tokens[at + 1..])?];
         for side in &sides {

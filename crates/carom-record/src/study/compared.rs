@@ -1,8 +1,9 @@
-//! An arm held against the reference: columns by their deviation, as a whole and in the smooth phases before and after the first contact; how late it is.
+//! An arm held against the reference: columns by their deviation, as a whole and in the smooth
+//! phases before and after the first contact; how late it is.
 
 use super::arm::step;
 use super::manifest::StudyManifest;
-use super::reference::{FORCE, Kept, Reference, Standing};
+use super::reference::{FORCE, Reference, Standing, Trajectory};
 use crate::metrics::{self, phase_shift};
 use crate::order::from_errors;
 
@@ -40,7 +41,7 @@ pub fn is_stress(column: &str) -> bool {
 
 impl Compared {
     /// Holds an arm against a reference whose first contact lasts over `contact`.
-    pub fn of(arm: &Kept, reference: &Reference, contact: Option<(f64, f64)>) -> Self {
+    pub fn of(arm: &Trajectory, reference: &Reference, contact: Option<(f64, f64)>) -> Self {
         let deviated = |(column, values): (&String, &Vec<f64>)| {
             let known = reference.column(column)?;
             let within = |from: f64, to: f64| {
@@ -69,12 +70,14 @@ impl Compared {
 
     /// Root mean square of the deviations of some columns.
     pub fn mean(&self, columns: &[&str]) -> Option<f64> {
-        let squares: Option<Vec<f64>> = columns.iter().map(|c| Some(self.column(c)?.whole?.powi(2))).collect();
+        let squares: Option<Vec<f64>> =
+            columns.iter().map(|c| Some(self.column(c)?.whole?.powi(2))).collect();
         squares.filter(|s| !s.is_empty()).map(|s| (s.iter().sum::<f64>() / s.len() as f64).sqrt())
     }
 }
 
-/// The orders a method shows in a column at its two finest levels: while motion is smooth before the first contact, and after it, across the impact.
+/// The orders a method shows in a column at its two finest levels: while motion is smooth before
+/// the first contact, and after it, across the impact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhaseOrders {
     /// The method.
@@ -87,7 +90,8 @@ pub struct PhaseOrders {
     pub across: Result<f64, String>,
 }
 
-/// Orders from errors against the reference; an error within three times its uncertainty gives none.
+/// Orders from errors against the reference; an error within three times its uncertainty gives
+/// none.
 pub fn phase_orders(
     method: &str,
     column: &str,
@@ -107,7 +111,9 @@ pub fn phase_orders(
             return Err("exact but for round-off".to_owned());
         }
         if after <= 3.0 * uncertainty {
-            return Err(format!("its error, {after:.1e}, is within three times the reference's, {uncertainty:.1e}"));
+            return Err(format!(
+                "its error, {after:.1e}, is within three times the reference's, {uncertainty:.1e}"
+            ));
         }
         from_errors([*h1, *h2], [before, after])
     };
@@ -127,7 +133,8 @@ pub(super) fn orders_by_phase(
 ) -> Vec<PhaseOrders> {
     let mut found = Vec::new();
     for method in manifest.methods() {
-        let arms = manifest.arms.iter().zip(compared).filter(|(a, _)| a.part.method.as_deref() == Some(method));
+        let arms =
+            manifest.arms.iter().zip(compared).filter(|(a, _)| a.role.method.as_deref() == Some(method));
         let mut known: Vec<(f64, &Compared)> =
             arms.filter_map(|(a, c)| Some((step(a, "time.step")?, c.as_ref()?))).collect();
         known.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -140,8 +147,9 @@ pub(super) fn orders_by_phase(
 
 /// The columns of a reference that tell where things are and are established.
 pub fn established(reference: &Reference, kind: fn(&str) -> bool) -> Vec<&str> {
-    let known =
-        |c: &&str| *c != FORCE && kind(c) && reference.uncertainty(c).established().is_some() && varies(reference, c);
+    let known = |c: &&str| {
+        *c != FORCE && kind(c) && reference.uncertainty(c).established().is_some() && varies(reference, c)
+    };
     reference.columns().into_iter().filter(known).collect()
 }
 
@@ -153,10 +161,10 @@ fn varies(reference: &Reference, column: &str) -> bool {
 mod tests {
     use super::*;
 
-    fn kept(n: u32, f: impl Fn(f64) -> f64) -> Kept {
+    fn kept(n: u32, f: impl Fn(f64) -> f64) -> Trajectory {
         let times: Vec<f64> = (0..=n).map(|i| f64::from(i) / f64::from(n)).collect();
         let values = times.iter().map(|t| f(*t)).collect();
-        Kept { times, columns: [("A.uy".to_owned(), values)].into(), metrics: Vec::new() }
+        Trajectory { times, columns: [("A.uy".to_owned(), values)].into(), metrics: Vec::new() }
     }
 
     /// Errors made by hand: h² before t = 1/2, h after it; against three identical runs.
@@ -164,8 +172,9 @@ mod tests {
     fn orders_of_the_phases() {
         let exact = || kept(64, |t| t);
         let reference = Reference::of_runs("r".into(), vec![exact(), exact(), exact()]);
-        let arm =
-            |h: f64| Compared::of(&kept(32, |t| t + if t < 0.5 { h * h } else { h }), &reference, Some((0.5, 0.5)));
+        let arm = |h: f64| {
+            Compared::of(&kept(32, |t| t + if t < 0.5 { h * h } else { h }), &reference, Some((0.5, 0.5)))
+        };
         let (coarse, fine) = (arm(0.1), arm(0.05));
         let orders = phase_orders("m", "A.uy", &[(0.1, &coarse), (0.05, &fine)], &reference).unwrap();
         assert!((orders.smooth.unwrap() - 2.0).abs() < 1e-9 && (orders.across.unwrap() - 1.0).abs() < 1e-9);

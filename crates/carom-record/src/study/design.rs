@@ -75,7 +75,7 @@ impl Goal {
 
 /// What an arm is to its study.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Part {
+pub struct Role {
     /// The method it is, in a design.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub method: Option<String>,

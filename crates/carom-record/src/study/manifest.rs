@@ -86,7 +86,8 @@ impl StudyManifest {
     /// What the machine refused.
     pub fn write(&self, directory: &Path) -> Result<(), RecordError> {
         let path = directory.join("study.json");
-        let mut text = serde_json::to_vec_pretty(self).map_err(|e| RecordError::io("write", &path)(e.into()))?;
+        let mut text =
+            serde_json::to_vec_pretty(self).map_err(|e| RecordError::io("write", &path)(e.into()))?;
         text.push(b'\n');
         files::write_atomically(&path, &[&text])
     }
@@ -94,7 +95,7 @@ impl StudyManifest {
     /// The methods of a design, in order.
     pub fn methods(&self) -> Vec<&str> {
         let mut methods: Vec<&str> = Vec::new();
-        for method in self.arms.iter().filter_map(|a| a.part.method.as_deref()) {
+        for method in self.arms.iter().filter_map(|a| a.role.method.as_deref()) {
             if !methods.contains(&method) {
                 methods.push(method);
             }
@@ -105,8 +106,8 @@ impl StudyManifest {
     /// Whether an arm gets the step at which it costs what `cost_of` does.
     pub fn by_cost(&self, arm: &Arm) -> bool {
         let Some(design) = &self.design else { return false };
-        let other = arm.part.method.as_ref().is_some_and(|m| *m != design.cost_of);
-        !arm.part.fine && other && (design.kind == Kind::MatchedCost || arm.part.by_cost)
+        let other = arm.role.method.as_ref().is_some_and(|m| *m != design.cost_of);
+        !arm.role.fine && other && (design.kind == Kind::MatchedCost || arm.role.by_cost)
     }
 
     /// The error that is good enough: 0.05 if nothing was said.
@@ -124,7 +125,11 @@ impl StudyManifest {
     ///
     /// # Errors
     /// What the machine refused, or where its manifest is damaged.
-    pub fn state(&self, directory: &Path, arm: &Arm) -> Result<(Option<Status>, Option<String>), RecordError> {
+    pub fn state(
+        &self,
+        directory: &Path,
+        arm: &Arm,
+    ) -> Result<(Option<Status>, Option<String>), RecordError> {
         let path = directory.join(&arm.directory);
         if !path.join("manifest.json").is_file() {
             return Ok((None, None));

@@ -1,4 +1,5 @@
-//! What a goal ranks by: its candidates in order, the first established of which ranks, and the errors of all arms by it.
+//! What a goal ranks by: its candidates in order, the first established of which ranks, and the
+//! errors of all arms by it.
 
 use super::compared::{Compared, established, is_stress, is_trajectory};
 use super::design::Goal;
@@ -30,9 +31,11 @@ pub(super) enum Candidate {
 pub(super) fn candidates(goal: Goal) -> Vec<Candidate> {
     match goal {
         Goal::Energy => vec![Candidate::Metric("energy_drift")],
-        Goal::Force => ["force_variation", "force_high_frequency", "peak_mean_force", "impulse_y", "impulse_x"]
-            .map(Candidate::Metric)
-            .into(),
+        Goal::Force => {
+            ["force_variation", "force_high_frequency", "peak_mean_force", "impulse_y", "impulse_x"]
+                .map(Candidate::Metric)
+                .into()
+        }
         Goal::Stress => vec![
             Candidate::OfColumns("variation", is_stress),
             Candidate::OfColumns("peak_mean", is_stress),
@@ -64,7 +67,10 @@ pub(super) struct Judge<'a> {
 
 impl Judge<'_> {
     /// The measure a candidate gives with the errors of all arms, or why not.
-    pub(super) fn measured(&self, candidate: &Candidate) -> Result<(Measure, Vec<Option<f64>>), (String, String)> {
+    pub(super) fn measured(
+        &self,
+        candidate: &Candidate,
+    ) -> Result<(Measure, Vec<Option<f64>>), (String, String)> {
         let measure = |name: &str, words: String, uncertainty: f64| Measure {
             name: name.into(),
             words,
@@ -75,11 +81,19 @@ impl Judge<'_> {
             Candidate::Metric(name) => match standing(self.reference, name) {
                 Standing::Not(why) => Err(((*name).to_owned(), why)),
                 Standing::Established { value, uncertainty } => {
-                    let errors = self.rows.iter().map(|row| row.value(name).map(|x| error(x, value))).collect();
-                    let words =
-                        if value == 0.0 { format!("{name}, which should be 0") } else { format!("error of {name}") };
+                    let errors =
+                        self.rows.iter().map(|row| row.value(name).map(|x| error(x, value))).collect();
+                    let words = if value == 0.0 {
+                        format!("{name}, which should be 0")
+                    } else {
+                        format!("error of {name}")
+                    };
                     Ok((
-                        measure(name, words, if value == 0.0 { uncertainty } else { (uncertainty / value).abs() }),
+                        measure(
+                            name,
+                            words,
+                            if value == 0.0 { uncertainty } else { (uncertainty / value).abs() },
+                        ),
                         errors,
                     ))
                 }
@@ -92,16 +106,20 @@ impl Judge<'_> {
                 if columns.is_empty() {
                     return Err(((*name).to_owned(), "the reference establishes no such column".to_owned()));
                 }
-                let squares = columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
+                let squares =
+                    columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
                 let uncertainty = (squares.sum::<f64>() / columns.len() as f64).sqrt();
-                let errors = self.compared.iter().map(|c| c.as_ref().and_then(|c| c.mean(&columns))).collect();
-                let words = format!("deviation of {} from the reference, over their range", columns.join(", "));
+                let errors =
+                    self.compared.iter().map(|c| c.as_ref().and_then(|c| c.mean(&columns))).collect();
+                let words =
+                    format!("deviation of {} from the reference, over their range", columns.join(", "));
                 Ok((measure(&format!("deviation of {name}"), words, uncertainty), errors))
             }
             Candidate::OfColumns(what, kind) => {
                 let none = |why: &str| Err((format!("{what} of stresses"), why.to_owned()));
                 let Some(reference) = self.reference else { return none("the study has no reference") };
-                let names = reference.columns().into_iter().filter(|c| kind(c)).map(|c| format!("{c}:{what}"));
+                let names =
+                    reference.columns().into_iter().filter(|c| kind(c)).map(|c| format!("{c}:{what}"));
                 let known: Vec<(String, f64, f64)> = names
                     .filter_map(|n| {
                         let (value, off) = reference.metric(&n).established().filter(|(v, _)| *v > 0.0)?;
@@ -117,8 +135,12 @@ impl Judge<'_> {
                     each.map(|e| e.iter().sum::<f64>() / e.len() as f64)
                 };
                 let uncertainty = known.iter().map(|k| k.2).fold(0.0, f64::max);
-                let words = format!("error of {}", known.iter().map(|k| k.0.as_str()).collect::<Vec<_>>().join(", "));
-                Ok((measure(&format!("{what} of stresses"), words, uncertainty), self.rows.iter().map(mean).collect()))
+                let words =
+                    format!("error of {}", known.iter().map(|k| k.0.as_str()).collect::<Vec<_>>().join(", "));
+                Ok((
+                    measure(&format!("{what} of stresses"), words, uncertainty),
+                    self.rows.iter().map(mean).collect(),
+                ))
             }
         }
     }

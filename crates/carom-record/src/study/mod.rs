@@ -39,7 +39,7 @@ use design::Goal;
 pub use manifest::{StudyManifest, StudySource};
 pub use orders::{Refinement, numeric_keys, refinements};
 use ranking::Ranking;
-use reference::{Kept, Reference};
+use reference::{Reference, Trajectory};
 pub use row::Row;
 
 /// A study, read.
@@ -70,14 +70,17 @@ pub struct Study {
 }
 
 impl Study {
-    /// Reads a study arm by arm; only one arm's record is in memory at a time. `visit` sees every arm that has one.
+    /// Reads a study arm by arm; only one arm's record is in memory at a time. `visit` sees every
+    /// arm that has one.
     ///
     /// # Errors
     /// What the machine refused, or where a record is damaged.
     pub fn open(directory: &Path, visit: &mut dyn FnMut(usize, &Run)) -> Result<Self, RecordError> {
         let manifest = StudyManifest::read(directory)?;
-        let comparisons: Vec<_> = manifest.claims.iter().map(|c| Comparison::parse(&c.compare).ok()).collect();
-        let (asked, series): (Vec<_>, Vec<_>) = manifest.expects.iter().map(|e| orders::needs(e, &manifest)).unzip();
+        let comparisons: Vec<_> =
+            manifest.claims.iter().map(|c| Comparison::parse(&c.compare).ok()).collect();
+        let (asked, series): (Vec<_>, Vec<_>) =
+            manifest.expects.iter().map(|e| orders::needs(e, &manifest)).unzip();
         let claimed = comparisons.iter().flatten().flat_map(Comparison::questions);
         let questions: Vec<&Question> = claimed.chain(asked.iter().flatten()).collect();
         let series: Vec<&Series> = series.iter().flatten().collect();
@@ -97,27 +100,39 @@ impl Study {
                 visit(i, &run);
                 if status == Some(Status::Finished) {
                     metrics = metrics::of_run(&run);
-                    held = reference.as_ref().map(|r| Compared::of(&Kept::of(&run, &[]), r, contact));
+                    held = reference.as_ref().map(|r| Compared::of(&Trajectory::of(&run, &[]), r, contact));
                 }
                 records.gather(&arm.name, &run, &metrics, &questions, &series);
                 expectations = judge(&run, &arm.expects());
                 touched = run.had_dynamic_contact();
             }
             compared.push(held);
-            rows.push(Row { name: arm.name.clone(), status, reason, metrics, expectations, contact: touched });
+            rows.push(Row {
+                name: arm.name.clone(),
+                status,
+                reason,
+                metrics,
+                expectations,
+                contact: touched,
+            });
         }
-        let verdicts =
-            manifest.claims.iter().zip(&comparisons).map(|(claim, c)| Verdict::of(claim, c.as_ref(), &records));
+        let verdicts = manifest
+            .claims
+            .iter()
+            .zip(&comparisons)
+            .map(|(claim, c)| Verdict::of(claim, c.as_ref(), &records));
         let judged = manifest.expects.iter().flat_map(|expect| match &expect.order {
             Some(order) => orders::judge(expect, order, &manifest, &records),
             None => vec![expect.verdict(expect.got(&records))],
         });
         let (expectations, verdicts) = (judged.collect(), verdicts.collect());
-        let ranking = manifest.goal.map(|goal| Ranking::of(goal, &manifest, &rows, &compared, reference.as_ref()));
+        let ranking =
+            manifest.goal.map(|goal| Ranking::of(goal, &manifest, &rows, &compared, reference.as_ref()));
         let others = Goal::all().filter(|goal| manifest.goal.is_some_and(|own| own != *goal));
         let other_rankings: Vec<Ranking> =
             others.map(|goal| Ranking::of(goal, &manifest, &rows, &compared, reference.as_ref())).collect();
-        let phase_orders = reference.as_ref().map(|r| orders_by_phase(&manifest, &compared, r)).unwrap_or_default();
+        let phase_orders =
+            reference.as_ref().map(|r| orders_by_phase(&manifest, &compared, r)).unwrap_or_default();
         let checks = Checks::read(directory)?;
         let directory = directory.to_path_buf();
         Ok(Self {

@@ -25,27 +25,37 @@ pub struct Refinement {
     pub steps: Vec<f64>,
 }
 
-/// Whether a name contains a text, not beginning or ending inside a word or number: `hu` is not in `chung-hulbert`, nor `0.1` in `0.15`.
+/// Whether a name contains a text, not beginning or ending inside a word or number: `hu` is not in
+/// `chung-hulbert`, nor `0.1` in `0.15`.
 fn has_words(name: &str, text: &str) -> bool {
-    let inside =
-        |a: Option<char>, b: Option<char>| a.zip(b).is_some_and(|(a, b)| a.is_alphanumeric() && b.is_alphanumeric());
+    let inside = |a: Option<char>, b: Option<char>| {
+        a.zip(b).is_some_and(|(a, b)| a.is_alphanumeric() && b.is_alphanumeric())
+    };
     name.match_indices(text).any(|(at, _)| {
         let (before, after) = (&name[..at], &name[at + text.len()..]);
-        !inside(before.chars().last(), text.chars().next()) && !inside(text.chars().last(), after.chars().next())
+        !inside(before.chars().last(), text.chars().next())
+            && !inside(text.chars().last(), after.chars().next())
     })
 }
 
-/// Groups of at least two arms that differ in `key` alone, in the order of their first arms. With `name`: one group of all arms whose names
-/// contain it, whatever else they set. The reference is no member, but the three runs of a computed one are a group of their own.
+/// Groups of at least two arms that differ in `key` alone, in the order of their first arms. With
+/// `name`: one group of all arms whose names contain it, whatever else they set. The reference is
+/// no member, but the three runs of a computed one are a group of their own.
 pub fn refinements(manifest: &StudyManifest, key: &str, name: Option<&str>) -> Vec<Refinement> {
     let mut groups: Vec<Refinement> = Vec::new();
     for (i, arm) in manifest.arms.iter().enumerate() {
-        let reference = if arm.part.fine { name.is_some() } else { manifest.reference.as_ref() == Some(&arm.name) };
-        let Some(step) = step(arm, key).filter(|_| !reference && name.is_none_or(|n| has_words(&arm.name, n))) else {
+        let reference =
+            if arm.role.fine { name.is_some() } else { manifest.reference.as_ref() == Some(&arm.name) };
+        let Some(step) =
+            step(arm, key).filter(|_| !reference && name.is_none_or(|n| has_words(&arm.name, n)))
+        else {
             continue;
         };
-        let others =
-            arm.sets.iter().filter(|s| s.split('=').next().is_none_or(|k| k.trim() != key)).map(String::as_str);
+        let others = arm
+            .sets
+            .iter()
+            .filter(|s| s.split('=').next().is_none_or(|k| k.trim() != key))
+            .map(String::as_str);
         let case = arm.case_path.as_deref().into_iter();
         let common = name.map_or_else(|| case.chain(others).collect::<Vec<_>>().join(", "), str::to_owned);
         match groups.iter_mut().find(|g| g.common == common) {
@@ -83,7 +93,9 @@ fn of(order: &OrderOf) -> Result<Of, String> {
 
 /// The questions and columns an expectation needs of the arms.
 pub(super) fn needs(expect: &Expect, manifest: &StudyManifest) -> (Vec<Question>, Vec<Series>) {
-    let Some(order) = &expect.order else { return (Question::parse(&expect.what).into_iter().collect(), Vec::new()) };
+    let Some(order) = &expect.order else {
+        return (Question::parse(&expect.what).into_iter().collect(), Vec::new());
+    };
     let arms = manifest.arms.iter().map(|a| a.name.as_str());
     match of(order) {
         Ok(Of::Number(question)) => (arms.map(|arm| question.of_arm(arm)).collect(), Vec::new()),
@@ -108,7 +120,7 @@ pub(super) fn judge(
         let place = if group.is_empty() { String::new() } else { format!(", {group}") };
         format!("order of {} in {}{place}", order.of, order.against)
     };
-    let fine = |g: &Refinement| g.arms.iter().any(|i| manifest.arms[*i].part.fine);
+    let fine = |g: &Refinement| g.arms.iter().any(|i| manifest.arms[*i].role.fine);
     let enough: Vec<&Refinement> = groups.iter().filter(|g| g.arms.len() >= least && !fine(g)).collect();
     if enough.is_empty() {
         let why = format!("no {least} arms differ in {} alone", order.against);
@@ -124,7 +136,8 @@ pub(super) fn judge(
     enough.iter().map(verdict).collect()
 }
 
-/// The deviation errors are taken from: a formula, or the exact one an arm's case has for the column.
+/// The deviation errors are taken from: a formula, or the exact one an arm's case has for the
+/// column.
 fn deviation(
     expect: &Expect,
     manifest: &StudyManifest,
@@ -190,9 +203,13 @@ fn observed(
             };
             if let Some(deviation) = deviation(expect, manifest, *three, &series, norm)? {
                 let (times, columns) = common(&[name(two), name(three)])?;
-                return from_errors([h1, h2], [deviation.of(&times, &columns[0])?, deviation.of(&times, &columns[1])?]);
+                return from_errors(
+                    [h1, h2],
+                    [deviation.of(&times, &columns[0])?, deviation.of(&times, &columns[1])?],
+                );
             }
-            let apart = |a: &[f64], b: &[f64]| norm.of(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
+            let apart =
+                |a: &[f64], b: &[f64]| norm.of(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
             if let Some(arm) = reference {
                 let (_, c) = common(&[name(two), name(three), arm])?;
                 return from_errors([h1, h2], [apart(&c[0], &c[2]), apart(&c[1], &c[2])]);
@@ -206,8 +223,11 @@ fn observed(
 
 /// Keys in which arms differ by numbers alone, with their groups of at least `least` arms.
 pub fn numeric_keys(manifest: &StudyManifest, least: usize) -> BTreeMap<String, Vec<Refinement>> {
-    let keys =
-        manifest.arms.iter().flat_map(|a| &a.sets).filter_map(|set| Some(set.split_once('=')?.0.trim().to_owned()));
+    let keys = manifest
+        .arms
+        .iter()
+        .flat_map(|a| &a.sets)
+        .filter_map(|set| Some(set.split_once('=')?.0.trim().to_owned()));
     let mut found = BTreeMap::new();
     for key in keys {
         found.entry(key).or_insert_with_key(|key| {
@@ -224,7 +244,7 @@ pub fn numeric_keys(manifest: &StudyManifest, least: usize) -> BTreeMap<String, 
 mod tests {
     use super::*;
     use crate::study::Arm;
-    use crate::study::design::Part;
+    use crate::study::design::Role;
 
     fn arm(sets: &[&str]) -> Arm {
         Arm {
@@ -232,7 +252,7 @@ mod tests {
             directory: String::new(),
             sets: sets.iter().map(ToString::to_string).collect(),
             steps: 1,
-            part: Part::default(),
+            role: Role::default(),
             case_path: None,
             case: serde_json::json!({ "time": { "step": 0.5 } }),
         }
@@ -241,7 +261,9 @@ mod tests {
     #[test]
     fn words_are_whole() {
         let name = "time.scheme=chung-hulbert 0.15, time.step=1e-3";
-        assert!(has_words(name, "chung-hulbert") && has_words(name, "scheme=") && has_words(name, "0.15, time"));
+        assert!(
+            has_words(name, "chung-hulbert") && has_words(name, "scheme=") && has_words(name, "0.15, time")
+        );
         assert!(!has_words(name, "hu") && !has_words(name, "0.1") && !has_words(name, "e-3"));
         assert!(has_words("time.scheme=hu, time.step=1", "hu") && has_words(name, ""));
     }

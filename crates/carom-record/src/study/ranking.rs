@@ -1,9 +1,12 @@
 //! Which arm serves the goal best, how sure that is, and what it costs and distorts.
 //!
-//! Every goal has measures, the first established of which ranks. The error of an arm is |m − r|/|r| (|m| where r = 0) of a metric, or the root mean
-//! square deviation of columns. Arms are ranked within a level only: the same step or the same cost. Methods are ordered by their mean rank over the
-//! levels; two arms of a level whose errors differ by no more than the uncertainty of the reference, or by 5 %, are not told apart. Of the methods that are not
-//! told apart from the best the cheapest is recommended; processor times within a tenth of the least are equal, and the smaller error decides between them.
+//! Every goal has measures, the first established of which ranks. The error of an arm is |m −
+//! r|/|r| (|m| where r = 0) of a metric, or the root mean square deviation of columns. Arms are
+//! ranked within a level only: the same step or the same cost. Methods are ordered by their mean
+//! rank over the levels; two arms of a level whose errors differ by no more than the uncertainty of
+//! the reference, or by 5 %, are not told apart. Of the methods that are not told apart from the
+//! best the cheapest is recommended; processor times within a tenth of the least are equal, and the
+//! smaller error decides between them.
 
 use super::compared::Compared;
 use super::design::{Goal, Kind};
@@ -102,25 +105,31 @@ impl Ranking {
             }
         }
         let Some((measure, mut errors)) = found else {
-            let why = passed_over.iter().map(|(name, why)| format!("{name}: {why}")).collect::<Vec<_>>().join("; ");
+            let why =
+                passed_over.iter().map(|(name, why)| format!("{name}: {why}")).collect::<Vec<_>>().join("; ");
             return Self { goal, measure: Err(why), levels: Vec::new(), verdict: None };
         };
         let mut measure = Measure { passed_over, ..measure };
         if goal == Goal::Cost {
             // What is accurate enough, by its work.
             let works = rows.iter().map(|r| r.value("cpu_time"));
-            errors =
-                errors.iter().zip(works).map(|(e, work)| e.filter(|e| *e <= manifest.accuracy()).and(work)).collect();
+            errors = errors
+                .iter()
+                .zip(works)
+                .map(|(e, work)| e.filter(|e| *e <= manifest.accuracy()).and(work))
+                .collect();
             measure.words =
                 format!("processor time of arms whose {} is at most {}", measure.words, manifest.accuracy());
             measure.uncertainty = 0.0;
         }
-        let count = manifest.arms.iter().map(|a| a.part.level + 1).max().unwrap_or(0);
+        let count = manifest.arms.iter().map(|a| a.role.level + 1).max().unwrap_or(0);
         let level = |level: usize| {
-            let arms = manifest.arms.iter().enumerate().filter(|(_, a)| a.part.level == level && !a.part.fine);
+            let arms =
+                manifest.arms.iter().enumerate().filter(|(_, a)| a.role.level == level && !a.role.fine);
             let not_reference = arms.filter(|(_, a)| manifest.reference.as_ref() != Some(&a.name));
-            let mut ranked: Vec<Ranked> =
-                not_reference.filter_map(|(i, _)| Some(Ranked { arm: i, error: errors[i]?, place: 0 })).collect();
+            let mut ranked: Vec<Ranked> = not_reference
+                .filter_map(|(i, _)| Some(Ranked { arm: i, error: errors[i]?, place: 0 }))
+                .collect();
             ranked.sort_by(|a, b| a.error.total_cmp(&b.error));
             places(&mut ranked, measure.uncertainty);
             ranked
@@ -153,7 +162,7 @@ fn verdict(
     levels: &[Vec<Ranked>],
     rows: &[Row],
 ) -> Option<Verdict> {
-    let name = |arm: usize| manifest.arms[arm].part.method.as_ref().unwrap_or(&manifest.arms[arm].name);
+    let name = |arm: usize| manifest.arms[arm].role.method.as_ref().unwrap_or(&manifest.arms[arm].name);
     let full: Vec<&Vec<Ranked>> = levels.iter().filter(|l| !l.is_empty()).collect();
     let mut methods: Vec<&String> = Vec::new();
     for ranked in full.iter().flat_map(|l| l.iter()) {
@@ -163,12 +172,16 @@ fn verdict(
     }
     // An arm that is missing at a level comes behind all that are there.
     let places = |method: &String| {
-        let place =
-            |l: &&Vec<Ranked>| l.iter().find(|r| name(r.arm) == method).map_or(manifest.arms.len() + 1, |r| r.place);
+        let place = |l: &&Vec<Ranked>| {
+            l.iter().find(|r| name(r.arm) == method).map_or(manifest.arms.len() + 1, |r| r.place)
+        };
         full.iter().map(place).sum::<usize>() as f64 / full.len() as f64
     };
     let finest = |method: &String| {
-        full.iter().rev().find_map(|l| l.iter().find(|r| name(r.arm) == method)).map_or(f64::INFINITY, |r| r.error)
+        full.iter()
+            .rev()
+            .find_map(|l| l.iter().find(|r| name(r.arm) == method))
+            .map_or(f64::INFINITY, |r| r.error)
     };
     methods.sort_by(|a, b| places(a).total_cmp(&places(b)).then(finest(a).total_cmp(&finest(b))));
     let least = places(methods.first()?);
@@ -176,7 +189,8 @@ fn verdict(
     let accuracy = manifest.accuracy();
     // The arm of a method that would be recommended.
     let arm_of = |method: &String| {
-        let mine: Vec<&Ranked> = full.iter().filter_map(|l| l.iter().find(|r| name(r.arm) == method)).collect();
+        let mine: Vec<&Ranked> =
+            full.iter().filter_map(|l| l.iter().find(|r| name(r.arm) == method)).collect();
         match goal {
             Goal::Cost => mine.iter().min_by(|a, b| a.error.total_cmp(&b.error)).copied(),
             _ => mine.iter().find(|r| r.error <= accuracy).or(mine.last()).copied(),
@@ -194,9 +208,13 @@ fn verdict(
     let others = full
         .iter()
         .flat_map(|l| l.iter())
-        .filter(|r| manifest.arms[r.arm].part.level == manifest.arms[chosen.arm].part.level);
+        .filter(|r| manifest.arms[r.arm].role.level == manifest.arms[chosen.arm].role.level);
     if let Some(next) = others.filter(|r| name(r.arm) != best).min_by(|a, b| a.error.total_cmp(&b.error)) {
-        reasons.push(format!("the best of the others at the same level, {}: {}", name(next.arm), short(next.error)));
+        reasons.push(format!(
+            "the best of the others at the same level, {}: {}",
+            name(next.arm),
+            short(next.error)
+        ));
     }
     reasons.push(format!("first at {first_at} of {} levels", full.len()));
     let next = costs.iter().enumerate().filter(|(i, _)| *i != picked).filter_map(|(i, c)| Some((i, (*c)?)));
@@ -209,7 +227,12 @@ fn verdict(
         } else {
             "of those that are not told apart none is cheaper by more than a tenth"
         };
-        reasons.push(format!("{words}: {} s of processor time; {}: {} s", short(mine), tied[i], short(other)));
+        reasons.push(format!(
+            "{words}: {} s of processor time; {}: {} s",
+            short(mine),
+            tied[i],
+            short(other)
+        ));
     }
     if goal != Goal::Cost {
         reasons.push(if chosen.error <= accuracy {
@@ -223,19 +246,27 @@ fn verdict(
     let (mut confidence, mut confidence_reasons) = confidence(manifest, measure, &full, first_at, &alone);
     if goal != Goal::Cost && chosen.error > accuracy {
         confidence = Confidence::Low;
-        let why = format!("the best is not good: an error of {} where {accuracy} was asked for", short(chosen.error));
+        let why = format!(
+            "the best is not good: an error of {} where {accuracy} was asked for",
+            short(chosen.error)
+        );
         confidence_reasons.push(why);
     }
     let arm = &manifest.arms[chosen.arm];
-    if let Some(design) = manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedStep && manifest.by_cost(arm)) {
+    if let Some(design) =
+        manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedStep && manifest.by_cost(arm))
+    {
         confidence = confidence.min(Confidence::Medium);
-        confidence_reasons
-            .push(format!("it is compared at the cost of {}, the others at their common step", design.cost_of));
+        confidence_reasons.push(format!(
+            "it is compared at the cost of {}, the others at their common step",
+            design.cost_of
+        ));
     }
     Some(Verdict { arm: chosen.arm, alike: alike_ones, reasons, confidence, confidence_reasons })
 }
 
-/// Number of the first whose cost is within a tenth of the least; the first of all where no cost is known.
+/// Number of the first whose cost is within a tenth of the least; the first of all where no cost is
+/// known.
 fn cheapest(costs: &[Option<f64>]) -> usize {
     let least = costs.iter().flatten().copied().fold(f64::INFINITY, f64::min);
     costs.iter().position(|c| c.is_some_and(|c| c <= (1.0 + EQUAL_COST) * least)).unwrap_or(0)
@@ -264,10 +295,13 @@ fn confidence(
     if !alone.method {
         let close = format!("errors closer than {} or {} %", short(measure.uncertainty), 100.0 * ALIKE);
         if alone.by_cost {
-            let why = format!("the errors of others are not told apart from its own ({close}): its cost decides");
+            let why =
+                format!("the errors of others are not told apart from its own ({close}): its cost decides");
             at_most(Confidence::Medium, why);
         } else {
-            let why = format!("others are not told apart from it, neither by their errors ({close}) nor by their cost");
+            let why = format!(
+                "others are not told apart from it, neither by their errors ({close}) nor by their cost"
+            );
             at_most(Confidence::Low, why);
         }
     }
@@ -275,22 +309,36 @@ fn confidence(
         at_most(Confidence::Low, format!("it is first at {first_at} of {} levels only", levels.len()));
     }
     if levels.len() < 2 {
-        at_most(Confidence::Medium, "there is one level only: another step may order them otherwise".to_owned());
+        at_most(
+            Confidence::Medium,
+            "there is one level only: another step may order them otherwise".to_owned(),
+        );
     }
     if !measure.passed_over.is_empty() {
         let names: Vec<&str> = measure.passed_over.iter().map(|(name, _)| name.as_str()).collect();
-        at_most(Confidence::Medium, format!("{} would say more, and no refinement establishes it", names.join(", ")));
+        at_most(
+            Confidence::Medium,
+            format!("{} would say more, and no refinement establishes it", names.join(", ")),
+        );
     }
-    let off =
-        manifest.arms.iter().filter(|a| a.part.cost.is_some_and(|share| (share - 1.0).abs() > EQUAL_COST)).count();
+    let off = manifest
+        .arms
+        .iter()
+        .filter(|a| a.role.cost.is_some_and(|share| (share - 1.0).abs() > EQUAL_COST))
+        .count();
     if off > 0 {
         at_most(Confidence::Medium, format!("the cost of {off} arms is off the budget by more than 10 %"));
     }
     if manifest.design.is_none() {
-        at_most(Confidence::Low, "the arms were not made comparable: no `design` matches steps or cost".to_owned());
+        at_most(
+            Confidence::Low,
+            "the arms were not made comparable: no `design` matches steps or cost".to_owned(),
+        );
     }
     if reasons.is_empty() {
-        reasons.push("it is first at every level, by more than the uncertainty of the reference and 5 %".to_owned());
+        reasons.push(
+            "it is first at every level, by more than the uncertainty of the reference and 5 %".to_owned(),
+        );
     }
     (confidence, reasons)
 }
@@ -303,8 +351,11 @@ mod tests {
     #[test]
     fn places_are_shared() {
         let of = |uncertainty: f64| {
-            let mut ranked: Vec<Ranked> =
-                [1.0, 1.04, 1.2].iter().enumerate().map(|(arm, e)| Ranked { arm, error: *e, place: 0 }).collect();
+            let mut ranked: Vec<Ranked> = [1.0, 1.04, 1.2]
+                .iter()
+                .enumerate()
+                .map(|(arm, e)| Ranked { arm, error: *e, place: 0 })
+                .collect();
             places(&mut ranked, uncertainty);
             ranked.iter().map(|r| r.place).collect::<Vec<_>>()
         };

@@ -8,7 +8,8 @@
 //! ideal       what elastic bodies do: energies changed or dissipated 0, penetration 0
 //! ```
 //!
-//! A column is established likewise, with the deviation of f(2h) from f(h) as its uncertainty. What is not established is never ranked on.
+//! A column is established likewise, with the deviation of f(2h) from f(h) as its uncertainty. What
+//! is not established is never ranked on.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -87,7 +88,7 @@ impl Standing {
 
 /// What of a run is kept to compare with it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Kept {
+pub struct Trajectory {
     /// Times of the rows.
     pub times: Vec<f64>,
     /// Columns of probes and of the striker's centre, and `force`, the size of the contact force.
@@ -99,7 +100,7 @@ pub struct Kept {
 /// The name under which the contact force's size is kept.
 pub const FORCE: &str = "contact force";
 
-impl Kept {
+impl Trajectory {
     /// From a record.
     pub fn of(run: &Run, metrics: &[Metric]) -> Self {
         let history = &run.history;
@@ -127,13 +128,13 @@ pub struct Reference {
     /// In words, what it is.
     pub what: String,
     /// Its runs, the finest last; with exact formulas one made of them.
-    runs: Vec<Kept>,
+    runs: Vec<Trajectory>,
     exact: bool,
 }
 
 impl Reference {
     /// Of runs at falling steps, the finest last.
-    pub fn of_runs(what: String, runs: Vec<Kept>) -> Self {
+    pub fn of_runs(what: String, runs: Vec<Trajectory>) -> Self {
         Self { what, runs, exact: false }
     }
 
@@ -167,7 +168,7 @@ impl Reference {
         if history.column("contact_force_x").is_some() {
             columns.insert(FORCE.to_owned(), metrics::contact_force(&history));
         }
-        let kept = Kept { times, columns, metrics: known };
+        let kept = Trajectory { times, columns, metrics: known };
         Some(Self { what: "the exact formulas of [exact]".to_owned(), runs: vec![kept], exact: true })
     }
 
@@ -202,7 +203,7 @@ impl Reference {
         if self.exact {
             return Standing::Established { value: 0.0, uncertainty: 0.0 };
         }
-        let apart = |a: &Kept, b: &Kept| {
+        let apart = |a: &Trajectory, b: &Trajectory| {
             let (fine, coarse) = (b.columns.get(column)?, a.columns.get(column)?);
             metrics::deviation(&a.times, coarse, (&b.times, fine))
         };
@@ -235,18 +236,24 @@ impl Reference {
 }
 
 impl StudyManifest {
-    /// Numbers of the arms the reference is made of, the finest last: the three of a computed one; else the arm of that name, behind arms that differ
-    /// from it in a longer step alone.
+    /// Numbers of the arms the reference is made of, the finest last: the three of a computed one;
+    /// else the arm of that name, behind arms that differ from it in a longer step alone.
     fn reference_arms(&self) -> Vec<usize> {
         let Some(named) = self.arms.iter().position(|a| self.reference.as_ref() == Some(&a.name)) else {
             return Vec::new();
         };
         let others = |a: &Arm| {
-            let sets = a.sets.iter().filter(|s| !s.trim_start().starts_with("time.step")).cloned().collect::<Vec<_>>();
-            (sets, a.case_path.clone(), a.part.fine)
+            let sets = a
+                .sets
+                .iter()
+                .filter(|s| !s.trim_start().starts_with("time.step"))
+                .cloned()
+                .collect::<Vec<_>>();
+            (sets, a.case_path.clone(), a.role.fine)
         };
         let size = |i: &usize| step(&self.arms[*i], "time.step").unwrap_or_default();
-        let alike = |i: &usize| others(&self.arms[*i]) == others(&self.arms[named]) && size(i) >= size(&named);
+        let alike =
+            |i: &usize| others(&self.arms[*i]) == others(&self.arms[named]) && size(i) >= size(&named);
         let mut found: Vec<usize> = (0..self.arms.len()).filter(alike).collect();
         found.sort_by(|a, b| size(b).total_cmp(&size(a)));
         found.split_off(found.len().saturating_sub(3))
@@ -259,7 +266,8 @@ impl StudyManifest {
     pub(super) fn reference(&self, directory: &Path) -> Result<Option<Reference>, RecordError> {
         if self.reference.as_deref() == Some("exact") {
             let Some(case) = self.arms.first().map(|a| &a.case) else { return Ok(None) };
-            let formulas = case.get("exact").and_then(|e| serde_json::from_value(e.clone()).ok()).unwrap_or_default();
+            let formulas =
+                case.get("exact").and_then(|e| serde_json::from_value(e.clone()).ok()).unwrap_or_default();
             let end = case.pointer("/time/end").and_then(serde_json::Value::as_f64).unwrap_or_default();
             return Ok(Reference::of_formulas(&formulas, end, 8000));
         }
@@ -268,7 +276,7 @@ impl StudyManifest {
         for i in &arms {
             if self.state(directory, &self.arms[*i])?.0 == Some(Status::Finished) {
                 let run = Run::open(&directory.join(&self.arms[*i].directory))?;
-                runs.push(Kept::of(&run, &metrics::of_run(&run)));
+                runs.push(Trajectory::of(&run, &metrics::of_run(&run)));
             }
         }
         let Some(last) = arms.last().filter(|_| runs.len() == arms.len()) else { return Ok(None) };
@@ -284,17 +292,22 @@ impl StudyManifest {
 mod tests {
     use super::*;
 
-    /// By hand: first order falls by half and counts; noise of the size of the difference does not; 1 % does.
+    /// By hand: first order falls by half and counts; noise of the size of the difference does not;
+    /// 1 % does.
     #[test]
     fn what_a_refinement_establishes() {
-        assert_eq!(Standing::of(&[1.4, 1.2, 1.1]), Standing::Established { value: 1.1, uncertainty: 1.2 - 1.1 });
+        assert_eq!(
+            Standing::of(&[1.4, 1.2, 1.1]),
+            Standing::Established { value: 1.1, uncertainty: 1.2 - 1.1 }
+        );
         assert!(matches!(Standing::of(&[1.4, 1.2, 1.4]), Standing::Not(_)));
         assert_eq!(Standing::of(&[1.0, 1.0, 1.0 + 0.005]).established().map(|x| x.0), Some(1.005));
         assert!(matches!(Standing::of(&[1.0]), Standing::Not(_)));
         assert!(matches!(Standing::of(&[1.0, 1.1]), Standing::Not(_)));
     }
 
-    /// The bar on a wall: force 300 from 0.5 to 7/6. Its variation is 600, its power all in low frequencies, its impulse a difference of the integral.
+    /// The bar on a wall: force 300 from 0.5 to 7/6. Its variation is 600, its power all in low
+    /// frequencies, its impulse a difference of the integral.
     #[test]
     fn metrics_of_exact_formulas() {
         let formulas = [

@@ -1,4 +1,5 @@
-//! `study.csv`, `study_tidy.csv` and `claims.csv`. A value that is not there is an empty cell; numbers read back to the same bits.
+//! `study.csv`, `study_tidy.csv` and `claims.csv`. A value that is not there is an empty cell;
+//! numbers read back to the same bits.
 
 use super::arm::step;
 use super::measure::standing;
@@ -29,7 +30,8 @@ impl Study {
     /// What the machine refused.
     pub fn write_tables(&self) -> Result<(), RecordError> {
         let names: Vec<&str> = self.metrics().iter().map(|m| m.name.as_ref()).collect();
-        let header = ["arm", "status", "reason"].iter().copied().chain(names.iter().copied()).map(String::from);
+        let header =
+            ["arm", "status", "reason"].iter().copied().chain(names.iter().copied()).map(String::from);
         let wide = self.rows.iter().map(|row| {
             let first = [row.name.clone(), word(row.status).into(), row.reason.clone().unwrap_or_default()];
             first.into_iter().chain(names.iter().map(|name| cell(row.value(name)))).collect()
@@ -38,7 +40,9 @@ impl Study {
 
         let header = ["arm", "metric", "value", "unit"].map(String::from).to_vec();
         let tidy = self.rows.iter().flat_map(|row| {
-            row.metrics.iter().map(|m| vec![row.name.clone(), m.name.to_string(), cell(m.value), m.unit.clone()])
+            row.metrics
+                .iter()
+                .map(|m| vec![row.name.clone(), m.name.to_string(), cell(m.value), m.unit.clone()])
         });
         self.write("study_tidy.csv", std::iter::once(header).chain(tidy))?;
 
@@ -48,16 +52,24 @@ impl Study {
         }
         let header = ["claim", "compare", "left", "right", "verdict"].map(String::from).to_vec();
         let line = |v: &Verdict| {
-            vec![v.claim.text.clone(), v.claim.compare.clone(), cell(v.left), cell(v.right), v.word().to_string()]
+            vec![
+                v.claim.text.clone(),
+                v.claim.compare.clone(),
+                cell(v.left),
+                cell(v.right),
+                v.word().to_string(),
+            ]
         };
         self.write("claims.csv", std::iter::once(header).chain(self.verdicts.iter().map(line)))
     }
 
-    /// `reference.csv`: what every metric should be and how sure that is; `ranking.csv`: level, place and error of every arm.
+    /// `reference.csv`: what every metric should be and how sure that is; `ranking.csv`: level,
+    /// place and error of every arm.
     fn write_ranking(&self) -> Result<(), RecordError> {
         if let Some(reference) = &self.reference {
-            let header =
-                ["metric", "unit", "established", "value", "uncertainty", "why not"].map(String::from).to_vec();
+            let header = ["metric", "unit", "established", "value", "uncertainty", "why not"]
+                .map(String::from)
+                .to_vec();
             let metrics = self.metrics().into_iter().filter(|m| !WORK.iter().any(|(d, _)| d.name == m.name));
             let line = |m: &Metric| {
                 let end = match standing(Some(reference), &m.name) {
@@ -71,12 +83,13 @@ impl Study {
             self.write("reference.csv", std::iter::once(header).chain(metrics.map(line)))?;
         }
         let Some(ranking) = &self.ranking else { return Ok(()) };
-        let header = ["level", "place", "arm", "method", "step", "error", "cpu_time"].map(String::from).to_vec();
+        let header =
+            ["level", "place", "arm", "method", "step", "error", "cpu_time"].map(String::from).to_vec();
         let lines = ranking.levels.iter().enumerate().flat_map(|(level, ranked)| {
             ranked.iter().map(move |r| {
                 let arm = &self.manifest.arms[r.arm];
                 let (step, cpu) = (step(arm, "time.step"), self.rows[r.arm].value("cpu_time"));
-                let method = arm.part.method.clone().unwrap_or_default();
+                let method = arm.role.method.clone().unwrap_or_default();
                 vec![
                     level.to_string(),
                     r.place.to_string(),

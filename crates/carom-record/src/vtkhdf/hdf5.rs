@@ -1,8 +1,10 @@
-//! The small part of HDF5 that a VTKHDF file needs, written: groups, attributes, contiguous datasets.
+//! The small part of HDF5 that a VTKHDF file needs, written: groups, attributes, contiguous
+//! datasets.
 //!
-//! Superblock and object headers of version 0 and 1 (no checksums, so that a count can be changed in place), links as messages of
-//! their group, one extent of bytes per dataset: "HDF5 File Format Specification Version 3.0", The HDF Group, sections II.A, IV.A.
-//! A dataset may own more bytes than its dimensions use.
+//! Superblock and object headers of version 0 and 1 (no checksums, so that a count can be changed
+//! in place), links as messages of their group, one extent of bytes per dataset: "HDF5 File Format
+//! Specification Version 3.0", The HDF Group, sections II.A, IV.A. A dataset may own more bytes
+//! than its dimensions use.
 
 use std::collections::BTreeMap;
 
@@ -207,7 +209,8 @@ pub(super) fn datatype(kind: Kind) -> Vec<u8> {
     let (class_and_flags, properties): ([u8; 4], Vec<u8>) = match kind {
         Kind::Integer(bytes) => ([0x10, 0x08, 0, 0], vec![0, 0, bytes as u8 * 8, 0]),
         Kind::Byte => ([0x10, 0, 0, 0], vec![0, 0, 8, 0]),
-        // Sign at 63, eleven bits of exponent at 52 with bias 1023, 52 bits of mantissa at 0, leading one implied.
+        // Sign at 63, eleven bits of exponent at 52 with bias 1023, 52 bits of mantissa at 0,
+        // leading one implied.
         Kind::Real => ([0x11, 0x20, 63, 0], vec![0, 0, 64, 0, 52, 11, 0, 52, 0xff, 0x03, 0, 0]),
         Kind::Text(_) => ([0x13, 0x11, 0, 0], Vec::new()),
     };

@@ -1,8 +1,9 @@
 //! Where everything stands in a VTKHDF file, as a function of sizes and names only.
 //!
-//! One unstructured grid, transient, of a mesh that does not move: every step has the offsets of the first one, and its own part of
-//! every point array ("VTKHDF File Format", version 2.2, docs.vtk.org). There is space for `capacity` steps, of which `NSteps` and the
-//! length of `Steps/Values` count. These two numbers lie in one sector, so that one write changes both.
+//! One unstructured grid, transient, of a mesh that does not move: every step has the offsets of
+//! the first one, and its own part of every point array ("VTKHDF File Format", version 2.2,
+//! docs.vtk.org). There is space for `capacity` steps, of which `NSteps` and the length of
+//! `Steps/Values` count. These two numbers lie in one sector, so that one write changes both.
 
 use super::hdf5::{Attribute, Image, Kind, Node};
 use super::read::Contents;
@@ -52,7 +53,10 @@ fn dataset(kind: Kind, dims: &[u64]) -> Node {
 }
 
 fn group(children: Vec<(&str, Node)>) -> Node {
-    Node::Group { attributes: vec![], children: children.into_iter().map(|(n, c)| (n.to_owned(), c)).collect() }
+    Node::Group {
+        attributes: vec![],
+        children: children.into_iter().map(|(n, c)| (n.to_owned(), c)).collect(),
+    }
 }
 
 /// Path of a point array.
@@ -76,10 +80,14 @@ impl Layout {
 
     /// As it stands in a file.
     pub(super) fn found(contents: &Contents) -> Result<Self, String> {
-        let rows = |path: &str, kind| Ok::<_, String>(contents.dataset(path, kind)?.dims.first().copied().unwrap_or(0));
+        let rows = |path: &str, kind| {
+            Ok::<_, String>(contents.dataset(path, kind)?.dims.first().copied().unwrap_or(0))
+        };
         let points = rows("/VTKHDF/Points", Kind::Real)?;
         let mut arrays = Vec::new();
-        for (path, name) in contents.order.iter().filter_map(|p| Some((p, p.strip_prefix("/VTKHDF/PointData/")?))) {
+        for (path, name) in
+            contents.order.iter().filter_map(|p| Some((p, p.strip_prefix("/VTKHDF/PointData/")?)))
+        {
             arrays.push(PointArray {
                 name: name.into(),
                 unit: contents.texts(&format!("{path}@units")).into_iter().next().unwrap_or_default(),
@@ -126,7 +134,8 @@ impl Layout {
         };
         let offsets = || dataset(INTEGER, &[capacity]);
         let of_topology = || dataset(INTEGER, &[capacity, 1]);
-        let times = Node::Dataset { kind: Kind::Real, dims: vec![self.count], rows: capacity, attributes: vec![] };
+        let times =
+            Node::Dataset { kind: Kind::Real, dims: vec![self.count], rows: capacity, attributes: vec![] };
         let steps = Node::Group {
             attributes: vec![whole("NSteps", vec![], &[self.count])],
             // The times last, next to NSteps.
@@ -136,7 +145,10 @@ impl Layout {
                 ("PointOffsets", offsets()),
                 ("CellOffsets", of_topology()),
                 ("ConnectivityIdOffsets", of_topology()),
-                ("PointDataOffsets", group(self.arrays.iter().map(|a| (a.name.as_str(), offsets())).collect())),
+                (
+                    "PointDataOffsets",
+                    group(self.arrays.iter().map(|a| (a.name.as_str(), offsets())).collect()),
+                ),
                 ("CellDataOffsets", group(vec![("body", offsets())])),
                 ("FieldDataOffsets", group(vec![("step", offsets())])),
                 ("FieldDataSizes", group(vec![("step", dataset(INTEGER, &[capacity, 2]))])),
@@ -151,7 +163,8 @@ impl Layout {
             rows: self.cells,
             attributes: vec![text("bodies", &self.bodies, false)],
         };
-        let points = Node::Group { attributes: vec![], children: self.arrays.iter().map(point_array).collect() };
+        let points =
+            Node::Group { attributes: vec![], children: self.arrays.iter().map(point_array).collect() };
         let children = [
             ("NumberOfPoints", dataset(INTEGER, &[1])),
             ("NumberOfCells", dataset(INTEGER, &[1])),
@@ -166,7 +179,10 @@ impl Layout {
             ("Steps", steps),
         ];
         Node::Group {
-            attributes: vec![whole("Version", vec![2], &[2, 2]), text("Type", &["UnstructuredGrid".into()], true)],
+            attributes: vec![
+                whole("Version", vec![2], &[2, 2]),
+                text("Type", &["UnstructuredGrid".into()], true),
+            ],
             children: children.map(|(name, node)| (name.to_owned(), node)).into(),
         }
     }

@@ -1,7 +1,9 @@
-//! `fields.vtkhdf`: the fields of a run in one file, an alternative to `fields.pvd` and its VTU files.
+//! `fields.vtkhdf`: the fields of a run in one file, an alternative to `fields.pvd` and its VTU
+//! files.
 //!
-//! The mesh is written once. A step's values go to the disk first, then one write counts the step: a kill leaves the steps before it.
-//! The file grows by doubling its space, copied to a new file and renamed, and is cut to its size when the run ends.
+//! The mesh is written once. A step's values go to the disk first, then one write counts the step:
+//! a kill leaves the steps before it. The file grows by doubling its space, copied to a new file
+//! and renamed, and is cut to its size when the run ends.
 
 mod hdf5;
 mod layout;
@@ -47,8 +49,14 @@ fn open(directory: &Path, write: bool) -> Result<Option<Opened<File>>, RecordErr
     }
 }
 
-/// Writes the fields of the entry with the given place among all entries, and counts the entries up to it.
-pub(crate) fn put(directory: &Path, place: usize, entry: &FieldEntry, fields: &FieldSet) -> Result<(), RecordError> {
+/// Writes the fields of the entry with the given place among all entries, and counts the entries up
+/// to it.
+pub(crate) fn put(
+    directory: &Path,
+    place: usize,
+    entry: &FieldEntry,
+    fields: &FieldSet,
+) -> Result<(), RecordError> {
     fields.check()?;
     let place = place as u64;
     let Some(mut opened) = open(directory, true)? else {
@@ -125,7 +133,8 @@ pub(crate) fn read(directory: &Path, entry: &FieldEntry) -> Result<FieldSet, Rec
 /// A new file with one step in it.
 fn create(path: &Path, entry: &FieldEntry, fields: &FieldSet) -> Result<(), RecordError> {
     let layout = Layout::of(fields, 1, FIRST_CAPACITY);
-    let whole = |values: &mut dyn Iterator<Item = u64>| values.flat_map(u64::to_le_bytes).collect::<Vec<u8>>();
+    let whole =
+        |values: &mut dyn Iterator<Item = u64>| values.flat_map(u64::to_le_bytes).collect::<Vec<u8>>();
     let cells = || fields.blocks.iter().flat_map(|b| b.cells().map(move |c| (b, c)));
     let mut ends = 0;
     let ends = cells().map(|(_, c)| {
@@ -151,12 +160,17 @@ fn create(path: &Path, entry: &FieldEntry, fields: &FieldSet) -> Result<(), Reco
 }
 
 /// Headers, mesh and the tables that say where the values of a step stand.
-fn begin(file: &mut File, layout: &Layout, mesh: impl IntoIterator<Item = (String, Vec<u8>)>) -> io::Result<()> {
+fn begin(
+    file: &mut File,
+    layout: &Layout,
+    mesh: impl IntoIterator<Item = (String, Vec<u8>)>,
+) -> io::Result<()> {
     let image = layout.image();
     file.write_all(&image.head)?;
     // What nothing is written to is zero, and most file systems do not store it.
     file.set_len(image.length)?;
-    let steps = |value: &dyn Fn(u64) -> u64| (0..layout.capacity).flat_map(|i| value(i).to_le_bytes()).collect();
+    let steps =
+        |value: &dyn Fn(u64) -> u64| (0..layout.capacity).flat_map(|i| value(i).to_le_bytes()).collect();
     let point_tables = layout
         .arrays
         .iter()
@@ -263,23 +277,27 @@ impl<F: Read + Seek> Opened<F> {
         let count = self.layout.count;
         let times = self.all(TIMES, Kind::Real, count)?;
         let steps = self.all(STEPS, INTEGER, count)?;
-        let entry = |(step, time)| FieldEntry { step: u64::from_le_bytes(step), time: f64::from_le_bytes(time) };
+        let entry =
+            |(step, time)| FieldEntry { step: u64::from_le_bytes(step), time: f64::from_le_bytes(time) };
         Ok(steps.into_iter().zip(times).map(entry).collect())
     }
 
     fn fields(&mut self, step: u64) -> Result<FieldSet, String> {
         let layout = self.layout.clone();
         let place =
-            self.entries()?.iter().position(|e| e.step == step).ok_or_else(|| format!("no step {step}"))? as u64;
+            self.entries()?.iter().position(|e| e.step == step).ok_or_else(|| format!("no step {step}"))?
+                as u64;
         let n = layout.points;
-        let coordinates = self.all::<8>("/VTKHDF/Points", Kind::Real, n.checked_mul(3).ok_or("too many points")?)?;
+        let coordinates =
+            self.all::<8>("/VTKHDF/Points", Kind::Real, n.checked_mul(3).ok_or("too many points")?)?;
         let coordinates: Vec<f64> = coordinates.into_iter().map(f64::from_le_bytes).collect();
         let nodes = self.all::<8>("/VTKHDF/Connectivity", INTEGER, layout.connectivity)?;
         let nodes: Vec<usize> = nodes.into_iter().map(|b| u64::from_le_bytes(b) as usize).collect();
         if let Some(node) = nodes.iter().find(|&&node| node as u64 >= n) {
             return Err(format!("a cell names node {node}, but there are {n} points"));
         }
-        let ends = self.all::<8>("/VTKHDF/Offsets", INTEGER, layout.cells.checked_add(1).ok_or("too many cells")?)?;
+        let ends =
+            self.all::<8>("/VTKHDF/Offsets", INTEGER, layout.cells.checked_add(1).ok_or("too many cells")?)?;
         let ends: Vec<usize> = ends.into_iter().map(|b| u64::from_le_bytes(b) as usize).collect();
         let types = self.all::<1>("/VTKHDF/Types", Kind::Byte, layout.cells)?;
         let bodies = self.all::<4>("/VTKHDF/CellData/body", Kind::Integer(4), layout.cells)?;

@@ -1,4 +1,5 @@
-//! The groups, attributes and datasets of an HDF5 file of the kind `hdf5.rs` writes. It is no general HDF5 reader and says so.
+//! The groups, attributes and datasets of an HDF5 file of the kind `hdf5.rs` writes. It is no
+//! general HDF5 reader and says so.
 
 use std::collections::BTreeMap;
 use std::io::{Read, Seek, SeekFrom};
@@ -61,7 +62,13 @@ impl Contents {
         Ok(contents)
     }
 
-    fn object<F: Read + Seek>(&mut self, file: &mut F, path: &str, address: u64, depth: usize) -> Result<(), String> {
+    fn object<F: Read + Seek>(
+        &mut self,
+        file: &mut F,
+        path: &str,
+        address: u64,
+        depth: usize,
+    ) -> Result<(), String> {
         let prefix = bytes_at(file, address, 16)?;
         let mut rest = &prefix[..];
         let (version, count) = (take(&mut rest, 2)?, take(&mut rest, 2)?);
@@ -94,7 +101,8 @@ impl Contents {
                 LINK => {
                     take(bytes, 3)?;
                     let length = take(bytes, 1)? as usize;
-                    let (name, mut address) = bytes.split_at_checked(length).ok_or("a link ends too early")?;
+                    let (name, mut address) =
+                        bytes.split_at_checked(length).ok_or("a link ends too early")?;
                     let name = format!("{path}/{}", String::from_utf8_lossy(name));
                     self.order.push(name.clone());
                     self.object(file, &name, take(&mut address, 8)?, depth + 1)?;
@@ -105,7 +113,8 @@ impl Contents {
         if let (Some(kind), Some(dims), Some((address, size))) = (kind, dims, layout) {
             let length = file.seek(SeekFrom::End(0)).map_err(|e| e.to_string())?;
             let used = dims.iter().try_fold(kind.size() as u64, |n, &d| n.checked_mul(d));
-            if used.is_none_or(|used| used > size) || address.checked_add(size).is_none_or(|end| end > length) {
+            if used.is_none_or(|used| used > size) || address.checked_add(size).is_none_or(|end| end > length)
+            {
                 return Err(format!("`{path}` reaches beyond its end or that of the file"));
             }
             self.datasets.insert(path.into(), Dataset { kind, dims, address, size });

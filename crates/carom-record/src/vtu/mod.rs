@@ -1,8 +1,10 @@
-//! Field files: VTK unstructured grids of Lagrange cells, orders 1 to 3, with appended raw binary data.
+//! Field files: VTK unstructured grids of Lagrange cells, orders 1 to 3, with appended raw binary
+//! data.
 //!
-//! Node order is VTK's and Gmsh's: corners, then each edge's nodes in the direction of the edge, then the interior. Points are the
-//! REFERENCE positions; `displacement` is a point array, so that "Warp By Vector" at scale 1 shows the deformed bodies. Units travel as
-//! VTK's own information key `UNITS_LABEL`, body names as a string array of the field data.
+//! Node order is VTK's and Gmsh's: corners, then each edge's nodes in the direction of the edge,
+//! then the interior. Points are the REFERENCE positions; `displacement` is a point array, so that
+//! "Warp By Vector" at scale 1 shows the deformed bodies. Units travel as VTK's own information key
+//! `UNITS_LABEL`, body names as a string array of the field data.
 
 mod read;
 mod write;
@@ -67,7 +69,8 @@ pub struct PointArray {
     pub values: Vec<f64>,
 }
 
-/// Bodies and quantities at one time. Bodies share no points, so that quantities may jump between them.
+/// Bodies and quantities at one time. Bodies share no points, so that quantities may jump between
+/// them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FieldSet {
     /// Reference positions, zero where the dimension has none.
@@ -102,7 +105,12 @@ pub(crate) mod tests {
         FieldSet {
             points,
             blocks: vec![
-                Block { body: "bar <1>".into(), cell: Cell::Curve, degree: 3, connectivity: vec![0, 1, 2, 3] },
+                Block {
+                    body: "bar <1>".into(),
+                    cell: Cell::Curve,
+                    degree: 3,
+                    connectivity: vec![0, 1, 2, 3],
+                },
                 Block {
                     body: "disc".into(),
                     cell: Cell::Triangle,
@@ -110,7 +118,11 @@ pub(crate) mod tests {
                     connectivity: vec![4, 5, 6, 7, 8, 9, 5, 4, 10, 7, 11, 12],
                 },
             ],
-            arrays: vec![array("displacement", "m", 3), array("stress", "N/m²", 6), array("contact_pressure", "", 1)],
+            arrays: vec![
+                array("displacement", "m", 3),
+                array("stress", "N/m²", 6),
+                array("contact_pressure", "", 1),
+            ],
         }
     }
 

@@ -42,7 +42,9 @@ fn head(text: &str) -> Result<(Vec<Array>, usize), String> {
                         section: section.clone(),
                         name: attribute(tag, "Name").ok_or("a DataArray without a name")?,
                         unit: String::new(),
-                        components: attribute(tag, "NumberOfComponents").and_then(|n| n.parse().ok()).unwrap_or(1),
+                        components: attribute(tag, "NumberOfComponents")
+                            .and_then(|n| n.parse().ok())
+                            .unwrap_or(1),
                         offset: attribute(tag, "offset").and_then(|n| n.parse().ok()),
                         text: String::new(),
                     });
@@ -62,7 +64,9 @@ fn head(text: &str) -> Result<(Vec<Array>, usize), String> {
             }
             Event::GeneralRef(name) => {
                 if let Some(array) = arrays.last_mut().filter(|_| inside == "unit") {
-                    array.unit.push_str(quick_xml::escape::resolve_predefined_entity(name).unwrap_or_default());
+                    array
+                        .unit
+                        .push_str(quick_xml::escape::resolve_predefined_entity(name).unwrap_or_default());
                 }
             }
             Event::End(_) => inside = "",
@@ -78,9 +82,14 @@ fn values<const B: usize>(data: &[u8], array: &Array) -> Result<Vec<[u8; B]>, St
         let (length, data) = data.split_first_chunk::<8>()?;
         data.get(..usize::try_from(u64::from_le_bytes(*length)).ok()?)
     };
-    let bytes = block().ok_or_else(|| format!("array `{}` reaches beyond the end of the file", array.name))?;
+    let bytes =
+        block().ok_or_else(|| format!("array `{}` reaches beyond the end of the file", array.name))?;
     let (chunks, rest) = bytes.as_chunks::<B>();
-    if rest.is_empty() { Ok(chunks.to_vec()) } else { Err(format!("array `{}` has a torn value", array.name)) }
+    if rest.is_empty() {
+        Ok(chunks.to_vec())
+    } else {
+        Err(format!("array `{}` has a torn value", array.name))
+    }
 }
 
 fn numbers(data: &[u8], array: &Array, expected: usize) -> Result<Vec<f64>, String> {
@@ -92,7 +101,8 @@ fn numbers(data: &[u8], array: &Array, expected: usize) -> Result<Vec<f64>, Stri
 }
 
 impl Block {
-    /// Blocks of cells that follow each other and are of one kind; a cell is its body, its VTK type and its point numbers.
+    /// Blocks of cells that follow each other and are of one kind; a cell is its body, its VTK type
+    /// and its point numbers.
     pub(crate) fn gather(cells: Vec<(usize, u8, &[usize])>, names: &[String]) -> Result<Vec<Self>, String> {
         let mut blocks: Vec<Self> = Vec::new();
         let mut last = None;
@@ -128,23 +138,29 @@ impl FieldSet {
         let (arrays, n) = head(std::str::from_utf8(text).map_err(|e| e.to_string())?)?;
         let by_name: HashMap<(&str, &str), &Array> =
             arrays.iter().map(|a| ((a.section.as_str(), a.name.as_str()), a)).collect();
-        let find = |section, name| by_name.get(&(section, name)).copied().ok_or(format!("no {name} in {section}"));
+        let find =
+            |section, name| by_name.get(&(section, name)).copied().ok_or(format!("no {name} in {section}"));
 
         let coordinates = n.checked_mul(3).ok_or("too many points")?;
         let points = numbers(data, find("Points", "points")?, coordinates)?.as_chunks::<3>().0.to_vec();
         let index = |bytes| usize::try_from(i64::from_le_bytes(bytes)).map_err(|e| e.to_string());
-        let read =
-            |name| values::<8>(data, find("Cells", name)?)?.into_iter().map(index).collect::<Result<Vec<_>, _>>();
+        let read = |name| {
+            values::<8>(data, find("Cells", name)?)?.into_iter().map(index).collect::<Result<Vec<_>, _>>()
+        };
         let (connectivity, ends) = (read("connectivity")?, read("offsets")?);
         if let Some(node) = connectivity.iter().find(|&&node| node >= n) {
             return Err(format!("a cell names node {node}, but there are {n} points"));
         }
         let types = values::<1>(data, find("Cells", "types")?)?;
         let bodies = values::<4>(data, find("CellData", "body")?)?;
-        let codes =
-            find("FieldData", "bodies")?.text.split_whitespace().map(str::parse).collect::<Result<Vec<u8>, _>>();
+        let codes = find("FieldData", "bodies")?
+            .text
+            .split_whitespace()
+            .map(str::parse)
+            .collect::<Result<Vec<u8>, _>>();
         let codes = codes.map_err(|e| format!("body names: {e}"))?;
-        let names: Vec<String> = codes.split(|&c| c == 0).map(|n| String::from_utf8_lossy(n).into_owned()).collect();
+        let names: Vec<String> =
+            codes.split(|&c| c == 0).map(|n| String::from_utf8_lossy(n).into_owned()).collect();
 
         let mut start = 0;
         let cells = ends.iter().zip(types).zip(bodies).map(|((&end, [kind]), body)| {

@@ -28,7 +28,10 @@ impl Parts {
         values.for_each(|v| self.data.extend(v));
         let bytes = (self.data.len() - offset - 8) as u64;
         self.data[offset..offset + 8].copy_from_slice(&bytes.to_le_bytes());
-        let _ = write!(self.head, "<DataArray type=\"{kind}\" {attributes} format=\"appended\" offset=\"{offset}\"");
+        let _ = write!(
+            self.head,
+            "<DataArray type=\"{kind}\" {attributes} format=\"appended\" offset=\"{offset}\""
+        );
         if unit.is_empty() {
             self.head.push_str("/>\n");
         } else {
@@ -74,18 +77,27 @@ impl FieldSet {
              <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
              <UnstructuredGrid>\n<FieldData>\n",
         );
-        p.array("Float64", "Name=\"TimeValue\" NumberOfTuples=\"1\"", "", std::iter::once(time.to_le_bytes()));
+        p.array(
+            "Float64",
+            "Name=\"TimeValue\" NumberOfTuples=\"1\"",
+            "",
+            std::iter::once(time.to_le_bytes()),
+        );
         // VTK strings are bytes ended by zero.
         let names = self.blocks.iter().map(|b| b.body.as_str()).collect::<Vec<_>>();
-        let codes: Vec<String> = names.iter().flat_map(|n| n.bytes().chain([0])).map(|b| b.to_string()).collect();
+        let codes: Vec<String> =
+            names.iter().flat_map(|n| n.bytes().chain([0])).map(|b| b.to_string()).collect();
         let _ = writeln!(
             p.head,
             "<DataArray type=\"String\" Name=\"bodies\" NumberOfTuples=\"{}\" format=\"ascii\">{}</DataArray>\n</FieldData>",
             names.len(),
             codes.join(" ")
         );
-        let _ =
-            writeln!(p.head, "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{cells}\">\n<PointData>", self.points.len());
+        let _ = writeln!(
+            p.head,
+            "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{cells}\">\n<PointData>",
+            self.points.len()
+        );
         for array in &self.arrays {
             let mut attributes =
                 format!("Name=\"{}\" NumberOfComponents=\"{}\"", escape(&array.name), array.components);
@@ -100,13 +112,18 @@ impl FieldSet {
             p.array("Float64", &attributes, &array.unit, array.values.iter().map(|v| v.to_le_bytes()));
         }
         p.head.push_str("</PointData>\n<CellData>\n");
-        let body = self.blocks.iter().enumerate().flat_map(|(i, b)| b.cells().map(move |_| (i as i32).to_le_bytes()));
+        let body = self
+            .blocks
+            .iter()
+            .enumerate()
+            .flat_map(|(i, b)| b.cells().map(move |_| (i as i32).to_le_bytes()));
         p.array("Int32", "Name=\"body\"", "", body);
         p.head.push_str("</CellData>\n<Points>\n");
         let points = self.points.iter().flatten().map(|x| x.to_le_bytes());
         p.array("Float64", "Name=\"points\" NumberOfComponents=\"3\"", "", points);
         p.head.push_str("</Points>\n<Cells>\n");
-        let connectivity = self.blocks.iter().flat_map(|b| &b.connectivity).map(|&n| (n as i64).to_le_bytes());
+        let connectivity =
+            self.blocks.iter().flat_map(|b| &b.connectivity).map(|&n| (n as i64).to_le_bytes());
         p.array("Int64", "Name=\"connectivity\"", "", connectivity);
         let ends = self.blocks.iter().flat_map(|b| b.cells().map(<[usize]>::len)).scan(0, |end, size| {
             *end += size as i64;

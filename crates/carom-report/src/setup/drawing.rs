@@ -62,7 +62,12 @@ impl Setup<'_> {
     /// Where a reference place is, as far as the nearest node tells.
     pub(super) fn moved(&self, [x, y]: Point) -> Point {
         let distance = |p: &[f64; 3]| (p[0] - x).hypot(p[1] - y);
-        let near = self.fields.points.iter().zip(&self.points).min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
+        let near = self
+            .fields
+            .points
+            .iter()
+            .zip(&self.points)
+            .min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
         near.map_or([x, y], |(from, to)| [x + to[0] - from[0], y + to[1] - from[1]])
     }
 
@@ -91,11 +96,16 @@ impl Setup<'_> {
             let facet = (i / degree).min((chain.len() - 2) / degree) * degree;
             let (a, b) = (chain[facet], chain[(facet + degree).min(chain.len() - 1)]);
             let t = direction(self.node(a), self.node(b));
-            let within = self.inside.get(&[a.min(b), a.max(b)]).map_or([0.0; 2], |p| direction(self.node(a), *p));
+            let within =
+                self.inside.get(&[a.min(b), a.max(b)]).map_or([0.0; 2], |p| direction(self.node(a), *p));
             let n = [-t[1], t[0]];
             if n[0] * within[0] + n[1] * within[1] > 0.0 { [t[1], -t[0]] } else { n }
         };
-        if chain.len() < 2 { Vec::new() } else { (0..chain.len()).map(|i| (self.node(chain[i]), outward(i))).collect() }
+        if chain.len() < 2 {
+            Vec::new()
+        } else {
+            (0..chain.len()).map(|i| (self.node(chain[i]), outward(i))).collect()
+        }
     }
 
     pub(super) fn stroke(out: &mut String, pen: &Pen, color: &str) {

@@ -1,5 +1,5 @@
-//! Loads in the drawn case: arrows at sides and in bodies, with the directions their formulas have at the end of the run (or, where they are zero then, the
-//! last of a few times before).
+//! Loads in the drawn case: arrows at sides and in bodies, with the directions their formulas have
+//! at the end of the run (or, where they are zero then, the last of a few times before).
 
 use carom_formula::Formula;
 use serde_json::Value;
@@ -48,8 +48,9 @@ impl Setup<'_> {
     fn values(&self, load: &Load, pixel: Point) -> Vec<f64> {
         let place = [(pixel[0] - self.origin[0]) / self.scale, (self.origin[1] - pixel[1]) / self.scale];
         let end = self.case().pointer("/time/end").and_then(Value::as_f64).unwrap_or(0.0);
-        let at =
-            |share: f64| -> Vec<f64> { load.components.iter().map(|c| self.value(c, place, share * end)).collect() };
+        let at = |share: f64| -> Vec<f64> {
+            load.components.iter().map(|c| self.value(c, place, share * end)).collect()
+        };
         let times = [1.0, 0.75, 0.5, 0.25, 0.125, 0.03, 0.0];
         times.into_iter().map(at).find(|v| v.iter().any(|x| *x != 0.0 && x.is_finite())).unwrap_or_default()
     }
@@ -64,7 +65,9 @@ impl Setup<'_> {
                 }
                 continue;
             }
-            for walk in list(load.spec, "on").iter().filter_map(Value::as_str).flat_map(|side| self.walks(side)) {
+            for walk in
+                list(load.spec, "on").iter().filter_map(Value::as_str).flat_map(|side| self.walks(side))
+            {
                 let spots = if self.flat {
                     vec![(plus(walk[0].0, 0.5, [0.0, walk[1].0[1] - walk[0].0[1]]), walk[0].1)]
                 } else {

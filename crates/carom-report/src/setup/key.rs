@@ -15,8 +15,9 @@ impl Setup<'_> {
     /// What the picture's colours and symbols mean, with the numbers; the height it needs.
     pub(super) fn key(&self, out: &mut String, left: f64) -> f64 {
         let mut y = 8.0;
-        let unit =
-            |key: &str| self.case().pointer(&format!("/units/{key}")).and_then(Value::as_str).unwrap_or_default();
+        let unit = |key: &str| {
+            self.case().pointer(&format!("/units/{key}")).and_then(Value::as_str).unwrap_or_default()
+        };
         let (length, time, mass) = (unit("length"), unit("time"), unit("mass"));
         let stress = self.fields.array("stress").map_or("", |a| a.unit.as_str());
         let mut line = |swatch: &str, content: &str, bold: bool| {
@@ -24,25 +25,33 @@ impl Setup<'_> {
             if !swatch.is_empty() {
                 let _ = writeln!(out, "<g transform=\"translate({left:.1} {:.1})\">{swatch}</g>", y - 4.5);
             }
-            let (x, extra) = (if bold { left } else { left + 30.0 }, if bold { "font-weight=\"bold\"" } else { "" });
+            let (x, extra) =
+                (if bold { left } else { left + 30.0 }, if bold { "font-weight=\"bold\"" } else { "" });
             write_text(out, x, y, extra, content);
         };
         line("", "Bodies", true);
         for (k, body) in list(self.case(), "bodies").iter().enumerate() {
             let block = self.fields.blocks.iter().find(|b| b.body == text(body, "name"));
             let nodes = block.map_or(0, |b| b.connectivity.iter().collect::<HashSet<_>>().len());
-            let swatch =
-                format!("<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"#222\"/>", Self::color(k));
+            let swatch = format!(
+                "<rect y=\"-5\" width=\"20\" height=\"11\" fill=\"{}\" stroke=\"#222\"/>",
+                Self::color(k)
+            );
             let cells = block.map_or(0, |b| b.cells().count());
             let element = text(body, "element");
             line(
                 &swatch,
-                &format!("{}: {}, {cells} {element} cells, {nodes} nodes", text(body, "name"), text(body, "material")),
+                &format!(
+                    "{}: {}, {cells} {element} cells, {nodes} nodes",
+                    text(body, "name"),
+                    text(body, "material")
+                ),
                 false,
             );
-            for (key, symbol, unit) in
-                [("gravity", "g", format!("{length}/{time}^2")), ("velocity", "v_{0}", format!("{length}/{time}"))]
-            {
+            for (key, symbol, unit) in [
+                ("gravity", "g", format!("{length}/{time}^2")),
+                ("velocity", "v_{0}", format!("{length}/{time}")),
+            ] {
                 let v = vector(body.get(key));
                 if v.iter().any(|x| *x != 0.0) {
                     line("", &format!("{symbol} = {} {unit}", tuple(&v)), false);
@@ -92,7 +101,11 @@ impl Setup<'_> {
             }
             let at = vector(probe.get("at"));
             let dot = "<circle cx=\"10\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.8\"/>";
-            line(dot, &format!("{} at {} {length} of {}", text(probe, "name"), tuple(&at), text(probe, "body")), false);
+            line(
+                dot,
+                &format!("{} at {} {length} of {}", text(probe, "name"), tuple(&at), text(probe, "body")),
+                false,
+            );
         }
         y + 12.0
     }

@@ -14,7 +14,8 @@ pub(super) struct RigidPlane {
     normal: Point,
 }
 
-/// The rigid planes of a case, along bodies in a box: from side to side where they lie rather flat, else from the bottom to the top.
+/// The rigid planes of a case, along bodies in a box: from side to side where they lie rather flat,
+/// else from the bottom to the top.
 pub(super) fn rigid(case: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Vec<RigidPlane> {
     let planes = list(case, "contacts").iter().filter_map(|c| c.pointer("/primary/plane"));
     let one = |plane: &Value| {
@@ -33,7 +34,8 @@ pub(super) fn rigid(case: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Vec<RigidPlane>
 }
 
 impl Setup<'_> {
-    /// Rigid planes, hatched on their solid side: a wall in dimension 1, else lines drawn `air` pixels beyond the bodies.
+    /// Rigid planes, hatched on their solid side: a wall in dimension 1, else lines drawn `air`
+    /// pixels beyond the bodies.
     pub(super) fn planes(&self, out: &mut String, planes: &[RigidPlane], air: f64) {
         let mut draw = |ends: [Point; 2], outward: Point| {
             wall(out, &ends.map(|p| (p, outward)), 0.0);
@@ -61,7 +63,8 @@ impl Setup<'_> {
 mod tests {
     use super::*;
 
-    /// Bodies in 0 ≤ x ≤ 2, 1 ≤ y ≤ 4: the floor y = 0, a slope x + 3y = 0 and a wall x = −1, whose ends belong into the picture.
+    /// Bodies in 0 ≤ x ≤ 2, 1 ≤ y ≤ 4: the floor y = 0, a slope x + 3y = 0 and a wall x = −1, whose
+    /// ends belong into the picture.
     #[test]
     fn planes_reach_along_the_bodies() {
         let contact = |point: [f64; 2], normal: [f64; 2]| serde_json::json!({ "primary": { "plane": { "point": point, "normal": normal } } });

@@ -1,4 +1,5 @@
-//! A made-up run that looks like a half disc striking a block: smooth formulas in place of a simulation, written with the real writer.
+//! A made-up run that looks like a half disc striking a block: smooth formulas in place of a
+//! simulation, written with the real writer.
 
 #![allow(clippy::unwrap_used)]
 
@@ -81,7 +82,8 @@ fn fields(t: f64) -> FieldSet {
         components,
         values,
     };
-    let block = |body: &str, connectivity| Block { body: body.into(), cell: Cell::Triangle, degree: 3, connectivity };
+    let block =
+        |body: &str, connectivity| Block { body: body.into(), cell: Cell::Triangle, degree: 3, connectivity };
     FieldSet {
         points,
         blocks: vec![
@@ -198,7 +200,12 @@ pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
         writer.history(&row).unwrap();
         if i % 90 == 89 {
             writer
-                .log(&Event::new(i as u64, t, "rejected", "Newton's method did not converge in 20 iterations <&>"))
+                .log(&Event::new(
+                    i as u64,
+                    t,
+                    "rejected",
+                    "Newton's method did not converge in 20 iterations <&>",
+                ))
                 .unwrap();
         }
         if i % 8 == 0 {
@@ -209,7 +216,8 @@ pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
     manifest.reason = reason.map(String::from);
     manifest.counters = [("steps".into(), 400), ("newton".into(), 1532)].into();
     manifest.timings =
-        [("assembly".into(), 1.25), ("factor".into(), 0.75), ("cpu".into(), 2.25), ("total".into(), 2.5)].into();
+        [("assembly".into(), 1.25), ("factor".into(), 0.75), ("cpu".into(), 2.25), ("total".into(), 2.5)]
+            .into();
     let expectation = |what: &str, got, pass| Expectation {
         what: what.into(),
         expected: "-0.7827 ± 0.004".into(),
@@ -221,6 +229,7 @@ pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
         slow: false,
         source: Some("two unrelated codes agree".into()),
     };
-    manifest.expectations = vec![expectation("min A.uy", Some(-0.7811), true), expectation("min <B>.uy", None, false)];
+    manifest.expectations =
+        vec![expectation("min A.uy", Some(-0.7811), true), expectation("min <B>.uy", None, false)];
     writer.finish(&manifest).unwrap();
 }

@@ -1,13 +1,16 @@
 //! Delaunay triangles of a wanted size inside an outline.
 //!
-//! Ruppert's refinement (J. Algorithms 18 (1995) 548–585; the crate `spade`) makes the outline's own features angles of 26° and more: it may
-//! cut sides further. Triangles whose circumcircle is larger than h asks for then get its centre as a node, the worst first (S. Rebay,
-//! J. Comput. Phys. 106 (1993) 125–138), and inner nodes move to the mean of their neighbours as long as the smallest angle grows. Nothing
-//! here iterates over a hash: the same outline gives the same mesh.
+//! Ruppert's refinement (J. Algorithms 18 (1995) 548–585; the crate `spade`) makes the outline's
+//! own features angles of 26° and more: it may cut sides further. Triangles whose circumcircle is
+//! larger than h asks for then get its centre as a node, the worst first (S. Rebay, J. Comput.
+//! Phys. 106 (1993) 125–138), and inner nodes move to the mean of their neighbours as long as the
+//! smallest angle grows. Nothing here iterates over a hash: the same outline gives the same mesh.
 
 use spade::handles::FixedFaceHandle;
 use spade::handles::InnerTag;
-use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, PositionInTriangulation, RefinementParameters};
+use spade::{
+    AngleLimit, ConstrainedDelaunayTriangulation, Point2, PositionInTriangulation, RefinementParameters,
+};
 use spade::{InsertionError, Triangulation};
 
 use super::MeshError;
@@ -17,7 +20,8 @@ type Cdt = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
 /// Smallest angle that refinement asks for, in degrees, where the outline's own angles allow it.
 const ANGLE: f64 = 26.0;
-/// Circumradius over h beyond which a triangle is divided; an equilateral one with edges h has 0.577.
+/// Circumradius over h beyond which a triangle is divided; an equilateral one with edges h has
+/// 0.577.
 const LARGE: f64 = 0.72;
 /// Rounds of moving inner nodes.
 const ROUNDS: usize = 12;
@@ -82,9 +86,9 @@ impl Outline {
         let next = |from: usize| {
             let out = cdt.fixed_vertices().nth(from).map(|v| cdt.vertex(v));
             out.and_then(|v| {
-                let on = v
-                    .out_edges()
-                    .find(|e| e.is_constraint_edge() && e.face().as_inner().is_some_and(|f| within[f.fix().index()]));
+                let on = v.out_edges().find(|e| {
+                    e.is_constraint_edge() && e.face().as_inner().is_some_and(|f| within[f.fix().index()])
+                });
                 on.map(|e| e.to().fix().index())
             })
         };
@@ -130,7 +134,9 @@ fn divide(cdt: &mut Cdt, length: &dyn Fn(&[f64; 2]) -> f64) -> Result<(), Insert
                 large.push((excess, center, square.sqrt()));
             }
         }
-        large.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1[0].total_cmp(&b.1[0])).then(a.1[1].total_cmp(&b.1[1])));
+        large.sort_by(|a, b| {
+            b.0.total_cmp(&a.0).then(a.1[0].total_cmp(&b.1[0])).then(a.1[1].total_cmp(&b.1[1]))
+        });
         // One round takes centres that are no nearer to each other than to the nodes around them.
         let mut taken = Buckets::default();
         let before = cdt.num_vertices();
@@ -145,7 +151,8 @@ fn divide(cdt: &mut Cdt, length: &dyn Fn(&[f64; 2]) -> f64) -> Result<(), Insert
     }
 }
 
-/// Whether a point lies inside the outline and in the diametral circle of none of the sides' edges near it.
+/// Whether a point lies inside the outline and in the diametral circle of none of the sides' edges
+/// near it.
 fn is_free(cdt: &Cdt, within: &[bool], p: [f64; 2]) -> bool {
     let PositionInTriangulation::OnFace(face) = cdt.locate(Point2::new(p[0], p[1])) else { return false };
     let sees = |face: FixedFaceHandle<InnerTag>| {
@@ -155,7 +162,9 @@ fn is_free(cdt: &Cdt, within: &[bool], p: [f64; 2]) -> bool {
         })
     };
     let around = cdt.face(face).adjacent_edges().into_iter().filter(|e| !e.is_constraint_edge());
-    within[face.index()] && sees(face) && around.filter_map(|e| e.rev().face().as_inner()).all(|f| sees(f.fix()))
+    within[face.index()]
+        && sees(face)
+        && around.filter_map(|e| e.rev().face().as_inner()).all(|f| sees(f.fix()))
 }
 
 /// Points of a round, sorted by their first coordinate.
@@ -189,7 +198,9 @@ fn faces_inside(cdt: &Cdt) -> Vec<bool> {
     };
     let mut queue: Vec<FixedFaceHandle<InnerTag>> = outer.adjacent_edge().map_or(Vec::new(), |first| {
         let mut hull = vec![first];
-        while let Some(next) = hull.last().map(spade::handles::DirectedEdgeHandle::next).filter(|e| *e != first) {
+        while let Some(next) =
+            hull.last().map(spade::handles::DirectedEdgeHandle::next).filter(|e| *e != first)
+        {
             hull.push(next);
         }
         hull.into_iter().filter_map(beyond).collect()
@@ -209,10 +220,14 @@ fn positions(cdt: &Cdt) -> Vec<[f64; 2]> {
 /// Corners of the faces inside, counter-clockwise.
 fn inside(cdt: &Cdt) -> Vec<[usize; 3]> {
     let within = faces_inside(cdt);
-    cdt.inner_faces().filter(|f| within[f.fix().index()]).map(|f| f.vertices().map(|v| v.fix().index())).collect()
+    cdt.inner_faces()
+        .filter(|f| within[f.fix().index()])
+        .map(|f| f.vertices().map(|v| v.fix().index()))
+        .collect()
 }
 
-/// Moves every node that is not held to the mean of its neighbours, unless a triangle would turn over.
+/// Moves every node that is not held to the mean of its neighbours, unless a triangle would turn
+/// over.
 fn smooth(points: &mut [[f64; 2]], triangles: &[[usize; 3]], held: &[usize]) {
     let mut around = vec![Vec::new(); points.len()];
     for t in triangles {

@@ -1,8 +1,9 @@
 //! Disc and half-disc of n = radius/size concentric rings around a node, rounded.
 //!
-//! Ring k has 6k (half: 3k) equal edges, so that edges are about `size` long everywhere; each sixth of a ring holds k triangles that stand on
-//! it and k − 1 that hang between them. A cell has at most one edge on the arc. The half-disc is the right half of the disc, node for node,
-//! and the disc its own mirror image.
+//! Ring k has 6k (half: 3k) equal edges, so that edges are about `size` long everywhere; each sixth
+//! of a ring holds k triangles that stand on it and k − 1 that hang between them. A cell has at
+//! most one edge on the arc. The half-disc is the right half of the disc, node for node, and the
+//! disc its own mirror image.
 
 use std::f64::consts::PI;
 
@@ -10,7 +11,8 @@ use super::MeshError;
 use super::elevate::{Circle, Side, Skeleton, elevate};
 use crate::mesh::{Element, Mesh};
 
-/// Disc with edges of about `size`; side `arc`, a closed loop from its lowest node counter-clockwise.
+/// Disc with edges of about `size`; side `arc`, a closed loop from its lowest node
+/// counter-clockwise.
 ///
 /// # Errors
 /// If radius or size is not positive, or the element is no triangle.
@@ -19,7 +21,8 @@ pub fn disc(element: Element, radius: f64, center: [f64; 2], size: f64) -> Resul
     Ok(elevate(Rings { n, sixths: 6 }.skeleton(radius, center), element))
 }
 
-/// The half x ≥ center x of a disc; sides `arc`, from bottom to top, and `axis`, from top to bottom.
+/// The half x ≥ center x of a disc; sides `arc`, from bottom to top, and `axis`, from top to
+/// bottom.
 ///
 /// # Errors
 /// If radius or size is not positive, or the element is no triangle.
@@ -112,7 +115,8 @@ impl Rings {
     }
 }
 
-/// The i-th of 6k equally spaced points of the unit circle from (0, −1) counter-clockwise; the left half mirrors the right, bit for bit.
+/// The i-th of 6k equally spaced points of the unit circle from (0, −1) counter-clockwise; the left
+/// half mirrors the right, bit for bit.
 fn on_circle(k: usize, i: usize) -> [f64; 2] {
     if i > 3 * k {
         let [x, y] = on_circle(k, 6 * k - i);

@@ -1,9 +1,10 @@
 //! From corners to every order: nodes on edges and inside cells.
 //!
-//! Nodes of an edge are equally spaced: along the chord, or in angle along the true circle. The inner node of a T10 with corners c and edge
-//! nodes e is Σe/4 − Σc/6, the map that reproduces every quadratic, so that the third derivatives of a curved cell's reference map are
-//! O(h³), as optimal order asks for (P. G. Ciarlet, P.-A. Raviart, CMAME 1 (1972) 217–249; M. Lenoir, SIAM J. Numer. Anal. 23 (1986)
-//! 562–580). Only edges on the boundary are curved.
+//! Nodes of an edge are equally spaced: along the chord, or in angle along the true circle. The
+//! inner node of a T10 with corners c and edge nodes e is Σe/4 − Σc/6, the map that reproduces
+//! every quadratic, so that the third derivatives of a curved cell's reference map are O(h³), as
+//! optimal order asks for (P. G. Ciarlet, P.-A. Raviart, CMAME 1 (1972) 217–249; M. Lenoir, SIAM J.
+//! Numer. Anal. 23 (1986) 562–580). Only edges on the boundary are curved.
 
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::{PI, TAU};
@@ -55,11 +56,14 @@ impl Circle {
 pub(super) fn elevate(skeleton: Skeleton, element: Element) -> Mesh {
     let Skeleton { points: mut nodes, triangles, sides } = skeleton;
     let k = element.degree();
-    // Nodes between two corners, and the circle they lie on; an edge is known by its corners in ascending order.
+    // Nodes between two corners, and the circle they lie on; an edge is known by its corners in
+    // ascending order.
     let key = |[i, j]: [usize; 2]| [i.min(j), i.max(j)];
     let mut circles = HashMap::new();
     for side in &sides {
-        circles.extend(side.circle.iter().flat_map(|circle| side.edges.iter().map(|&edge| (key(edge), *circle))));
+        circles.extend(
+            side.circle.iter().flat_map(|circle| side.edges.iter().map(|&edge| (key(edge), *circle))),
+        );
     }
     let mut between: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
     let mut owner = HashMap::new();

@@ -1,6 +1,6 @@
-//! Built-in meshes: interval, rectangle, disc, half-disc, ring and polygon. The geometric cells of a shape are the same for every order; see `elevate` for
-//! the nodes between corners. `*_nodes` count without building: ask them first whether a mesh fits the
-//! memory.
+//! Built-in meshes: interval, rectangle, disc, half-disc, ring and polygon. The geometric cells of
+//! a shape are the same for every order; see `elevate` for the nodes between corners. `*_nodes`
+//! count without building: ask them first whether a mesh fits the memory.
 
 mod delaunay;
 mod disc;
@@ -28,7 +28,9 @@ pub enum MeshError {
     Cells { cells: Vec<usize> },
     #[error("radius {radius} and size {size} must be finite and > 0, the centre {center:?} finite")]
     Disc { radius: f64, size: f64, center: [f64; 2] },
-    #[error("inner {inner} < outer {outer} and size {size} must be finite and > 0, the centre {center:?} finite")]
+    #[error(
+        "inner {inner} < outer {outer} and size {size} must be finite and > 0, the centre {center:?} finite"
+    )]
     Ring { inner: f64, outer: f64, size: f64, center: [f64; 2] },
     #[error("a polygon has at least 3 points, not {count}")]
     Points { count: usize },

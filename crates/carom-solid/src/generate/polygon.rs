@@ -1,7 +1,9 @@
-//! Polygon, convex or not, of nearly equilateral triangles: its sides are cut into edges of the wanted length, `delaunay` fills it.
+//! Polygon, convex or not, of nearly equilateral triangles: its sides are cut into edges of the
+//! wanted length, `delaunay` fills it.
 //!
-//! Near a refined place edges have its size s; from its radius r on they grow by 3/10 of the distance,
-//! h(x) = min(size, s + 0.3 max(0, |x − near| − r)), and a side is cut where ∫ ds/h is a whole number.
+//! Near a refined place edges have its size s; from its radius r on they grow by 3/10 of the
+//! distance, h(x) = min(size, s + 0.3 max(0, |x − near| − r)), and a side is cut where ∫ ds/h is a
+//! whole number.
 
 use super::delaunay::{Outline, fill};
 use super::elevate::elevate;
@@ -22,11 +24,13 @@ pub struct Refinement {
     pub size: f64,
 }
 
-/// Polygon through `points`, either way round, with edges of about `size`. Side `side1` goes from the first point to the second, `side2` on to
-/// the third, the last one back; each is walked with the body on its left.
+/// Polygon through `points`, either way round, with edges of about `size`. Side `side1` goes from
+/// the first point to the second, `side2` on to the third, the last one back; each is walked with
+/// the body on its left.
 ///
 /// # Errors
-/// If there are fewer than 3 points, sides meet elsewhere than at their ends, or a number is out of its range.
+/// If there are fewer than 3 points, sides meet elsewhere than at their ends, or a number is out of
+/// its range.
 ///
 /// ```
 /// use carom_solid::{Element, generate};
@@ -34,7 +38,12 @@ pub struct Refinement {
 /// assert!(cook.side_nodes("side2").unwrap().iter().all(|&n| cook.nodes[n][0] == 48.0));
 /// # Ok::<(), carom_solid::generate::MeshError>(())
 /// ```
-pub fn polygon(element: Element, points: &[[f64; 2]], size: f64, refine: &[Refinement]) -> Result<Mesh, MeshError> {
+pub fn polygon(
+    element: Element,
+    points: &[[f64; 2]],
+    size: f64,
+    refine: &[Refinement],
+) -> Result<Mesh, MeshError> {
     if element.dimension() != 2 {
         return Err(MeshError::Dimension { element, dimension: 2 });
     }
@@ -51,7 +60,9 @@ pub fn polygon(element: Element, points: &[[f64; 2]], size: f64, refine: &[Refin
         }
     }
     let length = |x: &[f64; 2]| {
-        let near = |p: &Refinement| p.size + GROWTH * ((x[0] - p.near[0]).hypot(x[1] - p.near[1]) - p.radius).max(0.0);
+        let near = |p: &Refinement| {
+            p.size + GROWTH * ((x[0] - p.near[0]).hypot(x[1] - p.near[1]) - p.radius).max(0.0)
+        };
         refine.iter().map(near).fold(size, f64::min)
     };
     let n = points.len();
@@ -71,7 +82,8 @@ fn twice_the_area(points: &[[f64; 2]]) -> f64 {
 fn cut(a: [f64; 2], b: [f64; 2], length: &dyn Fn(&[f64; 2]) -> f64) -> Vec<[f64; 2]> {
     let whole = (b[0] - a[0]).hypot(b[1] - a[1]);
     let at = |t: f64| [lerp(a[0], b[0], t), lerp(a[1], b[1], t)];
-    // ∫ ds/h up to the ends of steps no longer than a quarter of the edge at their start (h is Lipschitz: it cannot hide within one).
+    // ∫ ds/h up to the ends of steps no longer than a quarter of the edge at their start (h is
+    // Lipschitz: it cannot hide within one).
     let (mut places, mut edges) = (vec![0.0], vec![0.0]);
     let (mut t, mut sum) = (0.0, 0.0);
     while t < 1.0 {
@@ -90,7 +102,8 @@ fn cut(a: [f64; 2], b: [f64; 2], length: &dyn Fn(&[f64; 2]) -> f64) -> Vec<[f64;
     (1..count as usize).map(|k| at(place(k))).collect()
 }
 
-/// Whether points are the corners of a simple polygon: finite, and its sides meet at their ends only.
+/// Whether points are the corners of a simple polygon: finite, and its sides meet at their ends
+/// only.
 ///
 /// # Errors
 /// The first point or pair of sides, counted from 1, that is none.

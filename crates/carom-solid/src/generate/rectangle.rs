@@ -1,17 +1,23 @@
 //! Rectangle of nx × ny rectangles, each cut into two triangles.
 //!
-//! Diagonals alternate like a chessboard, beginning at the lower left corner: with even nx and ny the mesh is its own mirror image, and no
-//! cell has two edges on the boundary.
+//! Diagonals alternate like a chessboard, beginning at the lower left corner: with even nx and ny
+//! the mesh is its own mirror image, and no cell has two edges on the boundary.
 
 use super::elevate::{Side, Skeleton, elevate};
 use super::{MeshError, check, lerp};
 use crate::mesh::{Element, Mesh};
 
-/// Rectangle from `min` to `max`, `cells` along x and y; sides `bottom`, `right`, `top`, `left`, each walked counter-clockwise.
+/// Rectangle from `min` to `max`, `cells` along x and y; sides `bottom`, `right`, `top`, `left`,
+/// each walked counter-clockwise.
 ///
 /// # Errors
 /// If an extent is not positive, there are no cells, or the element is no triangle.
-pub fn rectangle(element: Element, min: [f64; 2], max: [f64; 2], cells: [usize; 2]) -> Result<Mesh, MeshError> {
+pub fn rectangle(
+    element: Element,
+    min: [f64; 2],
+    max: [f64; 2],
+    cells: [usize; 2],
+) -> Result<Mesh, MeshError> {
     check(element, &min, &max, &cells)?;
     let [nx, ny] = cells;
     let node = |i: usize, j: usize| j * (nx + 1) + i;

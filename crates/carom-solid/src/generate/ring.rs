@@ -1,8 +1,10 @@
 //! Ring between two concentric circles, of circles whose nodes are equally spaced.
 //!
-//! Edges are h = min(size, width, 2πr/12) long at the radius r: where the inner circle is small the cells grow outwards with it, as those of
-//! a disc do. Circles lie √3/2 h apart, which makes triangles between nodes h apart nearly equilateral; each has a multiple of four nodes,
-//! so that the ring is its own mirror image about both axes. A strip between m and n edges of a quarter is walked on both circles at once.
+//! Edges are h = min(size, width, 2πr/12) long at the radius r: where the inner circle is small the
+//! cells grow outwards with it, as those of a disc do. Circles lie √3/2 h apart, which makes
+//! triangles between nodes h apart nearly equilateral; each has a multiple of four nodes, so that
+//! the ring is its own mirror image about both axes. A strip between m and n edges of a quarter is
+//! walked on both circles at once.
 
 use std::f64::consts::PI;
 
@@ -10,8 +12,9 @@ use super::MeshError;
 use super::elevate::{Circle, Side, Skeleton, elevate};
 use crate::mesh::{Element, Mesh};
 
-/// Ring with edges of about `size`, shorter where it is thinner than that or the inner circle needs twelve; sides `inner` and `outer`, closed
-/// loops from their node right of the centre, `inner` clockwise, `outer` counter-clockwise.
+/// Ring with edges of about `size`, shorter where it is thinner than that or the inner circle needs
+/// twelve; sides `inner` and `outer`, closed loops from their node right of the centre, `inner`
+/// clockwise, `outer` counter-clockwise.
 ///
 /// # Errors
 /// If radii and size are not 0 < inner < outer and 0 < size, or the element is no triangle.
@@ -22,7 +25,13 @@ use crate::mesh::{Element, Mesh};
 /// assert!(tube.side_nodes("inner").is_some_and(|nodes| nodes.len().is_multiple_of(8)));
 /// # Ok::<(), carom_solid::generate::MeshError>(())
 /// ```
-pub fn ring(element: Element, inner: f64, outer: f64, center: [f64; 2], size: f64) -> Result<Mesh, MeshError> {
+pub fn ring(
+    element: Element,
+    inner: f64,
+    outer: f64,
+    center: [f64; 2],
+    size: f64,
+) -> Result<Mesh, MeshError> {
     if element.dimension() != 2 {
         return Err(MeshError::Dimension { element, dimension: 2 });
     }
@@ -99,8 +108,8 @@ fn circles(inner: f64, outer: f64, size: f64) -> Vec<(f64, usize)> {
     radii.into_iter().enumerate().map(at).collect()
 }
 
-/// Triangles between m edges of the inner and n of the outer quarter: from nodes i and j one step further on the circle that lags behind;
-/// `true`: on the inner one.
+/// Triangles between m edges of the inner and n of the outer quarter: from nodes i and j one step
+/// further on the circle that lags behind; `true`: on the inner one.
 fn strip(m: usize, n: usize) -> Vec<(usize, usize, bool)> {
     let (mut i, mut j) = (0, 0);
     let mut triangles = Vec::with_capacity(m + n);
@@ -112,7 +121,8 @@ fn strip(m: usize, n: usize) -> Vec<(usize, usize, bool)> {
     triangles
 }
 
-/// The i-th of 4q equally spaced points of the unit circle from (1, 0) counter-clockwise; the quadrants mirror each other, bit for bit.
+/// The i-th of 4q equally spaced points of the unit circle from (1, 0) counter-clockwise; the
+/// quadrants mirror each other, bit for bit.
 fn on_circle(q: usize, i: usize) -> [f64; 2] {
     let (quadrant, i) = (i / q, i % q);
     let at = |i: usize| {

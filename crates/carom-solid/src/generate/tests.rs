@@ -1,4 +1,5 @@
-//! Every generator at every order: counts, quality, boundary on the true curve, outward normals, no node twice or unused.
+//! Every generator at every order: counts, quality, boundary on the true curve, outward normals, no
+//! node twice or unused.
 
 use std::collections::HashSet;
 
@@ -43,7 +44,8 @@ fn all_nodes_used_and_none_twice(mesh: &Mesh) {
     }
 }
 
-/// Each facet follows the one before, its nodes go from start to end, and its cell lies on its left.
+/// Each facet follows the one before, its nodes go from start to end, and its cell lies on its
+/// left.
 fn walked_with_the_body_on_the_left(mesh: &Mesh, side: &str) {
     let nodes = places(mesh);
     let facets = &mesh.sides[side];
@@ -72,8 +74,14 @@ fn intervals() {
         let mesh = interval(element, -1.0, 2.0, 5).unwrap();
         assert_eq!(mesh.nodes.len(), interval_nodes(element, 5));
         assert_eq!(mesh.cell_count(), 5);
-        assert_eq!((&mesh.nodes[mesh.sides["left"][0].nodes[0]], mesh.sides["left"][0].cell), (&[-1.0][..], 0));
-        assert_eq!((&mesh.nodes[mesh.sides["right"][0].nodes[0]], mesh.sides["right"][0].cell), (&[2.0][..], 4));
+        assert_eq!(
+            (&mesh.nodes[mesh.sides["left"][0].nodes[0]], mesh.sides["left"][0].cell),
+            (&[-1.0][..], 0)
+        );
+        assert_eq!(
+            (&mesh.nodes[mesh.sides["right"][0].nodes[0]], mesh.sides["right"][0].cell),
+            (&[2.0][..], 4)
+        );
         let mut places: Vec<f64> = mesh.nodes.iter().map(|x| x[0]).collect();
         places.sort_by(f64::total_cmp);
         let step = 3.0 / (5 * element.degree()) as f64;
@@ -114,7 +122,10 @@ fn discs() {
             assert_eq!((mesh.cell_count(), mesh.nodes.len()), (6 * n * n, disc_nodes(element, radius, size)));
             assert_eq!(mesh.sides["arc"].len(), 6 * n);
             let half = half_disc(element, radius, center, size).unwrap();
-            assert_eq!((half.cell_count(), half.nodes.len()), (3 * n * n, half_disc_nodes(element, radius, size)));
+            assert_eq!(
+                (half.cell_count(), half.nodes.len()),
+                (3 * n * n, half_disc_nodes(element, radius, size))
+            );
             assert_eq!((half.sides["arc"].len(), half.sides["axis"].len()), (3 * n, 2 * n));
             for mesh in [&mesh, &half] {
                 all_nodes_used_and_none_twice(mesh);
@@ -140,7 +151,8 @@ fn discs() {
                 let turned = angle(center, places(&mesh)[pair[0]], places(&mesh)[pair[1]]);
                 assert!((turned - 360.0 / nodes.len() as f64).abs() < 1e-11);
             }
-            // The half's arc goes from the bottom to the top, its axis back down, exactly on the axis.
+            // The half's arc goes from the bottom to the top, its axis back down, exactly on the
+            // axis.
             let (arc, axis) = (half.side_nodes("arc").unwrap(), half.side_nodes("axis").unwrap());
             assert_eq!([arc[0], axis[0]].map(|n| places(&half)[n]), [[0.25, 0.5], [0.25, 1.5]]);
             assert_eq!((arc[0], axis[0]), (axis[axis.len() - 1], arc[arc.len() - 1]));
@@ -163,17 +175,20 @@ fn the_half_disc_is_half_the_disc() {
     }
 }
 
-/// The inner node of a curved T10 carries 4/9 of the arc's rise: the map's third derivatives vanish with the third power of the size.
+/// The inner node of a curved T10 carries 4/9 of the arc's rise: the map's third derivatives vanish
+/// with the third power of the size.
 #[test]
 fn curved_cells_have_smooth_maps() {
     let roughness = |size: f64| {
         let mesh = disc(Element::T10, 1.0, [0.0, 0.0], size).unwrap();
         let cell = mesh.cell(mesh.sides["arc"][0].cell);
-        // Coefficients of the cubic bubble and of the edges' cubic parts: third differences of the nodes.
+        // Coefficients of the cubic bubble and of the edges' cubic parts: third differences of the
+        // nodes.
         let x = |a: usize| &mesh.nodes[cell[a]];
         let mut most: f64 = 0.0;
         for i in 0..2 {
-            let edge = |a: usize, b: usize, c: usize, d: usize| x(d)[i] - 3.0 * x(c)[i] + 3.0 * x(b)[i] - x(a)[i];
+            let edge =
+                |a: usize, b: usize, c: usize, d: usize| x(d)[i] - 3.0 * x(c)[i] + 3.0 * x(b)[i] - x(a)[i];
             let mixed = x(1)[i] - 2.0 * x(4)[i] + x(3)[i] - (x(5)[i] - 2.0 * x(9)[i] + x(8)[i]);
             for d in [edge(0, 3, 4, 1), edge(1, 5, 6, 2), edge(2, 7, 8, 0), mixed] {
                 most = most.max(d.abs());

@@ -1,11 +1,12 @@
-//! A physical curve on the x axis as a body of dimension 1; its sides are the physical points at its ends.
+//! A physical curve on the x axis as a body of dimension 1; its sides are the physical points at
+//! its ends.
 
 use std::collections::BTreeMap;
 
 use super::checks::orient;
 use super::error::{Fault, MshError};
 use super::file::MshFile;
-use super::part::Part;
+use super::group::Group;
 use crate::mesh::{Element, Facet, Mesh};
 use crate::shape::{Line2, Line3, Line4};
 
@@ -15,7 +16,7 @@ impl MshFile {
     /// # Errors
     /// As [`body`](Self::body), and if a node joins more than two cells.
     pub fn bar(&self, curve: &str) -> Result<Mesh, MshError> {
-        let mut part = Part::<1>::of(self, curve)?;
+        let mut part = Group::<1>::of(self, curve)?;
         match part.element {
             Element::L2 => orient::<1, 2, Line2>(&mut part, [1, 0])?,
             Element::L3 => orient::<1, 3, Line3>(&mut part, [1, 0, 2])?,

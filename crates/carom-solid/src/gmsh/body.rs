@@ -1,24 +1,26 @@
 //! A physical surface as a body: its boundary, and the named curves on it.
 //!
-//! An edge of one cell alone belongs to the boundary; its cell, counter-clockwise, walks it with the body on the left.
+//! An edge of one cell alone belongs to the boundary; its cell, counter-clockwise, walks it with
+//! the body on the left.
 
 use std::collections::{BTreeMap, HashMap};
 
 use super::checks::orient;
 use super::error::{Fault, MshError};
 use super::file::MshFile;
-use super::part::Part;
+use super::group::Group;
 use crate::mesh::{Element, Facet, Mesh};
 use crate::shape::{Tri3, Tri6, Tri10};
 
 impl MshFile {
-    /// The mesh of a physical surface. Its sides are the physical curves with edges on its boundary.
+    /// The mesh of a physical surface. Its sides are the physical curves with edges on its
+    /// boundary.
     ///
     /// # Errors
-    /// With line or byte: a name that is not there, cells that are no triangles of one order 1 to 3, folded cells, coincident nodes, edges
-    /// of more than two cells, nodes off the plane.
+    /// With line or byte: a name that is not there, cells that are no triangles of one order 1 to
+    /// 3, folded cells, coincident nodes, edges of more than two cells, nodes off the plane.
     pub fn body(&self, surface: &str) -> Result<Mesh, MshError> {
-        let mut part = Part::<2>::of(self, surface)?;
+        let mut part = Group::<2>::of(self, surface)?;
         match part.element {
             Element::T3 => orient::<2, 3, Tri3>(&mut part, [0, 2, 1])?,
             Element::T6 => orient::<2, 6, Tri6>(&mut part, [0, 2, 1, 5, 4, 3])?,
@@ -44,7 +46,7 @@ fn reversed(edge: &[usize]) -> Vec<usize> {
 }
 
 /// Edges of one cell alone, by start and end.
-fn boundary(part: &Part<2>) -> Result<HashMap<(usize, usize), Facet>, MshError> {
+fn boundary(part: &Group<2>) -> Result<HashMap<(usize, usize), Facet>, MshError> {
     let (n, degree) = (part.element.nodes(), part.element.degree());
     let mut edges: HashMap<(usize, usize), Facet> = HashMap::with_capacity(part.cells.len() / n * 3);
     for (cell, nodes) in part.cells.chunks_exact(n).enumerate() {
@@ -76,9 +78,12 @@ fn boundary(part: &Part<2>) -> Result<HashMap<(usize, usize), Facet>, MshError> 
     Ok(alone)
 }
 
-impl Part<'_, 2> {
+impl Group<'_, 2> {
     /// Named curves on the boundary.
-    fn sides(&self, boundary: &HashMap<(usize, usize), Facet>) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
+    fn sides(
+        &self,
+        boundary: &HashMap<(usize, usize), Facet>,
+    ) -> Result<BTreeMap<String, Vec<Facet>>, MshError> {
         let own: HashMap<usize, usize> = self.used.iter().enumerate().map(|(i, &n)| (n, i)).collect();
         let mut sides = BTreeMap::new();
         for name in self.file.names(1) {
@@ -86,14 +91,17 @@ impl Part<'_, 2> {
             for block in self.file.blocks(1, name) {
                 for (row, line) in block.cells() {
                     // A curve that leaves the body is not one of its edges.
-                    let Some(line) = line.iter().map(|n| own.get(n).copied()).collect::<Option<Vec<_>>>() else {
+                    let Some(line) = line.iter().map(|n| own.get(n).copied()).collect::<Option<Vec<_>>>()
+                    else {
                         continue;
                     };
-                    let facet = boundary.get(&(line[0], line[1])).or_else(|| boundary.get(&(line[1], line[0])));
+                    let facet =
+                        boundary.get(&(line[0], line[1])).or_else(|| boundary.get(&(line[1], line[0])));
                     let Some(facet) = facet else { continue };
                     if facet.nodes != line && facet.nodes != reversed(&line) {
                         let [start, end] = [line[0], line[1]].map(|n| self.node(n).tag);
-                        let (a, b) = (format!("curve \"{name}\""), format!("cell {}", self.rows[facet.cell].tag));
+                        let (a, b) =
+                            (format!("curve \"{name}\""), format!("cell {}", self.rows[facet.cell].tag));
                         return Err(self.file.at(row, Fault::EdgeNodes { a, b, start, end }));
                     }
                     facets.push(facet.clone());

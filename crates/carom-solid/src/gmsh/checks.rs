@@ -1,16 +1,18 @@
-//! Orientation and folding of cells. The Jacobian J(ξ) = det ∂X/∂ξ of a cell of degree k is a polynomial of degree at most 2(k − 1); it
-//! is looked at on a lattice of ten steps, edges and corners included, where folds begin.
+//! Orientation and folding of cells. The Jacobian J(ξ) = det ∂X/∂ξ of a cell of degree k is a
+//! polynomial of degree at most 2(k − 1); it is looked at on a lattice of ten steps, edges and
+//! corners included, where folds begin.
 
 use carom_algebra::Vector;
 
 use super::error::{Fault, MshError};
-use super::part::Part;
+use super::group::Group;
 use crate::reference::{gradient, interpolate};
 use crate::shape::{Domain, Shape};
 
-/// Turns cells that run backwards (`mirror`: the nodes of a cell in the other direction); a folded one is an error.
+/// Turns cells that run backwards (`mirror`: the nodes of a cell in the other direction); a folded
+/// one is an error.
 pub(super) fn orient<const D: usize, const N: usize, S: Shape<D, N>>(
-    part: &mut Part<D>,
+    part: &mut Group<D>,
     mirror: [usize; N],
 ) -> Result<(), MshError> {
     let points = if S::DEGREE == 1 { vec![S::Domain::CENTRE] } else { lattice() };
@@ -20,7 +22,8 @@ pub(super) fn orient<const D: usize, const N: usize, S: Shape<D, N>>(
         let x: [Vector<D>; N] = cell.map(|n| Vector(part.positions[n]));
         let jacobians: Vec<f64> = slopes.iter().map(|g| gradient(&x, g).det()).collect();
         let sign: f64 = if jacobians.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
-        let least = (0..points.len()).min_by(|&a, &b| (sign * jacobians[a]).total_cmp(&(sign * jacobians[b])));
+        let least =
+            (0..points.len()).min_by(|&a, &b| (sign * jacobians[a]).total_cmp(&(sign * jacobians[b])));
         let least = least.unwrap_or(0);
         let jacobian = sign * jacobians[least];
         let size: f64 = (0..D).map(|_| (x[1] - x[0]).norm().max((x[D] - x[0]).norm())).product();

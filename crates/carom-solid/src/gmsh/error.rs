@@ -149,7 +149,9 @@ impl MshError {
             Fault::Unsupported { .. } => "mesh with triangles (in Gmsh without Recombine), order at most 3",
             Fault::MixedOrders { .. } => "set one Mesh.ElementOrder for the whole mesh",
             Fault::NotFlat { .. } => "put the geometry into the plane z = 0",
-            Fault::Folded { .. } => "optimise high-order cells in Gmsh (Mesh.HighOrderOptimize = 2), or mesh finer",
+            Fault::Folded { .. } => {
+                "optimise high-order cells in Gmsh (Mesh.HighOrderOptimize = 2), or mesh finer"
+            }
             Fault::Coincident { .. } => "merge them in Gmsh: Coherence; in the geometry, or Coherence Mesh;",
             Fault::Overlap { .. } => "look for surfaces that overlap or are in the group twice",
             Fault::EdgeNodes { .. } => "set the order after all surfaces are meshed",

@@ -1,4 +1,5 @@
-//! A .msh file in memory: its nodes, its cells by type and group, its named groups, and where each of them was written.
+//! A .msh file in memory: its nodes, its cells by type and group, its named groups, and where each
+//! of them was written.
 
 use super::cell_type::CellType;
 use super::error::{Fault, MshError, Place};
@@ -68,7 +69,8 @@ impl MshFile {
     pub(super) fn blocks<'a>(&'a self, dimension: usize, name: &'a str) -> impl Iterator<Item = &'a Block> {
         let d = dimension as i64;
         let in_group = move |block: &Block| {
-            let named = |tag: &i64| self.groups.iter().any(|g| g.dimension == d && g.tag == *tag && g.name == name);
+            let named =
+                |tag: &i64| self.groups.iter().any(|g| g.dimension == d && g.tag == *tag && g.name == name);
             block.groups.iter().any(named)
         };
         self.blocks.iter().filter(move |b| b.kind.dimension() == d && in_group(b))

@@ -1,4 +1,5 @@
-//! What both versions of the format write, as it is read: positions of nodes, and cells whose nodes are still tags.
+//! What both versions of the format write, as it is read: positions of nodes, and cells whose nodes
+//! are still tags.
 
 use super::cell_type::CellType;
 use super::error::{Fault, MshError};
@@ -21,5 +22,9 @@ pub(super) fn position(source: &mut Source, tag: i64) -> Result<[f64; 3], MshErr
     for x in &mut x {
         *x = source.double("$Nodes")?;
     }
-    if x.iter().all(|x| x.is_finite()) { Ok(x) } else { Err(MshError { place, fault: Fault::NotFinite(tag) }) }
+    if x.iter().all(|x| x.is_finite()) {
+        Ok(x)
+    } else {
+        Err(MshError { place, fault: Fault::NotFinite(tag) })
+    }
 }

@@ -8,7 +8,8 @@ use super::raw::RawBlock;
 use super::source::{Encoding, Source};
 use super::{version_2, version_4};
 
-/// Sections read so far. Cells name nodes by tag and, in 4.1, groups through entities, until all is there.
+/// Sections read so far. Cells name nodes by tag and, in 4.1, groups through entities, until all is
+/// there.
 #[derive(Default)]
 pub(super) struct Sections {
     pub(super) groups: Option<Vec<Group>>,
@@ -143,7 +144,10 @@ fn resolved(sections: Sections, text: bool) -> Result<MshFile, MshError> {
     let mut index = HashMap::with_capacity(raw_nodes.len());
     for (i, (row, _)) in raw_nodes.iter().enumerate() {
         if index.insert(row.tag, i).is_some() {
-            return Err(MshError { place: place(text, row), fault: Fault::TagTwice { what: "node", tag: row.tag } });
+            return Err(MshError {
+                place: place(text, row),
+                fault: Fault::TagTwice { what: "node", tag: row.tag },
+            });
         }
     }
     let mut blocks = Vec::with_capacity(raw_blocks.len());

@@ -1,5 +1,5 @@
-//! Bytes of a file as numbers: text by lines, or binary in either byte order. Counts are checked against the bytes left before anything is
-//! allocated for them.
+//! Bytes of a file as numbers: text by lines, or binary in either byte order. Counts are checked
+//! against the bytes left before anything is allocated for them.
 
 use super::error::{Fault, MshError, Place};
 
@@ -44,7 +44,8 @@ impl<'a> Source<'a> {
         self.at = to;
     }
 
-    /// The next line, without blanks at its ends, if there is one before the file ends; blank lines are skipped.
+    /// The next line, without blanks at its ends, if there is one before the file ends; blank lines
+    /// are skipped.
     pub(super) fn next_line(&mut self) -> Result<Option<(Place, &'a str)>> {
         let blank = self.bytes[self.at..].iter().take_while(|b| b.is_ascii_whitespace()).count();
         self.advance(self.at + blank);
@@ -53,7 +54,8 @@ impl<'a> Source<'a> {
         }
         let (rest, place) = (&self.bytes[self.at..], self.place());
         let end = rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
-        let text = std::str::from_utf8(rest[..end].trim_ascii()).map_err(|_| self.unexpected("text", &rest[..end]))?;
+        let text = std::str::from_utf8(rest[..end].trim_ascii())
+            .map_err(|_| self.unexpected("text", &rest[..end]))?;
         self.advance((self.at + end + 1).min(self.bytes.len()));
         Ok(Some((place, text)))
     }
@@ -63,7 +65,8 @@ impl<'a> Source<'a> {
         self.next_line()?.ok_or_else(|| self.error(Fault::Truncated(within)))
     }
 
-    /// Goes to the line after `end`, which ends a section that is not read; binary data may come before it.
+    /// Goes to the line after `end`, which ends a section that is not read; binary data may come
+    /// before it.
     pub(super) fn skip_past(&mut self, end: &str, within: &'static str) -> Result<()> {
         let found = self.bytes[self.at..].windows(end.len()).position(|w| w == end.as_bytes());
         let Some(found) = found else { return Err(self.error(Fault::Truncated(within))) };
@@ -134,7 +137,8 @@ impl<'a> Source<'a> {
         Ok(if big { f64::from_be_bytes(raw) } else { f64::from_le_bytes(raw) })
     }
 
-    /// A count of things that take at least `bytes` each in a binary file, and two characters in a text.
+    /// A count of things that take at least `bytes` each in a binary file, and two characters in a
+    /// text.
     pub(super) fn count(&mut self, what: &'static str, bytes: usize) -> Result<usize> {
         let count = self.size(what)?;
         self.room(what, count, bytes)
@@ -143,7 +147,8 @@ impl<'a> Source<'a> {
     /// A count as it was read, if the file has room for that many.
     pub(super) fn room(&self, what: &'static str, count: i64, bytes: usize) -> Result<usize> {
         let each = if self.encoding == Encoding::Text { 2 } else { bytes };
-        let fits = usize::try_from(count).ok().filter(|n| n.checked_mul(each).is_some_and(|all| all <= self.left()));
+        let fits =
+            usize::try_from(count).ok().filter(|n| n.checked_mul(each).is_some_and(|all| all <= self.left()));
         fits.ok_or_else(|| self.error(Fault::Count { what, count: count.max(0) as u64, left: self.left() }))
     }
 

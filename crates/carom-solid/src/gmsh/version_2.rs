@@ -50,7 +50,8 @@ pub(super) fn elements(source: &mut Source) -> Result<Vec<RawBlock>, MshError> {
             let count = source.int(WITHIN)?;
             let count = source.room("cells", count, 4 * (1 + kind.nodes))?;
             if count == 0 || found + count > total {
-                let fault = Fault::Total { what: "cells", count: total as u64, found: (found + count) as u64 };
+                let fault =
+                    Fault::Total { what: "cells", count: total as u64, found: (found + count) as u64 };
                 return Err(source.error(fault));
             }
             let tags = tags(source)?;
@@ -93,8 +94,13 @@ fn cell(
         }
     }
     let last = blocks.pop_if(|b| b.kind == kind && b.owner == group);
-    let mut block =
-        last.unwrap_or_else(|| RawBlock { kind, dimension: 0, owner: group, rows: Vec::new(), nodes: Vec::new() });
+    let mut block = last.unwrap_or_else(|| RawBlock {
+        kind,
+        dimension: 0,
+        owner: group,
+        rows: Vec::new(),
+        nodes: Vec::new(),
+    });
     block.rows.push(row);
     for _ in 0..kind.nodes {
         block.nodes.push(source.int("$Elements")?);

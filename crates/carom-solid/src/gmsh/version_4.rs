@@ -25,7 +25,8 @@ pub(super) fn entities(source: &mut Source) -> Result<HashMap<(i64, i64), Vec<i6
             }
             let physical = source.count("physical groups", 4)?;
             // A negative group is one of reversed orientation.
-            let of: Vec<i64> = (0..physical).map(|_| source.int(WITHIN).map(i64::abs)).collect::<Result<_, _>>()?;
+            let of: Vec<i64> =
+                (0..physical).map(|_| source.int(WITHIN).map(i64::abs)).collect::<Result<_, _>>()?;
             if dimension > 0 {
                 for _ in 0..source.count("boundaries of an entity", 4)? {
                     source.int(WITHIN)?;
@@ -77,11 +78,15 @@ pub(super) fn elements(source: &mut Source) -> Result<Vec<RawBlock>, MshError> {
         let place = source.place();
         let (dimension, owner, number) = (source.int(WITHIN)?, source.int(WITHIN)?, source.int(WITHIN)?);
         let Some(kind) = CellType::of(number) else {
-            return Err(MshError { place, fault: Fault::UnknownType { cell: found as i64 + 1, kind: number } });
+            return Err(MshError {
+                place,
+                fault: Fault::UnknownType { cell: found as i64 + 1, kind: number },
+            });
         };
         let count = source.count("cells", 8 * (1 + kind.nodes))?;
         source.end_row()?;
-        let mut block = RawBlock { kind, dimension, owner, rows: Vec::with_capacity(count), nodes: Vec::new() };
+        let mut block =
+            RawBlock { kind, dimension, owner, rows: Vec::with_capacity(count), nodes: Vec::new() };
         for _ in 0..count {
             let place = source.place();
             block.rows.push(Row::new(source.size(WITHIN)?, place));

@@ -1,5 +1,7 @@
-//! Bodies as a .msh file, version 4.1, text: what [`read`](super::read()) and [`body`](super::MshFile::body) give back is the same, bit for
-//! bit, and Gmsh opens it. Each body is a surface, each of its sides a curve; sides of one name on several bodies are one physical curve.
+//! Bodies as a .msh file, version 4.1, text: what [`read`](super::read()) and
+//! [`body`](super::MshFile::body) give back is the same, bit for bit, and Gmsh opens it. Each body
+//! is a surface, each of its sides a curve; sides of one name on several bodies are one physical
+//! curve.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -20,7 +22,9 @@ pub fn write_msh41(bodies: &[(&str, &Mesh)]) -> String {
     let sides: Vec<(usize, &str, &[Facet])> = bodies
         .iter()
         .enumerate()
-        .flat_map(|(i, (_, mesh))| mesh.sides.iter().map(move |(name, facets)| (i, name.as_str(), facets.as_slice())))
+        .flat_map(|(i, (_, mesh))| {
+            mesh.sides.iter().map(move |(name, facets)| (i, name.as_str(), facets.as_slice()))
+        })
         .filter(|side| !side.2.is_empty())
         .collect();
     let names: Vec<&str> = sides.iter().map(|s| s.1).collect::<BTreeSet<_>>().into_iter().collect();
@@ -43,14 +47,24 @@ pub fn write_msh41(bodies: &[(&str, &Mesh)]) -> String {
         let _ = writeln!(out, "{} {} 1 {} 0", tag + 1, corners(places), group(name));
     }
     for (i, (_, mesh)) in bodies.iter().enumerate() {
-        let own: Vec<_> = (0..sides.len()).filter(|&s| sides[s].0 == i).map(|s| format!(" {}", s + 1)).collect();
-        let _ = writeln!(out, "{} {} 1 {} {}{}", i + 1, corners(mesh.nodes.iter()), i + 1, own.len(), own.concat());
+        let own: Vec<_> =
+            (0..sides.len()).filter(|&s| sides[s].0 == i).map(|s| format!(" {}", s + 1)).collect();
+        let _ = writeln!(
+            out,
+            "{} {} 1 {} {}{}",
+            i + 1,
+            corners(mesh.nodes.iter()),
+            i + 1,
+            own.len(),
+            own.concat()
+        );
     }
 
     let first: Vec<usize> =
         bodies.iter().scan(1, |next, (_, m)| Some(std::mem::replace(next, *next + m.nodes.len()))).collect();
     let total: usize = bodies.iter().map(|(_, m)| m.nodes.len()).sum();
-    let _ = writeln!(out, "$EndEntities\n$Nodes\n{} {total} {} {total}", bodies.len(), usize::from(total > 0));
+    let _ =
+        writeln!(out, "$EndEntities\n$Nodes\n{} {total} {} {total}", bodies.len(), usize::from(total > 0));
     for (i, (_, mesh)) in bodies.iter().enumerate() {
         let _ = writeln!(out, "2 {} 0 {}", i + 1, mesh.nodes.len());
         for n in 0..mesh.nodes.len() {
@@ -61,7 +75,8 @@ pub fn write_msh41(bodies: &[(&str, &Mesh)]) -> String {
         }
     }
 
-    let cells: usize = sides.iter().map(|s| s.2.len()).chain(bodies.iter().map(|(_, m)| m.cell_count())).sum();
+    let cells: usize =
+        sides.iter().map(|s| s.2.len()).chain(bodies.iter().map(|(_, m)| m.cell_count())).sum();
     let blocks = sides.len() + bodies.len();
     let _ = writeln!(out, "$EndNodes\n$Elements\n{blocks} {cells} {} {cells}", usize::from(cells > 0));
     let mut tag = 0;
@@ -98,6 +113,7 @@ fn edge(element: Element) -> Element {
 /// Lower and upper corner of the box around places, z = 0.
 fn corners<'a>(places: impl Iterator<Item = &'a [f64]>) -> String {
     let start = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
-    let [a, b, c, d] = places.fold(start, |[a, b, c, d], x| [a.min(x[0]), b.min(x[1]), c.max(x[0]), d.max(x[1])]);
+    let [a, b, c, d] =
+        places.fold(start, |[a, b, c, d], x| [a.min(x[0]), b.min(x[1]), c.max(x[0]), d.max(x[1])]);
     format!("{a:e} {b:e} 0 {c:e} {d:e} 0")
 }

@@ -10,8 +10,9 @@ use crate::points::{LANES, Moduli, get, set};
 #[error("J = {0:.3e} is not positive")]
 pub struct NotPositive(pub f64);
 
-/// A hyperelastic law. What several answers need is computed once by [`Material::at`]. `at`, `energy`, `stress` and `tangent` are `#[inline(always)]`: they are
-/// compiled into the loop over quadrature points, for wide registers.
+/// A hyperelastic law. What several answers need is computed once by [`Material::at`]. `at`,
+/// `energy`, `stress` and `tangent` are `#[inline(always)]`: they are compiled into the loop over
+/// quadrature points, for wide registers.
 pub trait Material<const D: usize>: Send + Sync + 'static {
     /// Degree of Ψ as a polynomial in F that is to be integrated exactly; 0 if it is none.
     const ENERGY_DEGREE: usize;
@@ -55,7 +56,8 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
         dp
     }
 
-    /// ∂P/∂F : dF at the first `count` of four points side by side: `h`, `dh` and the result are `[i][j][point]`.
+    /// ∂P/∂F : dF at the first `count` of four points side by side: `h`, `dh` and the result are
+    /// `[i][j][point]`.
     #[inline(always)]
     fn changes(
         &self,

@@ -1,4 +1,5 @@
-//! Functions of F = I + H that keep the digits of a small H: J − 1 = tr H + … + det H, cof F − I, x − ln(1 + x).
+//! Functions of F = I + H that keep the digits of a small H: J − 1 = tr H + … + det H, cof F − I, x
+//! − ln(1 + x).
 
 use carom_algebra::Mat;
 
@@ -22,7 +23,8 @@ pub fn excess_cofactor<const D: usize>(h: &Mat<D>) -> Mat<D> {
     }
 }
 
-/// ln(1 + x), and x − ln(1 + x), which is x²/2 for small x. With s = x/(2 + x): ln(1 + x) = 2 artanh s = 2s + r and x − 2s = x s.
+/// ln(1 + x), and x − ln(1 + x), which is x²/2 for small x. With s = x/(2 + x): ln(1 + x) = 2
+/// artanh s = 2s + r and x − 2s = x s.
 #[inline(always)]
 pub(crate) fn ln_1p(x: f64) -> [f64; 2] {
     if x.abs() > 0.1 {
@@ -30,7 +32,8 @@ pub(crate) fn ln_1p(x: f64) -> [f64; 2] {
     }
     let s = x / (2.0 + x);
     let t = s * s;
-    let series = 1.0 / 3.0 + t * (1.0 / 5.0 + t * (1.0 / 7.0 + t * (1.0 / 9.0 + t * (1.0 / 11.0 + t * (1.0 / 13.0)))));
+    let series =
+        1.0 / 3.0 + t * (1.0 / 5.0 + t * (1.0 / 7.0 + t * (1.0 / 9.0 + t * (1.0 / 11.0 + t * (1.0 / 13.0)))));
     let r = 2.0 * s * t * series;
     [2.0 * s + r, x * s - r]
 }
@@ -45,8 +48,8 @@ pub(crate) fn ln_1p_lanes(x: &[f64; 4]) -> [f64; 4] {
     for l in 0..4 {
         let s = x[l] / (2.0 + x[l]);
         let t = s * s;
-        let series =
-            1.0 / 3.0 + t * (1.0 / 5.0 + t * (1.0 / 7.0 + t * (1.0 / 9.0 + t * (1.0 / 11.0 + t * (1.0 / 13.0)))));
+        let series = 1.0 / 3.0
+            + t * (1.0 / 5.0 + t * (1.0 / 7.0 + t * (1.0 / 9.0 + t * (1.0 / 11.0 + t * (1.0 / 13.0)))));
         ln[l] = 2.0 * s + 2.0 * s * t * series;
     }
     ln

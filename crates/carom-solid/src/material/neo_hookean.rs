@@ -1,10 +1,11 @@
-//! Compressible neo-Hookean law Ψ = μ(tr E − ln J) + Λ/2 (ln J)², E = (FᵀF − I)/2 (Simo, Hughes, Computational Inelasticity, §9.2.1;
-//! the seed paper's eq. (3)):
+//! Compressible neo-Hookean law Ψ = μ(tr E − ln J) + Λ/2 (ln J)², E = (FᵀF − I)/2 (Simo, Hughes,
+//! Computational Inelasticity, §9.2.1; the seed paper's eq. (3)):
 //!
 //!   P = μ(F − F⁻ᵀ) + Λ ln J F⁻ᵀ,   K(a, b) = μ (a·b) I + (μ − Λ ln J) b̃⊗ã + Λ ã⊗b̃,   ã = F⁻ᵀa.
 //!
-//! Without cancellation, with d = J − 1 and C = cof F − I: F⁻ᵀ = (I + C)/J, F − F⁻ᵀ = (H − C + d F)/J,
-//! tr E − ln J = (tr H − d) + H:H/2 + (d − ln(1 + d)), and tr H − d holds only terms of second and third order.
+//! Without cancellation, with d = J − 1 and C = cof F − I: F⁻ᵀ = (I + C)/J, F − F⁻ᵀ = (H − C + d
+//! F)/J, tr E − ln J = (tr H − d) + H:H/2 + (d − ln(1 + d)), and tr H − d holds only terms of
+//! second and third order.
 
 use carom_algebra::{Mat, Vector};
 
@@ -82,7 +83,8 @@ impl<const D: usize> Material<D> for NeoHookean {
             + a_tilde.outer(&b_tilde) * self.lambda
     }
 
-    /// ∂P/∂F : dF = μ dF + Λ (F⁻ᵀ:dF) F⁻ᵀ + (μ − Λ ln J) F⁻ᵀ dFᵀ F⁻ᵀ, in the plane for all points at once.
+    /// ∂P/∂F : dF = μ dF + Λ (F⁻ᵀ:dF) F⁻ᵀ + (μ − Λ ln J) F⁻ᵀ dFᵀ F⁻ᵀ, in the plane for all points
+    /// at once.
     #[inline(always)]
     fn changes(
         &self,
@@ -109,7 +111,8 @@ impl<const D: usize> Material<D> for NeoHookean {
                 [-h[0][1][l] * inverse, (1.0 + h[0][0][l]) * inverse],
             ];
             let d = [[dh[0][0][l], dh[0][1][l]], [dh[1][0][l], dh[1][1][l]]];
-            let trace = self.lambda * (g[0][0] * d[0][0] + g[0][1] * d[0][1] + g[1][0] * d[1][0] + g[1][1] * d[1][1]);
+            let trace =
+                self.lambda * (g[0][0] * d[0][0] + g[0][1] * d[0][1] + g[1][0] * d[1][0] + g[1][1] * d[1][1]);
             let rest = self.mu - self.lambda * logarithm[l];
             // dFᵀ F⁻ᵀ.
             let m = [

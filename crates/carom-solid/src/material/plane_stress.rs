@@ -1,10 +1,12 @@
-//! Plane stress: the stretch across the plane is what makes the stress across it vanish, at each point for itself,
+//! Plane stress: the stretch across the plane is what makes the stress across it vanish, at each
+//! point for itself,
 //!
 //!   P₃₃(F, F₃₃) = 0,   Aᵢⱼ = Cᵢⱼ − Cᵢ₃ C₃ⱼ / C₃₃,
 //!
-//! (static condensation of the three-dimensional law; Klinkel, Govindjee, Engng. Comput. 19 (2002) 341–354). Ψ is that of the law at the solved
-//! stretch, so that P = ∂Ψ/∂F: what the stretch adds to the derivative is P₃₃ = 0. Cauchy stress is P Fᵀ/J with the J of all three
-//! directions; the force on the deformed, thinner or thicker, sheet is that of P on the undeformed one.
+//! (static condensation of the three-dimensional law; Klinkel, Govindjee, Engng. Comput. 19 (2002)
+//! 341–354). Ψ is that of the law at the solved stretch, so that P = ∂Ψ/∂F: what the stretch adds
+//! to the derivative is P₃₃ = 0. Cauchy stress is P Fᵀ/J with the J of all three directions; the
+//! force on the deformed, thinner or thicker, sheet is that of P on the undeformed one.
 
 use carom_algebra::{Mat, Vector};
 
@@ -101,8 +103,9 @@ impl Thickness for SaintVenantKirchhoff {
 }
 
 impl Thickness for NeoHookean {
-    /// With s = ln F₃₃: μ(e²ˢ − 1) + Λ(ln J₂ + s) = 0 by Newton's method. The left side is convex in s; for Λ ≥ 0 it rises everywhere, and the
-    /// iterates come down to its one root from the second on. Λ < 0 has none where the plane is pressed together too far.
+    /// With s = ln F₃₃: μ(e²ˢ − 1) + Λ(ln J₂ + s) = 0 by Newton's method. The left side is convex
+    /// in s; for Λ ≥ 0 it rises everywhere, and the iterates come down to its one root from the
+    /// second on. Λ < 0 has none where the plane is pressed together too far.
     #[inline(always)]
     fn excess_stretch(&self, h: &Mat<2>) -> Result<f64, NotPositive> {
         let excess = excess_det(h);

@@ -1,4 +1,5 @@
-//! St. Venant–Kirchhoff law Ψ = Λ/2 (tr E)² + μ E:E, E = (H + Hᵀ + HᵀH)/2 (Holzapfel, Nonlinear Solid Mechanics, §6.5):
+//! St. Venant–Kirchhoff law Ψ = Λ/2 (tr E)² + μ E:E, E = (H + Hᵀ + HᵀH)/2 (Holzapfel, Nonlinear
+//! Solid Mechanics, §6.5):
 //!
 //!   S = Λ tr E I + 2μE,   P = F S,   K(a, b) = (a·S b) I + Λ Fa⊗Fb + μ [Fb⊗Fa + (a·b) F Fᵀ].
 //!

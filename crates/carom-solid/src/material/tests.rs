@@ -1,4 +1,5 @@
-//! Every law in every dimension: energy → stress → tangent by differences, objectivity, the undeformed state, small motions, J ≤ 0.
+//! Every law in every dimension: energy → stress → tangent by differences, objectivity, the
+//! undeformed state, small motions, J ≤ 0.
 
 use carom_algebra::{Mat, Vector};
 use proptest::prelude::*;
@@ -62,13 +63,19 @@ fn derivatives<const D: usize, L: Material<D>>(law: &L, h: &Mat<D>) {
                 for k in 0..D {
                     let expected = slope(2e-3, |s| stress(law, &moved(column, l, s)).0[i][k]);
                     let block = law.tangent(&point, &unit[k], &unit[l]);
-                    assert!((expected - block.0[i][column]).abs() < 1e-8, "{expected} against {}", block.0[i][column]);
+                    assert!(
+                        (expected - block.0[i][column]).abs() < 1e-8,
+                        "{expected} against {}",
+                        block.0[i][column]
+                    );
                 }
             }
         }
     }
-    let (a, b) =
-        (Vector(std::array::from_fn(|i| 0.3 + i as f64)), Vector(std::array::from_fn(|i| 0.7 - 0.4 * i as f64)));
+    let (a, b) = (
+        Vector(std::array::from_fn(|i| 0.3 + i as f64)),
+        Vector(std::array::from_fn(|i| 0.7 - 0.4 * i as f64)),
+    );
     let symmetric = law.tangent(&point, &a, &b) - law.tangent(&point, &b, &a).transposed();
     assert!(symmetric.double_dot(&symmetric).sqrt() < 1e-13);
 }
@@ -84,9 +91,11 @@ fn objectivity<const D: usize, L: Material<D>>(law: &L, h: &Mat<D>, q: &Mat<D>) 
     assert!((law.lateral(&at(&turned)) - law.lateral(&at(h))).abs() < 1e-13);
 }
 
-/// The same motion padded to three dimensions gives the same energy and the Cauchy stress with its lateral component.
+/// The same motion padded to three dimensions gives the same energy and the Cauchy stress with its
+/// lateral component.
 fn padded<const D: usize, L: Material<D> + Material<3>>(law: &L, h: &Mat<D>) {
-    let wide = Mat(std::array::from_fn(|i| std::array::from_fn(|j| if i < D && j < D { h.0[i][j] } else { 0.0 })));
+    let wide =
+        Mat(std::array::from_fn(|i| std::array::from_fn(|j| if i < D && j < D { h.0[i][j] } else { 0.0 })));
     assert!((energy::<3, L>(law, &wide) - energy(law, h)).abs() < 1e-14);
     let narrow = <L as Material<D>>::at(law, h).unwrap();
     let solid = Material::<3>::cauchy(law, &<L as Material<3>>::at(law, &wide).unwrap());

@@ -1,12 +1,15 @@
-//! Control points whose convex hull holds a curved line or cell: its map X(ξ) = Σ φᵃ Xᵃ in Bernstein polynomials, which are ≥ 0 and sum to 1.
+//! Control points whose convex hull holds a curved line or cell: its map X(ξ) = Σ φᵃ Xᵃ in
+//! Bernstein polynomials, which are ≥ 0 and sum to 1.
 //!
-//! The control point of k corners, some of them the same, is the polar form of the map at them (Ramshaw, Comput. Aided Geom. Design 6 (1989)):
+//! The control point of k corners, some of them the same, is the polar form of the map at them
+//! (Ramshaw, Comput. Aided Geom. Design 6 (1989)):
 //!
 //! ```text
 //! c(v₁ … vₖ) = 1/k! Σ (−1)ᵏ⁻ˢ sᵏ X(mean of S)    over all S ⊆ {1 … k} of s ≥ 1 corners
 //! ```
 //!
-//! Lines: c = x₀, x₁, and of degree 2: 2x₂ − (x₀ + x₁)/2; of degree 3: (−5x₀ + 2x₁ + 18x₂ − 9x₃)/6, (2x₀ − 5x₁ − 9x₂ + 18x₃)/6.
+//! Lines: c = x₀, x₁, and of degree 2: 2x₂ − (x₀ + x₁)/2; of degree 3: (−5x₀ + 2x₁ + 18x₂ − 9x₃)/6,
+//! (2x₀ − 5x₁ − 9x₂ + 18x₃)/6.
 
 use carom_algebra::Vector;
 
@@ -25,7 +28,8 @@ impl Hull {
     /// Of a simplex of shape `S`; its corners come first among its nodes.
     #[must_use]
     pub fn of<const R: usize, const N: usize, S: Shape<R, N>>() -> Self {
-        let weights = control(S::DEGREE, &S::NODES[..=R], N, |xi, values| values.copy_from_slice(&S::values(xi)));
+        let weights =
+            control(S::DEGREE, &S::NODES[..=R], N, |xi, values| values.copy_from_slice(&S::values(xi)));
         Self { nodes: N, weights }
     }
 
@@ -43,11 +47,13 @@ impl Hull {
     #[must_use]
     pub fn line(nodes: usize, reach: f64) -> Self {
         let ends = [Vector([-reach]), Vector([reach])];
-        let values = |xi: &Vector<1>, out: &mut [f64]| out.copy_from_slice(&line_shape(nodes, xi[0]).values[..nodes]);
+        let values =
+            |xi: &Vector<1>, out: &mut [f64]| out.copy_from_slice(&line_shape(nodes, xi[0]).values[..nodes]);
         Self { nodes, weights: control(nodes - 1, &ends, nodes, values) }
     }
 
-    /// Box around the control points, and so around the whole line or cell, from the positions of its nodes: to round-off, which the caller adds.
+    /// Box around the control points, and so around the whole line or cell, from the positions of
+    /// its nodes: to round-off, which the caller adds.
     #[must_use]
     pub fn bounds<'a, P: AsRef<[f64]> + ?Sized + 'a>(&self, position: impl Fn(usize) -> &'a P) -> Bounds {
         let mut bounds = Bounds::EMPTY;
@@ -66,7 +72,8 @@ impl Hull {
     }
 }
 
-/// Rows of weights of the control points of `degree` corners each, from the shape functions `values(ξ, out)` of the nodes.
+/// Rows of weights of the control points of `degree` corners each, from the shape functions
+/// `values(ξ, out)` of the nodes.
 fn control<const R: usize>(
     degree: usize,
     corners: &[Vector<R>],
@@ -80,7 +87,8 @@ fn control<const R: usize>(
     let mut shape = vec![0.0; nodes];
     let factorial: usize = (1..=degree).product();
     for code in 0..corners.len().pow(degree as u32) {
-        let chosen: Vec<_> = (0..degree).map(|k| code / corners.len().pow(k as u32) % corners.len()).collect();
+        let chosen: Vec<_> =
+            (0..degree).map(|k| code / corners.len().pow(k as u32) % corners.len()).collect();
         if !chosen.is_sorted() {
             continue;
         }
@@ -110,7 +118,11 @@ mod tests {
     fn lines_have_the_control_points_of_the_books() {
         let close = |hull: Hull, rows: &[&[f64]]| {
             assert_eq!(hull.weights.len(), rows.concat().len());
-            assert!(hull.weights.iter().zip(rows.concat()).all(|(a, b)| (a - b).abs() < 1e-14), "{:?}", hull.weights);
+            assert!(
+                hull.weights.iter().zip(rows.concat()).all(|(a, b)| (a - b).abs() < 1e-14),
+                "{:?}",
+                hull.weights
+            );
         };
         close(Hull::line(1, 1.2), &[&[1.0]]);
         close(Hull::line(2, 1.0), &[&[1.0, 0.0], &[0.0, 1.0]]);

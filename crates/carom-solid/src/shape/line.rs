@@ -9,7 +9,8 @@ use carom_algebra::Vector;
 use super::{Domain, Shape};
 use crate::quadrature::{self, Rule};
 
-/// Shape functions of a line and their first and second derivatives; entries past its nodes are zero.
+/// Shape functions of a line and their first and second derivatives; entries past its nodes are
+/// zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineShape {
     /// φᵃ.
@@ -20,7 +21,8 @@ pub struct LineShape {
     pub second: [f64; 4],
 }
 
-/// Shape functions of the line with 1 (a point), 2, 3 or 4 nodes at `xi`, which may lie outside −1..1: the polynomials extrapolate.
+/// Shape functions of the line with 1 (a point), 2, 3 or 4 nodes at `xi`, which may lie outside
+/// −1..1: the polynomials extrapolate.
 ///
 /// # Panics
 /// For any other number of nodes.

@@ -1,7 +1,8 @@
 //! Shape functions φᵃ(ξ) of the reference cells: Lagrange polynomials, φᵃ(ξᵇ) = δᵃᵇ, Σφᵃ = 1.
 //!
-//! Node order is Gmsh's and VTK's: corners, then the nodes of each edge in its direction, then the interior. One short file per reference
-//! domain; every shape passes the same test at the foot of this file.
+//! Node order is Gmsh's and VTK's: corners, then the nodes of each edge in its direction, then the
+//! interior. One short file per reference domain; every shape passes the same test at the foot of
+//! this file.
 
 mod hull;
 mod line;
@@ -76,7 +77,11 @@ mod tests {
             let (p, m, pp, mm) = (at(1.0), at(-1.0), at(2.0), at(-2.0));
             for a in 0..N {
                 let slope = (8.0 * (p[a] - m[a]) - (pp[a] - mm[a])) / (12.0 * h);
-                assert!((slope - gradients[a][i]).abs() < 1e-9, "∂φ{a}/∂ξ{i}: {slope} against {}", gradients[a][i]);
+                assert!(
+                    (slope - gradients[a][i]).abs() < 1e-9,
+                    "∂φ{a}/∂ξ{i}: {slope} against {}",
+                    gradients[a][i]
+                );
             }
         }
     }

@@ -1,5 +1,5 @@
-//! Triangles of degree 1, 2 and 3 on (0,0) (1,0) (0,1), in barycentric coordinates L₀ = 1 − ξ − η, L₁ = ξ, L₂ = η
-//! (Zienkiewicz, Taylor: The Finite Element Method, ch. 6).
+//! Triangles of degree 1, 2 and 3 on (0,0) (1,0) (0,1), in barycentric coordinates L₀ = 1 − ξ − η,
+//! L₁ = ξ, L₂ = η (Zienkiewicz, Taylor: The Finite Element Method, ch. 6).
 //!
 //! ```text
 //! 2           2            2

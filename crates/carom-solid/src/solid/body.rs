@@ -25,14 +25,26 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
         )
     }
 
-    fn cell_tangent(&self, cell: usize, y: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Result<f64, Inverted> {
+    fn cell_tangent(
+        &self,
+        cell: usize,
+        y: &[f64],
+        force: &mut [f64],
+        tangent: &mut [f64],
+    ) -> Result<f64, Inverted> {
         wide(
             #[inline(always)]
             || self.integrate_at(cell, y, force, Some(tangent)),
         )
     }
 
-    fn cell_between(&self, cell: usize, before: &[f64], now: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
+    fn cell_between(
+        &self,
+        cell: usize,
+        before: &[f64],
+        now: &[f64],
+        force: &mut [f64],
+    ) -> Result<f64, Inverted> {
         wide(
             #[inline(always)]
             || self.integrate_between(cell, [before, now], force),
@@ -175,7 +187,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
 
     fn locate(&self, point: &[f64]) -> Vec<(usize, Vec<f64>)> {
         let x = self.mesh.nodes.flat();
-        let tree = self.tree.get_or_init(|| Tree::new(self.mesh.cell_count(), |cell| self.cell_bounds(cell, x)));
+        let tree =
+            self.tree.get_or_init(|| Tree::new(self.mesh.cell_count(), |cell| self.cell_bounds(cell, x)));
         let mut near = Vec::new();
         tree.find_into(&Bounds::of(point), &mut near);
         near.into_iter().filter_map(|cell| Some((cell, self.invert(cell, x, point)?))).collect()

@@ -10,7 +10,8 @@ use crate::points::{Blocks, LANES, Mats, Moduli, get, set, set_moduli, sum};
 use crate::shape::Shape;
 
 impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N, S, L> {
-    /// Forces and, if asked for, the tangent of a cell from `at(h)` for the gradients H of several displacement fields at a point: energy, P and the moduli.
+    /// Forces and, if asked for, the tangent of a cell from `at(h)` for the gradients H of several
+    /// displacement fields at a point: energy, P and the moduli.
     #[inline(always)]
     fn integrate<const M: usize>(
         &self,
@@ -88,7 +89,12 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
 
     /// The same from the discrete gradient between two positions, forces alone.
     #[inline(always)]
-    pub(super) fn integrate_between(&self, cell: usize, ends: [&[f64]; 2], force: &mut [f64]) -> Result<f64, Inverted> {
+    pub(super) fn integrate_between(
+        &self,
+        cell: usize,
+        ends: [&[f64]; 2],
+        force: &mut [f64],
+    ) -> Result<f64, Inverted> {
         self.integrate(
             cell,
             ends,
@@ -102,7 +108,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
         )
     }
 
-    /// Forces of the changes of stress `at(h, dh, count)` at points side by side, made of the gradients of fields and of a change of the last.
+    /// Forces of the changes of stress `at(h, dh, count)` at points side by side, made of the
+    /// gradients of fields and of a change of the last.
     #[inline(always)]
     pub(super) fn differentiate<const M: usize>(
         &self,

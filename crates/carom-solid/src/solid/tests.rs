@@ -9,8 +9,13 @@ use crate::shape::Tet4;
 
 fn tetrahedron() -> Solid<3, 4, Tet4, NeoHookean> {
     let nodes = vec![[0.0, 0.0, 0.0], [2.0, 0.1, 0.0], [0.2, 1.5, 0.1], [0.1, 0.2, 1.0]].into();
-    let mesh =
-        Mesh { element: Element::Tet4, nodes, cells: vec![0, 1, 2, 3], sides: BTreeMap::new(), repairs: Vec::new() };
+    let mesh = Mesh {
+        element: Element::Tet4,
+        nodes,
+        cells: vec![0, 1, 2, 3],
+        sides: BTreeMap::new(),
+        repairs: Vec::new(),
+    };
     Solid::new(mesh, NeoHookean { lambda: 2.0, mu: 1.5 }, 3.0, 1.0).unwrap()
 }
 

@@ -28,7 +28,8 @@ fn check(tree: &Tree, boxes: &[Bounds], queries: &[Bounds]) {
         assert_eq!(found, all);
         let point = query.centre();
         let distance = |k: usize| (k % 5 != 4).then(|| boxes[k].distance(&point));
-        let first = (0..boxes.len()).filter_map(|k| Some((k, distance(k)?))).min_by(|a, b| a.1.total_cmp(&b.1));
+        let first =
+            (0..boxes.len()).filter_map(|k| Some((k, distance(k)?))).min_by(|a, b| a.1.total_cmp(&b.1));
         assert_eq!(tree.nearest(&point, distance), first);
     }
     let all = boxes.iter().fold(Bounds::EMPTY, Bounds::union);

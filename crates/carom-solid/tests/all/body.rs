@@ -1,6 +1,9 @@
-//! Bodies as the rest of Carom uses them: rigid motion, derivatives, affine patch test, masses, stress, places.
+//! Bodies as the rest of Carom uses them: rigid motion, derivatives, affine patch test, masses,
+//! stress, places.
 
-use carom_solid::{Body, Bounds, Cover, Element, Law, Mesh, SolidError, body, cell_lumped_mass, generate, line_shape};
+use carom_solid::{
+    Body, Bounds, Cover, Element, Law, Mesh, SolidError, body, cell_lumped_mass, generate, line_shape,
+};
 
 const LAMBDA: f64 = 2.0;
 const MU: f64 = 1.5;
@@ -61,7 +64,11 @@ fn rigid_motion_gives_no_force() {
         let (s, c) = 2.3_f64.sin_cos();
         let y = moved(&*body, |x| [c * x[0] - s * x[1] + 5.0, s * x[0] + c * x[1] - 3.0]);
         let (energy, f) = forces::<2>(&*body, &y);
-        assert!(largest(&f) < 1e-12 && energy.abs() < 1e-12, "{element:?} {law:?}: {:e}, {energy:e}", largest(&f));
+        assert!(
+            largest(&f) < 1e-12 && energy.abs() < 1e-12,
+            "{element:?} {law:?}: {:e}, {energy:e}",
+            largest(&f)
+        );
     }
 }
 
@@ -69,7 +76,9 @@ fn rigid_motion_gives_no_force() {
 fn force_and_tangent_are_derivatives_and_the_tangent_is_symmetric() {
     for (element, law, body) in all_bodies() {
         let n = element.nodes() * 2;
-        let mut y = moved(&*body, |x| [x[0] + 0.1 * x[1] * x[1] - 0.05 * x[0] * x[1], 0.9 * x[1] + 0.07 * x[0].sin()]);
+        let mut y = moved(&*body, |x| {
+            [x[0] + 0.1 * x[1] * x[1] - 0.05 * x[0] * x[1], 0.9 * x[1] + 0.07 * x[0].sin()]
+        });
         let (mut force, mut only, mut tangent) = (vec![0.0; n], vec![0.0; n], vec![0.0; n * n]);
         // The last cell of the disc is a curved one.
         let cell = body.mesh().cell_count() - 1;
@@ -88,7 +97,11 @@ fn force_and_tangent_are_derivatives_and_the_tangent_is_symmetric() {
             };
             let (plus, minus) = (at(h), at(-h));
             let slope = (plus.0 - minus.0) / (2.0 * h);
-            assert!((slope - force[column]).abs() < 1e-8, "{element:?} {law:?}: {slope} against {}", force[column]);
+            assert!(
+                (slope - force[column]).abs() < 1e-8,
+                "{element:?} {law:?}: {slope} against {}",
+                force[column]
+            );
             for row in 0..n {
                 let slope = (plus.1[row] - minus.1[row]) / (2.0 * h);
                 let value = tangent[row * n + column];
@@ -99,7 +112,8 @@ fn force_and_tangent_are_derivatives_and_the_tangent_is_symmetric() {
     }
 }
 
-/// An affine motion has constant stress, and interior nodes are in equilibrium on straight and curved cells.
+/// An affine motion has constant stress, and interior nodes are in equilibrium on straight and
+/// curved cells.
 #[test]
 fn affine_patch() {
     for (element, law, body) in all_bodies() {
@@ -113,7 +127,8 @@ fn affine_patch() {
                 assert!((a - b).abs() < 1e-12, "{element:?} {law:?}");
             }
         }
-        let boundary: Vec<usize> = body.mesh().sides.values().flatten().flat_map(|f| f.nodes.clone()).collect();
+        let boundary: Vec<usize> =
+            body.mesh().sides.values().flatten().flat_map(|f| f.nodes.clone()).collect();
         let (_, f) = forces::<2>(&*body, &y);
         for (node, f) in f.iter().enumerate().filter(|(node, _)| !boundary.contains(node)) {
             assert!(f[0].hypot(f[1]) < 1e-12, "{element:?} {law:?}: node {node} is pulled by {f:?}");
@@ -125,7 +140,8 @@ fn affine_patch() {
     }
 }
 
-/// Pulling on an edge: consistent forces of a uniform stress are 1/2 1/2, 1/6 1/6 4/6 and 1/8 1/8 3/8 3/8 of the edge's share.
+/// Pulling on an edge: consistent forces of a uniform stress are 1/2 1/2, 1/6 1/6 4/6 and 1/8 1/8
+/// 3/8 3/8 of the edge's share.
 #[test]
 fn uniform_stress_gives_the_consistent_edge_forces() {
     for (element, weights) in [
@@ -170,7 +186,8 @@ fn masses_and_volumes_add_up() {
     }
 }
 
-/// Two rings: the polygon misses 4.5 % of the disc's area, the curved cells converge to it with their order.
+/// Two rings: the polygon misses 4.5 % of the disc's area, the curved cells converge to it with
+/// their order.
 #[test]
 fn curved_discs_have_their_area() {
     let area = |element, size: f64| {
@@ -185,7 +202,8 @@ fn curved_discs_have_their_area() {
         (sum / std::f64::consts::PI - 1.0).abs()
     };
     assert!(area(Element::T6, 0.5) < 2e-4 && area(Element::T10, 0.5) < 3e-5);
-    // A polynomial arc of degree k is right to order k + 1, its area one order better for even k, where the error is odd along the arc.
+    // A polynomial arc of degree k is right to order k + 1, its area one order better for even k,
+    // where the error is odd along the arc.
     for (element, order) in [(Element::T3, 2.0), (Element::T6, 4.0), (Element::T10, 4.0)] {
         let measured = (area(element, 0.5) / area(element, 0.25)).log2();
         assert!(measured > order - 0.1, "{element:?}: order {measured}");
@@ -230,8 +248,9 @@ fn places_are_found_in_straight_and_curved_cells() {
             let mut values = vec![0.0; element.nodes()];
             let mut interpolated = |cell: usize, xi: &[f64]| {
                 body.shape(xi, &mut values);
-                let at =
-                    |i: usize| mesh.cell(cell).iter().zip(&values).map(|(&n, v)| mesh.nodes[n][i] * v).sum::<f64>();
+                let at = |i: usize| {
+                    mesh.cell(cell).iter().zip(&values).map(|(&n, v)| mesh.nodes[n][i] * v).sum::<f64>()
+                };
                 [at(0), at(1)]
             };
             for cell in 0..mesh.cell_count() {
@@ -248,7 +267,9 @@ fn places_are_found_in_straight_and_curved_cells() {
                 }
             }
             for (node, x) in mesh.nodes.iter().enumerate() {
-                let around = (0..mesh.cell_count()).filter(|&cell| mesh.cell(cell).contains(&node)).collect::<Vec<_>>();
+                let around = (0..mesh.cell_count())
+                    .filter(|&cell| mesh.cell(cell).contains(&node))
+                    .collect::<Vec<_>>();
                 let found = body.locate(x).into_iter().map(|(cell, _)| cell).collect::<Vec<_>>();
                 assert_eq!(found, around, "{element:?}, node {node}");
             }
@@ -318,7 +339,8 @@ fn bad_bodies_are_refused_with_cell_and_place() {
     assert!(matches!(error(wrong, 1.0, 1.0), SolidError::Dimension { dimension: 2, .. }));
 }
 
-/// By ray casting: a point lies in a polygon if a ray from it crosses its boundary an odd number of times.
+/// By ray casting: a point lies in a polygon if a ray from it crosses its boundary an odd number of
+/// times.
 #[test]
 fn a_cover_is_what_its_boundary_encloses() {
     for element in TRIANGLES {
@@ -331,7 +353,8 @@ fn a_cover_is_what_its_boundary_encloses() {
             for facet in mesh.sides.values().flatten() {
                 let at = |xi: f64| {
                     let shape = line_shape(facet.nodes.len(), xi).values;
-                    let sum = |i: usize| facet.nodes.iter().zip(shape).map(|(&n, v)| v * y[2 * n + i]).sum::<f64>();
+                    let sum =
+                        |i: usize| facet.nodes.iter().zip(shape).map(|(&n, v)| v * y[2 * n + i]).sum::<f64>();
                     [sum(0), sum(1)]
                 };
                 boundary.extend((0..40).map(|k| f64::from(k) / 20.0 - 1.0).map(|xi| [at(xi), at(xi + 0.05)]));
@@ -341,9 +364,9 @@ fn a_cover_is_what_its_boundary_encloses() {
             for code in 0..900 {
                 let unit = [f64::from(code % 30), f64::from(code / 30)].map(|c| (c + 0.37) / 30.0);
                 let [p, q] = [0, 1].map(|i| bounds.low()[i] + unit[i] * bounds.extents()[i]);
-                let crossed = boundary
-                    .iter()
-                    .filter(|[a, b]| (a[1] > q) != (b[1] > q) && a[0] + (q - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > p);
+                let crossed = boundary.iter().filter(|[a, b]| {
+                    (a[1] > q) != (b[1] > q) && a[0] + (q - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > p
+                });
                 let odd = crossed.count() % 2 == 1;
                 inside += usize::from(odd);
                 let cells = (0..mesh.cell_count()).any(|cell| body.invert(cell, &y, &[p, q]).is_some());

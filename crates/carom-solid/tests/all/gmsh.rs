@@ -1,4 +1,5 @@
-//! Meshes of Gmsh (made by `scripts/make_gmsh_fixtures.py`): every version, encoding and order gives the same bodies.
+//! Meshes of Gmsh (made by `scripts/make_gmsh_fixtures.py`): every version, encoding and order
+//! gives the same bodies.
 
 use std::f64::consts::PI;
 use std::path::PathBuf;
@@ -18,7 +19,9 @@ fn fixture(name: &str) -> MshFile {
 }
 
 fn variants(order: usize) -> impl Iterator<Item = String> {
-    ["41_binary", "41_ascii", "22_binary", "22_ascii"].into_iter().map(move |v| format!("impact_order{order}_{v}.msh"))
+    ["41_binary", "41_ascii", "22_binary", "22_ascii"]
+        .into_iter()
+        .map(move |v| format!("impact_order{order}_{v}.msh"))
 }
 
 /// ∫dΩ by the quadrature of the body.
@@ -33,7 +36,8 @@ fn area(mesh: &Mesh) -> f64 {
     (0..mesh.cell_count()).map(volumes).sum()
 }
 
-/// Places of the nodes of every cell, and of every side in its order: what does not depend on numbering.
+/// Places of the nodes of every cell, and of every side in its order: what does not depend on
+/// numbering.
 fn geometry(mesh: &Mesh) -> (Vec<Vec<[f64; 2]>>, Vec<(String, Vec<[f64; 2]>)>) {
     let nodes = mesh.nodes.of_dimension();
     let mut cells: Vec<Vec<_>> =
@@ -76,7 +80,8 @@ fn areas_and_arcs_are_exact() {
             let file = fixture(&variant);
             let (disc, prism) = (file.body("cylinder").unwrap(), file.body("prism").unwrap());
             assert!((area(&prism) - 0.5).abs() < 1e-13, "{}", area(&prism));
-            // An arc of angle 2φ between nodes: the chord's error is R²(φ − sin φ cos φ) a facet, φ = π/2/n; curved ones far less.
+            // An arc of angle 2φ between nodes: the chord's error is R²(φ − sin φ cos φ) a facet, φ
+            // = π/2/n; curved ones far less.
             let miss = PI / 8.0 - area(&disc);
             let arcs = disc.sides["arc"].len() as f64;
             let half = PI / 2.0 / arcs;
@@ -132,7 +137,8 @@ fn sides_are_walked_with_the_body_on_the_left() {
     }
 }
 
-/// Everything saved, with the centre of the arcs and parameters of the nodes: the same body, and the lost node is told.
+/// Everything saved, with the centre of the arcs and parameters of the nodes: the same body, and
+/// the lost node is told.
 #[test]
 fn parameters_are_read_past() {
     for name in ["parametric_41_ascii.msh", "parametric_41_binary.msh"] {
@@ -164,7 +170,8 @@ fn bars() {
     }
 }
 
-/// Two triangles on the unit square in a binary file of either byte order, written here by the format's description.
+/// Two triangles on the unit square in a binary file of either byte order, written here by the
+/// format's description.
 fn square(version: f64, big_endian: bool) -> Vec<u8> {
     let int = |n: i32| if big_endian { n.to_be_bytes() } else { n.to_le_bytes() }.to_vec();
     let size = |n: i64| if big_endian { n.to_be_bytes() } else { n.to_le_bytes() }.to_vec();
@@ -174,7 +181,8 @@ fn square(version: f64, big_endian: bool) -> Vec<u8> {
     let doubles = |all: &[f64]| all.iter().flat_map(|x| double(*x)).collect::<Vec<_>>();
     let nodes = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let box_of = [0.0, 0.0, 0.0, 1.0, 1.0, 0.0];
-    let names = b"\n$EndMeshFormat\n$PhysicalNames\n2\n1 7 \"low\"\n2 8 \"plate\"\n$EndPhysicalNames\n".to_vec();
+    let names =
+        b"\n$EndMeshFormat\n$PhysicalNames\n2\n1 7 \"low\"\n2 8 \"plate\"\n$EndPhysicalNames\n".to_vec();
     let start = [format!("$MeshFormat\n{version} 1 8\n").into_bytes(), int(1), names].concat();
     let nodes = if version == 4.1 {
         [

@@ -1,4 +1,5 @@
-//! Damaged and wrong mesh files: an error that says where and what, or a stated repair; never a panic, never a wrong mesh.
+//! Damaged and wrong mesh files: an error that says where and what, or a stated repair; never a
+//! panic, never a wrong mesh.
 
 use std::path::PathBuf;
 
@@ -100,7 +101,10 @@ fn faults_say_where_and_what() {
     assert_eq!(fault("5\n1 0 0 0", "500\n1 0 0 0").0, Line(10), "counted before it is believed");
     assert!(matches!(fault("5\n1 0 0 0", "6\n1 0 0 0"), (Line(16), Fault::Unexpected { .. })));
     assert!(matches!(fault("5\n1 0 0 0", "4\n1 0 0 0"), (Line(15), Fault::Unexpected { .. })));
-    assert!(matches!(fault("5\n1 0 0 0", "99999999999999999999\n1 0 0 0"), (Line(10), Fault::Unexpected { .. })));
+    assert!(matches!(
+        fault("5\n1 0 0 0", "99999999999999999999\n1 0 0 0"),
+        (Line(10), Fault::Unexpected { .. })
+    ));
     assert!(matches!(fault("3 1 1 0", "3 1 1"), (Line(13), Fault::ShortLine(_))));
     assert_eq!(fault("3 1 1 0", "3 1 1 0 7"), (Line(13), Fault::LongLine("7".into())));
     assert!(matches!(fault("3 1 1 0", "3 1 one 0"), (Line(13), Fault::Unexpected { .. })));
@@ -109,13 +113,19 @@ fn faults_say_where_and_what() {
     assert_eq!(fault("1 1 3 4", "1 1 3 6"), (Line(21), Fault::NoNode { cell: 3, node: 6 }));
     assert_eq!(fault("3 2 2 8", "3 99 2 8"), (Line(21), Fault::UnknownType { cell: 3, kind: 99 }));
     let names = vec!["plat".to_owned()];
-    assert_eq!(fault("plate", "plat"), (File, Fault::NoName { what: "surface", name: "plate".into(), names }));
+    assert_eq!(
+        fault("plate", "plat"),
+        (File, Fault::NoName { what: "surface", name: "plate".into(), names })
+    );
     assert!(with("plate", "plat").unwrap_err().why().contains("the physical surfaces are: plat"));
     assert!(matches!(
         fault("3\n1 1 2 7 1 2 1\n2 2 2 8 1 1 2 3\n3 2 2 8 1 1 3 4\n", "1\n1 1 2 7 1 2 1\n"),
         (File, Fault::NoCells { .. })
     ));
-    assert!(matches!(fault("3 2 2 8 1 1 3 4", "3 9 2 8 1 1 3 4 1 3 4"), (Line(21), Fault::MixedOrders { .. })));
+    assert!(matches!(
+        fault("3 2 2 8 1 1 3 4", "3 9 2 8 1 1 3 4 1 3 4"),
+        (Line(21), Fault::MixedOrders { .. })
+    ));
     assert!(matches!(fault("3 2 2 8 1 1 3 4", "3 3 2 8 1 1 2 3 4"), (Line(21), Fault::Unsupported { .. })));
     assert!(matches!(fault("4 0 1 0", "4 0 1 0.5"), (Line(14), Fault::NotFlat { node: 4, axis: 'z', .. })));
     assert!(matches!(fault("4 0 1 0", "4 0.5 0.5 0"), (Line(21), Fault::Folded { cell: 3, .. })));
@@ -127,10 +137,16 @@ fn faults_say_where_and_what() {
     assert!(matches!(error.fault, Fault::Coincident { a: 3, b: 9, .. }), "{error}");
     let again = format!("{SQUARE}$Nodes\n0\n$EndNodes\n");
     assert_eq!(gmsh::read(again.as_bytes()).unwrap_err().fault, Fault::SectionTwice("Nodes"));
-    assert_eq!(gmsh::read(b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n").unwrap_err().fault, Fault::NoSection("Nodes"));
+    assert_eq!(
+        gmsh::read(b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n").unwrap_err().fault,
+        Fault::NoSection("Nodes")
+    );
     let huge = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 9223372036854775807 1 1\n";
     let error = gmsh::read(huge.as_bytes()).unwrap_err();
-    assert_eq!((error.place, error.to_string().contains("9223372036854775807 nodes are announced")), (Line(5), true));
+    assert_eq!(
+        (error.place, error.to_string().contains("9223372036854775807 nodes are announced")),
+        (Line(5), true)
+    );
 }
 
 #[test]
@@ -143,19 +159,25 @@ fn planes_and_clockwise_cells_are_put_right() {
     assert_eq!(turned.cell(1), [2, 3, 0]);
 }
 
-/// Mirrored meshes of every order: all cells clockwise, and the same body after the repair as the mesh mirrored by hand.
+/// Mirrored meshes of every order: all cells clockwise, and the same body after the repair as the
+/// mesh mirrored by hand.
 #[test]
 fn clockwise_cells_of_every_order() {
     for element in [Element::T3, Element::T6, Element::T10] {
         let disc = generate::half_disc(element, 0.5, [0.0, 1.0], 0.2).unwrap();
         let mut mirrored = disc.clone();
         mirrored.nodes.iter_mut().for_each(|x| x[0] = -x[0]);
-        let read = gmsh::read(gmsh::write_msh41(&[("disc", &mirrored)]).as_bytes()).unwrap().body("disc").unwrap();
+        let read =
+            gmsh::read(gmsh::write_msh41(&[("disc", &mirrored)]).as_bytes()).unwrap().body("disc").unwrap();
         let all = disc.cell_count();
-        assert_eq!(read.repairs, [format!("{all} of {all} cells were clockwise; their nodes were reordered")]);
+        assert_eq!(
+            read.repairs,
+            [format!("{all} of {all} cells were clockwise; their nodes were reordered")]
+        );
         assert_eq!(read.nodes, mirrored.nodes);
         assert!(
-            carom_solid::body(read.clone(), carom_solid::Law::NeoHookean { lambda: 1.0, mu: 1.0 }, 1.0, 1.0).is_ok()
+            carom_solid::body(read.clone(), carom_solid::Law::NeoHookean { lambda: 1.0, mu: 1.0 }, 1.0, 1.0)
+                .is_ok()
         );
         let back: Vec<usize> = disc.side_nodes("arc").unwrap().into_iter().rev().collect();
         assert_eq!(read.side_nodes("arc").unwrap(), back);
@@ -165,7 +187,9 @@ fn clockwise_cells_of_every_order() {
 /// An edge node pulled through the cell folds it; one moved along its edge too far as well.
 #[test]
 fn folded_cells_are_found() {
-    for (element, pulled) in [(Element::T6, [0.9, 0.9]), (Element::T10, [0.9, 0.2]), (Element::T10, [0.7, 0.0])] {
+    for (element, pulled) in
+        [(Element::T6, [0.9, 0.9]), (Element::T10, [0.9, 0.2]), (Element::T10, [0.7, 0.0])]
+    {
         let mut mesh = generate::rectangle(element, [0.0, 0.0], [1.0, 1.0], [1, 1]).unwrap();
         let n = mesh.sides["bottom"][0].nodes[2];
         mesh.nodes[n].copy_from_slice(&pulled);
@@ -180,12 +204,14 @@ fn folded_cells_are_found() {
 #[test]
 fn edges_share_their_nodes() {
     let mut mesh = generate::rectangle(Element::T6, [0.0, 0.0], [1.0, 1.0], [1, 1]).unwrap();
-    let shared: Vec<usize> = mesh.cell(0)[3..].iter().copied().filter(|n| mesh.cell(1)[3..].contains(n)).collect();
+    let shared: Vec<usize> =
+        mesh.cell(0)[3..].iter().copied().filter(|n| mesh.cell(1)[3..].contains(n)).collect();
     let new = mesh.nodes.len();
     mesh.nodes = Positions::new(2, [mesh.nodes.flat(), &[0.501, 0.5]].concat());
     let place = mesh.cells.iter().rposition(|n| *n == shared[0]).unwrap();
     mesh.cells[place] = new;
-    let error = gmsh::read(gmsh::write_msh41(&[("plate", &mesh)]).as_bytes()).unwrap().body("plate").unwrap_err();
+    let error =
+        gmsh::read(gmsh::write_msh41(&[("plate", &mesh)]).as_bytes()).unwrap().body("plate").unwrap_err();
     assert!(matches!(error.fault, Fault::EdgeNodes { .. }), "{error}");
 }
 

@@ -1,4 +1,5 @@
-//! What a motion that is given needs of a body: the divergence of its stress, errors at its points, and which nodes lie on the boundary.
+//! What a motion that is given needs of a body: the divergence of its stress, errors at its points,
+//! and which nodes lie on the boundary.
 
 use carom_solid::{Body, Element, Law, Mesh, body, generate, plane_stress_body};
 
@@ -14,7 +15,8 @@ fn gradient([x, y]: [f64; 2]) -> [[f64; 2]; 2] {
 /// Its second derivatives ∂²yₖ/∂Xᴶ∂Xᴸ, k first.
 const SECOND: [f64; 8] = [0.2, 0.05, 0.05, 0.0, -0.16, 0.0, 0.0, 0.06];
 
-/// P = J σ F⁻ᵀ from what a probe sees of a cell in this motion, at reference coordinates; the law of small strains knows one stress alone.
+/// P = J σ F⁻ᵀ from what a probe sees of a cell in this motion, at reference coordinates; the law
+/// of small strains knows one stress alone.
 fn nominal(body: &dyn Body, law: Law, y: &[f64], xi: [f64; 2], place: [f64; 2]) -> [[f64; 2]; 2] {
     let state = body.point(0, &xi, y).unwrap();
     if matches!(law, Law::LinearElastic { .. }) {
@@ -30,25 +32,34 @@ fn nominal(body: &dyn Body, law: Law, y: &[f64], xi: [f64; 2], place: [f64; 2]) 
     })
 }
 
-/// Σ ∂Pᵢᴶ/∂Xᴶ by differences of the stress at neighbouring points of a cell, for every law and plane state.
+/// Σ ∂Pᵢᴶ/∂Xᴶ by differences of the stress at neighbouring points of a cell, for every law and
+/// plane state.
 #[test]
 fn the_divergence_of_the_stress_by_differences() {
     let (lambda, mu) = (2.0, 1.5);
-    let laws =
-        [Law::NeoHookean { lambda, mu }, Law::SaintVenantKirchhoff { lambda, mu }, Law::LinearElastic { lambda, mu }];
+    let laws = [
+        Law::NeoHookean { lambda, mu },
+        Law::SaintVenantKirchhoff { lambda, mu },
+        Law::LinearElastic { lambda, mu },
+    ];
     for law in laws {
         for stress in [false, true] {
             let mesh = generate::rectangle(Element::T6, [0.0, 0.0], [1.0, 1.0], [1, 1]).unwrap();
             let nodes = mesh.nodes.of_dimension::<2>();
             let y: Vec<f64> = nodes.iter().flat_map(|x| motion(*x)).collect();
             let corners: [[f64; 2]; 3] = std::array::from_fn(|k| nodes[mesh.cell(0)[k]]);
-            let body = if stress { plane_stress_body(mesh, law, 1.0, 1.0) } else { body(mesh, law, 1.0, 1.0) }.unwrap();
+            let body =
+                if stress { plane_stress_body(mesh, law, 1.0, 1.0) } else { body(mesh, law, 1.0, 1.0) }
+                    .unwrap();
             let place = |xi: [f64; 2]| -> [f64; 2] {
                 std::array::from_fn(|i| {
-                    corners[0][i] + xi[0] * (corners[1][i] - corners[0][i]) + xi[1] * (corners[2][i] - corners[0][i])
+                    corners[0][i]
+                        + xi[0] * (corners[1][i] - corners[0][i])
+                        + xi[1] * (corners[2][i] - corners[0][i])
                 })
             };
-            // The cell's edges run along the axes or diagonally: differences in ξ, turned into differences in X.
+            // The cell's edges run along the axes or diagonally: differences in ξ, turned into
+            // differences in X.
             let xi = [0.3, 0.4];
             let step = 1e-5;
             let at = |axis: usize, sign: f64| {
@@ -68,8 +79,9 @@ fn the_divergence_of_the_stress_by_differences() {
             body.stress_divergence(gradient(place(xi)).as_flattened(), &SECOND, &mut found).unwrap();
             for i in 0..2 {
                 // ∂/∂Xᴶ = Σ (∂ξ_axis/∂Xᴶ) ∂/∂ξ_axis.
-                let expected: f64 =
-                    (0..2).map(|j| (0..2).map(|axis| inverse[j][axis] * rates[axis][i][j]).sum::<f64>()).sum();
+                let expected: f64 = (0..2)
+                    .map(|j| (0..2).map(|axis| inverse[j][axis] * rates[axis][i][j]).sum::<f64>())
+                    .sum();
                 assert!((found[i] - expected).abs() < 1e-8, "{law:?} {stress}: {found:?} {expected}");
             }
         }

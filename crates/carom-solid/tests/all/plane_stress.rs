@@ -10,11 +10,15 @@ const LAWS: [Law; 3] = [
 
 #[test]
 fn force_and_tangent_are_derivatives() {
-    for (element, law) in [Element::T3, Element::T6, Element::T10].into_iter().flat_map(|e| LAWS.map(|l| (e, l))) {
+    for (element, law) in
+        [Element::T3, Element::T6, Element::T10].into_iter().flat_map(|e| LAWS.map(|l| (e, l)))
+    {
         let body =
-            plane_stress_body(generate::ring(element, 0.5, 1.0, [0.3, -0.2], 0.5).unwrap(), law, 0.7, 2.0).unwrap();
+            plane_stress_body(generate::ring(element, 0.5, 1.0, [0.3, -0.2], 0.5).unwrap(), law, 0.7, 2.0)
+                .unwrap();
         let n = element.nodes() * 2;
-        let bent = |x: &[f64]| [x[0] + 0.1 * x[1] * x[1] - 0.05 * x[0] * x[1], 0.9 * x[1] + 0.07 * x[0].sin()];
+        let bent =
+            |x: &[f64]| [x[0] + 0.1 * x[1] * x[1] - 0.05 * x[0] * x[1], 0.9 * x[1] + 0.07 * x[0].sin()];
         let mut y: Vec<f64> = body.mesh().nodes.iter().flat_map(bent).collect();
         let cell = body.mesh().sides["outer"][1].cell;
         let nodes = body.mesh().cell(cell).to_vec();
@@ -63,14 +67,16 @@ fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
     b
 }
 
-/// Deflection of Cook's membrane at (48, 52): clamped at x = 0, a uniform shear of 1 in all at x = 48, E = 1, ν = 1/3, thickness 1.
+/// Deflection of Cook's membrane at (48, 52): clamped at x = 0, a uniform shear of 1 in all at x =
+/// 48, E = 1, ν = 1/3, thickness 1.
 fn cook(element: Element, size: f64) -> f64 {
     let corners = [[0.0, 0.0], [48.0, 44.0], [48.0, 60.0], [0.0, 44.0]];
     let mesh = generate::polygon(element, &corners, size, &[]).unwrap();
     let (young, poisson) = (1.0, 1.0 / 3.0);
     let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
     let body =
-        plane_stress_body(mesh, Law::LinearElastic { lambda, mu: young / (2.0 * (1.0 + poisson)) }, 0.0, 1.0).unwrap();
+        plane_stress_body(mesh, Law::LinearElastic { lambda, mu: young / (2.0 * (1.0 + poisson)) }, 0.0, 1.0)
+            .unwrap();
     let mesh = body.mesh();
     let clamped = mesh.side_nodes("side4").unwrap();
     let mut unknown = vec![usize::MAX; mesh.nodes.len()];
@@ -105,10 +111,13 @@ fn cook(element: Element, size: f64) -> f64 {
     mesh.cell(*cell).iter().zip(&shape).map(|(&node, s)| s * u[2 * unknown[node] + 1]).sum()
 }
 
-/// The problem of R. D. Cook (J. Struct. Div. ASCE 100 (1974) 1851–1863); 23.96 is the value of refined meshes in general use.
+/// The problem of R. D. Cook (J. Struct. Div. ASCE 100 (1974) 1851–1863); 23.96 is the value of
+/// refined meshes in general use.
 #[test]
 fn cooks_membrane() {
-    for (element, size, tolerance) in [(Element::T6, 4.0, 0.02), (Element::T6, 2.8, 0.01), (Element::T10, 5.5, 0.01)] {
+    for (element, size, tolerance) in
+        [(Element::T6, 4.0, 0.02), (Element::T6, 2.8, 0.01), (Element::T10, 5.5, 0.01)]
+    {
         let v = cook(element, size);
         assert!((v - 23.96).abs() < tolerance, "{element:?} {size}: {v}");
     }

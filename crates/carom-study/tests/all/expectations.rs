@@ -1,4 +1,5 @@
-//! Expectations of arms and of studies: judged on records, orders in time, arms of other cases, stopped arms, and what is wrong with them.
+//! Expectations of arms and of studies: judged on records, orders in time, arms of other cases,
+//! stopped arms, and what is wrong with them.
 
 use std::fs;
 use std::path::PathBuf;
@@ -8,7 +9,8 @@ use carom::case::{CaseError, Diagnostic};
 use carom_record::study::Study;
 use carom_study::{Plan, start};
 
-/// A point-like bar in free fall, and one that is struck: exact for every scheme of second order but for round-off.
+/// A point-like bar in free fall, and one that is struck: exact for every scheme of second order
+/// but for round-off.
 const FALL: &str = r#"
 dimension = 1
 [[material]]
@@ -37,7 +39,8 @@ record = ["ux", "vx"]
 fields_every = 0
 "#;
 
-/// One cell held at one end: an oscillator of mass ρL/3 and stiffness E/L, ω = √300, started with velocity 1: u = sin(ωt)/ω.
+/// One cell held at one end: an oscillator of mass ρL/3 and stiffness E/L, ω = √300, started with
+/// velocity 1: u = sin(ωt)/ω.
 fn held() -> String {
     FALL.replace("gravity = [-2.0]", "")
         .replace("cells = 4", "cells = 1")
@@ -112,7 +115,8 @@ tolerance = 0
     assert_eq!(study.manifest.source.others.keys().collect::<Vec<_>>(), ["held.toml"]);
 }
 
-/// The trapezoidal rule has order 2, Newmark's with γ = 0.6 order 1: of a column and of a number, against a fine arm and among themselves.
+/// The trapezoidal rule has order 2, Newmark's with γ = 0.6 order 1: of a column and of a number,
+/// against a fine arm and among themselves.
 #[test]
 fn orders_in_time() {
     let grid = r#"
@@ -223,7 +227,8 @@ tolerance = 0.05
     let exact = "[exact]\n\"A.ux\" = \"sin(sqrt(300)*t)/sqrt(300)\"\n";
     fs::write(folder.path().join("held.toml"), format!("{}{exact}", held())).unwrap();
     let plan = Plan::read(&path).unwrap_or_else(|e| panic!("{e}"));
-    let study = start(&plan, &folder.path().join("out"), 2, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
+    let study =
+        start(&plan, &folder.path().join("out"), 2, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
     let arm = &study.rows[0].expectations[0];
     assert!(arm.pass && arm.what == "max |A.ux − (exact)|", "{arm:?}");
     assert!(study.expectations[0].pass, "{:?}", study.expectations);
@@ -262,20 +267,27 @@ tolerance = 1
 
 #[test]
 fn wrong_expectations_are_shown_where_they_stand() {
-    let arm = |expect: &str| wrong(&format!("case = \"fall.toml\"\n[[arm]]\nname = \"a\"\nexpect = [\n{expect}\n]\n"));
+    let arm = |expect: &str| {
+        wrong(&format!("case = \"fall.toml\"\n[[arm]]\nname = \"a\"\nexpect = [\n{expect}\n]\n"))
+    };
     let found = arm("{ what = \"last A.uz\", at_most = 1 }");
     assert!(found.what.contains("no column `A.uz`") && found.file.ends_with("study.toml"), "{found:?}");
     assert_eq!(found.line, 4);
     let found = arm("{ what = \"A.ux\", formula = \"t +\", at_most = 1 }");
     assert_eq!((found.line, found.column), (5, 32), "{found:?}");
     assert!(arm("{ what = \"last A.ux\" }").what.contains("does not set one bound"));
-    let of = |expect: &str| wrong(&format!("case = \"fall.toml\"\n[[arm]]\nname = \"a\"\n[[expect]]\n{expect}\n"));
+    let of =
+        |expect: &str| wrong(&format!("case = \"fall.toml\"\n[[arm]]\nname = \"a\"\n[[expect]]\n{expect}\n"));
     let found = of("what = \"last A.ux\"\nat_most = 1");
     assert!(found.why.contains("of which arm") && found.line == 5, "{found:?}");
     assert!(of("what = 'last A.ux of \"b\"'\nat_most = 1").what.contains("no arm is named \"b\""));
     assert!(of("what = 'last A.uz of \"a\"'\nat_most = 1").what.contains("did you mean `A.ux`"));
     assert!(of("what = \"order\"\nof = \"A.ux\"\nat_most = 1").what.contains("`against`"));
-    assert!(of("what = \"order\"\nof = \"A.uz\"\nagainst = \"time.step\"\nat_most = 1").what.contains("no column"));
+    assert!(
+        of("what = \"order\"\nof = \"A.uz\"\nagainst = \"time.step\"\nat_most = 1")
+            .what
+            .contains("no column")
+    );
     let found = wrong("[[arm]]\nname = \"a\"\ncase = \"none.toml\"\n");
     assert_eq!((found.line, found.column), (3, 8), "{found:?}");
 }

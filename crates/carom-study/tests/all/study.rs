@@ -1,4 +1,5 @@
-//! Studies of a bar that falls on a plane: rows, failure, stop and resume, what is wrong with a study file.
+//! Studies of a bar that falls on a plane: rows, failure, stop and resume, what is wrong with a
+//! study file.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use carom::case::{CaseError, Diagnostic};
 use carom_record::Status;
 use carom_record::study::checks::fingerprint;
-use carom_study::{Event, Plan, go_on, start};
+use carom_study::{Event, Plan, resume, start};
 
 const CASE: &str = r#"
 dimension = 1
@@ -105,17 +106,28 @@ fn rows_failures_and_claims() {
     assert!(fs::read_to_string(directory.join("claims.csv")).unwrap().contains("confirmed"));
     // Nothing is computed twice, and nothing is overwritten.
     let mut kept = 0;
-    go_on(&directory, 1, &mut |e| kept += usize::from(matches!(e, Event::Kept(_))), &AtomicBool::new(false)).unwrap();
+    resume(
+        &directory,
+        1,
+        &mut |e| kept += usize::from(matches!(e, Event::AlreadyDone(_))),
+        &AtomicBool::new(false),
+    )
+    .unwrap();
     assert_eq!(kept, 3);
     assert!(start(&plan, &directory, 1, &mut |_| (), &AtomicBool::new(false)).is_err());
 }
 
 fn histories(directory: &Path) -> Vec<Vec<u8>> {
     let manifest = carom_record::study::StudyManifest::read(directory).unwrap();
-    manifest.arms.iter().map(|arm| fs::read(directory.join(&arm.directory).join("history.csv")).unwrap()).collect()
+    manifest
+        .arms
+        .iter()
+        .map(|arm| fs::read(directory.join(&arm.directory).join("history.csv")).unwrap())
+        .collect()
 }
 
-/// Stopped in the middle of an arm, with another not begun, and the files it was made from gone: the same bytes in the end.
+/// Stopped in the middle of an arm, with another not begun, and the files it was made from gone:
+/// the same bytes in the end.
 #[test]
 fn goes_on_where_it_was_stopped() {
     let (folder, path) = folder(THREE);
@@ -134,7 +146,7 @@ fn goes_on_where_it_was_stopped() {
     assert_eq!(outcome.study.manifest.status, Status::Stopped);
     fs::remove_file(&path).unwrap();
     fs::remove_file(folder.path().join("bar.toml")).unwrap();
-    let outcome = go_on(&parts, 2, &mut |_| (), &AtomicBool::new(false)).unwrap();
+    let outcome = resume(&parts, 2, &mut |_| (), &AtomicBool::new(false)).unwrap();
     assert!(!outcome.interrupted);
     assert_eq!(histories(&parts), histories(&whole));
 }
@@ -175,7 +187,8 @@ fn wrong_study_files() {
     assert!(told.contains("study.toml:1:8") && told.contains("none.toml"), "{told}");
 }
 
-/// Every method at every step, and a reference of three runs whose steps double, at most an eighth of the smallest: 0.4/0.005 · 8 = 640 steps.
+/// Every method at every step, and a reference of three runs whose steps double, at most an eighth
+/// of the smallest: 0.4/0.005 · 8 = 640 steps.
 #[test]
 fn a_design_builds_its_arms_and_ranks_them() {
     let (folder, path) = folder(
@@ -184,28 +197,36 @@ fn a_design_builds_its_arms_and_ranks_them() {
     );
     let plan = Plan::read(&path).unwrap();
     let names: Vec<&str> = plan.manifest.arms.iter().map(|a| a.name.as_str()).collect();
-    assert_eq!(names, ["Hu, Δt 1e-2", "Hu, Δt 5e-3", "CH, Δt 1e-2", "CH, Δt 5e-3", "fine, 4 Δt", "fine, 2 Δt", "fine"]);
-    assert_eq!(plan.manifest.arms.iter().map(|a| a.steps).collect::<Vec<_>>(), [40, 80, 40, 80, 160, 320, 640]);
+    assert_eq!(
+        names,
+        ["Hu, Δt 1e-2", "Hu, Δt 5e-3", "CH, Δt 1e-2", "CH, Δt 5e-3", "fine, 4 Δt", "fine, 2 Δt", "fine"]
+    );
+    assert_eq!(
+        plan.manifest.arms.iter().map(|a| a.steps).collect::<Vec<_>>(),
+        [40, 80, 40, 80, 160, 320, 640]
+    );
     let out = folder.path().join("out");
     let study = start(&plan, &out, 2, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
     let ranking = study.ranking.unwrap();
-    // Hu's scheme dissipates the vibration that the impact leaves: last at both steps, and the verdict says so.
+    // Hu's scheme dissipates the vibration that the impact leaves: last at both steps, and the
+    // verdict says so.
     let first: Vec<&str> = ranking.levels.iter().map(|l| study.rows[l[0].arm].name.as_str()).collect();
     assert_eq!(first, ["CH, Δt 1e-2", "CH, Δt 5e-3"]);
-    // With two threads, and stopped where it touches and resumed: the same bits, and nothing left behind.
+    // With two threads, and stopped where it touches and resumed: the same bits, and nothing left
+    // behind.
     let checks = study.checks.as_ref().unwrap();
     assert_eq!((checks.arm.as_str(), checks.threads.0), ("Hu, Δt 1e-2", 2));
-    assert!(checks.touching == 1 && (1..40).contains(&checks.resumed.0), "{checks:?}");
+    assert!(checks.active_pairs == 1 && (1..40).contains(&checks.resumed.0), "{checks:?}");
     assert_eq!((&checks.threads.1, &checks.resumed.1), (&checks.fingerprint, &checks.fingerprint));
     assert_ne!(checks.fingerprint, fingerprint(&out.join(&study.manifest.arms[1].directory)).unwrap());
     assert!(!out.join("checks").exists());
     assert_eq!(ranking.levels[0].len(), 2);
     let verdict = ranking.verdict.unwrap();
-    assert_eq!(study.manifest.arms[verdict.arm].part.method.as_deref(), Some("CH"));
+    assert_eq!(study.manifest.arms[verdict.arm].role.method.as_deref(), Some("CH"));
     assert!(out.join("ranking.csv").is_file() && out.join("reference.csv").is_file());
     // Where it cannot be tried the study is none the worse; where it can be again, it is.
     let (tried, repeated) = (out.join("checks.json"), out.join("checks"));
-    let again = || go_on(&out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap();
+    let again = || resume(&out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap();
     fs::remove_file(&tried).unwrap();
     fs::write(&repeated, "in the way").unwrap();
     let hindered = again();
@@ -214,7 +235,8 @@ fn a_design_builds_its_arms_and_ranks_them() {
     assert_eq!(again().study.checks, study.checks);
 }
 
-/// A method that takes one solve a step and one that projects differ little: at twice the step of the case, matched cost gives it back.
+/// A method that takes one solve a step and one that projects differ little: at twice the step of
+/// the case, matched cost gives it back.
 #[test]
 fn matched_cost_settles_and_resumes_at_the_same_steps() {
     let (folder, path) = folder(
@@ -224,7 +246,8 @@ fn matched_cost_settles_and_resumes_at_the_same_steps() {
     let plan = Plan::read(&path).unwrap();
     let out = folder.path().join("out");
     let study = start(&plan, &out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
-    let steps = |study: &carom_record::study::Study| study.manifest.arms.iter().map(|a| a.steps).collect::<Vec<_>>();
+    let steps =
+        |study: &carom_record::study::Study| study.manifest.arms.iter().map(|a| a.steps).collect::<Vec<_>>();
     let settled = steps(&study);
     assert!(study.rows.iter().all(|r| r.status == Some(Status::Finished)));
     let pilot: serde_json::Value =
@@ -233,12 +256,16 @@ fn matched_cost_settles_and_resumes_at_the_same_steps() {
     assert_eq!(trials[0]["steps"], 20);
     assert_eq!(trials[pilot["settled"].as_u64().unwrap() as usize]["steps"], settled[1]);
     // The arm is lost, its pilot record is not: the same steps again.
-    let again = go_on(&out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
+    let again = resume(&out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
     assert_eq!(steps(&again), settled);
-    assert!((again.manifest.arms[1].case["time"]["step"].as_f64().unwrap() - 0.4 / settled[1] as f64).abs() < 1e-15);
+    assert!(
+        (again.manifest.arms[1].case["time"]["step"].as_f64().unwrap() - 0.4 / settled[1] as f64).abs()
+            < 1e-15
+    );
 }
 
-/// Beside arms at the common step, one explicit arm at the cost of the first: only its step is settled, and what is settled is what its case has.
+/// Beside arms at the common step, one explicit arm at the cost of the first: only its step is
+/// settled, and what is settled is what its case has.
 #[test]
 fn an_arm_matches_cost_where_the_others_match_steps() {
     let (folder, path) = folder(
@@ -254,7 +281,11 @@ fn an_arm_matches_cost_where_the_others_match_steps() {
     let arms = &study.manifest.arms;
     assert!(study.rows.iter().all(|r| r.status == Some(Status::Finished)));
     assert_eq!(arms.iter().map(|a| study.manifest.by_cost(a)).collect::<Vec<_>>(), [false, false, true]);
-    assert!((arms[0].steps, arms[1].steps) == (40, 40) && arms[0].part.cost.is_none() && arms[2].part.cost.is_some());
+    assert!(
+        (arms[0].steps, arms[1].steps) == (40, 40)
+            && arms[0].role.cost.is_none()
+            && arms[2].role.cost.is_some()
+    );
     assert_eq!(study.rows[2].value("steps"), Some(arms[2].steps as f64));
     assert!(out.join("pilots/03-explicit-cost-of-dt-1e-2/pilot.json").is_file());
 }
@@ -266,9 +297,15 @@ fn wrong_designs_are_told() {
     assert_eq!(found.help, "did you mean \"matched-step\"?");
     assert!(first("steps = [1e-2]\n[[arm]]\nname = \"a\"\n").what.contains("without a design"));
     assert!(
-        first("design = \"matched-step\"\nsteps = [0.005, 0.01]\n[[arm]]\nname = \"a\"\n").what.contains("falling")
+        first("design = \"matched-step\"\nsteps = [0.005, 0.01]\n[[arm]]\nname = \"a\"\n")
+            .what
+            .contains("falling")
     );
-    assert!(first("design = \"matched-cost\"\ncost_of = \"b\"\n[[arm]]\nname = \"a\"\n").what.contains("no method"));
+    assert!(
+        first("design = \"matched-cost\"\ncost_of = \"b\"\n[[arm]]\nname = \"a\"\n")
+            .what
+            .contains("no method")
+    );
     let found = first("[[arm]]\nname = \"a\"\nmatch = \"cost\"\n");
     assert!(found.line == 4 && found.what.contains("without a design"), "{found:?}");
     for (of, line) in [("", 5), ("cost_of = \"a\"\n", 6)] {
@@ -277,7 +314,11 @@ fn wrong_designs_are_told() {
         assert!(found.line == line && found.what.contains("\"a\" cannot match its own cost"), "{found:?}");
         assert!(found.help.contains("`cost_of`"), "{found:?}");
     }
-    assert!(first("design = \"matched-step\"\n[[arm]]\nname = \"a\"\nmatch = \"step\"\n").what.contains("\"step\""));
+    assert!(
+        first("design = \"matched-step\"\n[[arm]]\nname = \"a\"\nmatch = \"step\"\n")
+            .what
+            .contains("\"step\"")
+    );
     assert!(first("goal = \"forces\"\n[[arm]]\nname = \"a\"\n").help.contains("\"force\""));
     assert!(first("[fine]\nrefine = 4\n[[arm]]\nname = \"a\"\n").what.contains("not used"));
 }

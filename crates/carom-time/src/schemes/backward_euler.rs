@@ -4,7 +4,8 @@
 //! v_{s+1} = d / Δt,   a_{s+1} = (v_{s+1} − v_s) / Δt,   d = y_{s+1} − y_s
 //! ```
 //!
-//! Order 1, ρ∞ = 0 (any text on ordinary differential equations; Hairer, Wanner, Solving ODEs II, §IV.3).
+//! Order 1, ρ∞ = 0 (any text on ordinary differential equations; Hairer, Wanner, Solving ODEs II,
+//! §IV.3).
 use crate::kind::{Build, KindInfo, Member};
 use crate::stage::{Kernel, Memory, Stage};
 

@@ -1,4 +1,5 @@
-//! The composite rule of Noh and Bathe 2019 (ρ∞-Bathe): the trapezoidal rule to γΔt, then a three-point rule to Δt,
+//! The composite rule of Noh and Bathe 2019 (ρ∞-Bathe): the trapezoidal rule to γΔt, then a
+//! three-point rule to Δt,
 //!
 //! ```text
 //! u₁ = u₀ + γΔt (v₀ + v₁)/2,                    v₁ = v₀ + γΔt (a₀ + a₁)/2
@@ -6,8 +7,9 @@
 //! γ = 2/(2 + √(2 + 2ρ∞)),   q₁ = (ρ∞ + 1)/(2γ(ρ∞ − 1) + 4),   q₀ = (γ − 1) q₁ + ½,   q₂ = ½ − γ q₁
 //! ```
 //!
-//! with M a₁ + f₁ = 0 and M a₂ + f₂ = 0: two solves a step, contact held at both ends with its own multiplier. γ is (2 − √(2 + 2ρ∞))/(1 − ρ∞) without the
-//! 0/0 at ρ∞ = 1. At ρ∞ = 0 it is TR-BDF2 (Bank and others 1985) with γ = 2 − √2, which makes both stage matrices equal. Order 2.
+//! with M a₁ + f₁ = 0 and M a₂ + f₂ = 0: two solves a step, contact imposed at both ends with its
+//! own multiplier. γ is (2 − √(2 + 2ρ∞))/(1 − ρ∞) without the 0/0 at ρ∞ = 1. At ρ∞ = 0 it is
+//! TR-BDF2 (Bank and others 1985) with γ = 2 − √2, which makes both stage matrices equal. Order 2.
 use crate::error::SchemeError;
 use crate::kind::{Build, KindInfo, Member};
 use crate::parameter::RHO_INF;
@@ -58,7 +60,9 @@ impl Kernel for Bathe {
     }
 
     fn notes(&self) -> &'static [&'static str] {
-        &["two solves a step; the multiplier reported is that of the second, the first one's spikes at impact"]
+        &[
+            "two solves a step; the multiplier reported is that of the second, the first one's spikes at impact",
+        ]
     }
 
     fn stage_into(&self, k: usize, dt: f64, memory: &Memory, stage: &mut Stage) {
@@ -82,7 +86,8 @@ impl Kernel for Bathe {
         stage.acceleration.slope = 1.0 / (q2 * q2 * dt * dt);
         let velocities = stage.velocity.at_start.iter().zip(v0);
         let known = a0.iter().zip(a1).map(|(a0, a1)| q0 * a0 + q1 * a1);
-        let at_start = velocities.zip(known).map(|((at_start, v0), known)| ((at_start - v0) / dt - known) / q2);
+        let at_start =
+            velocities.zip(known).map(|((at_start, v0), known)| ((at_start - v0) / dt - known) / q2);
         stage.acceleration.at_start.extend(at_start);
     }
 }

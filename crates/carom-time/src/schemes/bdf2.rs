@@ -5,8 +5,9 @@
 //! a_{s+1} = (3 v_{s+1} − 4 v_s + v_{s−1}) / (2Δt),                         M a_{s+1} + f_{s+1} = 0
 //! ```
 //!
-//! Order 2, ρ∞ = 0 (Gear 1971). Where there is no step before of the same size, backward Euler takes its place. The mean force of a step follows from
-//! M (v_{s+1} − v_s) = ⅓ M (v_s − v_{s−1}) + ⅔ Δt M a_{s+1}.
+//! Order 2, ρ∞ = 0 (Gear 1971). Where there is no step before of the same size, backward Euler
+//! takes its place. The mean force of a step follows from M (v_{s+1} − v_s) = ⅓ M (v_s − v_{s−1}) +
+//! ⅔ Δt M a_{s+1}.
 use super::backward_euler::BackwardEuler;
 use crate::kind::{Build, KindInfo, Member};
 use crate::stage::{Kernel, Memory, Stage};
@@ -35,7 +36,9 @@ impl Kernel for Bdf2 {
     }
 
     fn notes(&self) -> &'static [&'static str] {
-        &["two-step: begins with backward Euler, at the start, after a bisected step, and wherever contact begins"]
+        &[
+            "two-step: begins with backward Euler, at the start, after a bisected step, and wherever contact begins",
+        ]
     }
 
     fn stage_into(&self, k: usize, dt: f64, memory: &Memory, stage: &mut Stage) {

@@ -1,4 +1,5 @@
-//! Chung and Hulbert 1993: inertia and other forces averaged, with the least damping of low frequencies for its ρ∞. Order 2:
+//! Chung and Hulbert 1993: inertia and other forces averaged, with the least damping of low
+//! frequencies for its ρ∞. Order 2:
 //!
 //! ```text
 //! α_m = (2ρ∞ − 1)/(ρ∞ + 1),   α_f = ρ∞/(ρ∞ + 1),                                                 (16)
@@ -25,7 +26,8 @@ pub(super) const KIND: KindInfo = KindInfo {
 };
 
 impl Scheme {
-    /// Chung and Hulbert 1993, eq. (16), (17): α_m = (2ρ∞ − 1)/(ρ∞ + 1), α_f = ρ∞/(ρ∞ + 1), γ = ½ − α_m + α_f, β = (1 − α_m + α_f)²/4.
+    /// Chung and Hulbert 1993, eq. (16), (17): α_m = (2ρ∞ − 1)/(ρ∞ + 1), α_f = ρ∞/(ρ∞ + 1), γ = ½ −
+    /// α_m + α_f, β = (1 − α_m + α_f)²/4.
     ///
     /// ```
     /// let scheme = carom_time::Scheme::chung_hulbert(0.6)?;

@@ -1,4 +1,5 @@
-//! Four raw parameters of eq. (15), index s + 1 − α: an α is the share of the old term (Chung and Hulbert 1993). Order 2 for γ = ½ − α_m + α_f.
+//! Four raw parameters of eq. (15), index s + 1 − α: an α is the share of the old term (Chung and
+//! Hulbert 1993). Order 2 for γ = ½ − α_m + α_f.
 use std::ops::Bound::{Excluded, Unbounded};
 
 use crate::error::SchemeError;
@@ -17,14 +18,19 @@ pub(super) const KIND: KindInfo = KindInfo {
     name: "generalized-alpha",
     summary: "The four parameters as they are.",
     reference: "Chung, Hulbert 1993",
-    sets: &[&[SHARE, Parameter { key: "alpha_f", meaning: "Share of the old other forces.", ..SHARE }, BETA, GAMMA]],
+    sets: &[&[
+        SHARE,
+        Parameter { key: "alpha_f", meaning: "Share of the old other forces.", ..SHARE },
+        BETA,
+        GAMMA,
+    ]],
     members: &[Member::new(&[("alpha_m", 0.5), ("alpha_f", 0.5), ("beta", 0.25), ("gamma", 0.5)], 2, 1.0)],
     build: Build::Alpha(|_, p| Scheme::generalized_alpha(p[0], p[1], p[2], p[3])),
 };
 
 impl Scheme {
-    /// Four raw parameters. Refused: what is not finite, β ≤ 0 (no implicit step), γ ≤ 0, α_m ≥ 1 or α_f ≥ 1 (no new inertia or no new force, or one of the
-    /// wrong sign).
+    /// Four raw parameters. Refused: what is not finite, β ≤ 0 (no implicit step), γ ≤ 0, α_m ≥ 1
+    /// or α_f ≥ 1 (no new inertia or no new force, or one of the wrong sign).
     pub fn generalized_alpha(alpha_m: f64, alpha_f: f64, beta: f64, gamma: f64) -> Result<Self, SchemeError> {
         let scheme = Self { alpha_m, alpha_f, beta, gamma, forces: ForceRule::AverageForces };
         scheme.checked()

@@ -32,8 +32,8 @@ pub(super) const KIND: KindInfo = KindInfo {
 };
 
 impl Scheme {
-    /// Hilber, Hughes and Taylor 1977 by α = α_f ≥ 0 (their α is −α_f): γ = ½ + α, β = (1 + α)²/4. Above 1/3 ρ∞ rises again:
-    /// used as given, [`Scheme::remarks`] says so.
+    /// Hilber, Hughes and Taylor 1977 by α = α_f ≥ 0 (their α is −α_f): γ = ½ + α, β = (1 + α)²/4.
+    /// Above 1/3 ρ∞ rises again: used as given, [`Scheme::remarks`] says so.
     ///
     /// ```
     /// let hht = carom_time::Scheme::hht(0.25)?;

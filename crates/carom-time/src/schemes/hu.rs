@@ -1,4 +1,5 @@
-//! Hu 1997: γ = 3/2, β = 1 without averages: ρ∞ = 0, first order, strongly dissipative. The damped Newmark rule at ρ∞ = 0.
+//! Hu 1997: γ = 3/2, β = 1 without averages: ρ∞ = 0, first order, strongly dissipative. The damped
+//! Newmark rule at ρ∞ = 0.
 use crate::kind::{Build, KindInfo, Member};
 use crate::scheme::{ForceRule, Scheme};
 

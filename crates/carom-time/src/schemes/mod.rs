@@ -1,4 +1,5 @@
-//! The table of schemes. A scheme is a file of this folder and its name in the list below: formula, parameters, members with what is published of them.
+//! The table of schemes. A scheme is a file of this folder and its name in the list below: formula,
+//! parameters, members with what is published of them.
 
 use crate::kind::KindInfo;
 

@@ -85,7 +85,8 @@ impl Impulse for MoreauJean {
 mod tests {
     use super::*;
 
-    /// A free mass stopped by P: d = Δt(v + θ P/m), by d = Δt(θ v_{n+1} + (1 − θ) v_n) and v_{n+1} = v_n + P/m.
+    /// A free mass stopped by P: d = Δt(v + θ P/m), by d = Δt(θ v_{n+1} + (1 − θ) v_n) and v_{n+1}
+    /// = v_n + P/m.
     #[test]
     fn a_jump_moves_the_position_by_its_share() {
         let (dt, mass, v, p) = (0.1, 2.0, -3.0, 6.0);

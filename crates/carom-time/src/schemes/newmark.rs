@@ -26,7 +26,9 @@ pub(super) const KIND: KindInfo = KindInfo {
         Member::new(&[("rho_inf", 0.6)], 1, 0.6),
         Member::new(&[("rho_inf", 0.0)], 1, 0.0).hidden(),
     ],
-    build: Build::Alpha(|set, p| if set == 0 { Scheme::newmark(p[0], p[1]) } else { Scheme::newmark_damped(p[0]) }),
+    build: Build::Alpha(
+        |set, p| if set == 0 { Scheme::newmark(p[0], p[1]) } else { Scheme::newmark_damped(p[0]) },
+    ),
 };
 
 impl Scheme {

@@ -1,4 +1,5 @@
-//! Equilibrium without inertia, f_int + f_cont − f_ext = 0 at the end of every step: t is the load parameter.
+//! Equilibrium without inertia, f_int + f_cont − f_ext = 0 at the end of every step: t is the load
+//! parameter.
 
 use crate::kind::{Build, KindInfo};
 use crate::stage::{Kernel, Memory, Stage};

@@ -1,5 +1,5 @@
-//! TR-BDF2 (Bank and others 1985): the trapezoidal rule to (2 − √2)Δt, then backward differentiation to Δt. It is the composite rule of [`super::bathe`] at
-//! ρ∞ = 0.
+//! TR-BDF2 (Bank and others 1985): the trapezoidal rule to (2 − √2)Δt, then backward
+//! differentiation to Δt. It is the composite rule of [`super::bathe`] at ρ∞ = 0.
 use super::bathe::Bathe;
 use crate::kind::{Build, KindInfo, Member};
 

@@ -18,7 +18,8 @@ pub(super) const KIND: KindInfo = KindInfo {
 };
 
 impl Scheme {
-    /// Wood, Bossak and Zienkiewicz 1980: α_m = (ρ∞ − 1)/(ρ∞ + 1) ≤ 0, γ = ½ − α_m, β = (1 − α_m)²/4.
+    /// Wood, Bossak and Zienkiewicz 1980: α_m = (ρ∞ − 1)/(ρ∞ + 1) ≤ 0, γ = ½ − α_m, β = (1 −
+    /// α_m)²/4.
     pub fn wbz(rho_inf: f64) -> Result<Self, SchemeError> {
         let r = in_unit_interval(rho_inf)?;
         let alpha_m = (r - 1.0) / (r + 1.0);

@@ -14,12 +14,17 @@ fn hht_of(r: f64) -> Scheme {
 
 fn many() -> Vec<Scheme> {
     let rho = [0.0, 0.1, 0.3, 0.6, 0.9, 1.0];
-    let mut all: Vec<_> =
-        rho.iter().flat_map(|&r| [ch(r), Scheme::wbz(r).unwrap(), Scheme::newmark_damped(r).unwrap()]).collect();
+    let mut all: Vec<_> = rho
+        .iter()
+        .flat_map(|&r| [ch(r), Scheme::wbz(r).unwrap(), Scheme::newmark_damped(r).unwrap()])
+        .collect();
     let members = KINDS.iter().flat_map(|kind| kind.members.iter().map(|member| kind.named(member)));
     all.extend(members.filter_map(|name| name.integrator(ForceRule::AverageForces).unwrap().alpha()));
     all.push(hht_of(0.9));
-    all.extend([Scheme::newmark(1.0 / 6.0, 0.5).unwrap(), Scheme::generalized_alpha(-0.2, 0.3, 0.8, 1.1).unwrap()]);
+    all.extend([
+        Scheme::newmark(1.0 / 6.0, 0.5).unwrap(),
+        Scheme::generalized_alpha(-0.2, 0.3, 0.8, 1.1).unwrap(),
+    ]);
     all
 }
 
@@ -68,8 +73,13 @@ fn spectral_radius_at_infinity_is_the_asked_one() {
     for r in [0.0, 0.1, 0.5, 0.6, 0.8, 0.9, 0.99, 1.0] {
         for scheme in [ch(r), Scheme::wbz(r).unwrap(), Scheme::newmark_damped(r).unwrap()] {
             assert!((scheme.spectral_radius_at_infinity() - r).abs() < 1e-10, "{scheme:?}");
-            // The limit is approached like Ω⁻² at best and like Ω^(-2/3) at the triple root of Chung and Hulbert.
-            assert!((scheme.spectral_radius(1e6) - r).abs() < 1e-3, "{scheme:?}: {}", scheme.spectral_radius(1e6));
+            // The limit is approached like Ω⁻² at best and like Ω^(-2/3) at the triple root of
+            // Chung and Hulbert.
+            assert!(
+                (scheme.spectral_radius(1e6) - r).abs() < 1e-3,
+                "{scheme:?}: {}",
+                scheme.spectral_radius(1e6)
+            );
         }
         if r >= 0.5 {
             assert!((hht_of(r).spectral_radius_at_infinity() - r).abs() < 1e-10);
@@ -90,7 +100,8 @@ fn roots_have_the_matrix_s_invariants() {
                 + a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
             let want = [a[0][0] + a[1][1] + a[2][2], minor(0, 1) + minor(0, 2) + minor(1, 2), determinant];
             let z = scheme.roots(omega_dt);
-            let times = |a: Root, b: Root| Root { re: a.re * b.re - a.im * b.im, im: a.re * b.im + a.im * b.re };
+            let times =
+                |a: Root, b: Root| Root { re: a.re * b.re - a.im * b.im, im: a.re * b.im + a.im * b.re };
             let pairs = times(z[0], z[1]).re + times(z[0], z[2]).re + times(z[1], z[2]).re;
             let got = [z[0].re + z[1].re + z[2].re, pairs, times(times(z[0], z[1]), z[2]).re];
             let scale = a.iter().flatten().fold(1.0, |m: f64, x| m.max(x.abs()));
@@ -113,7 +124,8 @@ fn the_kernel_amplifies_as_the_matrix_says() {
                 for column in 0..3 {
                     let mut start = [0.0; 3];
                     start[column] = [1.0, 1.0 / dt, 1.0 / (dt * dt)][column];
-                    let [u, v, a] = oscillator.step(&scheme.with_forces(rule), dt, start, &mut Stage::default());
+                    let [u, v, a] =
+                        oscillator.step(&scheme.with_forces(rule), dt, start, &mut Stage::default());
                     for (row, got) in [u, dt * v, dt * dt * a].into_iter().enumerate() {
                         let (want, size) =
                             (matrix[row][column], matrix[row].iter().fold(1.0f64, |m, x| m.max(x.abs())));
@@ -128,15 +140,19 @@ fn the_kernel_amplifies_as_the_matrix_says() {
     }
 }
 
-/// theory.md §2, fact 2: on a held dof both eigenvalues are −ρ∞, whatever the step.
+/// theory.md §2, fact 2: on a constrained dof both eigenvalues are −ρ∞, whatever the step.
 #[test]
 fn a_held_dof_sees_minus_rho_inf() {
     for r in [0.1, 0.6, 0.9] {
-        for scheme in [ch(r), Scheme::wbz(r).unwrap(), Scheme::newmark_damped(r).unwrap(), hht_of(r.max(0.5))] {
+        for scheme in [ch(r), Scheme::wbz(r).unwrap(), Scheme::newmark_damped(r).unwrap(), hht_of(r.max(0.5))]
+        {
             let rho = scheme.spectral_radius_at_infinity();
             let [[a, b], [c, d]] = scheme.held_map();
-            assert!((a + d + 2.0 * rho).abs() < 1e-12 && (a * d - b * c - rho * rho).abs() < 1e-12, "{scheme:?}");
-            for root in scheme.held_roots() {
+            assert!(
+                (a + d + 2.0 * rho).abs() < 1e-12 && (a * d - b * c - rho * rho).abs() < 1e-12,
+                "{scheme:?}"
+            );
+            for root in scheme.constrained_roots() {
                 assert!((root.re + rho).abs() < 1e-12 && root.im == 0.0, "{scheme:?}: {root:?}");
             }
             let constraint = scheme.alpha_f / (1.0 - scheme.alpha_f);
@@ -170,12 +186,13 @@ fn a_held_dof_rings_as_theory_says() {
     assert!(v.abs() < 1e-15 && a.abs() < 1e-12, "{v} {a}");
 }
 
-/// A mass that touches a wall at v₀: the contact force of eq. (15), λ = −(Σ other terms)/w.contact, by the kernel itself.
+/// A mass that touches a wall at v₀: the contact force of eq. (15), λ = −(Σ other terms)/w.contact,
+/// by the kernel itself.
 #[test]
 fn the_ringing_told_is_the_kernel_s() {
     let (dt, v0) = (1e-3, 2.0);
     let free = Oscillator { mass: 1.0, stiffness: 0.0, force: 0.0 };
-    let told = |r: f64| explain(&ch(r)).held.steps.unwrap();
+    let told = |r: f64| explain(&ch(r)).constrained.steps.unwrap();
     for r in [0.1, 0.3, 0.6, 0.8] {
         let (mut motion, mut force, mut stage, mut last) = (free.start(0.0, v0), 0.0, Stage::default(), 0);
         for n in 1..500 {
@@ -191,7 +208,7 @@ fn the_ringing_told_is_the_kernel_s() {
     }
     // theory.md §2, fact 2: a few steps at 0.1, 15 to 25 at 0.6.
     assert!(told(0.1) <= 6 && (15..=25).contains(&told(0.6)));
-    assert_eq!(explain(&Scheme::hu()).held.steps, Some(2));
+    assert_eq!(explain(&Scheme::hu()).constrained.steps, Some(2));
 }
 
 /// Errors of v and u against cos ωt over one period, halving the step.
@@ -199,7 +216,8 @@ fn the_ringing_told_is_the_kernel_s() {
 fn the_measured_order_is_the_algebraic_one() {
     let oscillator = Oscillator { mass: 1.0, stiffness: 1.0, force: 0.0 };
     let error = |scheme: &Scheme, steps: u32| {
-        let (dt, mut motion, mut stage) = (TAU / f64::from(steps), oscillator.start(1.0, 0.0), Stage::default());
+        let (dt, mut motion, mut stage) =
+            (TAU / f64::from(steps), oscillator.start(1.0, 0.0), Stage::default());
         let mut worst = 0.0f64;
         for n in 1..=steps {
             motion = oscillator.step(scheme, dt, motion, &mut stage);
@@ -224,7 +242,8 @@ fn the_measured_order_is_the_algebraic_one() {
 fn a_stability_agrees_with_a_sweep() {
     let values = [-0.3, 0.0, 0.2, 0.45, 0.55];
     for (am, af) in values.iter().flat_map(|&am| values.map(|af| (am, af))) {
-        for (beta, gamma) in [0.2, 0.3, 0.5, 0.8, 1.1].iter().flat_map(|&b| [0.45, 0.55, 0.7, 0.9, 1.4].map(|g| (b, g)))
+        for (beta, gamma) in
+            [0.2, 0.3, 0.5, 0.8, 1.1].iter().flat_map(|&b| [0.45, 0.55, 0.7, 0.9, 1.4].map(|g| (b, g)))
         {
             let scheme = Scheme::generalized_alpha(am, af, beta, gamma).unwrap();
             let largest = (-30..60).map(|k| scheme.spectral_radius(1.2f64.powi(k))).fold(0.0, f64::max);
@@ -268,6 +287,9 @@ fn the_balance_weights_are_those_of_eq_15() {
         &mut stage,
     );
     let (w, b) = (stage.weights, stage.before);
-    assert_eq!([w.internal, w.external, w.contact, stage.average], [1.0, 1.0, 1.0 - scheme.alpha_f, scheme.alpha_f]);
+    assert_eq!(
+        [w.internal, w.external, w.contact, stage.average],
+        [1.0, 1.0, 1.0 - scheme.alpha_f, scheme.alpha_f]
+    );
     assert_eq!([b.internal, b.external, b.contact], [0.0, 0.0, scheme.alpha_f]);
 }

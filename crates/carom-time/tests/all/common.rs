@@ -24,7 +24,14 @@ pub(crate) fn all() -> Vec<(&'static Member, String, Box<dyn Kernel>)> {
 }
 
 /// One run of a kernel: (u, v) after `steps`.
-pub(crate) fn run(kernel: &dyn Kernel, oscillator: Oscillator, dt: f64, steps: u32, u: f64, v: f64) -> Vec<[f64; 3]> {
+pub(crate) fn run(
+    kernel: &dyn Kernel,
+    oscillator: Oscillator,
+    dt: f64,
+    steps: u32,
+    u: f64,
+    v: f64,
+) -> Vec<[f64; 3]> {
     let (mut motion, mut before, mut stage) = (oscillator.start(u, v), None, Stage::default());
     let mut path = vec![motion];
     for _ in 0..steps {

@@ -2,22 +2,28 @@
 
 use carom_time::{ForceRule, Kernel, Memory, Oscillator, Scheme, Stage};
 
-/// Krenk 2006, for α_m = α_f = 0: E* = E + (β − γ/2) Δt²/2 m a² changes by the dissipation of the increments and the work of the force.
+/// Krenk 2006, for α_m = α_f = 0: E* = E + (β − γ/2) Δt²/2 m a² changes by the dissipation of the
+/// increments and the work of the force.
 #[test]
 fn newmark_s_energy_balance_is_krenk_s() {
     let (dt, o) = (0.3, Oscillator { mass: 2.0, stiffness: 5.0, force: 1.5 });
     for (beta, gamma) in [(0.25, 0.5), (1.0, 1.5), (0.4, 0.75)] {
         let scheme = Scheme::newmark(beta, gamma).unwrap();
         let b = beta - 0.5 * gamma;
-        let star =
-            |m: [f64; 3]| 0.5 * (o.mass * m[1] * m[1] + o.stiffness * m[0] * m[0] + b * dt * dt * o.mass * m[2] * m[2]);
+        let star = |m: [f64; 3]| {
+            0.5 * (o.mass * m[1] * m[1] + o.stiffness * m[0] * m[0] + b * dt * dt * o.mass * m[2] * m[2])
+        };
         let mut motion = o.start(1.0, -0.4);
         for _ in 0..50 {
             let next = o.step(&scheme, dt, motion, &mut Stage::default());
             let (du, da) = (next[0] - motion[0], next[2] - motion[2]);
             let lost = (gamma - 0.5) * (o.stiffness * du * du + b * dt * dt * o.mass * da * da);
             let change = star(next) - star(motion);
-            assert!((change - (du * o.force - lost)).abs() < 1e-13, "{change} against {}", du * o.force - lost);
+            assert!(
+                (change - (du * o.force - lost)).abs() < 1e-13,
+                "{change} against {}",
+                du * o.force - lost
+            );
             motion = next;
         }
     }
@@ -28,9 +34,13 @@ fn newmark_s_energy_balance_is_krenk_s() {
 #[test]
 fn the_ledger_s_identity_holds() {
     let (dt, o) = (0.3, Oscillator { mass: 2.0, stiffness: 5.0, force: 1.5 });
-    for scheme in
-        [Scheme::chung_hulbert(0.1), Scheme::chung_hulbert(1.0), Scheme::hht(0.2), Scheme::wbz(0.0), Ok(Scheme::hu())]
-    {
+    for scheme in [
+        Scheme::chung_hulbert(0.1),
+        Scheme::chung_hulbert(1.0),
+        Scheme::hht(0.2),
+        Scheme::wbz(0.0),
+        Ok(Scheme::hu()),
+    ] {
         let scheme = scheme.unwrap();
         let Scheme { alpha_m, alpha_f, beta, gamma, .. } = scheme;
         let mut motion = o.start(1.0, -0.4);
@@ -62,8 +72,8 @@ fn the_trapezoidal_rule_keeps_the_energy_of_linear_motion() {
     }
 }
 
-/// A spring pendulum in the plane, force −k(|y| − 1) y/|y|: averaged states at ρ∞ = 1 are the midpoint rule, which keeps the moment of momentum
-/// exactly; averaged forces do not.
+/// A spring pendulum in the plane, force −k(|y| − 1) y/|y|: averaged states at ρ∞ = 1 are the
+/// midpoint rule, which keeps the moment of momentum exactly; averaged forces do not.
 #[test]
 fn the_midpoint_rule_keeps_the_moment_of_momentum() {
     let drift = |scheme: Scheme| {
@@ -79,7 +89,8 @@ fn the_midpoint_rule_keeps_the_moment_of_momentum() {
             scheme.stage_into(0, 0.05, &Memory { states: &[(&y, &v, &a)], before: None }, &mut stage);
             let (w, b, slope) = (stage.weights, stage.before, stage.acceleration.slope);
             let mut d = [0.0; 2];
-            // w.mass a(d) + b.mass a_s = w.internal f + b.internal f_s by fixed-point iteration on d.
+            // w.mass a(d) + b.mass a_s = w.internal f + b.internal f_s by fixed-point iteration on
+            // d.
             for _ in 0..100 {
                 let mixed = [0, 1].map(|i| y[i] + (1.0 - stage.average) * d[i]);
                 let (now, old) = (force(mixed), force(y));

@@ -1,5 +1,6 @@
-//! Every member of every kind that is a list of stages, impulse schemes between impacts among them: order and ρ∞ against what the table says is
-//! published. Then tabulated damping and rational functions of the published rules.
+//! Every member of every kind that is a list of stages, impulse schemes between impacts among them:
+//! order and ρ∞ against what the table says is published. Then tabulated damping and rational
+//! functions of the published rules.
 
 use std::f64::consts::TAU;
 
@@ -44,21 +45,25 @@ fn order_and_rho_inf_are_the_published_ones() {
     }
 }
 
-/// What `explain` says, in closed form or by the map of a held dof: a double root is known to half of the digits.
+/// What `explain` says, in closed form or by the map of a constrained dof: a double root is known
+/// to half of the digits.
 #[test]
 fn what_is_explained_is_what_is_published() {
-    for (kind, member) in KINDS.iter().flat_map(|kind| kind.members.iter().map(move |member| (kind, member))) {
-        let (order, rho_inf) = match kind.named(member).integrator(ForceRule::AverageForces).unwrap().explain() {
-            Explained::Stages(told) => (told.order, told.rho_inf),
-            Explained::Nonsmooth(told) => (told.order, told.rho_inf.unwrap_or(f64::INFINITY)),
-        };
+    for (kind, member) in KINDS.iter().flat_map(|kind| kind.members.iter().map(move |member| (kind, member)))
+    {
+        let (order, rho_inf) =
+            match kind.named(member).integrator(ForceRule::AverageForces).unwrap().explain() {
+                Explained::Stages(told) => (told.order, told.rho_inf),
+                Explained::Nonsmooth(told) => (told.order, told.rho_inf.unwrap_or(f64::INFINITY)),
+            };
         assert_eq!(order, member.order, "{}", kind.named(member));
         let same = rho_inf == member.rho_inf || (rho_inf - member.rho_inf).abs() < 1e-7;
         assert!(same, "{}: {rho_inf}", kind.named(member));
     }
 }
 
-/// Errors of u and v against cos ωt over one period, halving the step: nothing of the kernel but its steps.
+/// Errors of u and v against cos ωt over one period, halving the step: nothing of the kernel but
+/// its steps.
 #[test]
 fn the_measured_order_is_the_published_one() {
     let oscillator = Oscillator { mass: 1.0, stiffness: 1.0, force: 0.0 };
@@ -66,8 +71,9 @@ fn the_measured_order_is_the_published_one() {
         let error = |steps: u32| {
             let dt = TAU / f64::from(steps);
             let path = run(&*kernel, oscillator, dt, steps, 1.0, 0.0);
-            let at =
-                |n: usize| (path[n][0] - (n as f64 * dt).cos()).abs().max((path[n][1] + (n as f64 * dt).sin()).abs());
+            let at = |n: usize| {
+                (path[n][0] - (n as f64 * dt).cos()).abs().max((path[n][1] + (n as f64 * dt).sin()).abs())
+            };
             (0..path.len()).map(at).fold(0.0, f64::max)
         };
         let slope = (error(800) / error(1600)).log2();
@@ -82,8 +88,9 @@ fn div(a: Complex, b: Complex) -> Complex {
     ((a.0 * b.0 + a.1 * b.1) / n, (a.1 * b.0 - a.0 * b.1) / n)
 }
 
-/// Stability functions of the rules on y' = iω y, from textbooks: backward Euler 1/(1 − z), midpoint (1 + z/2)/(1 − z/2), θ-method
-/// (1 + (1 − θ)z)/(1 − θz), TR-BDF2 (Hosea and Shampine 1996).
+/// Stability functions of the rules on y' = iω y, from textbooks: backward Euler 1/(1 − z),
+/// midpoint (1 + z/2)/(1 − z/2), θ-method (1 + (1 − θ)z)/(1 − θz), TR-BDF2 (Hosea and Shampine
+/// 1996).
 #[test]
 fn principal_roots_are_the_textbook_stability_functions() {
     for omega_dt in [0.05, 0.3, 1.0, 2.0] {
@@ -111,7 +118,11 @@ fn principal_roots_are_the_textbook_stability_functions() {
         for (kernel, want) in cases {
             let got = map::principal(kernel, omega_dt).unwrap();
             let (modulus, angle) = (want.0.hypot(want.1), want.1.atan2(want.0));
-            assert!((got.modulus - modulus).abs() < 1e-9, "{kernel:?} at {omega_dt}: {} for {modulus}", got.modulus);
+            assert!(
+                (got.modulus - modulus).abs() < 1e-9,
+                "{kernel:?} at {omega_dt}: {} for {modulus}",
+                got.modulus
+            );
             assert!((omega_dt / (1.0 + got.period_error) - angle).abs() < 1e-9, "{kernel:?} at {omega_dt}");
         }
     }
@@ -129,7 +140,10 @@ fn the_numeric_map_is_the_closed_one_where_there_is_one() {
                 }
             }
             let (a, b) = (map::principal(&scheme, omega_dt).unwrap(), scheme.principal(omega_dt).unwrap());
-            assert!((a.damping_ratio - b.damping_ratio).abs() < 1e-6 && (a.period_error - b.period_error).abs() < 1e-6);
+            assert!(
+                (a.damping_ratio - b.damping_ratio).abs() < 1e-6
+                    && (a.period_error - b.period_error).abs() < 1e-6
+            );
         }
     }
 }

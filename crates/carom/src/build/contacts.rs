@@ -1,14 +1,24 @@
-//! The contacts of a model: kinematics by what the case names, interface by law and enforcement. A new contact method is one line here.
+//! The contacts of a model: kinematics by what the case names, interface by law and enforcement. A
+//! new contact method is one line here.
 
-use carom_case::{ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, Persistency, PrimarySpec, Problem};
-use carom_contact::{ConservingPenalty, Detection, Kinematics, NodeToFacet, NodeToPlane, Penalty, Surface, Unilateral};
-use carom_mechanics::model::{Contact, Model, Part};
+use carom_case::{
+    ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, Persistency, PrimarySpec, Problem,
+};
+use carom_contact::{
+    ConservingPenalty, Detection, Kinematics, NodeToFacet, NodeToPlane, Penalty, Surface, Unilateral,
+};
+use carom_mechanics::model::{BodyInstance, Contact, Model};
 use carom_solid::Cover;
 
 use super::side::side;
 
 /// The contacts of a case.
-pub(super) fn contacts(case: &Case, parts: &[Part], massless: &[bool], problems: &mut Vec<Problem>) -> Vec<Contact> {
+pub(super) fn contacts(
+    case: &Case,
+    parts: &[BodyInstance],
+    massless: &[bool],
+    problems: &mut Vec<Problem>,
+) -> Vec<Contact> {
     let averages = case.time.scheme.is_alpha();
     let conserves = case.time.scheme.conserves();
     let mut contacts = Vec::new();
@@ -23,12 +33,17 @@ pub(super) fn contacts(case: &Case, parts: &[Part], massless: &[bool], problems:
         let mut primary_part = None;
         let mut surface = secondary.nodes.clone();
         let kinematics: Box<dyn Kinematics> = match &spec.primary {
-            PrimarySpec::Plane { point, normal } => Box::new(NodeToPlane::new(secondary.nodes.clone(), point, normal)),
+            PrimarySpec::Plane { point, normal } => {
+                Box::new(NodeToPlane::new(secondary.nodes.clone(), point, normal))
+            }
             PrimarySpec::Side(name) => match side(parts, name, &format!("contact[{k}].primary")) {
                 Ok(primary) if primary.part == secondary.part => {
                     problems.push(Problem::new(
                         format!("contact[{k}].primary"),
-                        format!("contact \"{}\" is of body \"{}\" with itself", spec.name, parts[primary.part].name),
+                        format!(
+                            "contact \"{}\" is of body \"{}\" with itself",
+                            spec.name, parts[primary.part].name
+                        ),
                         "self-contact is not in this version",
                         "name sides of two bodies",
                     ));
@@ -59,7 +74,11 @@ pub(super) fn contacts(case: &Case, parts: &[Part], massless: &[bool], problems:
         surface.sort_unstable();
         surface.dedup();
         let stiffnesses = || {
-            kinematics.secondary().iter().map(|&node| spec.stiffness * node_stiffness(parts, node)).collect::<Vec<_>>()
+            kinematics
+                .secondary()
+                .iter()
+                .map(|&node| spec.stiffness * node_stiffness(parts, node))
+                .collect::<Vec<_>>()
         };
         let contact = Contact {
             name: spec.name.clone(),
@@ -74,10 +93,12 @@ pub(super) fn contacts(case: &Case, parts: &[Part], massless: &[bool], problems:
             secondary_facets: secondary.facets,
             secondary_shape: secondary.shape,
             surface,
-            // Other schemes take the contact force at the ends of their stages: there is nothing to average.
+            // Other schemes take the contact force at the ends of their stages: there is nothing to
+            // average.
             at_the_end: averages && spec.force == ForceTime::End,
-            // A predictor that respects the contact, a spring, load steps, and nodes without mass that follow the other side leave nothing to project:
-            // projected, a massive side would be given the velocity of the light one.
+            // A predictor that respects the contact, a spring, load steps, and nodes without mass
+            // that follow the other side leave nothing to project: projected, a massive side would
+            // be given the velocity of the light one.
             projects: projects && spec.persistency == Persistency::Project,
             within: spec.active_set == ActiveSetRule::Within,
             restitution: spec.restitution,
@@ -99,7 +120,7 @@ pub(super) fn contacts(case: &Case, parts: &[Part], massless: &[bool], problems:
 }
 
 /// Mean over the directions of a node's diagonal of the tangent in the reference position.
-fn node_stiffness(parts: &[Part], node: usize) -> f64 {
+fn node_stiffness(parts: &[BodyInstance], node: usize) -> f64 {
     let Some(part) = parts.iter().find(|part| part.nodes().contains(&node)) else { return 0.0 };
     let mesh = part.body.mesh();
     let (n, d) = (mesh.element.dofs(), mesh.dimension());

@@ -2,13 +2,13 @@
 
 use carom_case::{Case, FormulaSpec, LoadKind, LoadSpec, Problem, load_variables};
 use carom_formula::Formula;
-use carom_mechanics::model::{Amplitude, Load, Loads, Manufactured, Part};
+use carom_mechanics::model::{Amplitude, BodyInstance, Load, Loads, Manufactured};
 use carom_solid::LoadedSide;
 
 use super::side::side;
 
 /// The loads of a case.
-pub(super) fn loads(case: &Case, parts: &[Part], problems: &mut Vec<Problem>) -> Loads {
+pub(super) fn loads(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Problem>) -> Loads {
     let mut loads = Loads::default();
     let parsed = |specs: &[FormulaSpec]| -> Result<Vec<Formula>, String> {
         let read = |f: &FormulaSpec| f.formula(&load_variables(case.dimension));
@@ -49,7 +49,9 @@ pub(super) fn loads(case: &Case, parts: &[Part], problems: &mut Vec<Problem>) ->
             let mesh = found.body.mesh();
             let facets = name.split_once('.').and_then(|(_, side)| mesh.sides.get(side));
             let facets = facets.map_or(&[][..], Vec::as_slice);
-            let Some(side) = LoadedSide::new(mesh, facets, found.first_node, case.thickness) else { continue };
+            let Some(side) = LoadedSide::new(mesh, facets, found.first_node, case.thickness) else {
+                continue;
+            };
             if matches!(spec.kind, LoadKind::Pressure { .. }) {
                 loads.add_pressure(load(spec, side, value.clone()));
             } else {

@@ -1,4 +1,5 @@
-//! From a resolved case to a model. Whatever the case names and the meshes lack is a [`Problem`] with the key it stands under.
+//! From a resolved case to a model. Whatever the case names and the meshes lack is a [`Problem`]
+//! with the key it stands under.
 
 mod contacts;
 mod loads;
@@ -8,7 +9,9 @@ mod side;
 
 use carom_algebra::Threads;
 use carom_case::{Case, FormulaSpec, MassKind, PrimarySpec, Problem};
-use carom_mechanics::model::{Mass, Model, Part, Probe, Quantity, Support, free_motions, redistribute, value};
+use carom_mechanics::model::{
+    BodyInstance, Mass, Model, Probe, Quantity, Support, free_motions, redistribute, value,
+};
 use carom_solid::{Law, SolidError};
 
 use side::side;
@@ -18,7 +21,8 @@ pub use contacts::overlaps;
 /// Builds the model of a case.
 ///
 /// # Errors
-/// All problems found: missing sides, probes outside their body, meshes that cannot be made, contacts that cannot be solved.
+/// All problems found: missing sides, probes outside their body, meshes that cannot be made,
+/// contacts that cannot be solved.
 pub fn build(case: &Case) -> Result<Model, Vec<Problem>> {
     let d = case.dimension;
     let parts = parts(case)?;
@@ -77,8 +81,8 @@ pub fn build(case: &Case) -> Result<Model, Vec<Problem>> {
     let contacts = contacts::contacts(case, &parts, &massless, &mut problems);
     let probes = probes(case, &parts, &mut problems);
     let is_static = case.time.scheme.is_static();
-    let unheld = if is_static { free_motions(&parts, &fixed) } else { Vec::new() };
-    problems.extend(refusals::unheld(&parts, &unheld, &contacts));
+    let unconstrained = if is_static { free_motions(&parts, &fixed) } else { Vec::new() };
+    problems.extend(refusals::unconstrained(&parts, &unconstrained, &contacts));
     problems.extend(refusals::massless(case, &parts, &massless));
 
     let free: Vec<usize> = (0..dofs).filter(|&i| !fixed[i]).collect();
@@ -102,7 +106,7 @@ pub fn build(case: &Case) -> Result<Model, Vec<Problem>> {
             gravity,
             loads,
             motions,
-            unheld,
+            unconstrained,
             contacts,
             supports,
             probes,
@@ -116,7 +120,7 @@ pub fn build(case: &Case) -> Result<Model, Vec<Problem>> {
 
 /// What the formulas of a body's `key`, in X and Y, give at its nodes.
 fn nodal(
-    part: &Part,
+    part: &BodyInstance,
     body: usize,
     key: &str,
     formulas: &[FormulaSpec],
@@ -147,7 +151,7 @@ fn nodal(
     }
 }
 
-fn parts(case: &Case) -> Result<Vec<Part>, Vec<Problem>> {
+fn parts(case: &Case) -> Result<Vec<BodyInstance>, Vec<Problem>> {
     let mut parts = Vec::new();
     let mut problems = Vec::new();
     let mut first_node = 0;
@@ -165,11 +169,12 @@ fn parts(case: &Case) -> Result<Vec<Part>, Vec<Problem>> {
             }
             _ => carom_solid::body(mesh, law, material.density, case.thickness),
         };
-        let made = spec.make_mesh(case.dimension).and_then(|mesh| body(mesh).map_err(|e: SolidError| e.to_string()));
+        let made =
+            spec.make_mesh(case.dimension).and_then(|mesh| body(mesh).map_err(|e: SolidError| e.to_string()));
         match made {
             Ok(body) => {
                 let nodes = body.mesh().nodes.len();
-                parts.push(Part::new(spec.name.clone(), first_node, body));
+                parts.push(BodyInstance::new(spec.name.clone(), first_node, body));
                 first_node += nodes;
             }
             Err(why) => problems.push(Problem::new(
@@ -183,8 +188,9 @@ fn parts(case: &Case) -> Result<Vec<Part>, Vec<Problem>> {
     if problems.is_empty() { Ok(parts) } else { Err(problems) }
 }
 
-/// Gravity as nodal forces M g with the mass matrix of the case: lumped or not, a free body falls without deforming.
-fn gravity(case: &Case, parts: &[Part], mass: &Mass, dofs: usize) -> Vec<f64> {
+/// Gravity as nodal forces M g with the mass matrix of the case: lumped or not, a free body falls
+/// without deforming.
+fn gravity(case: &Case, parts: &[BodyInstance], mass: &Mass, dofs: usize) -> Vec<f64> {
     let mut acceleration = Vec::with_capacity(dofs);
     for (part, spec) in parts.iter().zip(&case.bodies) {
         for _ in part.nodes() {
@@ -197,7 +203,7 @@ fn gravity(case: &Case, parts: &[Part], mass: &Mass, dofs: usize) -> Vec<f64> {
 }
 
 /// Takes the mass off the nodes of contacts, in the bodies that ask for it.
-fn redistributions(case: &Case, parts: &[Part], reference: &[f64], mass: &mut Mass) -> Vec<Problem> {
+fn redistributions(case: &Case, parts: &[BodyInstance], reference: &[f64], mass: &mut Mass) -> Vec<Problem> {
     let mut light = vec![false; mass.nodes()];
     for contact in &case.contacts {
         let primary = if let PrimarySpec::Side(name) = &contact.primary { Some(name) } else { None };
@@ -207,7 +213,8 @@ fn redistributions(case: &Case, parts: &[Part], reference: &[f64], mass: &mut Ma
         }
     }
     let mut problems = Vec::new();
-    for (k, (part, spec)) in parts.iter().zip(&case.bodies).enumerate().filter(|(_, (_, b))| b.mass.is_redistributed())
+    for (k, (part, spec)) in
+        parts.iter().zip(&case.bodies).enumerate().filter(|(_, (_, b))| b.mass.is_redistributed())
     {
         let nearest = spec.mass == MassKind::RedistributedNearest;
         let what = format!("the mass of body \"{}\" cannot be redistributed", part.name);
@@ -215,14 +222,15 @@ fn redistributions(case: &Case, parts: &[Part], reference: &[f64], mass: &mut Ma
         if !part.nodes().any(|node| light[node]) {
             let why = "none of its sides belongs to a contact";
             problems.push(Problem::new(path, what, why, "mass = \"consistent\""));
-        } else if let Err(why) = redistribute(mass, part.nodes(), &light, case.dimension, reference, nearest) {
+        } else if let Err(why) = redistribute(mass, part.nodes(), &light, case.dimension, reference, nearest)
+        {
             problems.push(Problem::new(path, what, why, "a finer mesh, or mass = \"consistent\""));
         }
     }
     problems
 }
 
-fn probes(case: &Case, parts: &[Part], problems: &mut Vec<Problem>) -> Vec<Probe> {
+fn probes(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Problem>) -> Vec<Probe> {
     let mut probes = Vec::new();
     for (k, spec) in case.probes.iter().enumerate() {
         let Some(part) = parts.iter().position(|p| p.name == spec.body) else { continue };
@@ -241,7 +249,10 @@ fn probes(case: &Case, parts: &[Part], problems: &mut Vec<Problem>) -> Vec<Probe
         if let Some(j) = spec.record.iter().position(|q| !exists_in(quantity(*q), case.dimension)) {
             problems.push(Problem::new(
                 format!("probe[{k}].record[{j}]"),
-                format!("probe \"{}\" asks for a quantity that dimension {} does not have", spec.name, case.dimension),
+                format!(
+                    "probe \"{}\" asks for a quantity that dimension {} does not have",
+                    spec.name, case.dimension
+                ),
                 "a bar has ux, vx, ax, sigma_xx and det_f",
                 "remove it",
             ));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use carom_case::{Case, FormulaSpec, Problem, load_variables};
 use carom_formula::Formula;
-use carom_mechanics::model::{Motions, Part};
+use carom_mechanics::model::{BodyInstance, Motions};
 
 use super::side::side;
 
@@ -17,8 +17,14 @@ struct Moves {
     by_dof: BTreeMap<usize, usize>,
 }
 
-/// The motions of a case, by dof ascending. A dof that is fixed, or moved by two different formulas, is a problem.
-pub(super) fn motions(case: &Case, parts: &[Part], fixed: &[bool], problems: &mut Vec<Problem>) -> Motions {
+/// The motions of a case, by dof ascending. A dof that is fixed, or moved by two different
+/// formulas, is a problem.
+pub(super) fn motions(
+    case: &Case,
+    parts: &[BodyInstance],
+    fixed: &[bool],
+    problems: &mut Vec<Problem>,
+) -> Motions {
     let (d, mut moves) = (case.dimension, Moves::default());
     for (k, spec) in case.supports.iter().enumerate() {
         for (axis, formula) in &spec.moves {
@@ -63,12 +69,20 @@ impl Moves {
     }
 
     /// All nodes of the boundary, moved by y − X.
-    fn manufactured(&mut self, y: &[FormulaSpec], d: usize, parts: &[Part], problems: &mut Vec<Problem>) {
+    fn manufactured(
+        &mut self,
+        y: &[FormulaSpec],
+        d: usize,
+        parts: &[BodyInstance],
+        problems: &mut Vec<Problem>,
+    ) {
         for (axis, formula) in y.iter().enumerate() {
             let text = format!("({formula}) - {}", ["X", "Y", "Z"][axis]);
             match Formula::parse(&text, &load_variables(d)) {
                 Ok(read) => self.formulas.push((format!("component {} of [manufactured]", axis + 1), read)),
-                Err(error) => return problems.push(Problem::new("manufactured.y", error.to_string(), "", "")),
+                Err(error) => {
+                    return problems.push(Problem::new("manufactured.y", error.to_string(), "", ""));
+                }
             }
             let place = self.formulas.len() - 1;
             for part in parts {
@@ -81,7 +95,7 @@ impl Moves {
 }
 
 /// Reference position of a node.
-fn place_of(parts: &[Part], node: usize) -> Vec<f64> {
+fn place_of(parts: &[BodyInstance], node: usize) -> Vec<f64> {
     let part = parts.iter().find(|p| p.nodes().contains(&node));
     part.map_or_else(Vec::new, |p| p.body.mesh().nodes[node - p.first_node].to_vec())
 }

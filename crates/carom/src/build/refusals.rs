@@ -1,10 +1,12 @@
-//! What a model has no answer to, whatever its numbers: bodies without mass under rules that need it, bodies that nothing holds.
+//! What a model has no answer to, whatever its numbers: bodies without mass under rules that need
+//! it, bodies that nothing holds.
 
 use carom_case::{Case, ContactLaw, ForceTime, PrimarySpec, Problem};
-use carom_mechanics::model::{Contact, Mode, Part};
+use carom_mechanics::model::{BodyInstance, Contact, Mode};
 
-/// Bodies that supports leave free to move and that no contact can hold: without inertia they have no equilibrium.
-pub(super) fn unheld(parts: &[Part], free: &[Mode], contacts: &[Contact]) -> Vec<Problem> {
+/// Bodies that supports leave free to move and that no contact can hold: without inertia they have
+/// no equilibrium.
+pub(super) fn unconstrained(parts: &[BodyInstance], free: &[Mode], contacts: &[Contact]) -> Vec<Problem> {
     let mut problems: Vec<Problem> = Vec::new();
     for (place, part) in parts.iter().enumerate() {
         let touches = |c: &Contact| {
@@ -22,10 +24,11 @@ pub(super) fn unheld(parts: &[Part], free: &[Mode], contacts: &[Contact]) -> Vec
     problems
 }
 
-/// A body without mass balances at s + 1 alone; rules that act inside the step have no meaning for it.
-pub(super) fn massless(case: &Case, parts: &[Part], massless: &[bool]) -> Vec<Problem> {
+/// A body without mass balances at s + 1 alone; rules that act inside the step have no meaning for
+/// it.
+pub(super) fn massless(case: &Case, parts: &[BodyInstance], massless: &[bool]) -> Vec<Problem> {
     let mut problems = Vec::new();
-    let light = |part: &Part| part.nodes().any(|node| massless[node * case.dimension]);
+    let light = |part: &BodyInstance| part.nodes().any(|node| massless[node * case.dimension]);
     let Some(part) = parts.iter().find(|p| light(p)) else { return problems };
     let what = |rule: &str| {
         let which = if part.is_massless() { "has no mass" } else { "has nodes without mass" };
@@ -40,8 +43,9 @@ pub(super) fn massless(case: &Case, parts: &[Part], massless: &[bool]) -> Vec<Pr
         let help = "a scheme that is not midpoint, such as bathe, or a small density";
         problems.push(Problem::new("time.scheme.kind", what("kind = \"energy-momentum\""), why, help));
     }
-    let touches =
-        |name: &str| name.split_once('.').is_some_and(|(body, _)| parts.iter().any(|p| light(p) && p.name == body));
+    let touches = |name: &str| {
+        name.split_once('.').is_some_and(|(body, _)| parts.iter().any(|p| light(p) && p.name == body))
+    };
     for (k, contact) in case.contacts.iter().enumerate() {
         if contact.law == Some(ContactLaw::Predictor) {
             let why = "the predictor is projected with the mass as weight";

@@ -1,7 +1,7 @@
 //! The sides a case names, `body.side`, in the node numbers of the whole model.
 
 use carom_case::Problem;
-use carom_mechanics::model::Part;
+use carom_mechanics::model::BodyInstance;
 use carom_solid::FacetShape;
 
 /// A side in global node numbers.
@@ -14,8 +14,9 @@ pub(super) struct Side {
 }
 
 /// The side of a name; what is missing is a problem with the key at `path`.
-pub(super) fn side(parts: &[Part], name: &str, path: &str) -> Result<Side, Problem> {
-    let missing = |why: String, help: String| Problem::new(path, format!("there is no side \"{name}\""), why, help);
+pub(super) fn side(parts: &[BodyInstance], name: &str, path: &str) -> Result<Side, Problem> {
+    let missing =
+        |why: String, help: String| Problem::new(path, format!("there is no side \"{name}\""), why, help);
     let bodies = || parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
     let (body, side) = name
         .split_once('.')

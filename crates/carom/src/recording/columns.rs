@@ -1,8 +1,9 @@
-//! Columns of `history.csv` (design.md §1.4): one list that gives names, units and values, so that they cannot drift apart.
+//! Columns of `history.csv` (design.md §1.4): one list that gives names, units and values, so that
+//! they cannot drift apart.
 
 use carom_case::Case;
 use carom_contact::Rows;
-use carom_mechanics::model::{Model, Part, Quantity};
+use carom_mechanics::model::{BodyInstance, Model, Quantity};
 use carom_mechanics::{GridReport, State};
 use carom_record::Column;
 
@@ -70,7 +71,12 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
             add(format!("{}.center_{axis}", part.name), &label.length, "centre of mass", false);
         }
         for axis in axes {
-            add(format!("{}.velocity_{axis}", part.name), &label.velocity, "velocity of the centre of mass", false);
+            add(
+                format!("{}.velocity_{axis}", part.name),
+                &label.velocity,
+                "velocity of the centre of mass",
+                false,
+            );
         }
     }
     if model.contacts.len() > 1 {
@@ -87,7 +93,12 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
     }
     for support in &model.supports {
         for axis in axes {
-            add(format!("{}.reaction_{axis}", support.name), &label.force, "force of the support on the bodies", false);
+            add(
+                format!("{}.reaction_{axis}", support.name),
+                &label.force,
+                "force of the support on the bodies",
+                false,
+            );
         }
     }
     for probe in &model.probes {
@@ -125,7 +136,8 @@ fn quantity_column(quantity: Quantity, label: &Labels) -> (String, String, Strin
     }
 }
 
-/// Shares of a body's nodes in its centre of mass; of its volume where it has no mass. They add up to one.
+/// Shares of a body's nodes in its centre of mass; of its volume where it has no mass. They add up
+/// to one.
 pub(super) fn center_weights(model: &Model) -> Vec<f64> {
     let mut weights = vec![0.0; model.mass.nodes()];
     for part in &model.parts {
@@ -149,7 +161,14 @@ pub(super) fn center_weights(model: &Model) -> Vec<f64> {
 }
 
 /// One row, in the order of [`columns`].
-pub(super) fn row(model: &Model, state: &State, dt: f64, report: &GridReport, weights: &[f64], row: &mut Vec<f64>) {
+pub(super) fn row(
+    model: &Model,
+    state: &State,
+    dt: f64,
+    report: &GridReport,
+    weights: &[f64],
+    row: &mut Vec<f64>,
+) {
     let ledger = &state.ledger;
     let d = model.dimension;
     row.clear();
@@ -183,9 +202,9 @@ pub(super) fn row(model: &Model, state: &State, dt: f64, report: &GridReport, we
     if !model.supports.is_empty() {
         let reaction = reactions(model, state);
         for support in &model.supports {
-            row.extend(
-                (0..d).map(|i| support.dofs.iter().filter(|dof| *dof % d == i).map(|&dof| reaction[dof]).sum::<f64>()),
-            );
+            row.extend((0..d).map(|i| {
+                support.dofs.iter().filter(|dof| *dof % d == i).map(|&dof| reaction[dof]).sum::<f64>()
+            }));
         }
     }
     for probe in &model.probes {
@@ -196,7 +215,7 @@ pub(super) fn row(model: &Model, state: &State, dt: f64, report: &GridReport, we
     }
 }
 
-fn mean(part: &Part, field: &[f64], weights: &[f64], i: usize) -> f64 {
+fn mean(part: &BodyInstance, field: &[f64], weights: &[f64], i: usize) -> f64 {
     let d = part.body.mesh().dimension();
     part.nodes().map(|node| weights[node] * field[node * d + i]).sum()
 }

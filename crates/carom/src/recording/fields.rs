@@ -1,4 +1,5 @@
-//! A state as fields for viewers: displacement, velocity, stress (nodal mean within each body) and contact pressure.
+//! A state as fields for viewers: displacement, velocity, stress (nodal mean within each body) and
+//! contact pressure.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -15,7 +16,8 @@ use super::units::Labels;
 pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     let label = Labels::of(case);
     let spatial = |x: &[f64]| -> [f64; 3] { std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0)) };
-    let vectors = |values: &[f64]| values.chunks_exact(model.dimension).flat_map(spatial).collect::<Vec<f64>>();
+    let vectors =
+        |values: &[f64]| values.chunks_exact(model.dimension).flat_map(spatial).collect::<Vec<f64>>();
     let moved: Vec<f64> = state.y.iter().zip(&model.reference).map(|(y, x)| y - x).collect();
     let blocks = model.parts.iter().map(|part| {
         let mesh = part.body.mesh();
@@ -52,7 +54,8 @@ fn cell(element: Element) -> Cell {
     }
 }
 
-/// Cauchy stress XX YY ZZ XY YZ XZ at the nodes, mean over the cells of a node that have one there; NaN where none has (J ≤ 0).
+/// Cauchy stress XX YY ZZ XY YZ XZ at the nodes, mean over the cells of a node that have one there;
+/// NaN where none has (J ≤ 0).
 fn nodal_stress(model: &Model, state: &State) -> Vec<f64> {
     let nodes = model.mass.nodes();
     let (mut sum, mut count) = (vec![[0.0; 6]; nodes], vec![0.0_f64; nodes]);
@@ -87,7 +90,8 @@ fn pressures(case: &Case, model: &Model, state: &State) -> Vec<f64> {
     pressure
 }
 
-/// ∫φᴺ ds over the current secondary side, times the thickness: the area a multiplier acts on. One entry per secondary node.
+/// ∫φᴺ ds over the current secondary side, times the thickness: the area a multiplier acts on. One
+/// entry per secondary node.
 pub(super) fn consistent_weights(contact: &Contact, state: &State, thickness: f64) -> Vec<f64> {
     let secondary = contact.kinematics.secondary();
     let place: HashMap<usize, usize> = secondary.iter().enumerate().map(|(k, &n)| (n, k)).collect();
@@ -131,7 +135,12 @@ pub(super) fn sides(model: &Model) -> BTreeMap<String, Vec<Vec<usize>>> {
             let mut chains: Vec<Vec<usize>> = Vec::new();
             for facet in facets {
                 let (ends, interior) = facet.nodes.split_at(facet.nodes.len().min(2));
-                let walk = ends.iter().take(1).chain(interior).chain(ends.iter().skip(1)).map(|n| n + part.first_node);
+                let walk = ends
+                    .iter()
+                    .take(1)
+                    .chain(interior)
+                    .chain(ends.iter().skip(1))
+                    .map(|n| n + part.first_node);
                 match chains.last_mut() {
                     Some(chain) if chain.last() == Some(&(facet.nodes[0] + part.first_node)) => {
                         chain.extend(walk.skip(1));

@@ -33,8 +33,11 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
         }
         LogEvent::ActiveSet { time, contact, node, active } => {
             let verb = if *active { "comes into" } else { "leaves" };
-            let message =
-                format!("node {node} of \"{}\" {verb} contact \"{}\"", body_of(*node), contact_name(*contact));
+            let message = format!(
+                "node {node} of \"{}\" {verb} contact \"{}\"",
+                body_of(*node),
+                contact_name(*contact)
+            );
             Event::new(step, *time, if *active { "activation" } else { "release" }, message)
                 .with("contact", contact_name(*contact))
                 .with("node", *node)
@@ -42,9 +45,11 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
         LogEvent::Pair { time, contact, event } => {
             let name = contact_name(*contact);
             let (kind, message, node) = match event {
-                PairEvent::HandOver { node, from, to } => {
-                    ("hand-over", format!("contact \"{name}\": node {node} slides from facet {from} to {to}"), node)
-                }
+                PairEvent::HandOver { node, from, to } => (
+                    "hand-over",
+                    format!("contact \"{name}\": node {node} slides from facet {from} to {to}"),
+                    node,
+                ),
                 PairEvent::SlidOff { node, facet } => (
                     "slid-off",
                     format!("contact \"{name}\": node {node} slides off facet {facet}, the end of the side"),
@@ -54,7 +59,8 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
             Event::new(step, *time, kind, message).with("contact", name).with("node", *node)
         }
         LogEvent::Projection { time, jump } => {
-            let message = format!("velocities projected where contact begins: kinetic energy changes by {jump:.6e}");
+            let message =
+                format!("velocities projected where contact begins: kinetic energy changes by {jump:.6e}");
             Event::new(step, *time, "projection", message).with("kinetic_jump", *jump)
         }
     }

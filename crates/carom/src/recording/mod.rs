@@ -1,4 +1,5 @@
-//! A simulation written down as it goes: the run directory of design.md §1.4. Nothing here changes a bit of the result.
+//! A simulation written down as it goes: the run directory of design.md §1.4. Nothing here changes
+//! a bit of the result.
 
 mod columns;
 mod fields;

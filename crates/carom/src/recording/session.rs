@@ -50,7 +50,8 @@ pub fn run(
     let simulation = simulation(case, options.threads).map_err(RunError::Case)?;
     let resolved = serde_json::to_value(case).map_err(|e| RunError::Incompatible { what: e.to_string() })?;
     let version = env!("CARGO_PKG_VERSION");
-    let mut manifest = Manifest::new(version, resolved, source, columns(case, &simulation.model), options.threads);
+    let mut manifest =
+        Manifest::new(version, resolved, source, columns(case, &simulation.model), options.threads);
     manifest.sides = sides(&simulation.model);
     manifest.warnings = case.warnings();
     let writer = RunWriter::create(directory, &manifest, &bytes(&simulation.state)?)?;
@@ -70,13 +71,14 @@ pub fn resume(
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
     let manifest = Manifest::read(directory)?;
-    let case: Case = serde_json::from_value(manifest.case.clone()).map_err(|error| RunError::Incompatible {
-        what: format!(
-            "the case in {} was resolved by Carom {} and does not fit this version: {error}",
-            directory.join("manifest.json").display(),
-            manifest.version
-        ),
-    })?;
+    let case: Case =
+        serde_json::from_value(manifest.case.clone()).map_err(|error| RunError::Incompatible {
+            what: format!(
+                "the case in {} was resolved by Carom {} and does not fit this version: {error}",
+                directory.join("manifest.json").display(),
+                manifest.version
+            ),
+        })?;
     let case = &case;
     if manifest.status == Status::Finished {
         // A kill may have come between the last row and the verdicts.
@@ -95,7 +97,10 @@ pub fn resume(
     }
     let reopened = RunWriter::reopen(directory)?;
     let state: State = postcard::from_bytes(&reopened.payload).map_err(|error| RunError::Incompatible {
-        what: format!("the checkpoint of {} does not fit this version of Carom: {error}", directory.display()),
+        what: format!(
+            "the checkpoint of {} does not fit this version of Carom: {error}",
+            directory.display()
+        ),
     })?;
     let dofs = state.y.len();
     let simulation = resumed(case, options.threads, state).map_err(RunError::Case)?;
@@ -191,7 +196,8 @@ impl<'a> Session<'a> {
         self.close(end, remarks)
     }
 
-    /// Logs where a probe's stress ceases to exist: a function of the states before and after the step, so that a resumed run logs alike.
+    /// Logs where a probe's stress ceases to exist: a function of the states before and after the
+    /// step, so that a resumed run logs alike.
     fn look_for_stress(&mut self) -> Result<(), RunError> {
         let now = stressed(&self.simulation);
         let Simulation { model, state, .. } = &self.simulation;
@@ -337,10 +343,12 @@ fn stressed(simulation: &Simulation) -> Vec<bool> {
 }
 
 fn bytes(state: &State) -> Result<Vec<u8>, RunError> {
-    postcard::to_stdvec(state).map_err(|e| RunError::Incompatible { what: format!("the state cannot be encoded: {e}") })
+    postcard::to_stdvec(state)
+        .map_err(|e| RunError::Incompatible { what: format!("the state cannot be encoded: {e}") })
 }
 
-/// Processor time: of this thread alone, since other runs may share the process; of all where steps are computed on several.
+/// Processor time: of this thread alone, since other runs may share the process; of all where steps
+/// are computed on several.
 enum Busy {
     Thread(ThreadTime),
     Process(ProcessTime),

@@ -1,4 +1,5 @@
-//! Unit labels of derived quantities, from the case's labels of length, time and mass. Nothing is converted.
+//! Unit labels of derived quantities, from the case's labels of length, time and mass. Nothing is
+//! converted.
 
 use carom_case::Case;
 

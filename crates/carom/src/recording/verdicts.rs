@@ -7,9 +7,13 @@ use carom_record::{Manifest, Run, Status};
 
 use super::outcome::RunError;
 
-/// Holds the record against the case's expectations and writes the verdicts into the manifest. A run that stopped is judged only if one of
-/// them asks whether it did.
-pub(super) fn judge(directory: &Path, expects: &[ExpectSpec], mut manifest: Manifest) -> Result<(), RunError> {
+/// Holds the record against the case's expectations and writes the verdicts into the manifest. A
+/// run that stopped is judged only if one of them asks whether it did.
+pub(super) fn judge(
+    directory: &Path,
+    expects: &[ExpectSpec],
+    mut manifest: Manifest,
+) -> Result<(), RunError> {
     let judged = manifest.status == Status::Finished || expects.iter().any(ExpectSpec::asks_whether_stopped);
     if expects.is_empty() || !judged {
         return Ok(());

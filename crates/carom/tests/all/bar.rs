@@ -1,4 +1,5 @@
-//! A bar on a rigid wall: the published side-by-side table of schemes (Doyen, Ern, Piperno 2011; recomputed from the formulas alone), to its digits.
+//! A bar on a rigid wall: the published side-by-side table of schemes (Doyen, Ern, Piperno 2011;
+//! recomputed from the formulas alone), to its digits.
 //! (a) one impact at v₀ = −10; (b) bouncing under gravity for three periods.
 
 use carom::GridReport;
@@ -7,7 +8,8 @@ use super::common::simulation;
 
 const BAR: &str = include_str!("../../../../cases/bar/single.toml");
 
-/// Peak p/300, rms of p/300 − 1 over 0.52 < t < 1.147, E/E₀ and v_cm/10 at the end, and the deepest penetration.
+/// Peak p/300, rms of p/300 − 1 over 0.52 < t < 1.147, E/E₀ and v_cm/10 at the end, and the deepest
+/// penetration.
 fn figures(sets: &[String]) -> [f64; 5] {
     let mut sim = simulation(BAR, sets);
     let start = sim.state.ledger.total();
@@ -28,7 +30,8 @@ fn figures(sets: &[String]) -> [f64; 5] {
     [peak, (squares / f64::from(samples)).sqrt(), sim.state.ledger.total() / start, velocity / 10.0, depth]
 }
 
-/// The bouncing bar: error of the end's position in the third period over the drop height, and the energy left at the end, as a share of 500.
+/// The bouncing bar: error of the end's position in the third period over the drop height, and the
+/// energy left at the end, as a share of 500.
 fn bounce(sets: &[String]) -> [f64; 2] {
     let sets = [&["body.bar.gravity=[-10.0]".into(), "body.bar.velocity=[0.0]".into()], sets].concat();
     let mut sim = simulation(BAR, &sets);
@@ -45,7 +48,8 @@ fn bounce(sets: &[String]) -> [f64; 2] {
     [(squares / f64::from(samples)).sqrt() / 5.0, (sim.state.ledger.total() + 500.0) / 500.0]
 }
 
-/// Exact position of the bouncing bar's lower end within a period of 16/3: fall, contact, flight with the wave in it; the second half is the first reversed.
+/// Exact position of the bouncing bar's lower end within a period of 16/3: fall, contact, flight
+/// with the wave in it; the second half is the first reversed.
 fn exact_bounce(t: f64) -> f64 {
     let (fall, transit) = (1.0, 1.0 / 3.0);
     let t = if t > 8.0 * transit { 16.0 * transit - t } else { t };
@@ -64,14 +68,16 @@ fn exact_bounce(t: f64) -> f64 {
 #[test]
 fn the_exact_bounce_has_the_printed_values() {
     let printed = [
-        5.0, 4.4444, 2.7778, 0.0, 0.0, 0.0, 1.6667, 4.4444, 3.8889, 4.4444, 1.6667, 0.0, 0.0, 0.0, 2.7778, 4.4444, 5.0,
+        5.0, 4.4444, 2.7778, 0.0, 0.0, 0.0, 1.6667, 4.4444, 3.8889, 4.4444, 1.6667, 0.0, 0.0, 0.0, 2.7778,
+        4.4444, 5.0,
     ];
     for (k, value) in printed.iter().enumerate() {
         assert!((exact_bounce(k as f64 / 3.0 + 1e-12) - value).abs() < 1e-4, "{k}");
     }
 }
 
-/// (a) and (b) of the table for schemes with a contact law of their own. Largest penetration of (a): of the position law 0, else to its digits.
+/// (a) and (b) of the table for schemes with a contact law of their own. Largest penetration of
+///     (a): of the position law 0, else to its digits.
 #[test]
 fn explicit_and_impulse_schemes_reproduce_the_table() {
     let implicit = |scheme: &str, end: &str| vec![format!("time.scheme={scheme}"), format!("time.end={end}")];
@@ -84,7 +90,8 @@ fn explicit_and_impulse_schemes_reproduce_the_table() {
     let cd = "{ kind = \"central-difference\" }";
     let ps = "{ kind = \"paoli-schatzman\" }";
     let elastic = vec!["contact.wall.restitution=1.0".to_owned()];
-    // Printed figures of (a) and one unit of their last digits; sets for (a) and for (b); printed figures of (b) and their units.
+    // Printed figures of (a) and one unit of their last digits; sets for (a) and for (b); printed
+    // figures of (b) and their units.
     let rows = [
         (
             "Moreau θ=1",
@@ -154,15 +161,19 @@ fn explicit_and_impulse_schemes_reproduce_the_table() {
     }
 }
 
-/// Paoli and Schatzman with e = 1: energy alternates from step to step between the two figures of the table.
+/// Paoli and Schatzman with e = 1: energy alternates from step to step between the two figures of
+/// the table.
 #[test]
 fn energy_alternates_where_positions_are_reflected() {
     let sets = |end: &str| {
         let scheme = "time.scheme={ kind = \"paoli-schatzman\" }";
         let end = format!("time.end={end}");
-        [scheme, "body.bar.mass=lumped", "time.step=0.003", "contact.wall.restitution=1.0", &end].map(str::to_owned)
+        [scheme, "body.bar.mass=lumped", "time.step=0.003", "contact.wall.restitution=1.0", &end]
+            .map(str::to_owned)
     };
-    for (ends, printed, digit) in [(["1.998", "1.995"], [2.01, 2.92], 0.01), (["15.996", "15.999"], [8.4, 12.9], 0.1)] {
+    for (ends, printed, digit) in
+        [(["1.998", "1.995"], [2.01, 2.92], 0.01), (["15.996", "15.999"], [8.4, 12.9], 0.1)]
+    {
         for (end, printed) in ends.into_iter().zip(printed) {
             let got = if digit < 0.1 { figures(&sets(end))[2] } else { bounce(&sets(end))[1] };
             assert!((got - printed).abs() <= 0.6 * digit, "t = {end}: {got}, printed {printed}");
@@ -181,7 +192,8 @@ fn bouncing(sets: &[String]) -> [f64; 2] {
     bounce(&[sets, &["time.end=16.0".to_owned()]].concat())
 }
 
-/// One row: what sets it apart from the case, printed figures of (a) and of (b), each with one unit of its last digit.
+/// One row: what sets it apart from the case, printed figures of (a) and of (b), each with one unit
+/// of its last digit.
 struct Row(&'static [&'static str], [(f64, f64); 4], [(f64, f64); 2]);
 
 fn check(rows: &[Row]) {
@@ -189,7 +201,10 @@ fn check(rows: &[Row]) {
         let text: Vec<String> = sets.iter().map(ToString::to_string).collect();
         let got: Vec<f64> = single(&text).into_iter().chain(bouncing(&text)).collect();
         for (k, (printed, digit)) in a.iter().chain(b).enumerate() {
-            assert!((got[k] - printed).abs() <= 0.6 * digit, "{sets:?}, figure {k}: {got:.5?}, printed {printed}");
+            assert!(
+                (got[k] - printed).abs() <= 0.6 * digit,
+                "{sets:?}, figure {k}: {got:.5?}, printed {printed}"
+            );
         }
     }
 }
@@ -235,7 +250,8 @@ fn the_composite_rule_reproduces_the_table() {
     ]);
 }
 
-/// Kane's elasticity at the middle of the step and contact force at its end, with the predictor projected.
+/// Kane's elasticity at the middle of the step and contact force at its end, with the predictor
+/// projected.
 #[test]
 fn contact_stabilised_newmark_reproduces_the_table() {
     const LAW: &str = "contact.wall.law=\"predictor\"";
@@ -279,8 +295,9 @@ fn redistributed_mass_reproduces_the_table() {
         [(1.33, 0.01), (0.005, 0.001), (1.0003, 1e-4), (0.990, 0.001)],
         [(0.11, 0.01), (0.997, 0.001)],
     )]);
-    // Total, centre and second moment kept by the least change of all nodes: of (a) the peak and the energy are published, of (b) both, the energies
-    // as those of the nearest nodes within .002.
+    // Total, centre and second moment kept by the least change of all nodes: of (a) the peak and
+    // the energy are published, of (b) both, the energies as those of the nearest nodes within
+    // .002.
     check(&[Row(
         &[TRAPEZOIDAL, "body.bar.mass=\"redistributed\""],
         [(1.09, 0.01), (0.0, f64::INFINITY), (1.0003, 0.003), (0.0, f64::INFINITY)],

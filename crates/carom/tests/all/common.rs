@@ -45,10 +45,13 @@ pub(crate) fn case<S: AsRef<str>>(text: &str, sets: &[S]) -> Case {
     read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)))
 }
 
-/// The members of every kind with a contact law of its own, or of every other: as a case asks for it, with what is published of it.
+/// The members of every kind with a contact law of its own, or of every other: as a case asks for
+/// it, with what is published of it.
 pub(crate) fn schemes(nonsmooth: bool) -> impl Iterator<Item = (String, &'static Member)> {
     let kinds = KINDS.iter().filter(move |kind| kind.is_nonsmooth() == nonsmooth);
-    kinds.flat_map(|kind: &KindInfo| kind.members.iter().map(|member| (kind.named(member).to_string(), member)))
+    kinds.flat_map(|kind: &KindInfo| {
+        kind.members.iter().map(|member| (kind.named(member).to_string(), member))
+    })
 }
 
 /// A simulation of a case, on one thread.

@@ -1,4 +1,5 @@
-//! Free flight of a soft body that spins, strains and rings: what the discrete gradient keeps to round-off, and what other schemes do not.
+//! Free flight of a soft body that spins, strains and rings: what the discrete gradient keeps to
+//! round-off, and what other schemes do not.
 
 use carom::{GridReport, Simulation};
 
@@ -59,9 +60,11 @@ fn drift(sets: &[&str]) -> (f64, [f64; 3], f64, f64) {
 #[test]
 fn energy_and_momenta_of_a_free_flight_are_kept_to_round_off() {
     // What is left of the residual does work: exact as far as Newton's method goes.
-    for (law, tolerance, kept) in
-        [("neo-hookean", "1e-9", 1e-9), ("neo-hookean", "1e-12", 2e-12), ("saint-venant-kirchhoff", "1e-12", 2e-12)]
-    {
+    for (law, tolerance, kept) in [
+        ("neo-hookean", "1e-9", 1e-9),
+        ("neo-hookean", "1e-12", 2e-12),
+        ("saint-venant-kirchhoff", "1e-12", 2e-12),
+    ] {
         let sets = [format!("material.rubber.law=\"{law}\""), format!("newton.tolerance={tolerance}")];
         let (energy, momenta, least, newton) = drift(&sets.each_ref().map(String::as_str));
         assert!(newton < 10.0, "{law}: {newton} iterations a step");

@@ -11,17 +11,20 @@ fn model(sets: &[&str]) -> Model {
     carom::build(&case(BAR, sets)).unwrap()
 }
 
-/// The end of a bar of linear cells with lumped mass ρAh/2, on a spring of `stiffness` times its tangent EA/h: ω² = 2 s c²/h².
+/// The end of a bar of linear cells with lumped mass ρAh/2, on a spring of `stiffness` times its
+/// tangent EA/h: ω² = 2 s c²/h².
 #[test]
 fn a_spring_on_half_a_cell() {
-    let penalty = ["contact.wall.enforcement=\"penalty\"", "contact.wall.stiffness=8.0", "body.bar.mass=\"lumped\""];
+    let penalty =
+        ["contact.wall.enforcement=\"penalty\"", "contact.wall.stiffness=8.0", "body.bar.mass=\"lumped\""];
     let omega = spring(&model(&penalty)).unwrap();
     assert!((omega / (4.0 * 30.0 / 0.1) - 1.0).abs() < 1e-12, "{omega}");
     assert_eq!(spring(&model(&[])), None);
 }
 
-/// A free bar of n linear cells with consistent mass: ω_k² = (6c²/h²)(1 − cos θ)/(2 + cos θ), θ = kπ/n; the highest, k = n, is √12 c/h (Hughes, "The
-/// finite element method", §7.3.1). c = 30, h = 0.1.
+/// A free bar of n linear cells with consistent mass: ω_k² = (6c²/h²)(1 − cos θ)/(2 + cos θ), θ =
+/// kπ/n; the highest, k = n, is √12 c/h (Hughes, "The finite element method", §7.3.1). c = 30, h =
+/// 0.1.
 #[test]
 fn a_free_bar() {
     let found = frequencies(&model(&[])).unwrap();

@@ -27,7 +27,8 @@ fn contact_force(sim: &Simulation) -> Vec<f64> {
     force
 }
 
-/// Krenk's identity for the α family (design.md §5): what the dissipation of a step must be, from its two states.
+/// Krenk's identity for the α family (design.md §5): what the dissipation of a step must be, from
+/// its two states.
 fn predicted_dissipation(sim: &Simulation, before: &State, scheme: &carom_time::Scheme) -> f64 {
     let (dt, now) = (sim.dt, &sim.state);
     let n = now.y.len();
@@ -37,8 +38,9 @@ fn predicted_dissipation(sim: &Simulation, before: &State, scheme: &carom_time::
         (moved[i] - dt * before.v[i] - (0.5 - scheme.beta) * dt * dt * before.a[i]) / (scheme.beta * dt * dt)
     };
     let change: Vec<f64> = (0..n).map(|i| a(i) - before.a[i]).collect();
-    let mean: Vec<f64> =
-        (0..n).map(|i| (1.0 - scheme.alpha_f) * now.f_internal[i] + scheme.alpha_f * before.f_internal[i]).collect();
+    let mean: Vec<f64> = (0..n)
+        .map(|i| (1.0 - scheme.alpha_f) * now.f_internal[i] + scheme.alpha_f * before.f_internal[i])
+        .collect();
     let mut m_change = vec![0.0; n];
     sim.model.mass.multiply_into(&change, &mut m_change);
     let late: Vec<f64> = (0..n).map(|i| before.a[i] + scheme.gamma * change[i]).collect();
@@ -63,7 +65,10 @@ fn ledger_balance_and_gaps_hold_under_loads() {
         { body = "cylinder", body_force = ["0.1*Y*t", "-X"] },
     ]"#;
     let scheme = r#"time.scheme={ kind = "chung-hulbert", rho_inf = 0.5 }"#;
-    ledger_balance_and_gaps_hold(&case(IMPACT, &[COARSE[0], COARSE[1], &loads.replace('\n', " "), scheme]), 30);
+    ledger_balance_and_gaps_hold(
+        &case(IMPACT, &[COARSE[0], COARSE[1], &loads.replace('\n', " "), scheme]),
+        30,
+    );
 }
 
 fn ledger_balance_and_gaps_hold(case: &Case, least: usize) {
@@ -91,7 +96,8 @@ fn ledger_balance_and_gaps_hold(case: &Case, least: usize) {
     assert!(worst_ledger < 1e-12, "{worst_ledger:e}");
 }
 
-/// What the next step takes its share of is the force of the pairs the state has, gaps and normals taken anew.
+/// What the next step takes its share of is the force of the pairs the state has, gaps and normals
+/// taken anew.
 #[test]
 fn the_contact_force_of_every_state_is_that_of_its_pairs() {
     let mut sim = simulation(include_str!("../../../../cases/impact/whole.toml"), &[""; 0]);
@@ -107,7 +113,8 @@ fn the_contact_force_of_every_state_is_that_of_its_pairs() {
     assert!(touched > 100);
 }
 
-/// A body that falls, y = X − g t²/2 to 1e-12, or too far by what is published of the scheme: catches every factor on the inertia (the paper prints a ½).
+/// A body that falls, y = X − g t²/2 to 1e-12, or too far by what is published of the scheme:
+/// catches every factor on the inertia (the paper prints a ½).
 #[test]
 fn free_fall_is_that_of_the_scheme() {
     const AVERAGES: &str = r#"{ kind = "chung-hulbert", rho_inf = 0.9, forces = "average-state" }"#;
@@ -133,7 +140,8 @@ fn free_fall_is_that_of_the_scheme() {
     }
 }
 
-/// No force of a rigid plane, no dissipation, no gravity: momentum about any point and energy of a free disc are kept by what keeps them.
+/// No force of a rigid plane, no dissipation, no gravity: momentum about any point and energy of a
+/// free disc are kept by what keeps them.
 #[test]
 fn total_momentum_of_two_free_bodies_is_kept_through_contact() {
     let sets = [
@@ -154,7 +162,8 @@ fn total_momentum_of_two_free_bodies_is_kept_through_contact() {
     assert!(active >= 3);
 }
 
-/// Steps so long that Newton's iterations run out where the pairs have just changed: a step is given up with a reason, and bisected.
+/// Steps so long that Newton's iterations run out where the pairs have just changed: a step is
+/// given up with a reason, and bisected.
 #[test]
 fn giving_up_after_a_change_of_pairs_is_told() {
     let scheme = r#"time.scheme={ kind = "energy-momentum" }"#;

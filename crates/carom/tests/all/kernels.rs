@@ -30,7 +30,8 @@ scheme = { kind = "hu" }
 energy_guard = false
 "#;
 
-/// One dof through the solver is the amplification matrix the analysis is made of: every entry, so every invariant.
+/// One dof through the solver is the amplification matrix the analysis is made of: every entry, so
+/// every invariant.
 #[test]
 fn one_dof_is_amplified_as_the_analysis_says() {
     let (dt, mass, stiffness) = (0.125, 2.0, 50.0_f64);
@@ -46,8 +47,12 @@ fn one_dof_is_amplified_as_the_analysis_says() {
             let [u, v, a, d, w] = unit;
             (sim.state.y[1], sim.state.v[1], sim.state.a[1]) = (1.0 + u, v / dt, a / (dt * dt));
             sim.state.f_internal = vec![-stiffness * u, stiffness * u];
-            sim.state.previous =
-                Some(Previous { dt, increment: vec![0.0, d], velocity: vec![0.0, w / dt], means: Means::new(2) });
+            sim.state.previous = Some(Previous {
+                dt,
+                increment: vec![0.0, d],
+                velocity: vec![0.0, w / dt],
+                means: Means::new(2),
+            });
             sim.advance(&mut GridReport::default()).unwrap();
             let now = [sim.state.y[1] - 1.0, dt * sim.state.v[1], dt * dt * sim.state.a[1]];
             for row in 0..3 {
@@ -89,7 +94,8 @@ fn the_observed_order_on_a_nonlinear_oscillation_is_the_claimed_one() {
 
 const BAR: &str = include_str!("../../../../cases/bar/single.toml");
 
-/// The impulse booked is the momentum the wall gave: the quadrature is the velocity update's own, stage by stage.
+/// The impulse booked is the momentum the wall gave: the quadrature is the velocity update's own,
+/// stage by stage.
 #[test]
 fn the_booked_impulse_is_the_change_of_momentum() {
     for sets in [
@@ -118,7 +124,8 @@ fn the_booked_impulse_is_the_change_of_momentum() {
     }
 }
 
-/// With a conserving penalty nothing is lost and the ledger says so; the predictor's loss is booked as the contact's.
+/// With a conserving penalty nothing is lost and the ledger says so; the predictor's loss is booked
+/// as the contact's.
 #[test]
 fn what_contact_laws_cost_is_booked_as_contact_work() {
     const CONSERVING: &str = r#"time.scheme={ kind = "energy-momentum" }"#;
@@ -128,7 +135,8 @@ fn what_contact_laws_cost_is_booked_as_contact_work() {
     assert!(predictor.contact_work < -1.0 && predictor.dissipation().abs() < 1e-7, "{predictor:?}");
 }
 
-/// A checkpoint taken in the middle of contact holds what a two-step scheme and a conserving penalty carry.
+/// A checkpoint taken in the middle of contact holds what a two-step scheme and a conserving
+/// penalty carry.
 #[test]
 fn a_checkpoint_holds_the_memory_of_schemes_and_springs() {
     for sets in [

@@ -42,8 +42,9 @@ pub(crate) fn time(end: f64, step: f64, scheme: &str) -> String {
     format!("[time]\nend = {end:?}\nstep = {step:?}\nscheme = {scheme}\n")
 }
 
-/// D'Alembert: under a sudden end force F the tip moves at cF/(EA) until the wave returns at 2L/c, then as fast back. The work of a constant force
-/// is F times the way, and the trapezoidal rule keeps the energy.
+/// D'Alembert: under a sudden end force F the tip moves at cF/(EA) until the wave returns at 2L/c,
+/// then as fast back. The work of a constant force is F times the way, and the trapezoidal rule
+/// keeps the energy.
 #[test]
 fn a_bar_under_a_sudden_end_force_carries_the_exact_wave() {
     let load = "[[load]]\non = [\"bar.right\"]\ntraction = [0.001]\n";
@@ -62,7 +63,8 @@ fn a_bar_under_a_sudden_end_force_carries_the_exact_wave() {
     }
 }
 
-/// One lumped element is the oscillator m ü + k u = F cos ωt with m = ½, k = 1: u = F/(k − mω²) (cos ωt − cos ω₀t) from rest.
+/// One lumped element is the oscillator m ü + k u = F cos ωt with m = ½, k = 1: u = F/(k − mω²)
+/// (cos ωt − cos ω₀t) from rest.
 #[test]
 fn an_oscillator_under_a_harmonic_force_is_of_second_order() {
     let omega = 3.0_f64;
@@ -92,8 +94,9 @@ fn an_oscillator_under_a_harmonic_force_is_of_second_order() {
     }
 }
 
-/// One consistent element whose left end moves as u = A(1 − cos ωt): (ρ/3) ü₂ + u₂ = u₁ − (ρ/6) ü₁, with the solution
-/// A + C cos ωt − (A + C) cos ω₀t, C = −A (1 + ω²/6)/(1 − ω²/3), ω₀² = 3. The support's velocity and acceleration are the formula's.
+/// One consistent element whose left end moves as u = A(1 − cos ωt): (ρ/3) ü₂ + u₂ = u₁ − (ρ/6) ü₁,
+/// with the solution A + C cos ωt − (A + C) cos ω₀t, C = −A (1 + ω²/6)/(1 − ω²/3), ω₀² = 3. The
+/// support's velocity and acceleration are the formula's.
 #[test]
 fn a_moved_end_drives_its_neighbour_with_its_inertia() {
     let (a, omega, natural) = (0.01, 4.0_f64, 3.0_f64.sqrt());
@@ -107,7 +110,8 @@ fn a_moved_end_drives_its_neighbour_with_its_inertia() {
         r#"{ kind = "energy-momentum" }"#,
     ] {
         let run = |step: f64| {
-            let support = "[[support]]\nname = \"base\"\non = [\"bar.left\"]\nmove = { x = \"0.01*(1 - cos(4*t))\" }\n";
+            let support =
+                "[[support]]\nname = \"base\"\non = [\"bar.left\"]\nmove = { x = \"0.01*(1 - cos(4*t))\" }\n";
             let sim = finish(bar(&[&body(1, "consistent"), support, &time(1.0, step, scheme)].concat()));
             assert!((sim.state.v[0] - a * omega * omega.sin()).abs() < 1e-15, "{}", sim.state.v[0]);
             assert!((sim.state.a[0] - a * omega * omega * omega.cos()).abs() < 1e-14);
@@ -116,13 +120,15 @@ fn a_moved_end_drives_its_neighbour_with_its_inertia() {
         };
         let (coarse, fine) = (run(5e-3), run(2.5e-3));
         assert!(fine.0 < 1e-6 && (coarse.0 / fine.0).log2() > 1.9, "{scheme}: {coarse:?} {fine:?}");
-        // The work of the support is the energy it brings in, with the order of the average F̄: second in the middle of the step.
+        // The work of the support is the energy it brings in, with the order of the average F̄:
+        // second in the middle of the step.
         let order = if scheme.contains("1.0") { 1.9 } else { 0.9 };
         assert!((coarse.1 / fine.1).log2() > order, "{scheme}: {coarse:?} {fine:?}");
     }
 }
 
-/// The two-step rule carries the means of the step before: loads and the support's force, over all steps, are the momentum.
+/// The two-step rule carries the means of the step before: loads and the support's force, over all
+/// steps, are the momentum.
 #[test]
 fn means_over_two_steps_are_the_change_of_momentum() {
     let rest = "[[support]]\non = [\"bar.left\"]\nmove = { x = \"0.1*(1 - cos(4*t))\" }\n\
@@ -149,7 +155,8 @@ fn means_over_two_steps_are_the_change_of_momentum() {
     }
 }
 
-/// With the discrete gradient all that loads and a sudden force bring is in the energies, step by step.
+/// With the discrete gradient all that loads and a sudden force bring is in the energies, step by
+/// step.
 #[test]
 fn the_conserving_scheme_balances_loads_that_change() {
     let load = "[[load]]\non = [\"bar.right\"]\ntraction = [\"0.2*sin(9*t)\"]\n";
@@ -164,7 +171,8 @@ fn the_conserving_scheme_balances_loads_that_change() {
     }
 }
 
-/// A support that starts with a jerk brings in energy, never takes the run down: nothing is created where its velocity jumps.
+/// A support that starts with a jerk brings in energy, never takes the run down: nothing is created
+/// where its velocity jumps.
 #[test]
 fn a_velocity_that_jumps_takes_its_impulse_from_the_support() {
     let support = "[[support]]\non = [\"bar.left\"]\nmove = { x = \"0.1*max(0, min(t - 0.2, 0.3))\" }\n";
@@ -178,7 +186,8 @@ fn a_velocity_that_jumps_takes_its_impulse_from_the_support() {
     assert!((sim.state.y[0] - 0.03).abs() < 1e-16 && sim.state.v[0] == 0.0);
 }
 
-/// A block under every load at once: the reactions are the applied forces, in the deformed place their moments too (neo-Hookean, pressure follows).
+/// A block under every load at once: the reactions are the applied forces, in the deformed place
+/// their moments too (neo-Hookean, pressure follows).
 #[test]
 fn reactions_are_the_applied_loads() {
     let text = r#"
@@ -233,9 +242,13 @@ tolerance = 1e-13
         }
     }
     // Reactions miss the loads by Newton's residual: here its tolerance is that of the claim.
-    assert!((reaction[0] + load[0]).abs() + (reaction[1] + load[1]).abs() < 1e-12 * size, "{reaction:?} {load:?}");
+    assert!(
+        (reaction[0] + load[0]).abs() + (reaction[1] + load[1]).abs() < 1e-12 * size,
+        "{reaction:?} {load:?}"
+    );
     assert!((moment + load_moment).abs() < 1e-12 * size);
-    // Dead loads by hand: 3 × 2 × ½ on the top and 0.3 × ∫X = 0.3 × 2 × ½ in the volume; the pressure's part follows the sides.
+    // Dead loads by hand: 3 × 2 × ½ on the top and 0.3 × ∫X = 0.3 × 2 × ½ in the volume; the
+    // pressure's part follows the sides.
     let mut dead = carom::model::LoadsAt::default();
     let mut force = vec![0.0; model.dofs()];
     model.loads_into(1.0, &model.reference, &mut dead, &mut force).unwrap();
@@ -243,8 +256,10 @@ tolerance = 1e-13
     assert!((total[0] - 3.3).abs() < 1e-13 && (total[1] + 2.0 + 0.5).abs() < 1e-13, "{total:?}");
 }
 
-/// Under a load that changes, the averaged force of a scheme with α_f ≠ ½ does another work than the load, by (½ − α_f) Σ Δy·ΔF, though nothing is
-/// created. Newmark's ¼, ½ keeps K + U − Σ ½(F₀ + F₁)Δy of a linear body to round-off, whatever Δt. The guard stops none of them, from the first step on.
+/// Under a load that changes, the averaged force of a scheme with α_f ≠ ½ does another work than
+/// the load, by (½ − α_f) Σ Δy·ΔF, though nothing is created. Newmark's ¼, ½ keeps K + U − Σ ½(F₀ +
+/// F₁)Δy of a linear body to round-off, whatever Δt. The guard stops none of them, from the first
+/// step on.
 #[test]
 fn a_changing_load_creates_nothing() {
     for (load, step) in [("0.1*cos(5*t)", 0.02), ("0.1*sin(3*t)^4", 0.01)] {
@@ -255,9 +270,11 @@ fn a_changing_load_creates_nothing() {
         let ledger = end(r#"{ kind = "newmark", beta = 0.25, gamma = 0.5 }"#);
         assert!((ledger.created() + 0.5 * ledger.open).abs() < 1e-12 * ledger.largest, "{ledger:?}");
         assert!(ledger.open.abs() > 1e-3 * ledger.largest, "{ledger:?}");
-        for scheme in
-            [r#"{ kind = "hu" }"#, r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#, r#"{ kind = "hht", alpha = 0.25 }"#]
-        {
+        for scheme in [
+            r#"{ kind = "hu" }"#,
+            r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#,
+            r#"{ kind = "hht", alpha = 0.25 }"#,
+        ] {
             let ledger = end(scheme);
             assert!(ledger.created() < ledger.open.abs(), "{scheme}: {ledger:?}");
         }

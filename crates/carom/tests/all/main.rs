@@ -1,4 +1,5 @@
-//! The stepper through whole runs: one program, so that what the tests share is written, and linked, once.
+//! The stepper through whole runs: one program, so that what the tests share is written, and
+//! linked, once.
 
 #![allow(clippy::unwrap_used)]
 

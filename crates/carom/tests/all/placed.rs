@@ -1,5 +1,5 @@
-//! A case that is turned and moved as a whole gives the turned and moved motion: shapes, contact, gravity and all. So does a body whose
-//! initial positions are a rigid motion of its mesh.
+//! A case that is turned and moved as a whole gives the turned and moved motion: shapes, contact,
+//! gravity and all. So does a body whose initial positions are a rigid motion of its mesh.
 
 use super::common::{case, finish, simulation};
 
@@ -64,7 +64,8 @@ fn a_turned_and_moved_case_moves_alike() {
 
 #[test]
 fn positions_that_only_turn_a_body_leave_it_unstrained() {
-    let (y, _) = run(&["body.tube.place={ rotate = 90.0, about = [0.05, 0.52], shift = [0.0, 0.01] }".into()]);
+    let (y, _) =
+        run(&["body.tube.place={ rotate = 90.0, about = [0.05, 0.52], shift = [0.0, 0.01] }".into()]);
     let (other, active) = run(&["body.tube.position=[\"0.05 - (Y - 0.52)\", \"0.53 + (X - 0.05)\"]".into()]);
     assert!(active > 0);
     let apart = |(a, b): (&[f64; 2], &[f64; 2])| (a[0] - b[0]).hypot(a[1] - b[1]);

@@ -5,7 +5,8 @@ use carom::GridReport;
 use super::common::{case as case_of, finish, simulation};
 use super::loads::time;
 
-/// A run taken up from its state in the middle ends with the same bits, loads, motions and bisected steps included.
+/// A run taken up from its state in the middle ends with the same bits, loads, motions and bisected
+/// steps included.
 #[test]
 fn a_resumed_run_with_loads_and_motions_ends_with_the_same_bits() {
     let text = r#"
@@ -58,7 +59,8 @@ energy_guard = false
     }
 }
 
-/// A block pressed by a moved support springs back from where the press left it: [initial] takes positions and the contact over.
+/// A block pressed by a moved support springs back from where the press left it: [initial] takes
+/// positions and the contact over.
 #[test]
 fn a_run_begins_where_another_ended() {
     let folder = tempfile::tempdir().unwrap();
@@ -100,11 +102,17 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
     let pressed = finish(carom::simulation(&case, 1).unwrap());
 
     let initial = format!("[initial]\nfrom = {:?}\n", preload.display().to_string());
-    let again = |motion: &str| text(&time(0.1, 1e-3, r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#), &initial, motion);
+    let again = |motion: &str| {
+        text(&time(0.1, 1e-3, r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#), &initial, motion)
+    };
     let mut held = simulation(&again("-0.1"), &[""; 0]);
     assert_eq!(held.state.y, pressed.state.y);
     let force = pressed.state.contact_forces[0][1];
-    assert!((held.state.contact_forces[0][1] - force).abs() < 1e-8 * force, "{:?} {force}", held.state.contact_forces);
+    assert!(
+        (held.state.contact_forces[0][1] - force).abs() < 1e-8 * force,
+        "{:?} {force}",
+        held.state.contact_forces
+    );
     // It is in equilibrium: nothing moves.
     for _ in 0..20 {
         held.advance(&mut GridReport::default()).unwrap();

@@ -1,4 +1,5 @@
-//! The trapezoidal rule is symmetric in time: from a later state with the velocities turned round it runs back to where it came from.
+//! The trapezoidal rule is symmetric in time: from a later state with the velocities turned round
+//! it runs back to where it came from.
 
 use carom::GridReport;
 

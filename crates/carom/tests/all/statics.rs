@@ -9,7 +9,8 @@ use super::loads::{HELD, bar, body, time};
 #[test]
 fn without_mass_a_moved_bar_is_in_equilibrium_at_every_time() {
     let support = "[[support]]\nname = \"pull\"\non = [\"bar.right\"]\nmove = { x = \"0.1*t^2\" }\n";
-    let rest = [&body(5, "consistent"), HELD, support, &time(1.0, 0.05, r#"{ kind = "newmark", rho_inf = 1.0 }"#)];
+    let rest =
+        [&body(5, "consistent"), HELD, support, &time(1.0, 0.05, r#"{ kind = "newmark", rho_inf = 1.0 }"#)];
     for scheme in [r#"{ kind = "newmark", rho_inf = 1.0 }"#, r#"{ kind = "static" }"#] {
         let mut sim = bar(&rest.concat().replace(rest[3], &time(1.0, 0.05, scheme)));
         if !scheme.contains("static") {
@@ -24,10 +25,13 @@ fn without_mass_a_moved_bar_is_in_equilibrium_at_every_time() {
             assert!((sim.state.f_internal[0] + u).abs() < 1e-13);
             assert!((sim.state.ledger.strain - 0.5 * u * u).abs() < 1e-13);
         }
-        // Trapezoids of the work are exact where force and way grow together; the massless balance at the step's end takes the end's force.
+        // Trapezoids of the work are exact where force and way grow together; the massless balance
+        // at the step's end takes the end's force.
         if scheme.contains("static") {
             assert!(sim.state.ledger.dissipation().abs() < 1e-14, "{:e}", sim.state.ledger.dissipation());
-            assert!(sim.state.v.iter().chain(&sim.state.a).all(|x| *x == 0.0) && sim.state.ledger.kinetic == 0.0);
+            assert!(
+                sim.state.v.iter().chain(&sim.state.a).all(|x| *x == 0.0) && sim.state.ledger.kinetic == 0.0
+            );
         }
     }
 }
@@ -54,14 +58,19 @@ fn a_bar_hangs_under_its_own_weight() {
         for (y, x) in sim.state.y.iter().zip(&sim.model.reference) {
             assert!((y - x - 0.02 * (x - 0.5 * x * x)).abs() < 1e-14);
         }
-        assert!((sim.state.f_internal[0] - sim.model.gravity[0] - sim.state.f_external[0] + 0.02).abs() < 1e-12 * 0.02);
+        assert!(
+            (sim.state.f_internal[0] - sim.model.gravity[0] - sim.state.f_external[0] + 0.02).abs()
+                < 1e-12 * 0.02
+        );
     }
-    // A load that grows with its displacement does the work that becomes strain energy; trapezoids sum it exactly.
+    // A load that grows with its displacement does the work that becomes strain energy; trapezoids
+    // sum it exactly.
     let ledger = &sim.state.ledger;
     assert!((ledger.external_work - ledger.strain).abs() < 1e-15, "{ledger:?}");
 }
 
-/// A body that nothing holds is named; one that contact may hold is let, and named once contact does not.
+/// A body that nothing holds is named; one that contact may hold is let, and named once contact
+/// does not.
 #[test]
 fn a_body_held_by_nothing_is_said_by_name() {
     let text = |support: &str, at: f64| {
@@ -100,7 +109,8 @@ scheme = {{ kind = "static" }}
     let problems = carom::simulation(&alone, 1).err().unwrap();
     assert!(problems[0].what.starts_with("body \"disc\" is free to"), "{problems:?}");
     // With a gap it falls: said by name, with what to try.
-    let stopped = simulation(&text(axis, 0.6), &[""; 0]).advance(&mut GridReport::default()).unwrap_err().to_string();
+    let stopped =
+        simulation(&text(axis, 0.6), &[""; 0]).advance(&mut GridReport::default()).unwrap_err().to_string();
     assert!(stopped.contains("body \"disc\" is free to move along y"), "{stopped}");
     assert!(stopped.contains("`move`"), "{stopped}");
     // Touching, it rests on the floor with its weight.
@@ -113,8 +123,9 @@ scheme = {{ kind = "static" }}
     );
 }
 
-/// A strut compressed by a fifth, far beyond the loads at which it buckles: the straight equilibrium is unstable in several directions and the tangent
-/// indefinite, but exact: P₂₂ of homogeneous plane strain with P₁₁ = 0, neo-Hookean Ψ = Λ/2 ln²J + μ/2 (I₁ − 3) − μ ln J.
+/// A strut compressed by a fifth, far beyond the loads at which it buckles: the straight
+/// equilibrium is unstable in several directions and the tangent indefinite, but exact: P₂₂ of
+/// homogeneous plane strain with P₁₁ = 0, neo-Hookean Ψ = Λ/2 ln²J + μ/2 (I₁ − 3) − μ ln J.
 #[test]
 fn a_straight_strut_stays_in_its_unstable_equilibrium() {
     let text = r#"

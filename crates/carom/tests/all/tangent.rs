@@ -1,4 +1,5 @@
-//! The kept tangent, as it is by default and without what makes it fast, and the full one lead to the same history.
+//! The kept tangent, as it is by default and without what makes it fast, and the full one lead to
+//! the same history.
 
 use carom::{GridReport, Simulation, State};
 
@@ -52,19 +53,19 @@ fn forces(sim: &mut Simulation, steps: usize) -> Vec<[f64; 3]> {
     (0..steps).map(|_| advance()).collect()
 }
 
-/// Half of the digits of a large factor cost no digit of the motion, the first steps of contact included; and what goes on from a state makes the same
-/// factor again.
+/// Half of the digits of a large factor cost no digit of the motion, the first steps of contact
+/// included; and what goes on from a state makes the same factor again.
 #[test]
 fn factors_of_single_precision_lead_to_the_same_history_and_are_made_again() {
-    let mut sim = large("newton.tangent=kept");
+    let mut sim = large("newton.tangent=frozen");
     let mut single = forces(&mut sim, 14);
-    let mut resumed = large("newton.tangent=kept");
+    let mut resumed = large("newton.tangent=frozen");
     resumed.state = sim.state.clone();
     let rest = forces(&mut sim, 6);
     assert_eq!(forces(&mut resumed, 6), rest);
     assert_eq!(resumed.state, sim.state);
     single.extend(rest);
-    let double = forces(&mut large("newton.tangent=kept-double"), 20);
+    let double = forces(&mut large("newton.tangent=frozen-double"), 20);
     let largest = double.iter().map(|f| f[1].abs()).fold(0.0, f64::max);
     assert!(largest > 1.0, "{largest}");
     // Not the same bits: one of the two is of single precision.

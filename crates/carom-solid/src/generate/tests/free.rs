@@ -25,9 +25,11 @@ fn area(mesh: &Mesh) -> f64 {
 }
 
 fn mean_edge(mesh: &Mesh) -> f64 {
-    let all = mesh.cells.chunks(mesh.element.nodes()).flat_map(|c| [[c[0], c[1]], [c[1], c[2]], [c[2], c[0]]]);
-    let lengths: Vec<f64> =
-        all.map(|[a, b]| (mesh.nodes[a][0] - mesh.nodes[b][0]).hypot(mesh.nodes[a][1] - mesh.nodes[b][1])).collect();
+    let all =
+        mesh.cells.chunks(mesh.element.nodes()).flat_map(|c| [[c[0], c[1]], [c[1], c[2]], [c[2], c[0]]]);
+    let lengths: Vec<f64> = all
+        .map(|[a, b]| (mesh.nodes[a][0] - mesh.nodes[b][0]).hypot(mesh.nodes[a][1] - mesh.nodes[b][1]))
+        .collect();
     lengths.iter().sum::<f64>() / lengths.len() as f64
 }
 
@@ -77,18 +79,24 @@ fn enclosed(mesh: &Mesh, side: &str) -> f64 {
     0.5 * twice
 }
 
-/// Chords enclose an area that converges with h², T6 and T10 sides with h⁴ (Simpson's and the 3/8 rule integrate the arc's rise). The ring's own
-/// area is the difference, to round-off; its errors would nearly cancel.
+/// Chords enclose an area that converges with h², T6 and T10 sides with h⁴ (Simpson's and the 3/8
+/// rule integrate the arc's rise). The ring's own area is the difference, to round-off; its errors
+/// would nearly cancel.
 #[test]
 fn ring_areas_converge() {
-    for (element, order, finest) in [(Element::T3, 1.9, 2e-3), (Element::T6, 3.9, 3e-7), (Element::T10, 3.9, 2e-7)] {
+    for (element, order, finest) in
+        [(Element::T3, 1.9, 2e-3), (Element::T6, 3.9, 3e-7), (Element::T10, 3.9, 2e-7)]
+    {
         let made = [0.1, 0.05].map(|size| ring(element, 0.5, 1.0, [0.0, 0.0], size).unwrap());
         for (side, radius, turn) in [("inner", 0.5, -1.0), ("outer", 1.0, 1.0)] {
             let exact = std::f64::consts::PI * radius * radius * turn;
             let [coarse, fine] = made.each_ref().map(|mesh| (enclosed(mesh, side) / exact - 1.0).abs());
             let edges = (made[1].sides[side].len() as f64 / made[0].sides[side].len() as f64).log2();
             let found = (coarse / fine).log2() / edges;
-            assert!(found > order && fine < finest * (0.25 / radius.powi(4)).max(1.0), "{element:?} {found} {fine:e}");
+            assert!(
+                found > order && fine < finest * (0.25 / radius.powi(4)).max(1.0),
+                "{element:?} {found} {fine:e}"
+            );
         }
         for mesh in &made {
             let between = enclosed(mesh, "outer") + enclosed(mesh, "inner");
@@ -102,13 +110,17 @@ fn a_ring_is_its_own_mirror_image() {
     let mesh = ring(Element::T10, 0.3, 1.0, [0.0, 0.0], 0.2).unwrap();
     for x in &mesh.nodes {
         for mirrored in [[-x[0], x[1]], [x[0], -x[1]]] {
-            assert!(mesh.nodes.iter().any(|y| (y[0] - mirrored[0]).hypot(y[1] - mirrored[1]) < 1e-15), "{x:?}");
+            assert!(
+                mesh.nodes.iter().any(|y| (y[0] - mirrored[0]).hypot(y[1] - mirrored[1]) < 1e-15),
+                "{x:?}"
+            );
         }
     }
 }
 
 const COOK: [[f64; 2]; 4] = [[0.0, 0.0], [48.0, 44.0], [48.0, 60.0], [0.0, 44.0]];
-const NOTCHED: [[f64; 2]; 7] = [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [2.2, 2.0], [2.0, 0.7], [1.8, 2.0], [0.0, 2.0]];
+const NOTCHED: [[f64; 2]; 7] =
+    [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [2.2, 2.0], [2.0, 0.7], [1.8, 2.0], [0.0, 2.0]];
 const STAR: [[f64; 2]; 8] =
     [[3.0, 0.0], [1.0, 1.0], [0.0, 3.0], [-1.0, 1.0], [-3.0, 0.0], [-1.0, -1.0], [0.0, -3.0], [1.0, -1.0]];
 const THIN: [[f64; 2]; 6] = [[0.0, 0.0], [3.0, 0.0], [3.0, 0.1], [0.1, 0.1], [0.1, 2.0], [0.0, 2.0]];
@@ -194,10 +206,14 @@ fn the_same_polygon_twice_is_the_same_mesh() {
 
 #[test]
 fn impossible_outlines_are_refused() {
-    let message = |points: &[[f64; 2]], size: f64| polygon(Element::T3, points, size, &[]).unwrap_err().to_string();
+    let message =
+        |points: &[[f64; 2]], size: f64| polygon(Element::T3, points, size, &[]).unwrap_err().to_string();
     assert!(message(&COOK[..2], 1.0).contains("not 2"));
     assert!(message(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]], 1.0).contains("side1 and side3"));
-    assert!(message(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0], [0.0, 2.0]], 1.0).contains("side1 and side3"));
+    assert!(
+        message(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0], [0.0, 2.0]], 1.0)
+            .contains("side1 and side3")
+    );
     assert!(message(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 1.0]], 1.0).contains("side1 and side2"));
     assert!(message(&[[0.0, 0.0], [0.0, 0.0], [1.0, 0.0], [1.0, 1.0]], 1.0).contains("point 2"));
     assert!(message(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]], 1.0).contains("side"));
@@ -205,6 +221,8 @@ fn impossible_outlines_are_refused() {
     assert!(message(&COOK, 0.0).contains("size = 0"));
     let place = Refinement { near: [0.0, 0.0], radius: 1.0, size: -1.0 };
     assert!(polygon(Element::T3, &COOK, 1.0, &[place]).unwrap_err().to_string().contains("refine.size = -1"));
-    assert!(ring(Element::T3, 1.0, 0.5, [0.0, 0.0], 0.1).unwrap_err().to_string().contains("inner 1 < outer 0.5"));
+    assert!(
+        ring(Element::T3, 1.0, 0.5, [0.0, 0.0], 0.1).unwrap_err().to_string().contains("inner 1 < outer 0.5")
+    );
     assert!(ring(Element::L2, 0.5, 1.0, [0.0, 0.0], 0.1).is_err());
 }

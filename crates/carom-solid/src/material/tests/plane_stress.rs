@@ -1,11 +1,13 @@
-//! Laws in plane stress: derivatives, objectivity, no stress across, uniaxial tension in closed form.
+//! Laws in plane stress: derivatives, objectivity, no stress across, uniaxial tension in closed
+//! form.
 
 use super::*;
 
 const YOUNG: f64 = MU * (3.0 * LAMBDA + 2.0 * MU) / (LAMBDA + MU);
 const POISSON: f64 = LAMBDA / (2.0 * (LAMBDA + MU));
 
-/// The law's point has no stress across, and the Cauchy stress is that of the three-dimensional law with the stretch it found.
+/// The law's point has no stress across, and the Cauchy stress is that of the three-dimensional law
+/// with the stretch it found.
 fn free_across<L: Thickness + Copy>(law: &L, h: &Mat<2>) {
     let across = law.excess_stretch(h).unwrap();
     let [[a, b], [c, d]] = h.0;
@@ -56,7 +58,8 @@ proptest! {
     }
 }
 
-/// The thickness is found for any plane stretch: the neo-Hookean root over twelve decades of J, nearly incompressible and foam-like.
+/// The thickness is found for any plane stretch: the neo-Hookean root over twelve decades of J,
+/// nearly incompressible and foam-like.
 #[test]
 fn extreme_stretches_have_a_thickness() {
     for lambda in [0.0, 1e-3, 2.0, 1e6] {

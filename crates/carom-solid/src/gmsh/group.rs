@@ -1,11 +1,12 @@
-//! The cells of a named group as a mesh of their own: one element, only the nodes they use, in the order of the file.
+//! The cells of a named group as a mesh of their own: one element, only the nodes they use, in the
+//! order of the file.
 
 use super::error::{Fault, MshError};
 use super::file::{MshFile, Row};
 use crate::mesh::Element;
 
 /// Cells of a group, before they are checked. Node numbers are the part's own.
-pub(super) struct Part<'a, const D: usize> {
+pub(super) struct Group<'a, const D: usize> {
     pub(super) file: &'a MshFile,
     pub(super) name: &'a str,
     pub(super) element: Element,
@@ -17,7 +18,7 @@ pub(super) struct Part<'a, const D: usize> {
     pub(super) repairs: Vec<String>,
 }
 
-impl<'a, const D: usize> Part<'a, D> {
+impl<'a, const D: usize> Group<'a, D> {
     pub(super) fn of(file: &'a MshFile, name: &'a str) -> Result<Self, MshError> {
         let what = if D == 1 { "curve" } else { "surface" };
         let names = file.names(D);
@@ -58,13 +59,15 @@ impl<'a, const D: usize> Part<'a, D> {
             *n = number[*n];
         }
 
-        let mut part = Self { file, name, element, used, positions: Vec::new(), rows, cells, repairs: Vec::new() };
+        let mut part =
+            Self { file, name, element, used, positions: Vec::new(), rows, cells, repairs: Vec::new() };
         part.flatten()?;
         part.apart()?;
         Ok(part)
     }
 
-    /// Drops the coordinates that are the same for all nodes: z, and on a line y, which must be zero there.
+    /// Drops the coordinates that are the same for all nodes: z, and on a line y, which must be
+    /// zero there.
     fn flatten(&mut self) -> Result<(), MshError> {
         let x = |i: usize| &self.file.nodes[self.used[i]].1;
         let size = (0..self.used.len()).flat_map(|i| x(i).iter().map(|c| c.abs())).fold(0.0, f64::max);
@@ -90,7 +93,8 @@ impl<'a, const D: usize> Part<'a, D> {
         let near = 1e-9 * crate::Positions::from(self.positions.clone()).diameter();
         let mut order: Vec<usize> = (0..self.positions.len()).collect();
         order.sort_unstable_by(|&a, &b| self.positions[a][0].total_cmp(&self.positions[b][0]));
-        // Columns of equal x hold many nodes: the second coordinate is compared by sorting each column.
+        // Columns of equal x hold many nodes: the second coordinate is compared by sorting each
+        // column.
         let mut start = 0;
         for i in 1..=order.len() {
             if i < order.len() && self.positions[order[i]][0] - self.positions[order[i - 1]][0] <= near {

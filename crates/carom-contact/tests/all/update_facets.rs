@@ -1,4 +1,5 @@
-//! A node that slides along a chain of facets while Newton's method goes on: it is followed to the facet it is at, in one go, and back.
+//! A node that slides along a chain of facets while Newton's method goes on: it is followed to the
+//! facet it is at, in one go, and back.
 
 use carom_contact::{Detection, Kinematics, NodeToFacet, Pair, PairEvent, Pairing, Surface};
 use carom_solid::FacetShape;
@@ -12,24 +13,25 @@ fn scene(x: f64) -> (NodeToFacet, Vec<f64>) {
 }
 
 /// Moves the node of a pairing to `x` and follows it there.
-fn follow(pairing: &mut Pairing, x: f64) -> Vec<PairEvent> {
+fn update_facets(pairing: &mut Pairing, x: f64) -> Vec<PairEvent> {
     let (contact, y) = scene(x);
     let pair = &mut pairing.pairs[0];
     // ξ runs against x here: the outward normal of the chain looks up.
     pair.xi = 2.0 * (pair.facet as f64 + 0.5 - x);
     let mut events = Vec::new();
-    assert_eq!(contact.follow(&y, pairing, &mut events), !events.is_empty());
+    assert_eq!(contact.update_facets(&y, pairing, &mut events), !events.is_empty());
     events
 }
 
-/// Facet and place of a pair on the facet from x = 1 to x = 2, to which it may have `come_from` another, followed to a node at `x`.
+/// Facet and place of a pair on the facet from x = 1 to x = 2, to which it may have `come_from`
+/// another, followed to a node at `x`.
 fn followed(x: f64, come_from: Option<usize>) -> (usize, f64, Vec<PairEvent>) {
     let facet = come_from.unwrap_or(1);
     let pair = Pair { active: true, lambda: -1.0, ..Pair::open(0, facet, 0.0) };
     let mut pairing = Pairing::new(vec![pair]);
-    follow(&mut pairing, 1.5);
+    update_facets(&mut pairing, 1.5);
     assert_eq!(pairing.pairs[0].facet, 1);
-    let events = follow(&mut pairing, x);
+    let events = update_facets(&mut pairing, x);
     (pairing.pairs[0].facet, pairing.pairs[0].xi, events)
 }
 

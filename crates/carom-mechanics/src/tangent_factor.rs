@@ -1,11 +1,13 @@
-//! The kept factor: bodies condensed on the nodes that contact can act on, contact itself solved on those alone.
+//! The kept factor: bodies condensed on the nodes that contact can act on, contact itself solved on
+//! those alone.
 //!
 //! ```text
 //! [ A + Σ w λ∇²g  Gᵀ ] [Δy]   [−r]       A = w.mass a' M + w.internal K_int − w.external K_ext at the kept point
 //! [ G             0  ] [Δλ] = [−g]       (or M where velocities are projected)
 //! ```
 //!
-//! Gradients and second derivatives of the gaps are those of the present iterate: nodes may come, leave and slide without a new factor. Only A is old.
+//! Gradients and second derivatives of the gaps are those of the present iterate: nodes may come,
+//! leave and slide without a new factor. Only A is old.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -19,14 +21,15 @@ use crate::renewal::Point;
 
 /// Factors of the kept tangent and of the mass matrix, and the scratch of their solves.
 #[derive(Default)]
-pub(crate) struct KeptFactor {
+pub(crate) struct TangentFactor {
     /// What the tangent's factor was made of.
     point: Option<Arc<Point>>,
     positive: bool,
     tangent: Option<Condensed>,
     mass: Option<Condensed>,
     of_mass: bool,
-    /// Boundaries and structures, the one used last first: tangent and mass have the same as a rule, and a rejected step goes back to the one before.
+    /// Boundaries and structures, the one used last first: tangent and mass have the same as a
+    /// rule, and a rejected step goes back to the one before.
     latest: VecDeque<(Vec<usize>, Arc<Elimination>)>,
     saddle: Saddle,
     /// The row of the dense system that each constraint is; none of springs.
@@ -36,9 +39,9 @@ pub(crate) struct KeptFactor {
     inner: Vec<f64>,
 }
 
-impl KeptFactor {
-    /// Factors `mass` M + `stiffness` K − `follower` K_ext for a point; the matrices are given in the slots of the pattern, the last may be empty. Whether the matrix is
-    /// positive definite.
+impl TangentFactor {
+    /// Factors `mass` M + `stiffness` K − `follower` K_ext for a point; the matrices are given in
+    /// the slots of the pattern, the last may be empty. Whether the matrix is positive definite.
     ///
     /// # Errors
     /// A number is none.
@@ -97,11 +100,12 @@ impl KeptFactor {
     }
 
     /// Whether the kept factor can take these rows.
-    pub(crate) fn covers(&self, rows: &Constraints) -> bool {
-        self.point.as_ref().is_some_and(|point| covers(&point.boundary, rows))
+    pub(crate) fn spans(&self, rows: &Constraints) -> bool {
+        self.point.as_ref().is_some_and(|point| spans(&point.boundary, rows))
     }
 
-    /// Factors M with these rows, over the dofs that have mass: the others keep a unit diagonal and stay out of the rows.
+    /// Factors M with these rows, over the dofs that have mass: the others keep a unit diagonal and
+    /// stay out of the rows.
     ///
     /// # Errors
     /// M is not positive definite, or the rows depend on each other.
@@ -112,7 +116,7 @@ impl KeptFactor {
         mass: &[f64],
         rows: &Constraints,
     ) -> Result<(), Rejected> {
-        let kept = self.point.as_ref().filter(|point| covers(&point.boundary, rows));
+        let kept = self.point.as_ref().filter(|point| spans(&point.boundary, rows));
         let boundary = kept.map_or_else(|| rows.nodes(), |point| point.boundary.clone());
         let elimination = self.elimination(model, pattern, &boundary)?;
         if !self.mass.as_ref().is_some_and(|factor| Arc::ptr_eq(factor.elimination(), &elimination)) {
@@ -131,19 +135,22 @@ impl KeptFactor {
         Ok(self.constrain(model, rows, false).map(|_| ())?)
     }
 
-    /// Takes the rows up for solves with the kept tangent; whether what is solved is positive definite where the rows hold.
+    /// Takes the rows up for solves with the kept tangent; whether what is solved is positive
+    /// definite where the rows hold.
     ///
     /// # Errors
     /// The rows depend on each other.
     pub(crate) fn prepare(&mut self, model: &Model, rows: &Constraints) -> Result<bool, LinearError> {
         self.of_mass = false;
-        // A multiplier far from its value can bend the sides too much: without second derivatives there still is a descent.
+        // A multiplier far from its value can bend the sides too much: without second derivatives
+        // there still is a descent.
         Ok(self.constrain(model, rows, true)?
             || self.constrain(model, rows, false)?
             || self.constrain(model, rows, true)?)
     }
 
-    /// The dense system on the boundary. A spring is no row of it: it adds its stiffness. Whether all is positive definite.
+    /// The dense system on the boundary. A spring is no row of it: it adds its stiffness. Whether
+    /// all is positive definite.
     fn constrain(&mut self, model: &Model, rows: &Constraints, curved: bool) -> Result<bool, LinearError> {
         let Some(condensed) = (if self.of_mass { &self.mass } else { &self.tangent }) else {
             return Err(no_factor(model));
@@ -154,7 +161,7 @@ impl KeptFactor {
             let before = self.places.iter().flatten().count();
             self.places.push((*compliance == 0.0).then_some(before));
         }
-        saddle.begin(condensed.schur(), elimination.kept(), self.places.iter().flatten().count());
+        saddle.begin(condensed.schur(), elimination.schur_size(), self.places.iter().flatten().count());
         let place = |unknown: usize| elimination.kept_place(unknown);
         rows.each_entry(model, |r, unknown, slope| {
             let part = !(self.of_mass && model.massless[model.free[unknown]]);
@@ -186,7 +193,8 @@ impl KeptFactor {
         condensed.substitute_into(&mut self.inner, x);
     }
 
-    /// Solves with what was prepared last: `forces` over all dofs, `gaps` one per row; answers alike (held dofs and springs get zero).
+    /// Solves with what was prepared last: `forces` over all dofs, `gaps` one per row; answers
+    /// alike (held dofs and springs get zero).
     pub(crate) fn solve(
         &mut self,
         model: &Model,
@@ -213,11 +221,13 @@ impl KeptFactor {
     }
 }
 
-/// Whether half of the digits are enough for a factor: it is large, so that reading it is what a solve costs, and the matrix is so well conditioned that
-/// what rounding leaves over of a correction is far below what an old tangent leaves. Scaled to a unit diagonal, and with a stiffness that is positive
-/// semidefinite, the matrix has a condition number of at most some hundred times the largest quotient of its diagonal and the mass's: λ_max is at most the
-/// number of dofs of a cell, and λ_min at least that of the scaled mass matrix over that quotient. Another stiffness may do worse; iterations then contract
-/// slowly, and it is made anew.
+/// Whether half of the digits are enough for a factor: it is large, so that reading it is what a
+/// solve costs, and the matrix is so well conditioned that what rounding leaves over of a
+/// correction is far below what an old tangent leaves. Scaled to a unit diagonal, and with a
+/// stiffness that is positive semidefinite, the matrix has a condition number of at most some
+/// hundred times the largest quotient of its diagonal and the mass's: λ_max is at most the number
+/// of dofs of a cell, and λ_min at least that of the scaled mass matrix over that quotient. Another
+/// stiffness may do worse; iterations then contract slowly, and it is made anew.
 fn single_is_enough(pattern: &Pattern, point: &Point, mass: &[f64], stiffness: &[f64]) -> bool {
     let mut diagonal = pattern.starts[..pattern.size()].iter();
     let soft = |&k: &usize| point.stiffness * stiffness[k] <= STIFF * point.mass * mass[k];
@@ -228,12 +238,13 @@ fn no_factor(model: &Model) -> LinearError {
     LinearError::Engine { size: model.free.len(), reason: "solve before factor".into() }
 }
 
-fn covers(boundary: &[usize], rows: &Constraints) -> bool {
+fn spans(boundary: &[usize], rows: &Constraints) -> bool {
     rows.rows.iter().flat_map(|row| row.nodes).all(|node| boundary.binary_search(node).is_ok())
 }
 
-/// Nodes to eliminate last: those the rows touch and what lies around them on the sides in contact, so that it need not be chosen anew soon. The last
-/// choice is kept while it covers the rows and is not much too large.
+/// Nodes to eliminate last: those the rows touch and what lies around them on the sides in contact,
+/// so that it need not be chosen anew soon. The last choice is kept while it covers the rows and is
+/// not much too large.
 pub(crate) fn boundary(model: &Model, y: &[f64], rows: &Constraints, last: Option<&Point>) -> Vec<usize> {
     let (touched, d) = (rows.nodes(), model.dimension);
     let last = last.map_or(&[][..], |point| &point.boundary);
@@ -253,16 +264,18 @@ pub(crate) fn boundary(model: &Model, y: &[f64], rows: &Constraints, last: Optio
     let mut chosen: Vec<usize> = touched.iter().copied().chain(around).collect();
     chosen.sort_unstable();
     chosen.dedup();
-    if covers(last, rows) && last.len() <= 2 * chosen.len() { last.to_vec() } else { chosen }
+    if spans(last, rows) && last.len() <= 2 * chosen.len() { last.to_vec() } else { chosen }
 }
 
 /// Unknowns from which a factor does not fit into the processor's caches.
 const LARGE: usize = 10_000;
-/// Largest ratio of stiffness to mass, (ωΔt)² and a factor, on the diagonal of a factor of single precision.
+/// Largest ratio of stiffness to mass, (ωΔt)² and a factor, on the diagonal of a factor of single
+/// precision.
 const STIFF: f64 = 1e3;
 /// Structures that are remembered.
 const REMEMBERED: usize = 2;
-/// What the rows add to the stiffness along themselves, as a multiple of it: enough that bending contact leaves it positive definite.
+/// What the rows add to the stiffness along themselves, as a multiple of it: enough that bending
+/// contact leaves it positive definite.
 const STIFFENING: f64 = 10.0;
 /// What is added on each side of the touched nodes, as a share of their extent.
 const MARGIN: f64 = 0.3;

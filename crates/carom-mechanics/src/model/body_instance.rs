@@ -5,7 +5,7 @@ use carom_solid::Body;
 use super::formulas::NoValue;
 
 /// A body and its place among the global nodes.
-pub struct Part {
+pub struct BodyInstance {
     /// Name in the case.
     pub name: String,
     /// Global number of its first node.
@@ -18,7 +18,7 @@ pub struct Part {
     dofs: Vec<u32>,
 }
 
-impl Part {
+impl BodyInstance {
     /// A body whose nodes are numbered from `first_node` on.
     pub fn new(name: String, first_node: usize, body: Box<dyn Body>) -> Self {
         let mesh = body.mesh();
@@ -29,7 +29,8 @@ impl Part {
             volume += volumes.iter().sum::<f64>();
         }
         let total_mass = volume * body.density();
-        let dofs = mesh.cells.iter().flat_map(|node| (0..d).map(move |i| ((first_node + node) * d + i) as u32));
+        let dofs =
+            mesh.cells.iter().flat_map(|node| (0..d).map(move |i| ((first_node + node) * d + i) as u32));
         let dofs = dofs.collect();
         Self { name, first_node, body, total_mass, dofs }
     }
