@@ -2,6 +2,7 @@
 //! type, out of range.
 
 use super::document::{Document, joined};
+use super::example::Names;
 use super::keys::{self, Default, Key, Kind, Range, Variants};
 use super::problem::Problem;
 use super::suggest;
@@ -10,7 +11,7 @@ use super::tree::{Node, Table, Value};
 /// All that is wrong with the keys and values taken one by one.
 pub(super) fn problems(document: &Document) -> Vec<Problem> {
     let dimension = document.root().get("dimension").and_then(Node::count).filter(|d| (1..=2).contains(d));
-    let mut check = Check { dimension, problems: Vec::new() };
+    let mut check = Check { dimension, names: Names::of(document.root()), problems: Vec::new() };
     check.keys(
         document.root(),
         &Spec {
@@ -26,14 +27,14 @@ pub(super) fn problems(document: &Document) -> Vec<Problem> {
 
 /// The same for a table of variants alone.
 pub(super) fn variant(table: &Table, variants: &Variants) -> Vec<Problem> {
-    let mut check = Check { dimension: None, problems: Vec::new() };
+    let mut check = Check { dimension: None, names: Names::default(), problems: Vec::new() };
     check.variant(table, variants, "");
     check.problems
 }
 
 /// The same for one table of fixed keys.
 pub(super) fn table(table: &Table, keys: &keys::Table, path: &str) -> Vec<Problem> {
-    let mut check = Check { dimension: None, problems: Vec::new() };
+    let mut check = Check { dimension: None, names: Names::default(), problems: Vec::new() };
     let spec =
         Spec { name: keys.name, tag: None, keys: keys.keys.iter().collect(), later: keys.later.to_vec() };
     check.keys(table, &spec, path);
@@ -42,6 +43,7 @@ pub(super) fn table(table: &Table, keys: &keys::Table, path: &str) -> Vec<Proble
 
 struct Check {
     dimension: Option<usize>,
+    names: Names,
     problems: Vec<Problem>,
 }
 
@@ -84,7 +86,7 @@ impl Check {
         let help = match key.kind {
             Kind::Tables(table) => format!("add a table {}", table.name),
             Kind::Table(table) if path.is_empty() => format!("add a table {}", table.name),
-            _ => format!("add `{name} = {}`", key.example),
+            _ => format!("add `{name} = {}`", self.names.example(key)),
         };
         let help = if key.example.is_empty() { help } else { format!("{help}, for example") };
         let what = format!("{table} has no `{name}`");
@@ -270,10 +272,10 @@ impl Check {
             self.add(path, what, why, format!("write {}", key.kind.described(self.dimension)));
         } else if !range.contains(x) {
             let what = format!("`{}` must be {}, not {x}", key.name, range.described());
-            let help = if range.contains(-x) {
+            let help = if x < 0.0 && range.contains(-x) {
                 format!("did you mean `{} = {}`?", key.name, -x)
             } else {
-                format!("write for example `{} = {}`", key.name, key.example)
+                format!("write for example `{} = {}`", key.name, self.names.example(key))
             };
             self.add(path, what, meaning(key), help);
         }
@@ -298,7 +300,7 @@ impl Check {
                 if let Err(error) = carom_formula::Formula::parse(text, &variables) {
                     let what = format!("the formula of `{}`: {}", key.name, error.message);
                     let why = format!("{} It is a formula in {}.", meaning(key), variables.join(", "));
-                    let help = format!("write for example `{} = {}`", key.name, key.example);
+                    let help = format!("write for example `{} = {}`", key.name, self.names.example(key));
                     self.problems.push(Problem::new(path, what, why, help).within(error.at));
                 }
             }
@@ -311,7 +313,12 @@ impl Check {
             return;
         }
         let what = format!("`{}` must be a whole number ≥ {least}, not {}", key.name, node.described());
-        self.add(path, what, meaning(key), format!("write for example `{} = {}`", key.name, key.example));
+        self.add(
+            path,
+            what,
+            meaning(key),
+            format!("write for example `{} = {}`", key.name, self.names.example(key)),
+        );
     }
 
     fn wrong(&mut self, node: &Node, key: &Key, path: &str) {
@@ -331,7 +338,7 @@ impl Check {
             Kind::Vector if self.dimension == Some(1) => {
                 format!("write one number in brackets, for example `{} = [0.0]`", key.name)
             }
-            _ => format!("write for example `{} = {}`", key.name, key.example),
+            _ => format!("write for example `{} = {}`", key.name, self.names.example(key)),
         };
         self.add(path, what, why, help);
     }

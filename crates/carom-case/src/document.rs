@@ -1,6 +1,7 @@
 //! A case file as text: parsed, overridden by `--set`, and able to say where any key path was
 //! written.
 
+use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 
@@ -42,17 +43,29 @@ impl Document {
                 "name the .toml file inside it",
             ));
         }
-        if facts.len() > LARGEST {
-            let why = format!("it has {} bytes; a case file has at most {LARGEST}", facts.len());
+        let file = std::fs::File::open(path).map_err(refused)?;
+        Self::read_from(&name, file, sets)
+    }
+
+    /// Reads a stream (`name` stands for the file in messages) and applies overrides `key=value`,
+    /// in their order. A stream that never ends is refused.
+    pub fn read_from(name: &str, stream: impl Read, sets: &[String]) -> Result<Self, CaseError> {
+        let wrong = |what: &str, why: &str, help: &str| {
+            CaseError::Wrong(vec![Diagnostic::of_file(name, what, why, help)])
+        };
+        let mut bytes = Vec::new();
+        let read = stream.take(LARGEST + 1).read_to_end(&mut bytes);
+        read.map_err(|source| CaseError::Refused { path: name.to_owned(), source })?;
+        if bytes.len() as u64 > LARGEST {
+            let why = format!("a case file has at most {LARGEST} bytes");
             return Err(wrong("the file is too large to be a case", &why, "name the .toml file of the case"));
         }
-        let bytes = std::fs::read(path).map_err(refused)?;
         let text = String::from_utf8(bytes).map_err(|e| {
             let at = e.utf8_error().valid_up_to();
             let why = format!("byte {} is not UTF-8, and TOML is UTF-8 text", at + 1);
             wrong("the file is not text", &why, "name the .toml file of the case, or save it as UTF-8")
         })?;
-        Self::parse(&name, &text, sets)
+        Self::parse(name, &text, sets)
     }
 
     /// Parses a text (`name` stands for the file in messages) and applies overrides `key=value`, in
@@ -65,7 +78,7 @@ impl Document {
         if parsed.as_table().is_empty() && sets.is_empty() {
             let (what, why) =
                 ("the case is empty", "a case names at least its dimension, a material, a body and [time]");
-            return Err(wrong(Diagnostic::of_file(name, what, why, "start from cases/impact/impact.toml")));
+            return Err(wrong(Diagnostic::of_file(name, what, why, "start from a template: carom new")));
         }
         let root = tree::node(parsed.as_item(), 0, 0, &(0..0));
         let mut document = Self { sources: vec![(name.to_owned(), text.to_owned())], root };

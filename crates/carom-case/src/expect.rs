@@ -89,7 +89,7 @@ pub(super) fn one(
     };
     if let Err((path, why)) = parsed {
         let wrong = if path.ends_with("of") { order.map_or(what, |o| o.of) } else { what };
-        let help = "write for example \"min A.uy\" or \"last total / first total\"";
+        let help = "write for example \"last total / first total\"";
         problems.push(Problem::new(path, format!("{wrong:?} is not a quantity to expect"), why, help));
         return None;
     }

@@ -7,6 +7,7 @@ mod columns;
 mod conform;
 mod document;
 mod draft;
+mod example;
 mod expect;
 pub mod keys;
 mod load;

@@ -2,6 +2,7 @@
 //! table of a list is addressed by its name (`body.cylinder.element=T6`); values are TOML, and a
 //! bare word that is no TOML is a text.
 
+use super::example::Names;
 use super::problem::Diagnostic;
 use super::suggest;
 use super::tree::{self, Node, Origin, Value};
@@ -11,17 +12,17 @@ pub(super) fn apply(root: &mut Node, set: &str, source: usize) -> Result<(), Box
     let wrong = |span: std::ops::Range<usize>, what: String, why: String, help: String| {
         Box::new(Diagnostic::at("--set", set, span, [what, why, help]))
     };
-    let example = "for example --set time.step=1e-3 or --set body.cylinder.element=T6";
+    let example = root.table().map_or_else(String::new, |case| Names::of(case).override_example());
     let Some((key, value)) = set.split_once('=') else {
         let why = "an override is key=value".to_owned();
-        return Err(wrong(0..set.len(), "there is no `=`".to_owned(), why, example.to_owned()));
+        return Err(wrong(0..set.len(), "there is no `=`".to_owned(), why, example));
     };
     let keys = toml_edit::Key::parse(key).map_err(|e| {
         wrong(
             0..key.len(),
             "this is not a key".to_owned(),
             e.message().trim().replace('\n', "; "),
-            example.to_owned(),
+            example.clone(),
         )
     })?;
     let new = value_of(value, key.len() + 1, set, source)?;

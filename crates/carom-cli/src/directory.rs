@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::command::STDIN;
 use crate::exit::Failure;
 
 /// The directory of a new run, not made yet: `--out`, or `runs/NAME`, `runs/NAME-2`, … after the
@@ -10,11 +11,12 @@ pub(crate) fn of_run(case: &Path, out: Option<&Path>) -> Result<PathBuf, Failure
     if let Some(out) = out {
         return if out.exists() {
             let what = format!("{} exists already, and a run never overwrites", out.display());
-            Err(Failure::Argument { what, help: "name another directory, or leave --out away".to_owned() })
+            Err(Failure::Argument { what, help: "name another directory, or leave --out out".to_owned() })
         } else {
             Ok(out.to_owned())
         };
     }
+    let case = if case == Path::new(STDIN) { Path::new("stdin") } else { case };
     let name = case.file_stem().map_or_else(|| "run".to_owned(), |stem| stem.to_string_lossy().into_owned());
     Ok(free(Path::new("runs"), &name))
 }

@@ -9,15 +9,15 @@ use carom::case::CaseError;
 pub(crate) enum Exit {
     /// All was done.
     Done = 0,
-    /// An expectation was missed (`verify`).
+    /// An expectation was missed (`verify`, `--strict`).
     Missed = 1,
     /// The case or an argument is wrong.
     Wrong = 2,
     /// The simulation stopped; its last good state is kept.
     Stopped = 3,
-    /// The machine refused: disk, permission, memory.
+    /// Input/output or system error: disk, permission, memory.
     Refused = 4,
-    /// Stopped by Ctrl-C; `carom resume` goes on.
+    /// Stopped by Ctrl-C; `carom resume` continues it.
     Interrupted = 130,
 }
 
@@ -33,7 +33,7 @@ pub(crate) enum Failure {
     /// The simulation stopped.
     #[error("{reason}")]
     Stopped { reason: String, help: String, directory: PathBuf },
-    /// The machine refused.
+    /// Input/output or system error.
     #[error("{what}")]
     Refused { what: String },
 }

@@ -1,26 +1,25 @@
-//! What is seen while a simulation runs: a line on a terminal's standard error, or events on
+//! What is seen while a simulation runs: a bar on a terminal's standard error, or events on
 //! standard output. And Ctrl-C.
 
-use std::io::{self, IsTerminal, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use indicatif::ProgressBar;
 use serde::Serialize;
 
 use crate::exit::{Exit, Failure};
-use crate::out;
 use crate::simulation::Progress;
+use crate::{console, out};
 
-/// At most ten updates a second.
+/// At most ten events a second.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Shows progress. Dropping it erases the line.
+/// Shows progress. Dropping it erases the bar.
 pub(crate) struct Live {
     json: bool,
-    terminal: bool,
+    bar: ProgressBar,
     last: Option<Instant>,
-    shown: bool,
 }
 
 #[derive(Serialize)]
@@ -32,51 +31,52 @@ struct Event<'a> {
 
 impl Live {
     pub(crate) fn new(json: bool) -> Self {
-        Self { json, terminal: io::stderr().is_terminal(), last: None, shown: false }
+        Self { json, bar: console::bar(1), last: None }
     }
 
-    /// Says what the case is warned of, before it runs.
+    /// Prints the warnings of a case before it runs.
     pub(crate) fn warn(&self, warnings: &[String]) {
         for message in warnings {
             if self.json {
                 let _ = out::event(&serde_json::json!({ "event": "warning", "message": message }));
-            } else {
-                let _ = writeln!(io::stderr().lock(), "warning: {message}");
+            } else if !console::is_quiet() {
+                console::say(format_args!("warning: {message}"));
             }
         }
     }
 
-    /// Shows a step, if the last one shown is long enough ago or this is the end.
+    /// Shows a step. Events are thinned; the last step is always one.
     pub(crate) fn show(&mut self, progress: &Progress) {
+        self.bar.set_length(progress.steps as u64);
+        self.bar.set_position(progress.step as u64);
+        if !self.bar.is_hidden() {
+            self.bar.set_message(line(progress));
+        }
+        if console::is_verbose()
+            && let Some(changes) = changes(progress)
+        {
+            self.bar.suspend(|| console::say(changes));
+        }
         let last = progress.step == progress.steps;
-        if !last && self.last.is_some_and(|then| then.elapsed() < PAUSE) {
+        if !self.json || !last && self.last.is_some_and(|then| then.elapsed() < PAUSE) {
             return;
         }
         self.last = Some(Instant::now());
-        // A line nobody can see must not stop the run.
-        if self.json {
-            let _ = out::event(&Event { event: "progress", progress });
-        }
-        if self.terminal {
-            self.shown = true;
-            let _ = write!(io::stderr().lock(), "\r\x1b[K{}", line(progress));
-        }
+        // A line that nobody can read must not stop the run.
+        let _ = out::event(&Event { event: "progress", progress });
     }
 }
 
 impl Drop for Live {
     fn drop(&mut self) {
-        if self.shown {
-            let _ = write!(io::stderr().lock(), "\r\x1b[K");
-        }
+        self.bar.finish_and_clear();
     }
 }
 
-/// `  45 %  t 0.3375  Δt 1.88e-3  Newton 4  contacts 7  energy -1.2e-6  left 3 s`
+/// `t 0.3375  Δt 1.88e-3  Newton 4  contacts 7  energy -1.2e-6  left 3 s`
 fn line(p: &Progress) -> String {
-    let percent = 100.0 * p.step as f64 / p.steps.max(1) as f64;
     format!(
-        "{percent:4.0} %  t {:.4e}  Δt {:.3e}  Newton {}  contacts {}  energy {:+.1e}  left {}",
+        "t {:.4e}  Δt {:.3e}  Newton {}  contacts {}  energy {:+.1e}  left {}",
         p.time,
         p.dt,
         p.newton,
@@ -84,6 +84,15 @@ fn line(p: &Progress) -> String {
         p.energy_drift,
         duration(p.eta)
     )
+}
+
+/// What is worth a line with `--verbose`: attempts that were rejected, contacts that changed.
+fn changes(p: &Progress) -> Option<String> {
+    let counts = [(p.rejected, "rejected"), (p.activations, "activated"), (p.releases, "released")];
+    let counts: Vec<_> =
+        counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
+    let (step, time, newton) = (p.step, p.time, p.newton);
+    (!counts.is_empty()).then(|| format!("step {step}  t {time:.6e}  Newton {newton}  {}", counts.join(", ")))
 }
 
 /// Seconds as people say them.
@@ -126,12 +135,17 @@ mod tests {
             dt: 1.875e-3,
             newton: 4,
             active: 7,
+            rejected: 1,
+            activations: 0,
+            releases: 2,
             energy_drift: -1.2e-6,
             wall: 1.0,
             eta: 130.0,
         };
-        let told = "  45 %  t 3.3750e-1  Δt 1.875e-3  Newton 4  contacts 7  energy -1.2e-6  left 2 min 10 s";
+        let told = "t 3.3750e-1  Δt 1.875e-3  Newton 4  contacts 7  energy -1.2e-6  left 2 min 10 s";
         assert_eq!(line(&p), told);
+        let told = "step 180  t 3.375000e-1  Newton 4  1 rejected, 2 released";
+        assert_eq!(changes(&p).as_deref(), Some(told));
         assert_eq!([0.26, 61.0, 7300.0, f64::NAN].map(duration), ["0.3 s", "61 s", "2 h 1 min", "?"]);
     }
 }

@@ -1,18 +1,19 @@
 //! The command line of Carom: one file per command under `command/`.
 
 mod command;
+mod console;
+mod diagnostics;
 mod directory;
 mod exit;
 mod live;
 mod out;
 mod simulation;
 mod summary;
-mod wrong;
 
 use clap::{Parser, Subcommand};
-use command::{check, explain, mesh, new, report, resume, run, schema, study, verify};
+use command::{check, completions, explain, man, mesh, new, report, resume, run, schema, study, verify};
 
-/// Impact and contact of deformable solids, and the laboratory of its time integrators.
+/// Simulate impact and contact of deformable solids, and compare time integrators.
 #[derive(Parser)]
 #[command(name = "carom", version, propagate_version = true, max_term_width = 100)]
 #[command(after_help = "\
@@ -24,8 +25,16 @@ Examples:
   carom verify --fast
   carom explain chung-hulbert rho_inf=0.1
 
-Exit codes: 0 done · 1 an expectation was missed (verify) · 2 the case is wrong · 3 the simulation stopped · 4 the machine refused · 130 stopped by Ctrl-C")]
+Exit codes:
+  0    done
+  1    an expectation was missed (verify, or --strict)
+  2    the case or an argument is wrong
+  3    the simulation stopped; its last good state is on record
+  4    input/output or system error
+  130  stopped by Ctrl-C; carom resume continues")]
 struct Arguments {
+    #[command(flatten)]
+    console: console::Options,
     #[command(subcommand)]
     command: Command,
 }
@@ -42,21 +51,42 @@ enum Command {
     New(new::Arguments),
     Report(report::Arguments),
     Schema(schema::Arguments),
+    Completions(completions::Arguments),
+    Man(man::Arguments),
+}
+
+impl Command {
+    /// Whether standard output is JSON.
+    fn json(&self) -> bool {
+        match self {
+            Self::Run(arguments) => arguments.json,
+            Self::Resume(arguments) => arguments.json,
+            Self::Study(arguments) => arguments.json,
+            Self::Verify(arguments) => arguments.json,
+            Self::Check(arguments) => arguments.json,
+            Self::Explain(arguments) => arguments.json,
+            _ => false,
+        }
+    }
 }
 
 fn main() -> std::process::ExitCode {
-    let done = match Arguments::parse().command {
-        Command::Run(arguments) => run::run(&arguments),
-        Command::Resume(arguments) => resume::run(&arguments),
-        Command::Study(arguments) => study::run(&arguments),
-        Command::Verify(arguments) => verify::run(&arguments),
-        Command::Check(arguments) => check::run(&arguments),
-        Command::Explain(arguments) => explain::run(&arguments),
-        Command::Mesh(arguments) => mesh::run(&arguments),
-        Command::New(arguments) => new::run(&arguments),
-        Command::Report(arguments) => report::run(&arguments),
-        Command::Schema(arguments) => schema::run(&arguments),
+    let Arguments { console, command } = Arguments::parse();
+    console.apply();
+    let done = match &command {
+        Command::Run(arguments) => run::run(arguments),
+        Command::Resume(arguments) => resume::run(arguments),
+        Command::Study(arguments) => study::run(arguments),
+        Command::Verify(arguments) => verify::run(arguments),
+        Command::Check(arguments) => check::run(arguments),
+        Command::Explain(arguments) => explain::run(arguments),
+        Command::Mesh(arguments) => mesh::run(arguments),
+        Command::New(arguments) => new::run(arguments),
+        Command::Report(arguments) => report::run(arguments),
+        Command::Schema(arguments) => schema::run(arguments),
+        Command::Completions(arguments) => completions::run(arguments),
+        Command::Man(arguments) => man::run(arguments),
     };
-    let exit = done.unwrap_or_else(|failure| wrong::tell(&failure));
+    let exit = done.unwrap_or_else(|failure| diagnostics::print(&failure, command.json()));
     std::process::ExitCode::from(exit as u8)
 }

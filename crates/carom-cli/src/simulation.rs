@@ -31,6 +31,11 @@ pub(crate) struct Progress {
     pub(crate) newton: usize,
     /// Active contact nodes.
     pub(crate) active: usize,
+    /// Attempts at the step that were rejected.
+    pub(crate) rejected: usize,
+    /// Contact nodes that became active in it, and that ceased to be.
+    pub(crate) activations: usize,
+    pub(crate) releases: usize,
     /// (total − total₀ − external work) / largest energy so far.
     pub(crate) energy_drift: f64,
     /// Wall seconds so far and left.
@@ -75,6 +80,9 @@ pub(crate) struct Expectation {
     /// `-0.7827 ± 0.004`.
     pub(crate) wanted: String,
     pub(crate) got: Option<f64>,
+    /// Why there is no value.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) why: Option<String>,
     pub(crate) met: bool,
 }
 
@@ -115,7 +123,7 @@ pub(crate) fn run(
     conclude(done.map_err(|error| failure(error, Some(document)))?, options)
 }
 
-/// Goes on with a run that was stopped; a finished one is returned as it is.
+/// Resumes a run that was stopped; a finished one is returned as it is.
 pub(crate) fn resume(
     directory: &Path,
     options: Options,
@@ -139,7 +147,7 @@ pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
         Err(error) if error.exit_code() == 4 => Err(Failure::Refused { what: error.to_string() }),
         Err(error) => Err(Failure::Argument {
             what: error.to_string(),
-            help: "run the case again, or go on with carom resume".into(),
+            help: "run the case again, or continue with carom resume".into(),
         }),
     }
 }
@@ -152,6 +160,9 @@ fn seen(progress: &recording::Progress) -> Progress {
         dt: progress.dt,
         newton: progress.newton as usize,
         active: progress.active,
+        rejected: progress.rejected as usize,
+        activations: progress.activations as usize,
+        releases: progress.releases as usize,
         energy_drift: progress.energy_drift,
         wall: progress.wall,
         eta: progress.left,
@@ -197,6 +208,7 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
                 what: e.what.clone(),
                 wanted: e.expected.clone(),
                 got: e.got,
+                why: e.why.clone(),
                 met: e.pass,
             })
             .collect(),

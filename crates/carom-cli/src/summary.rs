@@ -1,11 +1,11 @@
-//! What is said at the end of a run.
+//! What is printed at the end of a run.
 
 use serde::Serialize;
 
 use crate::exit::{Exit, Failure};
 use crate::live::duration;
-use crate::out;
-use crate::simulation::Outcome;
+use crate::simulation::{Expectation, Outcome};
+use crate::{console, out};
 
 #[derive(Serialize)]
 struct Event<'a> {
@@ -14,9 +14,9 @@ struct Event<'a> {
     outcome: &'a Outcome,
 }
 
-/// Tells the outcome on standard output; a missed expectation is told, not punished. A run that
-/// stopped is an event, too.
-pub(crate) fn tell(done: Result<Outcome, Failure>, json: bool) -> Result<Exit, Failure> {
+/// Prints the outcome on standard output; a run that stopped is an event, too. A missed expectation
+/// changes the exit code only with `strict`.
+pub(crate) fn print(done: Result<Outcome, Failure>, json: bool, strict: bool) -> Result<Exit, Failure> {
     if json && let Err(Failure::Stopped { reason, directory, .. }) = &done {
         out::event(&serde_json::json!({ "event": "stopped", "reason": reason, "directory": directory }))?;
     }
@@ -24,10 +24,32 @@ pub(crate) fn tell(done: Result<Outcome, Failure>, json: bool) -> Result<Exit, F
     if json {
         let event = if outcome.interrupted { "interrupted" } else { "done" };
         out::event(&Event { event, outcome: &outcome })?;
-    } else {
+    } else if !console::is_quiet() {
         out::line(&text(&outcome))?;
     }
-    Ok(if outcome.interrupted { Exit::Interrupted } else { Exit::Done })
+    if outcome.interrupted {
+        return Ok(Exit::Interrupted);
+    }
+    let missed = outcome.expectations.iter().filter(|e| !e.met);
+    if !strict || missed.clone().next().is_none() {
+        return Ok(Exit::Done);
+    }
+    if console::is_quiet() {
+        missed.for_each(|e| console::say(expectation(e)));
+    }
+    Ok(Exit::Missed)
+}
+
+/// `min A.uy: -0.78268, as expected (-0.7827 ± 0.004)`
+fn expectation(e: &Expectation) -> String {
+    match (e.got, e.met) {
+        (Some(got), true) => format!("{}: {}, as expected ({})", e.what, short(got), e.wanted),
+        (Some(got), false) => format!("{}: {}, MISSED: expected {}", e.what, short(got), e.wanted),
+        (None, _) => {
+            let why = e.why.as_deref().map_or_else(String::new, |why| format!(" ({why})"));
+            format!("{}: not available{why}, expected {}", e.what, e.wanted)
+        }
+    }
 }
 
 fn text(outcome: &Outcome) -> String {
@@ -46,18 +68,14 @@ fn text(outcome: &Outcome) -> String {
             e.unit
         ));
     }
-    for e in &outcome.expectations {
-        let got = e.got.map_or_else(|| "nothing".to_owned(), short);
-        let verdict = if e.met { "as expected" } else { "NOT as expected" };
-        lines.push(format!("  {}: {got}, {verdict} ({})", e.what, e.wanted));
-    }
+    lines.extend(outcome.expectations.iter().map(|e| format!("  {}", expectation(e))));
     for (phase, seconds) in &outcome.profile {
         let each = 1e3 * seconds / outcome.steps.max(1) as f64;
         lines.push(format!("  {phase:10} {:>10}  {:>9} ms a step", duration(*seconds), short(each)));
     }
     lines.extend(outcome.remarks.iter().map(|remark| format!("  {remark}")));
     if outcome.interrupted {
-        lines.push(format!("stopped by Ctrl-C; go on with: carom resume {directory}"));
+        lines.push(format!("stopped by Ctrl-C; continue with: carom resume {directory}"));
     }
     lines.push(
         outcome.report.as_ref().map_or_else(|| directory.to_string(), |page| page.display().to_string()),
@@ -79,7 +97,7 @@ pub(crate) fn short(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulation::{Expectation, Extreme};
+    use crate::simulation::Extreme;
 
     #[test]
     fn summary_names_directory_extremes_and_expectations() {
@@ -101,6 +119,7 @@ mod tests {
                 what: "min A.uy".into(),
                 wanted: "-0.7827 ± 0.004".into(),
                 got: Some(-0.78268),
+                why: None,
                 met: true,
             }],
             profile: Vec::new(),

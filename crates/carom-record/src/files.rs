@@ -1,5 +1,5 @@
-//! Files that are either the old ones or the new ones, never half of both: write beside, flush to
-//! the disk, rename.
+//! Files that are either the old ones or the new ones, never half of both: write beside, rename; and
+//! flush to the disk where a power cut must not undo it.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -18,13 +18,28 @@ pub(crate) fn replace(
     path: &Path,
     write: impl FnOnce(&mut File) -> io::Result<()>,
 ) -> Result<(), RecordError> {
+    rename_after(path, |file| write(file).and_then(|()| file.sync_all()))?;
+    sync_directory(path.parent().unwrap_or(Path::new(".")))
+}
+
+/// Replaces `path` without waiting for the disk. A killed process leaves the old file or the new
+/// one; a power cut may leave an empty one until [`sync`] has been called.
+pub(crate) fn write_unsynced(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+    rename_after(path, |file| file.write_all(bytes))
+}
+
+/// Waits until a file written before is on the disk.
+pub(crate) fn sync(path: &Path) -> Result<(), RecordError> {
+    File::open(path).and_then(|file| file.sync_all()).map_err(RecordError::io("write", path))
+}
+
+fn rename_after(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> Result<(), RecordError> {
     let partial = partial(path);
     let created = File::options().read(true).write(true).create(true).truncate(true).open(&partial);
     let mut file = created.map_err(RecordError::io("create", &partial))?;
-    write(&mut file).and_then(|()| file.sync_all()).map_err(RecordError::io("write", path))?;
+    write(&mut file).map_err(RecordError::io("write", path))?;
     drop(file);
-    fs::rename(&partial, path).map_err(RecordError::io("replace", path))?;
-    sync_directory(path.parent().unwrap_or(Path::new(".")))
+    fs::rename(&partial, path).map_err(RecordError::io("replace", path))
 }
 
 /// What a file is written to before it is whole. A fixed name: what a kill leaves behind is

@@ -35,7 +35,10 @@ impl FieldEntry {
     }
 }
 
-/// Replaces `fields.pvd`.
+/// Name of the list.
+pub(crate) const FILE: &str = "fields.pvd";
+
+/// Replaces `fields.pvd`, without waiting for the disk.
 pub(crate) fn write(directory: &Path, entries: &[FieldEntry]) -> Result<(), RecordError> {
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n <Collection>\n",
@@ -45,12 +48,12 @@ pub(crate) fn write(directory: &Path, entries: &[FieldEntry]) -> Result<(), Reco
             writeln!(text, "  <DataSet timestep=\"{:?}\" part=\"0\" file=\"{}\"/>", entry.time, entry.file());
     }
     text.push_str(" </Collection>\n</VTKFile>\n");
-    files::write_atomically(&directory.join("fields.pvd"), &[text.as_bytes()])
+    files::write_unsynced(&directory.join(FILE), text.as_bytes())
 }
 
 /// Reads `fields.pvd`; a run without field files has none.
 pub(crate) fn read(directory: &Path) -> Result<Vec<FieldEntry>, RecordError> {
-    let path = directory.join("fields.pvd");
+    let path = directory.join(FILE);
     let text = match std::fs::read_to_string(&path) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),

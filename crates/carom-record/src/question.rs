@@ -389,17 +389,19 @@ pub(crate) fn metric(history: &History, name: &str) -> Result<f64, String> {
             .parse()
             .map_err(|_| format!("`{n}` is no number of an impact: energy_lost:1 is that of the first"))?;
         return metrics::energy_lost_at(history, n)
-            .ok_or_else(|| format!("this record has no impact {n} that ended"));
+            .ok_or_else(|| format!("the record has no impact {n} that ended"));
     }
     if let Some((column, what)) = name.rsplit_once(':') {
         history.column(column).ok_or_else(|| no_column(column))?;
         let (_, value) = metrics::of_column(history, column, what).ok_or_else(|| {
             format!("`{what}` is no metric of a column: {}", column_metric_names().join(", "))
         })?;
-        return value.ok_or_else(|| format!("this record has no {what} of `{column}`"));
+        return value.ok_or_else(|| format!("the record has no {what} of `{column}`"));
     }
     match metrics::all(history).into_iter().find(|m| m.name == name) {
-        Some(metric) => metric.value.ok_or_else(|| format!("this record has no {}", metric.definition)),
+        Some(metric) => metric
+            .value
+            .ok_or_else(|| format!("not defined for this record; it is the {}", metric.definition)),
         None => Err(unknown(name)),
     }
 }

@@ -1,8 +1,9 @@
 //! Writing a run directory so that it can be killed at any moment and continued to the same bytes.
 //!
 //! A directory comes into being by one rename, with a checkpoint in it. A checkpoint first forces
-//! the row files to the disk, then records their lengths; reopening cuts them back to those lengths
-//! and drops later fields.
+//! the row files and the field files written since the last one to the disk, then records their
+//! lengths; reopening cuts rows back to those lengths and drops later fields. Between checkpoints
+//! nothing waits for the disk: a resumed run does not need what was written there.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, Seek, SeekFrom, Write};
@@ -32,6 +33,8 @@ pub struct RunWriter {
     generation: usize,
     /// How `fields` writes.
     field_format: FieldFormat,
+    /// Field files written since the last checkpoint.
+    unsynced: Vec<PathBuf>,
     /// Held as long as this writer lives.
     _lock: File,
 }
@@ -159,6 +162,7 @@ impl RunWriter {
             generation: 1 - generation % 2,
             header,
             field_format: FieldFormat::default(),
+            unsynced: Vec::new(),
             _lock: lock,
         };
         let (step, rows) = (writer.header.step, writer.header.rows);
@@ -219,11 +223,14 @@ impl RunWriter {
         entries.retain(|e| e.step != step);
         entries.push(entry.clone());
         if self.field_format == FieldFormat::VtkHdf {
+            self.unsynced = vec![vtkhdf::path(&self.directory)];
             return vtkhdf::put(&self.directory, entries.len() - 1, &entry, fields);
         }
         let folder = self.directory.join("fields");
         fs::create_dir_all(&folder).map_err(RecordError::io("create", &folder))?;
-        files::write_atomically(&self.directory.join(entry.file()), &[&fields.to_vtu(time)?])?;
+        let path = self.directory.join(entry.file());
+        files::write_unsynced(&path, &fields.to_vtu(time)?)?;
+        self.unsynced.push(path);
         pvd::write(&self.directory, entries)
     }
 
@@ -251,6 +258,14 @@ impl RunWriter {
     }
 
     fn sync(&mut self) -> Result<(), RecordError> {
+        if !self.unsynced.is_empty() {
+            self.unsynced.drain(..).try_for_each(|path| files::sync(&path))?;
+            if self.field_format == FieldFormat::Vtu {
+                files::sync_directory(&self.directory.join("fields"))?;
+                files::sync(&self.directory.join(pvd::FILE))?;
+            }
+            files::sync_directory(&self.directory)?;
+        }
         let flushed = [self.history.flush(), self.contact.flush(), self.log.flush()];
         let files = [self.history.file(), self.contact.file(), self.log.get_ref()];
         for (i, (flushed, file)) in flushed.into_iter().zip(files).enumerate() {

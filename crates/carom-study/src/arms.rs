@@ -32,12 +32,11 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
     let mut drafts: Vec<Draft> = Vec::new();
     for (i, arm) in file.arms.iter().enumerate() {
         let path = format!("arm[{i}]");
-        let sets =
-            arm.set.iter().map(|(key, value)| (assignment(key, value), format!("{path}.set.\"{key}\"")));
+        let own = arm.set.iter().map(|entry| entry_at(entry, &path));
         let expect = format!("expect={}", arm.expect.as_deref().unwrap_or("[]"));
         drafts.push(Draft {
             name: arm.name.clone(),
-            sets: sets.collect(),
+            sets: common(file).chain(own).collect(),
             case: arm.case.clone(),
             expect: (expect, format!("{path}.expect")),
             path,
@@ -56,6 +55,7 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
             sets.push((assignment(key, &values[i]), format!("grid.\"{key}\"[{i}]")));
             name.push(format!("{key}={}", brief(&values[i])));
         }
+        sets.extend(common(file).collect::<Vec<_>>().into_iter().rev());
         sets.reverse();
         name.reverse();
         drafts.push(Draft {
@@ -112,9 +112,9 @@ pub(crate) fn fine(file: &StudyFile, step: f64, end: f64) -> Vec<Draft> {
     let steps = 4.0 * (end / step * f64::from(file.refine.unwrap_or(REFINE)) / 4.0).ceil();
     let default =
         || vec![("time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.1 }".to_owned(), "fine".to_owned())];
-    let set = |(key, value): &(String, Value)| (assignment(key, value), format!("fine.set.\"{key}\""));
     let run = |times: f64| {
-        let mut sets: Vec<_> = file.fine.iter().map(set).collect();
+        let mut sets: Vec<_> =
+            common(file).chain(file.fine.iter().map(|entry| entry_at(entry, "fine"))).collect();
         if !file.fine.iter().any(|(key, _)| key.starts_with("time.scheme")) {
             sets.extend(default());
         }
@@ -125,6 +125,16 @@ pub(crate) fn fine(file: &StudyFile, step: f64, end: f64) -> Vec<Draft> {
         Draft { name, path: "reference".into(), sets, case: None, expect, role }
     };
     [4.0, 2.0, 1.0].map(run).into()
+}
+
+/// What every arm changes, with the place where it stands.
+fn common(file: &StudyFile) -> impl Iterator<Item = (String, String)> {
+    file.set.iter().map(|entry| entry_at(entry, ""))
+}
+
+fn entry_at((key, value): &(String, Value), path: &str) -> (String, String) {
+    let dot = if path.is_empty() { "" } else { "." };
+    (assignment(key, value), format!("{path}{dot}set.\"{key}\""))
 }
 
 fn assignment(key: &str, value: &Value) -> String {

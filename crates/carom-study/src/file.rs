@@ -6,9 +6,10 @@ use carom_record::Expect;
 use carom_record::study::design::{Goal, Kind};
 use toml_edit::{Item, TableLike, Value};
 
-pub(crate) const KEYS: [&str; 13] = [
+pub(crate) const KEYS: [&str; 14] = [
     "title",
     "case",
+    "set",
     "design",
     "steps",
     "cost_of",
@@ -34,6 +35,8 @@ pub(crate) struct StudyFile {
     pub(crate) title: Option<String>,
     /// Case of the arms that name none.
     pub(crate) case: Option<String>,
+    /// What all arms and the computed reference change in their case.
+    pub(crate) set: Vec<(String, Value)>,
     pub(crate) reference: Option<String>,
     /// What makes the arms comparable: they are methods then.
     pub(crate) design: Option<Kind>,
@@ -77,6 +80,7 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
     known(root, &KEYS, "a study", "", problems);
     file.title = text(root, "title", "", problems);
     file.reference = text(root, "reference", "", problems);
+    file.set = values(root, "", "{ \"output.fields_every\" = 0 }", problems);
     comparison(root, &mut file, problems);
     let arms = tables(root, "arm", problems);
     let named =
@@ -94,14 +98,7 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
     for (i, table) in arms.into_iter().enumerate() {
         let path = format!("arm[{i}]");
         known(table, &ARM, "[[arm]]", &path, problems);
-        let mut set = Vec::new();
-        match table.get("set").and_then(Item::as_table_like) {
-            Some(values) => flatten(values, "", &mut set),
-            None if table.contains_key("set") => {
-                problems.push(not(&format!("{path}.set"), "a table", "set = { \"time.step\" = 1e-3 }"));
-            }
-            None => {}
-        }
+        let set = values(table, &path, "{ \"time.step\" = 1e-3 }", problems);
         let expect = expected(document, table, &format!("{path}.expect"), problems);
         let case = text(table, "case", &path, problems);
         let by_cost = matched(table, &path, file.design, problems);
@@ -196,13 +193,7 @@ fn comparison(root: &dyn TableLike, file: &mut StudyFile, problems: &mut Vec<Pro
         return;
     };
     known(table, &FINE, "[fine]", "fine", problems);
-    match table.get("set").map(Item::as_table_like) {
-        Some(Some(values)) => flatten(values, "", &mut file.fine),
-        Some(None) => {
-            problems.push(not("fine.set", "a table", "set = { \"time.scheme\" = { kind = \"hu\" } }"))
-        }
-        None => {}
-    }
+    file.fine = values(table, "fine", "{ \"time.scheme\" = { kind = \"hu\" } }", problems);
     if let Some(item) = table.get("refine") {
         match item.as_integer().and_then(|n| u32::try_from(n).ok()).filter(|n| *n > 0) {
             Some(n) => file.refine = Some(n),
@@ -286,6 +277,25 @@ fn matched(table: &dyn TableLike, path: &str, design: Option<Kind>, problems: &m
         )),
     }
     false
+}
+
+/// Values of the case that the `set` of a table replaces.
+fn values(
+    table: &dyn TableLike,
+    path: &str,
+    example: &str,
+    problems: &mut Vec<Problem>,
+) -> Vec<(String, Value)> {
+    let mut set = Vec::new();
+    match table.get("set").map(Item::as_table_like) {
+        Some(Some(values)) => flatten(values, "", &mut set),
+        Some(None) => {
+            let place = if path.is_empty() { "set".to_owned() } else { format!("{path}.set") };
+            problems.push(not(&place, "a table", &format!("set = {example}")));
+        }
+        None => {}
+    }
+    set
 }
 
 /// Dotted keys are tables to TOML and one key here.

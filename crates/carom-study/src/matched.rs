@@ -292,6 +292,16 @@ fn pilot(
     if !to.exists() {
         fs::rename(&from, &to).map_err(|source| RecordError::Io { action: "move", path: from, source })?;
     }
+    // What the other trials cost is in pilot.json; their records would be most of a study's size.
+    for trial in (1..=pilot.trials.len()).map(|trial| folder.join(trial.to_string())) {
+        if trial.is_dir() {
+            fs::remove_dir_all(&trial).map_err(|source| RecordError::Io {
+                action: "remove",
+                path: trial,
+                source,
+            })?;
+        }
+    }
     let run = Manifest::read(&to)?;
     let wall = run.timings.get("total").copied().unwrap_or(0.0);
     let accepted = &pilot.trials[settled];

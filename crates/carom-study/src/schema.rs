@@ -31,6 +31,7 @@ pub fn schema() -> Value {
     let study = [
         text("Title of the page."),
         text("The case file, relative to this one."),
+        set(case::changes(), "Values of the case that all arms and the computed reference replace."),
         one_of(
             "What makes the arms comparable: they are methods then, each run at every one of `steps`, or at the step at which it costs what the method `cost_of` costs there.",
             &["matched-step", "matched-cost"],

@@ -1,7 +1,7 @@
-//! `carom check`: reads and resolves a case or a study, says what is wrong and where; runs nothing,
-//! writes nothing.
+//! `carom check`: reads and resolves a case or a study, reports what is wrong and where; runs
+//! nothing, writes nothing.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use carom::case::{
     Case, Document, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec,
@@ -11,28 +11,29 @@ use carom_study::Plan;
 use carom_time::Explained;
 
 use crate::exit::{Exit, Failure};
-use crate::out;
 use crate::simulation::{self, BodyFacts, Facts};
 use crate::summary::short;
+use crate::{console, out};
 
-/// Read and resolve a case or a study, say what is wrong and where; run nothing
+/// Read and resolve a case or a study and report what is wrong and where; run nothing
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  carom check impact.toml --set time.scheme.rho_inf=0.5\n  carom check laboratory.toml"
 )]
 pub(crate) struct Arguments {
-    /// The case file, or the study file
+    /// The case file or the study file; - reads a case from standard input
     case: PathBuf,
     /// Replace a value of the case, as in `carom run`
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
-    /// The case as resolved, with every default, as JSON on standard output
+    /// The case as resolved, with every default, or its errors, as JSON on standard output
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    if Document::open(&arguments.case, &[])?.is_study() {
+    let from_file = arguments.case != Path::new(super::STDIN);
+    if from_file && Document::open(&arguments.case, &[])?.is_study() {
         return study(arguments);
     }
     let (case, document) = super::case(&arguments.case, &arguments.sets)?;
@@ -40,7 +41,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if arguments.json {
         let event = serde_json::json!({ "event": "check", "case": case, "model": facts, "warnings": case.warnings() });
         out::event(&event)?;
-    } else {
+    } else if !console::is_quiet() {
         out::line(&table(&case, &facts))?;
     }
     Ok(Exit::Done)

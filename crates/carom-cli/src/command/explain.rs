@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     parameters: Vec<String>,
     /// The same as one JSON object
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {

@@ -1,4 +1,4 @@
-//! `carom resume`: go on after a stop, bit for bit.
+//! `carom resume`: continues after a stop; the result is bitwise identical.
 
 use std::num::NonZero;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use crate::live::{Live, stop_on_signal};
 use crate::simulation::{self, Options};
 use crate::{out, summary};
 
-/// Go on with a run or a study that was stopped, bit for bit
+/// Resume a run or a study that was stopped; the result is bitwise identical
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -20,22 +20,25 @@ Examples:
 pub(crate) struct Arguments {
     /// The directory of the run or study
     directory: PathBuf,
-    /// Threads of a run; the results are the same bits for any number [default: one for each core]
+    /// Threads of a run; results are bitwise identical for any number [default: one per core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZero<usize>>,
-    /// Arms of a study computed at the same time; the results are the same bits for any number
+    /// Arms of a study computed at the same time; results are bitwise identical for any number
     /// [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
-    /// Make no figures and no page
+    /// Write no figures and no page
     #[arg(long)]
     no_report: bool,
-    /// Tell where the time of a run went
+    /// Print a timing profile of a run
     #[arg(long)]
     profile: bool,
+    /// Exit with 1 if an expectation of a run is missed
+    #[arg(long)]
+    strict: bool,
     /// One JSON object per event on standard output, and nothing else there
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -43,7 +46,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let of_a_run = [(arguments.threads.is_some(), "--threads"), (arguments.profile, "--profile")];
         if let Some((_, option)) = of_a_run.iter().find(|(given, _)| *given) {
             let what = format!("{option} is for a run, and {} is a study", arguments.directory.display());
-            let help = "the arms of a study take one thread each: --jobs says how many at the same time; \
+            let help = "the arms of a study take one thread each: --jobs sets how many run at the same time; \
                         the time of an arm is in its manifest.json";
             return Err(Failure::Argument { what, help: help.to_owned() });
         }
@@ -71,5 +74,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut live = Live::new(arguments.json);
     let done = simulation::resume(&arguments.directory, options, &mut |p| live.show(p), &stop);
     drop(live);
-    summary::tell(done, arguments.json)
+    summary::print(done, arguments.json, arguments.strict)
 }

@@ -15,10 +15,11 @@ use crate::{directory, out, summary};
 #[command(after_help = "\
 Examples:
   carom run impact.toml
+  sed s/0.25/0.5/ impact.toml | carom run - --out runs/dense
   carom run impact.toml --set time.step=1e-3 --set body.cylinder.element=T6
   carom run impact.toml --set 'time.scheme={ kind = \"hu\" }' --out runs/hu")]
 pub(crate) struct Arguments {
-    /// The case file
+    /// The case file, or - for standard input
     case: PathBuf,
     /// Directory of the run; must not exist yet [default: runs/NAME, runs/NAME-2, …]
     #[arg(long, value_name = "DIR")]
@@ -26,18 +27,21 @@ pub(crate) struct Arguments {
     /// Replace a value of the case; tables of a list by their name: body.cylinder.element=T6
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
-    /// Threads; the results are the same bits for any number [default: one for each core]
+    /// Threads; results are bitwise identical for any number [default: one per core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZero<usize>>,
-    /// Make no figures and no page
+    /// Write no figures and no page
     #[arg(long)]
     no_report: bool,
-    /// Tell where the time went
+    /// Print a timing profile
     #[arg(long)]
     profile: bool,
+    /// Exit with 1 if an expectation is missed
+    #[arg(long)]
+    strict: bool,
     /// One JSON object per event on standard output, and nothing else there
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -59,5 +63,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     live.warn(&case.warnings());
     let done = simulation::run(&case, &document, &directory, options, &mut |p| live.show(p), &stop);
     drop(live);
-    summary::tell(done, arguments.json)
+    summary::print(done, arguments.json, arguments.strict)
 }

@@ -1,11 +1,13 @@
 //! `carom study`: many runs of one case, in parallel, and one comparison.
 
-use std::io::{self, IsTerminal, Write};
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use indicatif::ProgressBar;
+
 use carom_record::Status;
+use carom_record::study::ranking::Ranking;
 use carom_record::study::{Study, StudyManifest};
 use carom_study::{Event, Outcome, Plan, StudyError};
 use serde_json::json;
@@ -13,7 +15,7 @@ use serde_json::json;
 use crate::exit::{Exit, Failure};
 use crate::live::{duration, stop_on_signal};
 use crate::summary::short;
-use crate::{directory, out};
+use crate::{console, directory, out};
 
 /// Metrics of the table that is printed; all are in study.csv.
 const SHOWN: [&str; 6] =
@@ -33,16 +35,16 @@ pub(crate) struct Arguments {
     /// Directory of the study; must not exist yet [default: runs/NAME, runs/NAME-2, …]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Arms computed at the same time; the results are the same bits for any number [default: all
-    /// cores]
+    /// Arms (variants) computed at the same time; results are bitwise identical for any number
+    /// [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
-    /// Make no figures and no page
+    /// Write no figures and no page
     #[arg(long)]
     no_report: bool,
     /// One JSON object per event on standard output, and nothing else there
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -59,7 +61,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     conclude(done, seen, &directory, !arguments.no_report)
 }
 
-/// Goes on with a study that was stopped; `page`: with figures and page at the end.
+/// Resumes a study that was stopped; `page`: with figures and page at the end.
 pub(crate) fn resume(
     directory: &Path,
     asked: Option<NonZero<usize>>,
@@ -82,7 +84,7 @@ pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
         4 => Failure::Refused { what: error.to_string() },
         _ => Failure::Argument {
             what: error.to_string(),
-            help: "go on with carom resume, or run the study again".into(),
+            help: "continue with carom resume, or run the study again".into(),
         },
     };
     let manifest = StudyManifest::read(directory).map_err(|e| failure(e.into()))?;
@@ -131,10 +133,10 @@ fn conclude(
         let claims: Vec<_> = claims.collect();
         let event = if outcome.interrupted { "interrupted" } else { "done" };
         out::event(&json!({ "event": event, "directory": directory, "report": page, "claims": claims }))?;
-    } else {
+    } else if !console::is_quiet() {
         out::line(&text(&outcome.study))?;
         if outcome.interrupted {
-            out::line(&format!("stopped by Ctrl-C; go on with: carom resume {}", directory.display()))?;
+            out::line(&format!("stopped by Ctrl-C; continue with: carom resume {}", directory.display()))?;
         }
         out::line(&page.as_deref().unwrap_or(directory).display().to_string())?;
     }
@@ -173,7 +175,29 @@ fn text(study: &Study) -> String {
         let got = e.got.map_or_else(|| e.why.clone().unwrap_or_default(), short);
         lines.push(format!("{word:9}  {}{of}: {got}  ({})", e.what, e.expected));
     }
+    lines.extend(study.ranking.iter().flat_map(|ranking| recommendation(study, ranking)));
     lines.join("\n")
+}
+
+/// The verdict of a study with a goal, as on its page.
+fn recommendation(study: &Study, ranking: &Ranking) -> Vec<String> {
+    let goal = ranking.goal.word();
+    let Some(verdict) = &ranking.verdict else {
+        let why = match &ranking.measure {
+            Err(why) => why.clone(),
+            Ok(measure) => format!("no arm has a value of: {}", measure.words),
+        };
+        return vec![String::new(), format!("no recommendation for the goal \"{goal}\": {why}")];
+    };
+    let name = &study.manifest.arms[verdict.arm].name;
+    let mut lines = vec![String::new(), format!("recommended for the goal \"{goal}\": {name}")];
+    lines.extend(verdict.reasons.iter().map(|reason| format!("  {reason}")));
+    if !verdict.alike.is_empty() {
+        lines.push(format!("  not distinguished from it: {}", verdict.alike.join(" · ")));
+    }
+    lines.push(format!("confidence: {}", verdict.confidence.word()));
+    lines.extend(verdict.confidence_reasons.iter().map(|reason| format!("  {reason}")));
+    lines
 }
 
 /// What is seen while a study runs.
@@ -186,7 +210,7 @@ struct Seen {
     left: Vec<Option<f64>>,
     ended: usize,
     json: bool,
-    terminal: bool,
+    bar: ProgressBar,
     last: Option<Instant>,
 }
 
@@ -199,7 +223,7 @@ impl Seen {
             left: vec![None; manifest.arms.len()],
             ended: 0,
             json,
-            terminal: io::stderr().is_terminal(),
+            bar: console::bar(manifest.arms.iter().map(|a| a.steps).sum()),
             last: None,
         }
     }
@@ -224,29 +248,24 @@ impl Seen {
                 json!({ "event": "progress", "arm": self.names[*i], "step": p.step, "steps": p.steps, "time": p.time, "left": p.left })
             }
         };
-        // A line nobody can see must not stop the study.
+        // A line that nobody can read must not stop the study.
         if self.json {
             let _ = out::event(&told);
         }
-        if self.terminal {
-            let _ = write!(io::stderr().lock(), "\r\x1b[K{}", self.line());
-        }
+        self.bar.set_position(self.done.iter().sum());
+        self.bar.set_message(self.line());
     }
 
-    /// `  37 %  2 of 4 arms  longest left 3 min 2 s`
+    /// `2 of 4 arms  longest left 3 min 2 s`
     fn line(&self) -> String {
-        let percent =
-            100.0 * self.done.iter().sum::<u64>() as f64 / self.steps.iter().sum::<u64>().max(1) as f64;
         let left = self.left.iter().flatten().copied().reduce(f64::max);
         let left = left.map_or_else(String::new, |left| format!("  longest left {}", duration(left)));
-        format!("{percent:4.0} %  {} of {} arms{left}", self.ended, self.names.len())
+        format!("{} of {} arms{left}", self.ended, self.names.len())
     }
 }
 
 impl Drop for Seen {
     fn drop(&mut self) {
-        if self.terminal {
-            let _ = write!(io::stderr().lock(), "\r\x1b[K");
-        }
+        self.bar.finish_and_clear();
     }
 }

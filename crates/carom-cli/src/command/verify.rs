@@ -1,6 +1,6 @@
-//! `carom verify`: every case that carries expectations, run and held against them.
+//! `carom verify`: every case that carries expectations, run and compared with them.
 
-use std::io::{self, IsTerminal, Write};
+use std::collections::BTreeMap;
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -9,37 +9,39 @@ use carom_record::Status;
 use carom_record::verification::{Row, SetUp, Verification};
 use carom_study::{Event, Kind, Named, Suite, VerifyOptions};
 use include_dir::{Dir, include_dir};
+use indicatif::ProgressBar;
 use serde_json::json;
 
 use super::study::{failure, jobs, report as study_report};
 use crate::exit::{Exit, Failure};
 use crate::live::{duration, stop_on_signal};
 use crate::summary::short;
-use crate::{directory, out};
+use crate::{console, directory, out};
 
 /// The cases as they were when the program was built.
 static CASES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../cases");
 
-/// Run every case that carries expectations, and print what came out
+/// Run every case that carries expectations and report which are met
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   carom verify
   carom verify cases/bar --report
   carom verify --fast --csv
+  carom verify --verbose | less -S
 
 Exit codes: 0 all met · 1 an expectation was missed · 2 a case is wrong · 3 a run stopped though nothing expected it")]
 #[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
     /// Cases, studies, or folders of them [default: cases/, or the fast cases this program carries]
     paths: Vec<PathBuf>,
-    /// Leave out what is marked slow
+    /// Skip cases marked slow
     #[arg(long)]
     fast: bool,
     /// Stop at the first set-up that misses an expectation, the shortest first
     #[arg(long, conflicts_with = "report")]
     fail_fast: bool,
-    /// Runs at the same time; the results are the same bits for any number [default: all cores]
+    /// Runs at the same time; results are bitwise identical for any number [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     /// Directory of the verification; must not exist yet [default: runs/verify, runs/verify-2, …]
@@ -56,7 +58,7 @@ pub(crate) struct Arguments {
     markdown: Option<PathBuf>,
     /// One JSON object per event on standard output, and nothing else there
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -80,7 +82,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let options =
         VerifyOptions { jobs: jobs(arguments.jobs), whole: arguments.report, fail_fast: arguments.fail_fast };
     let stop = stop_on_signal()?;
-    let seen = std::cell::RefCell::new(Seen::new(arguments.json, arguments.csv));
+    let seen = std::cell::RefCell::new(Seen::new(arguments.json));
     let mut begin = |runs: &[Named]| seen.borrow_mut().begin(runs);
     let done = suite.verify(&directory, options, &mut begin, &mut |e| seen.borrow_mut().event(e), &stop);
     drop(seen);
@@ -145,42 +147,36 @@ fn tell(v: &Verification, arguments: &Arguments, page: &Path) -> Result<(), Fail
         let text = v.csv()?;
         return Ok(out::line(&String::from_utf8_lossy(&text))?);
     }
-    out::line(&table(v))?;
+    if console::is_quiet() {
+        return Ok(());
+    }
+    out::line(&summary(v, console::is_verbose()))?;
     Ok(out::line(&page.display().to_string())?)
 }
 
-fn table(v: &Verification) -> String {
-    const HEADS: [&str; 8] = ["case", "quantity", "expected", "got", "error", "tolerance", "", "source"];
-    let shown = |x: Option<f64>| x.map_or("–".to_owned(), short);
-    let line = |(set_up, row): (&SetUp, &Row)| {
-        [
-            format!("{}/{}", set_up.family, set_up.name),
-            row.quantity(),
-            row.verdict.expected.clone(),
-            shown(row.verdict.got),
-            shown(row.error()),
-            shown(row.verdict.tolerance),
-            if row.verdict.pass { "met" } else { "MISSED" }.to_owned(),
-            row.verdict.why.clone().or_else(|| row.verdict.source.clone()).unwrap_or_default(),
-        ]
-    };
-    let mut cells = vec![HEADS.map(str::to_owned)];
-    cells.extend(v.rows().map(line));
-    let widths: [usize; 8] =
-        std::array::from_fn(|i| cells.iter().map(|row| row[i].chars().count()).max().unwrap_or(0));
-    let mut lines: Vec<String> = Vec::new();
-    for row in cells {
-        let padded = row.iter().zip(widths).enumerate().map(|(i, (cell, width))| match i {
-            3..=5 => format!("{cell:>width$}"),
-            7 => cell.clone(),
-            _ => format!("{cell:width$}"),
-        });
-        lines.push(padded.collect::<Vec<_>>().join("  ").trim_end().to_owned());
-    }
+/// What was missed, or every row, in columns; runs that stopped; one line per family; and in all.
+fn summary(v: &Verification, all: bool) -> String {
+    let rows: Vec<_> = v.rows().filter(|(_, row)| all || !row.verdict.pass).collect();
+    let mut lines = if rows.is_empty() { Vec::new() } else { table(&rows) };
     for set_up in &v.set_ups {
         lines.extend(
             set_up.stopped.iter().map(|why| format!("{}/{} stopped: {why}", set_up.family, set_up.name)),
         );
+    }
+    let mut families: BTreeMap<&str, [usize; 3]> = BTreeMap::new();
+    for set_up in &v.set_ups {
+        families.entry(&set_up.family).or_default()[0] += 1;
+    }
+    for (set_up, row) in v.rows() {
+        let counts = families.entry(&set_up.family).or_default();
+        counts[1] += 1;
+        counts[2] += usize::from(!row.verdict.pass);
+    }
+    let counted = |set_ups: usize, values: usize, missed: usize| {
+        format!("{set_ups:4} set-ups {values:6} values {missed:4} missed")
+    };
+    for (family, [set_ups, values, missed]) in &families {
+        lines.push(format!("  {family:14}{}", counted(*set_ups, *values, *missed)));
     }
     lines.push(format!(
         "{} set-ups, {} with dynamic contact; {} expected values, {} missed; {}",
@@ -193,30 +189,59 @@ fn table(v: &Verification) -> String {
     lines.join("\n")
 }
 
-/// What is seen while a suite runs: a line on a terminal, else a line for every run that ended, on
-/// standard error.
+fn table(rows: &[(&SetUp, &Row)]) -> Vec<String> {
+    const HEADS: [&str; 8] = ["case", "quantity", "expected", "got", "error", "tolerance", "", "source"];
+    let shown = |x: Option<f64>| x.map_or("–".to_owned(), short);
+    let line = |(set_up, row): &(&SetUp, &Row)| {
+        [
+            format!("{}/{}", set_up.family, set_up.name),
+            row.quantity(),
+            row.verdict.expected.clone(),
+            shown(row.verdict.got),
+            shown(row.error()),
+            shown(row.verdict.tolerance),
+            if row.verdict.pass { "met" } else { "MISSED" }.to_owned(),
+            row.verdict.why.clone().or_else(|| row.verdict.source.clone()).unwrap_or_default(),
+        ]
+    };
+    let mut cells = vec![HEADS.map(str::to_owned)];
+    cells.extend(rows.iter().map(line));
+    let widths: [usize; 8] =
+        std::array::from_fn(|i| cells.iter().map(|row| row[i].chars().count()).max().unwrap_or(0));
+    let padded = |row: &[String; 8]| {
+        let padded = row.iter().zip(widths).enumerate().map(|(i, (cell, width))| match i {
+            3..=5 => format!("{cell:>width$}"),
+            7 => cell.clone(),
+            _ => format!("{cell:width$}"),
+        });
+        padded.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+    };
+    cells.iter().map(padded).collect()
+}
+
+/// What is seen while a suite runs: a bar on a terminal; with `--verbose` a line for every run that
+/// ended, on standard error.
 struct Seen {
     runs: Vec<Named>,
     done: Vec<u64>,
     ended: usize,
     json: bool,
-    quiet: bool,
-    terminal: bool,
+    bar: ProgressBar,
     last: Option<Instant>,
 }
 
 impl Seen {
-    fn new(json: bool, quiet: bool) -> Self {
-        let terminal = io::stderr().is_terminal();
-        Self { runs: Vec::new(), done: Vec::new(), ended: 0, json, quiet, terminal, last: None }
+    fn new(json: bool) -> Self {
+        Self { runs: Vec::new(), done: Vec::new(), ended: 0, json, bar: console::bar(1), last: None }
     }
 
     fn begin(&mut self, runs: &[Named]) {
         self.runs = runs.to_vec();
         self.done = vec![0; runs.len()];
+        self.bar.set_length(runs.iter().map(|r| r.steps).sum::<u64>().max(1));
         if self.json {
             let names: Vec<_> = runs.iter().map(|r| &r.name).collect();
-            // A line nobody can see must not stop the suite.
+            // A line that nobody can read must not stop the suite.
             let _ = out::event(&json!({ "event": "start", "runs": names }));
         }
     }
@@ -226,15 +251,11 @@ impl Seen {
             Event::Began(i) => json!({ "event": "began", "run": self.runs[*i].name }),
             Event::Ended(i, ended) => {
                 (self.done[*i], self.ended) = (self.runs[*i].steps, self.ended + 1);
-                if !self.terminal && !self.json && !self.quiet {
+                if console::is_verbose() {
                     let how = if ended.status == Status::Finished { "done" } else { "stopped" };
                     let count = format!("{}/{}", self.ended, self.runs.len());
-                    let _ = writeln!(
-                        io::stderr(),
-                        "{count:>9}  {how} in {}  {}",
-                        duration(ended.wall),
-                        self.runs[*i].name
-                    );
+                    let (wall, name) = (duration(ended.wall), &self.runs[*i].name);
+                    self.bar.suspend(|| console::say(format_args!("{count:>9}  {how} in {wall}  {name}")));
                 }
                 json!({ "event": "ended", "run": self.runs[*i].name, "status": ended.status, "reason": ended.reason, "wall": ended.wall })
             }
@@ -251,19 +272,13 @@ impl Seen {
         if self.json {
             let _ = out::event(&told);
         }
-        if self.terminal {
-            let all = self.runs.iter().map(|r| r.steps).sum::<u64>().max(1);
-            let percent = 100.0 * self.done.iter().sum::<u64>() as f64 / all as f64;
-            let line = format!("{percent:4.0} %  {} of {} runs", self.ended, self.runs.len());
-            let _ = write!(io::stderr().lock(), "\r\x1b[K{line}");
-        }
+        self.bar.set_position(self.done.iter().sum());
+        self.bar.set_message(format!("{} of {} runs", self.ended, self.runs.len()));
     }
 }
 
 impl Drop for Seen {
     fn drop(&mut self) {
-        if self.terminal {
-            let _ = write!(io::stderr().lock(), "\r\x1b[K");
-        }
+        self.bar.finish_and_clear();
     }
 }

@@ -1,9 +1,10 @@
 //! The binary from outside: exit codes, what is said where, and that a wrong case leaves nothing
 //! behind.
 
+use std::io::Write;
 use std::process::Stdio;
 
-use crate::common::{IMPACT, Place, text};
+use crate::common::{COARSE, IMPACT, Place, text};
 
 #[test]
 fn wrong_cases_exit_2_say_where_and_write_nothing() {
@@ -53,7 +54,14 @@ fn wrong_cases_exit_2_say_where_and_write_nothing() {
             let done = place.carom(arguments);
             let told = text(&done.stderr);
             assert_eq!(done.status.code(), Some(2), "{name}: {told}");
-            assert!(done.stdout.is_empty(), "{name}");
+            if arguments.contains(&"--json") {
+                let event: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+                assert_eq!((&event["event"], &event["exit"]), (&"error".into(), &2.into()), "{name}");
+                let said = event["errors"][0]["what"].as_str().unwrap();
+                assert!(told.contains(said), "{name}: {said:?} not in\n{told}");
+            } else {
+                assert!(done.stdout.is_empty(), "{name}");
+            }
             for part in *parts {
                 assert!(told.contains(part), "{name}: {part:?} not in\n{told}");
             }
@@ -197,7 +205,9 @@ fn explain_and_schema_and_help() {
     assert_eq!((&hu["scheme"]["beta"], &hu["order"]), (&1.0.into(), &1.into()));
     let schema: serde_json::Value = serde_json::from_str(&told(&["schema"])).unwrap();
     assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
-    for command in ["run", "resume", "check", "explain", "report", "schema"] {
+    for command in
+        ["run", "resume", "study", "verify", "check", "explain", "mesh", "new", "report", "schema", "man"]
+    {
         assert!(told(&[command, "--help"]).contains("Example"), "{command}");
     }
     assert!(told(&["--help"]).contains("Exit codes"));
@@ -213,6 +223,65 @@ fn the_case_of_the_readme() {
     place.file("case.toml", case);
     let done = place.carom(&["check", "case.toml"]);
     assert_eq!((done.status.code(), text(&done.stderr)), (Some(0), String::new()));
+}
+
+/// A case from a pipe runs like one from a file, and a stream without an end is refused.
+#[test]
+fn a_case_from_standard_input() {
+    let place = Place::new("stdin");
+    let fed = |arguments: &[&str], bytes: &[u8]| {
+        let mut child = place
+            .command(arguments)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // The reader may have had enough before the end.
+        let _ = child.stdin.take().unwrap().write_all(bytes);
+        child.wait_with_output().unwrap()
+    };
+    let done = fed(&["check", "-", "--set", "body.cylinder.element=T6"], IMPACT.as_bytes());
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    assert!(text(&done.stdout).contains("T6 of rubber"));
+    let done = fed(&["check", "-"], IMPACT.replace("density", "densty").as_bytes());
+    assert_eq!(done.status.code(), Some(2));
+    assert!(text(&done.stderr).contains("<stdin>:11:1"), "{}", text(&done.stderr));
+    let done = fed(&["check", "-"], &vec![b'#'; 11_000_000]);
+    assert!(done.status.code() == Some(2) && text(&done.stderr).contains("too large"));
+    let short = [&["run", "-", "--no-report", "--set", "time.end=0.01875"], &COARSE[..]].concat();
+    assert_eq!(fed(&short, IMPACT.as_bytes()).status.code(), Some(0));
+    assert!(place.0.join("runs/stdin/history.csv").is_file());
+}
+
+/// Without `--strict` a missed expectation is reported and the run still ends with 0.
+#[test]
+fn missed_expectations_are_an_error_if_asked_for() {
+    let place = Place::new("strict");
+    place.file("case.toml", IMPACT);
+    let short = [&["run", "case.toml", "--no-report", "--set", "time.end=0.01875"], &COARSE[..]].concat();
+    let done = place.carom(&short);
+    assert_eq!(done.status.code(), Some(0));
+    assert!(text(&done.stdout).contains("MISSED: expected -0.7827 ± 0.004"), "{}", text(&done.stdout));
+    let done = place.carom(&[&short[..], &["--strict", "--quiet"]].concat());
+    assert_eq!((done.status.code(), done.stdout.len()), (Some(1), 0));
+    assert!(text(&done.stderr).contains("not available"), "{}", text(&done.stderr));
+    let met = "expect=[{ what = \"last time\", value = 0.01875, tolerance = 1e-12 }]";
+    let done = place.carom(&[&short[..], &["--strict", "--quiet", "--set", met]].concat());
+    assert_eq!((done.status.code(), text(&done.stderr)), (Some(0), String::new()));
+}
+
+#[test]
+fn colours_completions_and_manual_pages() {
+    let place = Place::new("shell");
+    let done = place.carom(&["check", "none.toml", "--color", "always"]);
+    assert!(text(&done.stderr).contains("\u{1b}["));
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        assert!(text(&place.carom(&["completions", shell]).stdout).contains("verify"), "{shell}");
+    }
+    assert!(text(&place.carom(&["man"]).stdout).contains(".TH carom 1"));
+    assert_eq!(place.carom(&["man", "--out", "pages"]).status.code(), Some(0));
+    assert!(place.0.join("pages/carom-run.1").is_file());
 }
 
 /// `carom schema | head -1` closes the pipe long before the schema ends.

@@ -56,7 +56,7 @@ fn place(name: &str) -> Place {
 #[test]
 fn fast_cases_are_met_and_written() {
     let place = place("verify-fast");
-    let done = place.carom(&["verify", "--fast", "--markdown", "book"]);
+    let done = place.carom(&["verify", "--fast", "--markdown", "book", "--verbose"]);
     let (told, seen) = (text(&done.stdout), text(&done.stderr));
     assert_eq!(done.status.code(), Some(0), "{told}{seen}");
     assert!(told.contains("flight/free  max |A.ux − (-t)|, t < 0.05"), "{told}");

@@ -78,10 +78,7 @@ pub(crate) fn put(
         return put(directory, place as usize, entry, fields);
     }
     let path = opened.path.clone();
-    opened
-        .write_step(place, entry, fields)
-        .and_then(|()| opened.file.sync_data())
-        .map_err(RecordError::io("write", &path))?;
+    opened.write_step(place, entry, fields).map_err(RecordError::io("write", &path))?;
     opened.count(place + 1)
 }
 

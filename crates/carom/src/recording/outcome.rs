@@ -28,6 +28,12 @@ pub struct Progress {
     pub newton: u32,
     /// Active pairs.
     pub active: usize,
+    /// Attempts at it that were rejected and repeated with a smaller step.
+    pub rejected: u32,
+    /// Pairs that came into contact in it.
+    pub activations: u32,
+    /// Pairs that left contact in it.
+    pub releases: u32,
     /// Created energy over the largest kinetic + strain energy so far.
     pub energy_drift: f64,
     /// Wall seconds of this process.

@@ -1,34 +1,54 @@
 //! Failures on standard error: with the line of the case they come from, in colour on a terminal.
 
-use std::io::{self, IsTerminal, Write};
-
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
 use carom::case::{CaseError, Diagnostic};
+use serde_json::json;
 
 use crate::exit::{Exit, Failure};
+use crate::{console, out};
 
-/// Tells a failure; returns the exit code that belongs to it.
-pub(crate) fn tell(failure: &Failure) -> Exit {
+/// Prints a failure, with `json` as an event on standard output too; returns its exit code.
+pub(crate) fn print(failure: &Failure, json: bool) -> Exit {
     let text = match failure {
         Failure::Case(CaseError::Wrong(found)) => found.iter().map(rendered).collect::<Vec<_>>().join("\n\n"),
         Failure::Argument { help, .. } => plain(&failure.to_string(), &[("try", help)]),
         Failure::Stopped { help, directory, .. } => {
-            let kept = format!("the last good state is kept in {}", directory.display());
+            let kept = format!("the last good state is in {}", directory.display());
             plain(&failure.to_string(), &[("note", &kept), ("try", help)])
         }
         Failure::Case(CaseError::Refused { .. }) | Failure::Refused { .. } => {
             plain(&failure.to_string(), &[])
         }
     };
-    // Nobody is left to tell if standard error is closed.
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    console::say(text);
+    // A run that stopped has been an event already.
+    if json && !matches!(failure, Failure::Stopped { .. }) {
+        let _ = out::event(&event(failure));
+    }
     failure.exit()
 }
 
+/// `{ "event": "error", "exit": 2, "errors": [{ "what": …, "why": …, "try": …, "file": …, … }] }`;
+/// lines and columns from 1, a line of 0 for a file as a whole.
+fn event(failure: &Failure) -> serde_json::Value {
+    let errors = match failure {
+        Failure::Case(CaseError::Wrong(found)) => found.iter().map(placed).collect(),
+        Failure::Argument { what, help } => vec![json!({ "what": what, "try": help })],
+        other => vec![json!({ "what": other.to_string() })],
+    };
+    json!({ "event": "error", "exit": failure.exit() as u8, "errors": errors })
+}
+
+fn placed(found: &Diagnostic) -> serde_json::Value {
+    json!({
+        "what": found.what, "why": found.why, "try": found.help,
+        "file": found.file, "line": found.line, "column": found.column, "length": found.length,
+    })
+}
+
 fn renderer() -> Renderer {
-    let colour = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    if colour { Renderer::styled().decor_style(DecorStyle::Unicode) } else { Renderer::plain() }
+    if console::in_colour() { Renderer::styled().decor_style(DecorStyle::Unicode) } else { Renderer::plain() }
 }
 
 fn rendered(found: &Diagnostic) -> String {

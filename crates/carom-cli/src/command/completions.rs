@@ -1,0 +1,26 @@
+//! `carom completions`: a script with which a shell completes commands and options.
+
+use clap::CommandFactory;
+use clap_complete::Shell;
+
+use crate::exit::{Exit, Failure};
+use crate::out;
+
+/// Print a shell's completion script
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  carom completions bash > ~/.local/share/bash-completion/completions/carom
+  carom completions zsh > ~/.zfunc/_carom
+  carom completions fish > ~/.config/fish/completions/carom.fish")]
+pub(crate) struct Arguments {
+    /// The shell
+    shell: Shell,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut crate::Arguments::command(), "carom", &mut script);
+    out::line(&String::from_utf8_lossy(&script))?;
+    Ok(Exit::Done)
+}

@@ -1,0 +1,35 @@
+//! `carom man`: the manual pages, one per command.
+
+use std::path::PathBuf;
+
+use clap::CommandFactory;
+
+use crate::exit::{Exit, Failure};
+use crate::out;
+
+/// Write the manual pages
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  carom man --out ~/.local/share/man/man1
+  carom man | man -l -")]
+pub(crate) struct Arguments {
+    /// Folder for carom.1, carom-run.1, …; without it, carom.1 is printed
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let command = crate::Arguments::command();
+    let Some(folder) = &arguments.out else {
+        let mut page = Vec::new();
+        clap_mangen::Man::new(command).render(&mut page)?;
+        out::line(&String::from_utf8_lossy(&page))?;
+        return Ok(Exit::Done);
+    };
+    let refused = |e| Failure::Refused { what: format!("cannot write to {}: {e}", folder.display()) };
+    std::fs::create_dir_all(folder)
+        .and_then(|()| clap_mangen::generate_to(command, folder))
+        .map_err(refused)?;
+    Ok(Exit::Done)
+}
