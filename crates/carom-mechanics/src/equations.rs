@@ -2,7 +2,7 @@
 //! an iterate.
 //!
 //! ```text
-//! r(d, λ) = 0   (balance.rs),   c(d, λ) = 0 for each pressing pair   (carom_contact::Interface)
+//! r(d, λ) = 0   (balance.rs),   c(d, λ) = 0 for each active pair   (carom_contact::Interface)
 //! ```
 
 use std::sync::Arc;

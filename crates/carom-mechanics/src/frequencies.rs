@@ -2,7 +2,7 @@
 //! deformation modes and the highest.
 //!
 //! ```text
-//! lowest    x ← (K + σM)⁻¹ M x, vector after vector, each kept M-orthogonal to those before (inverse iteration with deflation); σ = 1e-6 ω²_max
+//! lowest    x ← (K + σM)⁻¹ M x, vector by vector, each M-orthogonal to the previous ones (inverse iteration with deflation); σ = 1e-6 ω²_max
 //! highest   x ← M⁻¹ K x (power iteration)
 //! ```
 //!

@@ -2,7 +2,7 @@
 //! is solved on those alone.
 //!
 //! ```text
-//! [ A + Σ w λ∇²g  Gᵀ ] [Δy]   [−r]       A = w.mass a' M + w.internal K_int − w.external K_ext at the kept point
+//! [ A + Σ w λ∇²g  Gᵀ ] [Δy]   [−r]       A = w.mass a' M + w.internal K_int − w.external K_ext at the frozen point
 //! [ G             0  ] [Δλ] = [−g]       (or M where velocities are projected)
 //! ```
 //!

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! [ K   Gᵀ ] [Δy]   [ −r ]
-//! [ G   −C ] [Δλ] = [ −c ]        c = Answer::open, C = Answer::compliance of each pressing pair
+//! [ G   −C ] [Δλ] = [ −c ]        c = Answer::open, C = Answer::compliance of each active pair
 //! ```
 
 mod conserving;
