@@ -1,9 +1,9 @@
 //! Which pairs have zero gap: g ≥ 0, λ ≤ 0, λ g = 0 (eq. 12 as a complementarity problem).
 //!
 //! Primal–dual active set: a pair is active in the next iteration if λ + c g < 0. With λ = 0 on
-//! inactive pairs and g = 0 on active ones this is "activate if g < 0, release if λ > 0", for any c
-//! > 0. Visited sets are stored. When one recurs, changes wait until Newton has converged; when one
-//! recurs again, only the worst pair changes at a time.
+//! inactive pairs and g = 0 on active ones this is "activate if g < 0, release if λ > 0", whatever
+//! c > 0. Visited sets are stored. When one recurs, changes wait until Newton has converged; when
+//! one recurs again, only the worst pair changes at a time.
 
 use std::collections::HashSet;
 

@@ -14,7 +14,7 @@ use crate::nonsmooth_text::{NonsmoothExplanation, explain_nonsmooth};
 pub enum Explained {
     /// A list of implicit stages.
     Stages(Box<Explanation>),
-    /// A scheme with a contact law of its own.
+    /// A scheme with its own contact law.
     Nonsmooth(NonsmoothExplanation),
 }
 
