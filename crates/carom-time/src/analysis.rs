@@ -24,7 +24,7 @@ const ROUND_OFF: f64 = 1e-12;
 /// The oscillating pair of roots at one Ω.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Principal {
-    /// z|, the amplification per step.
+    /// |z|, the amplification per step.
     pub modulus: f64,
     /// Numerical damping ratio ξ = −ln|z| / arg z.
     pub damping_ratio: f64,
@@ -151,9 +151,9 @@ impl Scheme {
         [m, f * h, h + f * g, f + g - m, g * (h + f * f + f * g)].iter().all(|&x| x >= -ROUND_OFF)
     }
 
-    /// v₁| / (Ω ω|u₀|) as Ω → ∞ of a stiff mode released from u₀ with a₀ = −ω²u₀: |1 − γ/(2β)|. Zero
-    /// means no overshoot in velocity. Displacements of the family do not overshoot beyond a factor
-    /// independent of Ω (Hilber and Hughes 1978).
+    /// |v₁| / (Ω ω|u₀|) as Ω → ∞ of a stiff mode released from u₀ with a₀ = −ω²u₀: |1 − γ/(2β)|.
+    /// Zero means no overshoot in velocity. Displacements of the family do not overshoot beyond a
+    /// factor independent of Ω (Hilber and Hughes 1978).
     pub fn velocity_overshoot(&self) -> f64 {
         (1.0 - 0.5 * self.gamma / self.beta).abs()
     }

@@ -10,8 +10,8 @@
 //! ```
 //!
 //! For a point n = ±1, the outward direction, and ∇²g = 0. ξ is solved for in every call, up to
-//! ξ| = 1.2 beyond an end. The pair is handed to the neighbour only between solves, and never back
-//! within a step.
+//! |ξ| = 1.2 beyond an end. The pair is handed to the neighbour only between solves, and never
+//! back within a step.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -26,11 +26,11 @@ use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
 use crate::rows::Rows;
 
-/// ξ| up to which a facet is extrapolated.
+/// |ξ| up to which a facet is extrapolated.
 const REACH: f64 = 1.2;
-/// ξ| allowed for the closest point before Newton has converged.
+/// |ξ| allowed for the closest point before Newton has converged.
 const WANDER: f64 = 3.0;
-/// ξ| beyond which a pair is handed over, or back, before Newton has converged.
+/// |ξ| beyond which a pair is handed over, or back, before Newton has converged.
 const HAND_OVER: f64 = 1.02;
 const HAND_BACK: f64 = 1.1;
 /// Cosine of the kink between neighbouring facets that marks a corner, in whose vertex cone a node
