@@ -1,6 +1,6 @@
-//! Factors and solves on a square grid of nodes with two unknowns each, tied to all nodes within
-//! two columns and rows (as dense as quadratic triangles): the kept factor with the nodes of one
-//! side left for last, the small systems of contact.
+//! Factors and solves on a square grid of nodes with two unknowns each, coupled to all nodes within
+//! two columns and rows (as dense as quadratic triangles): the factor with the nodes of one side
+//! eliminated last, and the small systems of contact.
 //!
 //!     cargo bench -p carom-algebra            times
 //!     bench/instructions.py carom-algebra     instructions
@@ -13,9 +13,8 @@ use divan::Bencher;
 
 /// Nodes along an edge: 2 178 and 18 818 unknowns.
 const EDGES: [usize; 2] = [33, 97];
-/// The same, and 200 978 unknowns, with the precisions the kept factor may have and numbers of
-/// threads.
-const KEPT: [(usize, Precision, usize); 7] = [
+/// The same and 200 978 unknowns, with the precisions and numbers of threads of a reused factor.
+const REUSED: [(usize, Precision, usize); 7] = [
     (33, Precision::Double, 1),
     (33, Precision::Single, 1),
     (97, Precision::Double, 1),
@@ -24,8 +23,8 @@ const KEPT: [(usize, Precision, usize); 7] = [
     (317, Precision::Single, 1),
     (317, Precision::Single, 2),
 ];
-/// Nodes that touch, of small systems.
-const TOUCHING: [usize; 2] = [12, 48];
+/// Nodes in contact, of small systems.
+const IN_CONTACT: [usize; 2] = [12, 48];
 
 fn main() {
     divan::main();
@@ -61,7 +60,7 @@ fn grid(edge: usize) -> Grid {
 }
 
 #[divan::bench(args = EDGES)]
-fn kept_analysis(bencher: Bencher, edge: usize) {
+fn analyse(bencher: Bencher, edge: usize) {
     let grid = grid(edge);
     bencher.bench_local(|| Elimination::new(black_box(&grid.pattern), &grid.groups, &grid.side).is_ok());
 }
@@ -76,15 +75,15 @@ fn condensed(grid: &Grid, precision: Precision, threads: usize) -> Condensed {
     condensed
 }
 
-#[divan::bench(args = KEPT)]
-fn kept_factor(bencher: Bencher, (edge, precision, threads): (usize, Precision, usize)) {
+#[divan::bench(args = REUSED)]
+fn factor(bencher: Bencher, (edge, precision, threads): (usize, Precision, usize)) {
     let grid = grid(edge);
     let mut condensed = condensed(&grid, precision, threads);
     bencher.bench_local(|| condensed.factor(|k| grid.values[k]).is_ok());
 }
 
-#[divan::bench(args = KEPT)]
-fn kept_solve(bencher: Bencher, (edge, precision, threads): (usize, Precision, usize)) {
+#[divan::bench(args = REUSED)]
+fn solve(bencher: Bencher, (edge, precision, threads): (usize, Precision, usize)) {
     let grid = grid(edge);
     let mut condensed = condensed(&grid, precision, threads);
     let (right, mut x, mut out) =
@@ -95,17 +94,17 @@ fn kept_solve(bencher: Bencher, (edge, precision, threads): (usize, Precision, u
     });
 }
 
-/// One constraint for every node that touches, two unknowns and as many that only lie near.
-#[divan::bench(args = TOUCHING)]
-fn saddle_factor_and_solve(bencher: Bencher, touching: usize) {
-    let size = 4 * touching;
+/// One constraint per node in contact: two unknowns each, and as many that are only near.
+#[divan::bench(args = IN_CONTACT)]
+fn saddle_factor_and_solve(bencher: Bencher, contacts: usize) {
+    let size = 4 * contacts;
     let stiffness: Vec<f64> =
         (0..size * size).map(|k| if k / size == k % size { 40.0 } else { -30.0 / size as f64 }).collect();
     let mut saddle = Saddle::default();
-    let (mut x, mut multipliers) = (vec![0.0; size], vec![0.0; touching]);
+    let (mut x, mut multipliers) = (vec![0.0; size], vec![0.0; contacts]);
     bencher.bench_local(|| {
-        saddle.begin(black_box(&stiffness), size, touching);
-        for row in 0..touching {
+        saddle.begin(black_box(&stiffness), size, contacts);
+        for row in 0..contacts {
             saddle.add_row(row, 2 * row, 0.1);
             saddle.add_row(row, 2 * row + 1, 1.0);
         }
@@ -118,9 +117,9 @@ fn saddle_factor_and_solve(bencher: Bencher, touching: usize) {
 }
 
 /// Half of the nodes stay open.
-#[divan::bench(args = TOUCHING)]
-fn complementarity_problem(bencher: Bencher, touching: usize) {
-    let n = touching;
+#[divan::bench(args = IN_CONTACT)]
+fn complementarity_problem(bencher: Bencher, contacts: usize) {
+    let n = contacts;
     let d: Vec<f64> = (0..n * n).map(|k| if k / n == k % n { 2.0 } else { 0.5 / n as f64 }).collect();
     let b: Vec<f64> = (0..n).map(|k| (1.3 * k as f64).sin()).collect();
     let mut z = Vec::new();

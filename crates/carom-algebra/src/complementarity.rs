@@ -1,24 +1,24 @@
-//! The linear complementarity problem of a few unilateral contacts, 0 ≤ z ⊥ D z + b ≥ 0 with D
-//! symmetric and positive definite: one solution, whatever b.
+//! The linear complementarity problem of a few unilateral contacts, 0 ≤ z ⊥ D z + b ≥ 0, with D
+//! symmetric and positive definite. The solution is unique for any b.
 //!
-//! Block principal pivoting (Júdice and Pires 1994): every index on the wrong side changes sides at
-//! once; where that stops helping, only the last of them does (Murty 1974), which ends for every
-//! positive definite D. Dense: its size is the number of nodes that touch.
+//! Block principal pivoting (Júdice and Pires 1994): all indices that violate their condition
+//! change sides together. Without progress only the last one does (Murty 1974), which terminates
+//! for every positive definite D. D is dense: its size is the number of nodes in contact.
 
 use crate::LinearError;
 
-/// Block pivots without progress before single ones.
+/// Block pivots without progress before single pivots.
 const PATIENCE: usize = 10;
-/// D z + b above minus this fraction of |b| is zero: ties stay open.
+/// D z + b above minus this fraction of |b| counts as zero: ties stay open.
 const TIE: f64 = 1e-14;
-/// A pivot below this fraction of its diagonal is none.
+/// A pivot below this fraction of its diagonal entry is rejected.
 const PIVOT: f64 = 1e-13;
 
-/// Solves 0 ≤ z ⊥ D z + b ≥ 0 into `z`; `d` is the square matrix D, row by row, of which the lower
+/// Solves 0 ≤ z ⊥ D z + b ≥ 0 into `z`. `d` is the square matrix D, row by row; only its lower
 /// triangle is read.
 ///
 /// # Errors
-/// D is not positive definite on the indices that came to be positive.
+/// D is not positive definite on the indices of positive z.
 ///
 /// ```
 /// let mut z = Vec::new();
@@ -116,7 +116,7 @@ fn substitute(factor: &[f64], x: &mut [f64]) {
 mod tests {
     use super::*;
 
-    /// Pseudo-random numbers in (−1, 1), the same every time.
+    /// Pseudo-random numbers in (−1, 1), reproducible.
     fn noise(k: usize) -> f64 {
         (k as f64 * 12.9898).sin() * 43758.5453 % 1.0
     }

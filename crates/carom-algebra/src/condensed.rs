@@ -5,12 +5,12 @@
 //! A = L Lᵀ,    S = A_BB − A_BI A_II⁻¹ A_IB = L_BB L_BBᵀ
 //! ```
 //!
-//! so that any change of A on B alone, and any constraint on B alone, is a matter of the small
-//! dense S: forward through the inner unknowns, a dense solve on B, backward. The factor is kept
-//! while B's neighbourhood changes as it likes.
+//! so that any change of A on B alone, and any constraint on B alone, affects only the small dense
+//! S: forward substitution of the inner unknowns, a dense solve on B, backward substitution. The
+//! factor is reused while the neighbourhood of B changes.
 //!
-//! Where A is not positive definite signs stand between L and Lᵀ (`pivots.rs`). In single precision
-//! it is σ²A that is factored, L' = σL with σ a power of two.
+//! If A is indefinite, signs stand between L and Lᵀ (`pivots.rs`). In single precision σ²A is
+//! factored, L' = σL, with σ a power of two.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -24,12 +24,12 @@ use crate::precision::{Entry, Precision};
 use crate::substitution::Solver;
 use crate::threads::Threads;
 
-/// The factor of a matrix that was multiplied by the square of `scale`.
+/// The factor of a matrix multiplied by the square of `scale`.
 struct Entries<T> {
     factors: Aligned<T>,
-    /// What divides by its diagonal.
+    /// Reciprocals of its diagonal.
     inverse: Vec<f64>,
-    /// J; empty where it is the identity.
+    /// J; empty if it is the identity.
     signs: Vec<f64>,
     scale: f64,
 }
@@ -95,7 +95,7 @@ pub struct Condensed {
 }
 
 impl Condensed {
-    /// Room for the factor of a matrix with this structure; the calling thread does the work.
+    /// Allocates the factor of a matrix with this structure; the calling thread does the work.
     pub fn new(elimination: &Arc<Elimination>, precision: Precision) -> Self {
         let numbers = match precision {
             Precision::Double => Numbers::Double(Entries::new(elimination)),
@@ -105,7 +105,7 @@ impl Condensed {
         Self { elimination, numbers, threads: Threads::one(), schur: Vec::new() }
     }
 
-    /// Work is shared by these threads. The result does not depend on them.
+    /// Shares the work among these threads. The result does not depend on them.
     pub fn on(self, threads: &Threads) -> Self {
         Self { threads: threads.clone(), ..self }
     }
@@ -115,7 +115,7 @@ impl Condensed {
         &self.elimination
     }
 
-    /// What its entries are.
+    /// Precision of its entries.
     pub fn precision(&self) -> Precision {
         match self.numbers {
             Numbers::Double(_) => Precision::Double,
@@ -123,10 +123,10 @@ impl Condensed {
         }
     }
 
-    /// Factors a matrix, `value(k)` for entry k of the pattern; whether it is positive definite.
+    /// Factors the matrix with `value(k)` at entry k; returns whether it is positive definite.
     ///
     /// # Errors
-    /// A pivot is no number, or a diagonal vanishes.
+    /// A pivot is not finite, or a whole diagonal vanishes.
     pub fn factor(&mut self, value: impl Fn(usize) -> f64 + Sync) -> Result<bool, LinearError> {
         let (elimination, threads, schur) = (&*self.elimination, &self.threads, &mut self.schur);
         let mut factor = |signed: bool| match &mut self.numbers {
@@ -152,8 +152,8 @@ impl Condensed {
         &self.schur
     }
 
-    /// Right-hand side into the order of elimination, then forward through the inner unknowns: what
-    /// is left on the last ones is their right-hand side.
+    /// Permutes the right-hand side and eliminates the inner unknowns. The last entries of `x`
+    /// become the right-hand side of the Schur complement.
     pub fn eliminate_into(&mut self, rhs: &[f64], x: &mut Vec<f64>) {
         x.resize(self.elimination.root.length, 0.0);
         if rhs.iter().all(|value| *value == 0.0) {
@@ -170,7 +170,7 @@ impl Condensed {
         }
     }
 
-    /// Backward through the inner unknowns, the last ones known, and into the order of the pattern.
+    /// Substitutes backward from the known last unknowns and permutes to the order of the pattern.
     pub fn substitute_into(&mut self, x: &mut [f64], out: &mut [f64]) {
         match &self.numbers {
             Numbers::Double(entries) => self.solver(entries).backward(&self.elimination.root, x),
@@ -181,7 +181,7 @@ impl Condensed {
         }
     }
 
-    /// The last unknowns of a vector in the order of elimination.
+    /// The last unknowns of a vector in elimination order.
     pub fn kept_part<'a>(&self, x: &'a mut [f64]) -> &'a mut [f64] {
         let first = x.len() - self.elimination.schur_size();
         &mut x[first..]
@@ -249,8 +249,8 @@ mod tests {
         }
     }
 
-    /// Of any size, and where mass prevails so much that entries far from the diagonal are none:
-    /// there one to another falls off a thousandfold.
+    /// Any magnitude, and a dominant mass, where entries far from the diagonal underflow: each is
+    /// about a thousandth of the one before.
     #[test]
     fn single_precision_has_the_range_it_needs() {
         for (factor, coupling) in [(1e-42, 1.0), (1e42, 1.0), (1.0, 1e-3)] {
@@ -274,8 +274,7 @@ mod tests {
         }
     }
 
-    /// Large enough for parts within parts, of random entries; factor, Schur complement and
-    /// solution.
+    /// Large enough for nested parts, with random entries: factor, Schur complement and solution.
     #[test]
     fn same_bits_with_any_number_of_threads() {
         let (pattern, mut values, groups) = grid(110);
@@ -319,7 +318,7 @@ mod tests {
         }
     }
 
-    /// Negative pivots among the inner unknowns, among the last ones and in both.
+    /// Negative pivots among the inner unknowns, among the last ones, and in both.
     #[test]
     fn an_indefinite_matrix_has_a_factor_with_signs() {
         for (m, last) in

@@ -1,10 +1,9 @@
-//! The order in which unknowns are eliminated, chosen ones B last, and the structure of the factor
-//! that follows from it. B is one vertex of the graph that is ordered (approximate minimum degree;
-//! P. Amestoy, T. Davis, I. Duff, SIAM J. Matrix Anal. Appl. 17 (1996) 886–905), then moved to the
-//! end.
+//! The elimination order, with chosen unknowns B last, and the structure of the factor that follows
+//! from it. B is ordered as one vertex of the graph (approximate minimum degree; P. Amestoy, T.
+//! Davis, I. Duff, SIAM J. Matrix Anal. Appl. 17 (1996) 886–905) and then moved to the end.
 //!
-//! Columns with the same rows below them are a node. The forest of nodes is cut into parts
-//! (`forest.rs`) that can be computed at the same time.
+//! A (super)node is a run of columns with the same rows below them. The forest of nodes is cut into
+//! parts (`forest.rs`) that can be processed in parallel.
 
 use std::ops::Range;
 
@@ -23,34 +22,34 @@ use crate::forest::{Cut, cut};
 use crate::linear::LinearError;
 use crate::pattern::Pattern;
 
-/// What of a factor the pattern and the choice of last unknowns decide: several matrices share it.
+/// Symbolic factor: depends on the pattern and the last unknowns, and serves several matrices.
 #[derive(Debug)]
 pub struct Elimination {
-    /// Place of each unknown in the elimination.
+    /// Place of each unknown in the elimination order.
     pub(crate) place: Vec<u32>,
     /// The unknown at each place.
     pub(crate) order: Vec<u32>,
-    /// Where each unknown is in the vector of a solve.
+    /// Index of each unknown in the vector of a solve.
     pub(crate) positions: Vec<u32>,
     /// Number of unknowns that are not last.
     pub(crate) inner: usize,
-    /// Nodes in the order of elimination, and one behind the last for the ends of its ranges.
+    /// Nodes in elimination order, and a sentinel that ends the ranges of the last.
     pub(crate) nodes: Vec<Node>,
     /// Rows below each node, as places, ascending.
     pub(crate) below: Vec<u32>,
     /// The same rows, in the numbering of the node's part.
     pub(crate) local: Vec<u32>,
-    /// Entries of the pattern, node by node, those between last unknowns at the end; and where in
-    /// the node's values (the square of the last) each goes.
+    /// Entries of the pattern, node by node, those between last unknowns at the end; and the index
+    /// of each in the node's values (in the Schur complement for the last).
     pub(crate) entries: Vec<u32>,
     pub(crate) slots: Vec<u32>,
-    /// The part that holds all others.
+    /// The part that contains all others.
     pub(crate) root: Subtree,
-    /// The entries of the pattern's diagonal.
+    /// Indices of the pattern's diagonal entries.
     pub(crate) diagonal: Vec<u32>,
 }
 
-/// Columns with the same rows below them.
+/// Consecutive columns with the same rows below them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Node {
     /// First column.
@@ -59,41 +58,38 @@ pub(crate) struct Node {
     pub(crate) rows: u32,
     /// Start of its entries in [`Elimination::entries`].
     pub(crate) entries: u32,
-    /// The node that its first row below belongs to; [`LAST`] where that is one of the last
-    /// unknowns, or where there is none.
+    /// The node of its first row below; [`LAST`] if that is one of the last unknowns, or there is
+    /// none.
     pub(crate) parent: u32,
-    /// Start of its values, a column of all rows after the other.
+    /// Start of its values: columns of all its rows, one after the other.
     pub(crate) values: usize,
 }
 
-/// Not a node: the last unknowns.
+/// No node: the last unknowns.
 pub(crate) const LAST: u32 = u32::MAX;
 
-/// A part of the forest. Its piece of a vector holds the pieces of the parts below it, its own
-/// columns, and the rows outside that they reach; places in the latter two are what its nodes' rows
-/// are numbered by.
+/// A part of the forest. Its section of a vector holds the sections of its child parts, its own
+/// columns, and the outer rows that they couple to. Local row numbers refer to the latter two.
 #[derive(Debug)]
 pub(crate) struct Subtree {
     pub(crate) parts: Option<Box<[Subtree; 2]>>,
     /// Its own nodes and columns.
     pub(crate) nodes: Range<usize>,
     pub(crate) columns: Range<usize>,
-    /// The rows outside, in the numbering of the part around; the last unknowns, where there is
-    /// none.
+    /// The outer rows in the numbering of the parent part; the last unknowns for the root.
     pub(crate) outer: Vec<u32>,
-    /// Length of its piece of a vector.
+    /// Length of its section of a vector.
     pub(crate) length: usize,
-    /// Where its values begin, those of the parts below it among them.
+    /// Start of its values, including those of its child parts.
     pub(crate) values: usize,
-    /// Room for what its own nodes leave to each other.
+    /// Stack size for the update matrices of its own nodes.
     pub(crate) room: usize,
-    /// Most rows of one of its nodes.
+    /// Largest number of rows of one of its nodes.
     pub(crate) height: usize,
 }
 
 impl Elimination {
-    /// Orders and analyses a pattern; unknowns of one group stay together, those in `last` come
-    /// last.
+    /// Orders and analyses a pattern. Unknowns of a group stay together; those in `last` come last.
     ///
     /// # Errors
     /// The engine ran out of memory.
@@ -137,9 +133,9 @@ impl Elimination {
         elimination.collect_nodes(&raw);
         elimination.collect_entries(pattern);
         elimination.local = vec![0; elimination.below.len()];
-        let kept: Vec<u32> = (inner as u32..n as u32).collect();
+        let outside: Vec<u32> = (inner as u32..n as u32).collect();
         let mut begin = (0, 0);
-        elimination.root = elimination.part(&tree, &mut begin, Some(kept)).0;
+        elimination.root = elimination.part(&tree, &mut begin, Some(outside)).0;
         elimination.positions = vec![0; n];
         let mut positions = std::mem::take(&mut elimination.positions);
         elimination.locate(&elimination.root, 0, &mut positions);
@@ -159,7 +155,7 @@ impl Elimination {
         (self.place[unknown] as usize).checked_sub(self.inner)
     }
 
-    /// Values of the factor.
+    /// Number of values of the factor.
     pub(crate) fn len_values(&self) -> usize {
         self.nodes.last().map_or(0, |end| end.values)
     }
@@ -175,7 +171,7 @@ impl Elimination {
         self.nodes[s].rows as usize..self.nodes[s + 1].rows as usize
     }
 
-    /// The columns before the last unknowns as nodes.
+    /// Collects the columns before the last unknowns into nodes.
     fn collect_nodes(&mut self, raw: &SymbolicSupernodalCholesky<u32>) {
         let inner = self.inner;
         let mut node_of = vec![LAST; self.place.len()];
@@ -211,11 +207,11 @@ impl Elimination {
         }
     }
 
-    /// Where each entry of the pattern goes.
+    /// Index of each pattern entry in the factor.
     fn collect_entries(&mut self, pattern: &Pattern) {
         let (n, inner, place) = (pattern.size(), self.inner, &self.place);
         let entry = |i: usize, j: usize| (place[i].max(place[j]), place[i].min(place[j]));
-        // By columns first.
+        // Sorted by columns first.
         let mut fill = vec![0_u32; n + 1];
         for j in 0..n {
             pattern.column(j).iter().for_each(|&i| fill[entry(i, j).1 as usize + 1] += 1);
@@ -256,8 +252,8 @@ impl Elimination {
         (self.entries, self.slots) = (entries, slots);
     }
 
-    /// A part and those below it, its first node and column after `begin`; and the rows outside
-    /// that it reaches, which may be given.
+    /// Builds a part and its children, beginning at node and column `begin`. Also returns its outer
+    /// rows, unless they are given.
     fn part(
         &mut self,
         tree: &Cut,
@@ -270,7 +266,7 @@ impl Elimination {
             [self.part(a, begin, None), self.part(b, begin, None)]
         });
         let (first, start) = *begin;
-        // A node that begins in the part before belongs to the one it ends in.
+        // A node that spans two parts belongs to the one in which it ends.
         let mut end = first;
         while end + 1 < self.nodes.len() && self.nodes[end + 1].first as usize <= tree.end {
             end += 1;
@@ -309,22 +305,22 @@ impl Elimination {
         )
     }
 
-    /// Most that is left of nodes to each other, one after the other.
+    /// Peak size of the stack of update matrices.
     fn room(&self, nodes: Range<usize>) -> usize {
-        let (mut waiting, mut held, mut room): (Vec<(u32, usize)>, usize, usize) = (Vec::new(), 0, 0);
+        let (mut waiting, mut stacked, mut room): (Vec<(u32, usize)>, usize, usize) = (Vec::new(), 0, 0);
         for s in nodes {
             let square = self.rows(s).len().pow(2);
-            room = room.max(held + square);
+            room = room.max(stacked + square);
             while let Some((_, size)) = waiting.pop_if(|(parent, _)| *parent as usize == s) {
-                held -= size;
+                stacked -= size;
             }
-            held += square;
+            stacked += square;
             waiting.push((self.nodes[s].parent, square));
         }
         room
     }
 
-    /// Where the unknowns of a part are, its piece beginning at `start`.
+    /// Sets the indices of a part's unknowns in the vector, its section beginning at `start`.
     fn locate(&self, part: &Subtree, start: usize, positions: &mut [u32]) {
         let mut own = start;
         for part in part.parts.iter().flat_map(|parts| parts.iter()) {
@@ -350,8 +346,8 @@ fn inverse(order: &[u32]) -> Vec<u32> {
     place
 }
 
-/// The upper triangle of a pattern in some order; of the last columns only the rows before them, on
-/// which the columns before them depend.
+/// The upper triangle of a permuted pattern. Last columns store only rows before them, which is
+/// what the earlier columns depend on.
 struct Upper {
     starts: Vec<u32>,
     rows: Vec<u32>,
@@ -385,8 +381,8 @@ impl Upper {
         SymbolicSparseColMatRef::new_unsorted_checked(n, n, &self.starts, None, &self.rows)
     }
 
-    /// Parent of each column in the elimination tree (negative: none), and the entries of each in
-    /// the factor.
+    /// Parent of each column in the elimination tree (negative: none), and the column counts of the
+    /// factor.
     fn tree(&self) -> Result<(Vec<i32>, Vec<u32>), String> {
         let n = self.starts.len() - 1;
         let (mut parents, mut counts) = (vec![0; n], vec![0; n]);

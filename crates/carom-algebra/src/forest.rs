@@ -1,6 +1,6 @@
-//! The elimination forest cut into parts that do not depend on each other: a tree of parts, two
-//! below every one that is not a leaf. The cut follows from the forest alone, never from the number
-//! of threads.
+//! Partition of the elimination forest into independent parts: a binary tree of parts, of which
+//! siblings can be processed in parallel. It depends on the forest alone, never on the number of
+//! threads.
 
 use std::collections::BinaryHeap;
 
@@ -8,25 +8,25 @@ use std::collections::BinaryHeap;
 const LEAF: u64 = 50_000;
 /// Levels of parts.
 const DEPTH: usize = 4;
-/// Share of the heavier of two parts at which they count as balanced.
+/// Largest share of the heavier of two balanced parts.
 const BALANCED: f64 = 0.53;
-/// Share of a part that may lie above its two parts.
+/// Largest share of a part that may remain above its two child parts.
 const OWN: f64 = 0.4;
 
-/// A part of the forest: the columns before `end` that belong to no part before it, its parts'
-/// among them.
+/// A part of the forest: the columns before `end` that belong to no earlier part, including those
+/// of its child parts.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Cut {
     pub(crate) parts: Option<Box<[Cut; 2]>>,
-    /// Column after the last of its own.
+    /// One past its last column.
     pub(crate) end: usize,
 }
 
 /// A forest in postorder.
 struct Forest {
-    /// Descendants of each node with itself.
+    /// Number of nodes of each subtree.
     sizes: Vec<u32>,
-    /// What its subtree weighs.
+    /// Weight of each subtree.
     weights: Vec<u64>,
     /// First child and next sibling.
     child: Vec<u32>,
@@ -35,9 +35,9 @@ struct Forest {
 
 const NONE: u32 = u32::MAX;
 
-/// Orders the nodes of a forest so that each part's are contiguous and after those of its parts.
-/// `parent(j)` > j is none for a root; `weight(j)` is a node's own. The new order, as old numbers,
-/// and the parts.
+/// Permutes the nodes of a forest so that those of each part are contiguous and follow those of its
+/// child parts. `parent(j)` > j, or none for a root; `weight(j)` is the weight of node j. Returns
+/// the new order, as old numbers, and the tree of parts.
 pub(crate) fn cut(
     count: usize,
     parent: impl Fn(usize) -> Option<usize>,
@@ -67,7 +67,7 @@ pub(crate) fn cut(
     (order, tree)
 }
 
-/// Nodes so that every subtree is contiguous; roots and children ascend.
+/// Postorder: every subtree is contiguous; roots and children ascend.
 fn postorder(count: usize, parent: &impl Fn(usize) -> Option<usize>) -> (Vec<u32>, Vec<u32>) {
     let (mut child, mut sibling, mut roots) = (vec![NONE; count], vec![NONE; count], Vec::new());
     for j in (0..count).rev() {
@@ -101,7 +101,7 @@ impl Forest {
         roots.iter().map(|&r| self.weights[r as usize]).sum()
     }
 
-    /// The part made of these subtrees; `order` takes its nodes.
+    /// Builds the part of these subtrees and appends its nodes to `order`.
     fn part(&self, mut roots: Vec<u32>, depth: usize, order: &mut Vec<u32>) -> Cut {
         if depth < DEPTH
             && self.weight(&roots) >= 2 * LEAF
@@ -119,8 +119,8 @@ impl Forest {
         Cut { parts: None, end: order.len() }
     }
 
-    /// Takes nodes off the heaviest subtrees until what is left falls into balanced halves; none
-    /// where too much would have to be taken.
+    /// Moves nodes from the heaviest subtrees to the part until the remaining ones split into
+    /// balanced halves. Returns none if that moves too many.
     fn halves(&self, roots: &[u32]) -> Option<(Vec<u32>, [Vec<u32>; 2])> {
         let total = self.weight(roots) as f64;
         let mut heap: BinaryHeap<(u64, u32)> = roots.iter().map(|&r| (self.weights[r as usize], r)).collect();
@@ -128,7 +128,7 @@ impl Forest {
         loop {
             let heaviest = heap.peek()?.0 as f64;
             if heaviest <= BALANCED * left {
-                // The heaviest first, each to the lighter half.
+                // Heaviest first, each to the lighter half.
                 let mut sorted = heap.clone().into_sorted_vec();
                 let (mut halves, mut weights) = ([Vec::new(), Vec::new()], [0, 0]);
                 while let Some((weight, root)) = sorted.pop() {
@@ -161,7 +161,7 @@ impl Forest {
 mod tests {
     use super::*;
 
-    /// What the parts of `tree` reach is theirs or that of parts around them.
+    /// Asserts that ancestors of a part's nodes lie in it or in the parts that contain it.
     fn closed(
         tree: &Cut,
         begin: usize,
@@ -183,8 +183,8 @@ mod tests {
         }
     }
 
-    /// Checks that parts are closed under descendants and follow each other, and that every node
-    /// comes after its children.
+    /// Checks that parts are closed under descendants and contiguous, and that every node follows
+    /// its children.
     fn check(count: usize, parent: impl Fn(usize) -> Option<usize>, order: &[u32], tree: &Cut) {
         let mut rank = vec![usize::MAX; count];
         order.iter().enumerate().for_each(|(k, &j)| rank[j as usize] = k);
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn parts_are_closed_and_balanced() {
-        // A binary tree in heap order, backwards; a chain; a forest of stars.
+        // A reversed binary heap; a chain; a forest of stars.
         let n = 4095;
         let binary = |j: usize| (j + 1 < n).then(|| n - 1 - (n - 1 - j - 1) / 2);
         let (order, tree) = cut(n, binary, |_| 1000);

@@ -1,8 +1,7 @@
-//! The factor, node by node (multifrontal: I. Duff, J. Reid, ACM Trans. Math. Softw. 9 (1983)
-//! 302–325): a node's columns are made of the matrix and of what the nodes below it leave; what
-//! they leave in turn, the square on the rows below, goes to the node above. Nodes of parts that do
-//! not depend on each other are factored at the same time, and large nodes in blocks of columns;
-//! sums have one order.
+//! Multifrontal factorisation (I. Duff, J. Reid, ACM Trans. Math. Softw. 9 (1983) 302–325). The
+//! front of a node is assembled from the matrix and the update matrices of its children. Its own
+//! update matrix, the Schur complement on the rows below, goes to its parent. Independent parts are
+//! factored in parallel, large nodes in blocks of columns; the order of summation is fixed.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -22,8 +21,8 @@ const BLOCK: usize = 128;
 /// Multiplications that are worth another thread.
 const SHARED: usize = 1_000_000;
 
-/// Numbers that begin where a cache line does: how kernels group them then never depends on where
-/// memory was to be had.
+/// A buffer aligned to a cache line, so that results never depend on how kernels group entries by
+/// address.
 #[derive(Default)]
 pub(crate) struct Aligned<T> {
     numbers: Vec<T>,
@@ -46,16 +45,15 @@ impl<T: Entry> Aligned<T> {
     }
 }
 
-/// The square that a node leaves to the node above it, or to the last unknowns: column-major, its
-/// lower triangle.
-struct Left<T> {
+/// The update matrix that a node passes to its parent or to the last unknowns: column-major, lower
+/// triangle.
+struct Update<T> {
     node: usize,
     squares: Arc<Aligned<T>>,
     begin: usize,
 }
 
-/// A matrix to be factored: `value(k)` for entry k of the pattern, each to be multiplied by
-/// `scale`.
+/// A matrix to be factored: `scale` times `value(k)` for entry k of the pattern.
 pub(crate) struct Matrix<'a, F> {
     pub(crate) elimination: &'a Elimination,
     pub(crate) value: F,
@@ -66,7 +64,7 @@ pub(crate) struct Matrix<'a, F> {
     pub(crate) negative: Mutex<Vec<usize>>,
 }
 
-/// What a part needs beside its values.
+/// Workspace of a part.
 struct Work<T> {
     squares: Aligned<T>,
     room: Room,
@@ -74,26 +72,26 @@ struct Work<T> {
 }
 
 impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
-    /// Factors all columns before the last unknowns; `schur` becomes the lower triangle of what
-    /// they leave of the last ones' square.
+    /// Factors all columns before the last unknowns; `schur` becomes the lower triangle of their
+    /// Schur complement.
     ///
     /// # Errors
-    /// The place of a pivot that is not positive, or, with signs, none.
+    /// The place of a pivot that is not positive or, with signs, not finite.
     pub(crate) fn factor<T: Entry>(&self, values: &mut [T], schur: &mut Vec<f64>) -> Result<(), usize> {
         let all = self.elimination;
-        let left = self.part(&all.root, values)?;
-        let kept = all.schur_size();
+        let updates = self.part(&all.root, values)?;
+        let size = all.schur_size();
         schur.clear();
-        schur.resize(kept * kept, 0.0);
+        schur.resize(size * size, 0.0);
         let first = all.nodes.last().map_or(0, |end| end.entries as usize);
         for (&entry, &slot) in all.entries[first..].iter().zip(&all.slots[first..]) {
             schur[slot as usize] = self.scale * (self.value)(entry as usize);
         }
-        for left in left {
-            let rows = &all.below[all.rows(left.node)];
-            let square = &left.squares.get()[left.begin..][..rows.len().pow(2)];
+        for update in updates {
+            let rows = &all.below[all.rows(update.node)];
+            let square = &update.squares.get()[update.begin..][..rows.len().pow(2)];
             for (j, (column, &target)) in square.chunks_exact(rows.len()).zip(rows).enumerate() {
-                let target = (target as usize - all.inner) * kept;
+                let target = (target as usize - all.inner) * size;
                 for (&row, value) in rows[j..].iter().zip(&column[j..]) {
                     schur[target + row as usize - all.inner] += (*value).into();
                 }
@@ -102,7 +100,7 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
         Ok(())
     }
 
-    fn part<T: Entry>(&self, part: &Subtree, values: &mut [T]) -> Result<Vec<Left<T>>, usize> {
+    fn part<T: Entry>(&self, part: &Subtree, values: &mut [T]) -> Result<Vec<Update<T>>, usize> {
         let (mut below, mut values) = (Vec::new(), values);
         if let Some(parts) = &part.parts {
             let [a, b] = &**parts;
@@ -117,26 +115,26 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
         self.own(part, values, below)
     }
 
-    /// The part's own nodes; `below` is what the parts below it left.
+    /// Factors the part's own nodes; `below` are the updates of its child parts.
     fn own<T: Entry>(
         &self,
         part: &Subtree,
         values: &mut [T],
-        mut below: Vec<Left<T>>,
-    ) -> Result<Vec<Left<T>>, usize> {
+        mut below: Vec<Update<T>>,
+    ) -> Result<Vec<Update<T>>, usize> {
         let all = self.elimination;
         let parent = |node: usize| all.nodes[node].parent;
-        // Last first, so that the next is popped.
-        below.sort_by_key(|left| std::cmp::Reverse((parent(left.node), left.node)));
+        // In reverse, so that the next one is popped.
+        below.sort_by_key(|update| std::cmp::Reverse((parent(update.node), update.node)));
         let mut work =
             Work { squares: Aligned::<T>::new(part.room), room: Room::default(), runs: Vec::new() };
         let mut waiting: Vec<(usize, usize)> = Vec::new();
         let mut top = 0;
-        let mut rest = values;
+        let mut remaining = values;
         for s in part.nodes.clone() {
             let (columns, count) = (all.columns(s), all.rows(s).len());
-            let (panel, after) = rest.split_at_mut(all.nodes[s + 1].values - all.nodes[s].values);
-            rest = after;
+            let (panel, after) = remaining.split_at_mut(all.nodes[s + 1].values - all.nodes[s].values);
+            remaining = after;
             panel.fill(T::rounded(0.0));
             let entries = all.nodes[s].entries as usize..all.nodes[s + 1].entries as usize;
             for (&entry, &slot) in all.entries[entries.clone()].iter().zip(&all.slots[entries]) {
@@ -144,19 +142,19 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
             }
             let height = columns.len() + count;
             let size = diagonal_size(panel.iter().step_by(height + 1).take(columns.len()).copied());
-            let (held, free) = work.squares.get_mut().split_at_mut(top);
+            let (stacked, free) = work.squares.get_mut().split_at_mut(top);
             let square = &mut free[..count * count];
             square.fill(T::rounded(0.0));
-            while let Some(left) = below.pop_if(|left| parent(left.node) as usize == s) {
+            while let Some(update) = below.pop_if(|update| parent(update.node) as usize == s) {
                 all.extend_add(
-                    (left.node, &left.squares.get()[left.begin..]),
+                    (update.node, &update.squares.get()[update.begin..]),
                     (s, panel, square),
                     &mut work.runs,
                 );
             }
             let mut begin = top;
             while let Some((node, start)) = waiting.pop_if(|(node, _)| parent(*node) as usize == s) {
-                all.extend_add((node, &held[start..]), (s, panel, square), &mut work.runs);
+                all.extend_add((node, &stacked[start..]), (s, panel, square), &mut work.runs);
                 begin = start;
             }
             let panel = MatMut::from_column_major_slice_mut(panel, height, columns.len());
@@ -175,8 +173,8 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
             top = begin + count * count;
         }
         let squares = Arc::new(work.squares);
-        let mut passing: Vec<Left<T>> = below.into_iter().rev().collect();
-        passing.extend(waiting.into_iter().map(|(node, begin)| Left {
+        let mut passing: Vec<Update<T>> = below.into_iter().rev().collect();
+        passing.extend(waiting.into_iter().map(|(node, begin)| Update {
             node,
             squares: squares.clone(),
             begin,
@@ -186,16 +184,16 @@ impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
 }
 
 impl Elimination {
-    /// Adds what `node` left to the columns and the square of node s.
+    /// Adds the update of `node` to the columns and the update matrix of node s.
     fn extend_add<T: Entry>(
         &self,
-        (node, left): (usize, &[T]),
+        (node, update): (usize, &[T]),
         (s, panel, square): (usize, &mut [T], &mut [T]),
         runs: &mut Vec<[usize; 3]>,
     ) {
         let (rows, columns, below) =
             (&self.below[self.rows(node)], self.columns(s), &self.below[self.rows(s)]);
-        // Rows that follow each other in both: place in the one, in the other, and how many.
+        // Runs of rows contiguous in both: start in the source, start in the target, length.
         runs.clear();
         let mut place = 0;
         for (k, &row) in rows.iter().enumerate() {
@@ -218,9 +216,9 @@ impl Elimination {
             while runs[first][0] + runs[first][2] <= j {
                 first += 1;
             }
-            let source = &left[j * rows.len()..(j + 1) * rows.len()];
+            let source = &update[j * rows.len()..(j + 1) * rows.len()];
             let column = runs[first][1] + j - runs[first][0];
-            // The column as all rows of the node have it, and how many of them are not there.
+            // The column of the target, and how many of the node's leading rows it does not store.
             let (target, missing) = match column.checked_sub(own) {
                 None => (&mut panel[column * height..(column + 1) * height], 0),
                 Some(column) => (&mut square[column * below.len()..(column + 1) * below.len()], own),
@@ -236,11 +234,11 @@ impl Elimination {
     }
 }
 
-/// Factors a node's columns and subtracts their product from the square of the rows below. With
-/// room for signs pivots may be negative.
+/// Factors a node's columns and subtracts their product from its update matrix. Pivots may be
+/// negative if `signs` is not empty.
 ///
 /// # Errors
-/// The index of a pivot that is not positive, or no number.
+/// The index of a pivot that is not positive, or not finite.
 fn eliminate<T: Entry>(
     mut panel: MatMut<'_, T>,
     mut square: MatMut<'_, T>,
@@ -254,8 +252,8 @@ fn eliminate<T: Entry>(
     for start in (0..columns).step_by(BLOCK) {
         let width = BLOCK.min(columns - start);
         let threads = if width * (height - start).pow(2) > SHARED { threads } else { &alone };
-        let rest = panel.rb_mut().subrows_mut(start, height - start).subcols_mut(start, columns - start);
-        let (block, mut after) = rest.split_at_col_mut(width);
+        let remaining = panel.rb_mut().subrows_mut(start, height - start).subcols_mut(start, columns - start);
+        let (block, mut after) = remaining.split_at_col_mut(width);
         let (mut diagonal, mut lower) = block.split_at_row_mut(width);
         let signs = if signs.is_empty() { &mut *signs } else { &mut signs[start..start + width] };
         let diagonal_block = diagonal.rb_mut();
@@ -279,13 +277,13 @@ fn eliminate<T: Entry>(
         });
         let lower = lower.rb();
         let other = with_signs.as_ref().map_or(lower, Mat::as_ref);
-        let ahead = columns - start - width;
+        let trailing_columns = columns - start - width;
         let (_, trailing) = after.rb_mut().split_at_row_mut(width);
         threads.for_each(column_blocks(trailing), |k, target| {
             subtract_product(target, [lower, other], k * BLOCK)
         });
         if square.nrows() > 0 {
-            let rows = [lower, other].map(|lower| lower.subrows(ahead, square.nrows()));
+            let rows = [lower, other].map(|lower| lower.subrows(trailing_columns, square.nrows()));
             threads.for_each(column_blocks(square.rb_mut()), |k, target| {
                 subtract_product(target, rows, k * BLOCK)
             });
@@ -294,29 +292,29 @@ fn eliminate<T: Entry>(
     Ok(())
 }
 
-/// target −= L Mᵀ, symmetric, in the lower triangle of a square, of which the target is some
-/// columns from `first`.
+/// target −= L Mᵀ, symmetric, in the lower triangle. The target is the columns of a square matrix
+/// from `first` on.
 fn subtract_product<T: Entry>(target: MatMut<'_, T>, rows: [MatRef<'_, T>; 2], first: usize) {
     let (height, width) = target.shape();
     let [lower, other] = rows.map(|rows| rows.subrows(first, height - first));
     let (_, target) = target.split_at_row_mut(first);
-    let (square, rest) = target.split_at_row_mut(width);
+    let (square, below) = target.split_at_row_mut(width);
     let ((top, bottom), other) = (lower.split_at_row(width), other.subrows(0, width).transpose());
     let (half, whole) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
     let minus = T::rounded(-1.0);
     triangular::matmul(square, half, Accum::Add, top, whole, other, whole, minus, Par::Seq);
-    if rest.nrows() > 0 {
-        matmul(rest, Accum::Add, bottom, other, minus, Par::Seq);
+    if below.nrows() > 0 {
+        matmul(below, Accum::Add, bottom, other, minus, Par::Seq);
     }
 }
 
 fn column_blocks<T: Entry>(matrix: MatMut<'_, T>) -> impl Iterator<Item = MatMut<'_, T>> {
-    let mut rest = Some(matrix);
+    let mut remaining = Some(matrix);
     std::iter::from_fn(move || {
-        let matrix = rest.take().filter(|matrix| matrix.ncols() > 0)?;
+        let matrix = remaining.take().filter(|matrix| matrix.ncols() > 0)?;
         let width = BLOCK.min(matrix.ncols());
         let (block, after) = matrix.split_at_col_mut(width);
-        rest = Some(after);
+        remaining = Some(after);
         Some(block)
     })
 }

@@ -1,4 +1,4 @@
-//! The algebra under Carom: small tensors, sparse symmetric systems and the checks by differences.
+//! Linear algebra of Carom: small tensors, sparse symmetric systems, finite-difference checks.
 
 mod complementarity;
 mod condensed;

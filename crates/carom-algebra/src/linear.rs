@@ -26,7 +26,7 @@ pub enum LinearError {
     Engine {
         /// Unknowns.
         size: usize,
-        /// The engine's own words.
+        /// The engine's message.
         reason: String,
     },
 }

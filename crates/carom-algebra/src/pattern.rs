@@ -1,7 +1,7 @@
 //! Lower triangle of a sparse symmetric matrix, column by column.
 
-/// Places of the stored entries: the lower triangle with its full diagonal, compressed by columns,
-/// rows ascending.
+/// Positions of the stored entries: the lower triangle with its full diagonal, compressed by
+/// columns, rows ascending.
 ///
 /// ```
 /// use carom_algebra::Pattern;
@@ -11,15 +11,15 @@
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Pattern {
-    /// Start of each column in [`Self::rows`]; one more than there are columns.
+    /// Start of each column in [`Self::rows`], and the end of the last.
     pub starts: Vec<usize>,
     /// Row of each entry.
     pub rows: Vec<usize>,
 }
 
 impl Pattern {
-    /// Builds the pattern of size `n` from entries in any order, either triangle, repeated or not.
-    /// The diagonal is always there.
+    /// Builds the pattern of size `n` from entries in any order, of either triangle, possibly
+    /// repeated. The diagonal is always stored.
     pub fn from_entries(n: usize, entries: impl IntoIterator<Item = (usize, usize)>) -> Self {
         let mut columns: Vec<Vec<usize>> = (0..n).map(|i| vec![i]).collect();
         for (i, j) in entries {
@@ -36,17 +36,17 @@ impl Pattern {
         pattern
     }
 
-    /// Unknowns.
+    /// Number of unknowns.
     pub fn size(&self) -> usize {
         self.starts.len().saturating_sub(1)
     }
 
-    /// Stored entries.
+    /// Number of stored entries.
     pub fn len(&self) -> usize {
         self.rows.len()
     }
 
-    /// Whether there is no entry.
+    /// Whether there are no entries.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
@@ -56,7 +56,7 @@ impl Pattern {
         &self.rows[self.starts[j]..self.starts[j + 1]]
     }
 
-    /// Place of entry (i, j) or (j, i) among the values.
+    /// Index of entry (i, j) or (j, i) among the values.
     pub fn slot(&self, i: usize, j: usize) -> Option<usize> {
         let (row, column) = (i.max(j), i.min(j));
         self.column(column).binary_search(&row).ok().map(|k| self.starts[column] + k)

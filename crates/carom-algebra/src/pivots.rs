@@ -4,10 +4,9 @@
 //! A = L J Lᵀ,   J = diag(±1)
 //! ```
 //!
-//! J is the identity where A is positive definite; else as many of its entries are negative as A
-//! has negative eigenvalues (Sylvester). Rows are not exchanged: a tangent has so few negative
-//! pivots that hardly one of the others gets small, and what is lost of the solution is found again
-//! by the Krylov method.
+//! J is the identity if A is positive definite; otherwise it has as many negative entries as A has
+//! negative eigenvalues (Sylvester). Rows are not exchanged: a tangent has so few negative pivots
+//! that the others hardly ever become small, and the Krylov method recovers the lost accuracy.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::{ldlt, llt};
@@ -16,15 +15,15 @@ use faer::{MatMut, Par, Spec};
 
 use crate::precision::Entry;
 
-/// What is left of a diagonal entry when its unknown depends on those before.
+/// A pivot below this fraction of the diagonal means a linearly dependent unknown.
 const NOTHING: f64 = 1e-13;
 
-/// Size of the diagonal that pivots are compared with.
+/// Magnitude of the diagonal that pivots are compared with.
 pub(crate) fn diagonal_size(diagonal: impl Iterator<Item = impl Into<f64>>) -> f64 {
     diagonal.fold(0.0, |most, value| f64::max(most, value.into().abs()))
 }
 
-/// Room to factor in.
+/// Workspace of a factorisation.
 #[derive(Default)]
 pub(crate) struct Room {
     scratch: Option<MemBuffer>,
@@ -47,8 +46,8 @@ impl Room {
         MemStack::new(scratch)
     }
 
-    /// Overwrites the lower triangle of a positive definite matrix with L; `size` is that of its
-    /// diagonal before anything was eliminated.
+    /// Overwrites the lower triangle of a positive definite matrix with L. `size` is the magnitude
+    /// of its diagonal before the elimination.
     ///
     /// # Errors
     /// The index of a pivot that is not positive.
@@ -69,11 +68,11 @@ impl Room {
         }
     }
 
-    /// Overwrites the lower triangle of an indefinite matrix with L, and `signs` with J. A pivot
-    /// that is next to nothing is taken for one as large as that.
+    /// Overwrites the lower triangle of an indefinite matrix with L, and `signs` with J. Negligible
+    /// pivots are regularised.
     ///
     /// # Errors
-    /// The index of a pivot that is no number, or zero where the whole diagonal is.
+    /// The index of a pivot that is not finite, or zero with a zero diagonal.
     pub(crate) fn signed<T: Entry>(
         &mut self,
         mut matrix: MatMut<'_, T>,

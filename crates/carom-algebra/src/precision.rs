@@ -1,9 +1,9 @@
-//! The numbers of a factor: double or single precision, and the range that single precision needs.
+//! Precision of a factor, and the scaling that single precision needs.
 
 use faer::traits::RealField;
 
-/// Entries of a factor: all of their digits, or half of them in half of the memory and the time.
-/// What takes the factor for an approximation loses nothing.
+/// Precision of a factor's entries. Single precision halves memory and time; as a preconditioner
+/// the factor loses nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
     /// 53 bits.
@@ -12,9 +12,9 @@ pub enum Precision {
     Single,
 }
 
-/// A number of the factor.
+/// An entry of the factor.
 pub(crate) trait Entry: RealField + Copy + Into<f64> {
-    /// Power of two that the largest entry of the matrix is brought to; none where the range is
+    /// Exponent of two to which the largest entry of the matrix is scaled; none if the range is
     /// wide enough.
     const TOP: Option<i32>;
 
@@ -29,9 +29,9 @@ impl Entry for f64 {
     }
 }
 
-/// Where mass prevails, entries of the factor fall off with the distance of their unknowns, below
-/// what 8 bits of exponent hold; and numbers with fewer bits than 24 are slow. With the matrix near
-/// the upper end of the range they may fall by 55 decades instead of 38.
+/// Where mass dominates, entries of the factor decay with the distance of their unknowns, below the
+/// range of 8 exponent bits; subnormal numbers are slow. With the matrix scaled to near the upper
+/// end of the range they may decay by 55 decades instead of 38.
 impl Entry for f32 {
     const TOP: Option<i32> = Some(110);
 

@@ -5,11 +5,11 @@
 //! [ G  0  ] [λ] = [c]
 //! ```
 //!
-//! S positive definite and G of full rank make both factors exist; the saddle then has as many
-//! negative eigenvalues as rows (Benzi, Golub, Liesen, Acta Numerica 14 (2005), §3.4). Where S is
-//! so only on the kernel of G, S + Σ κ gᵀg with b + Σ κ c g has the same solution and is so
-//! everywhere (ibid., §3.5: the augmented Lagrangian). Where it still is not (a structure that
-//! buckles), the whole matrix is factored with rows exchanged (Bunch, Kaufman).
+//! Both factors exist if S is positive definite and G has full rank; the matrix then has one
+//! negative eigenvalue per row of G (Benzi, Golub, Liesen, Acta Numerica 14 (2005), §3.4). If S is
+//! positive definite only on the kernel of G, S + Σ κ gᵀg with b + Σ κ c g has the same solution
+//! and is positive definite everywhere (ibid., §3.5: the augmented Lagrangian). Otherwise (a
+//! buckling structure) the whole matrix is factored with pivoting (Bunch, Kaufman).
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
@@ -21,7 +21,7 @@ use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 use crate::linear::LinearError;
 use crate::pivots::{Room, diagonal_size};
 
-/// What is left of a row, as a share of its square, when it repeats the others.
+/// Fraction of a row's square below which it depends on the others.
 const DEPENDENT: f64 = 1e-14;
 
 /// Buffers and factors of the saddle point.
@@ -39,12 +39,12 @@ pub struct Saddle {
     penalties: Vec<f64>,
     nonzeros: Vec<usize>,
     room: Room,
-    /// Of the whole, where S is not positive definite.
+    /// Factor of the whole matrix if S is not positive definite.
     indefinite: Option<Lblt<f64>>,
 }
 
 impl Saddle {
-    /// Begins with S (column-major, its lower triangle) and `count` empty rows.
+    /// Starts with S (column-major, its lower triangle) and `count` empty rows.
     pub fn begin(&mut self, stiffness: &[f64], size: usize, count: usize) {
         (self.size, self.count) = (size, count);
         self.stiffness.clear();
@@ -55,8 +55,8 @@ impl Saddle {
         self.penalties.resize(count, 0.0);
     }
 
-    /// S += κ gᵀg for every row g of G, `share` times as stiff along g as S is: the solution stays
-    /// what it is, and an S that is positive definite only where G x = 0 becomes so everywhere.
+    /// S += κ gᵀg for every row g of G, with `share` times the stiffness of S along g. The solution
+    /// does not change. An S that is positive definite only where G x = 0 becomes so everywhere.
     pub fn augment(&mut self, share: f64) {
         let n = self.size.max(1);
         for (row, penalty) in self.rows.chunks_exact(n).zip(&mut self.penalties) {
@@ -87,10 +87,10 @@ impl Saddle {
         self.rows[row * self.size + j] += value;
     }
 
-    /// Factors; whether S is positive definite.
+    /// Factors; returns whether S is positive definite.
     ///
     /// # Errors
-    /// The rows depend on each other.
+    /// The rows are linearly dependent.
     pub fn factor(&mut self) -> Result<bool, LinearError> {
         let (n, m) = (self.size, self.count);
         let stiffness = self.stiffness.clone();
@@ -203,8 +203,8 @@ mod tests {
         for r in 0..m {
             assert!(((0..n).map(|j| row(r, j) * x[j]).sum::<f64>() - c[r]).abs() < 1e-13);
         }
-        // Negative along the first row alone: with its share along that row it has a factor,
-        // without it the whole has.
+        // Indefinite along the first row alone: augmented along that row S has a factor; otherwise
+        // the whole matrix is factored.
         let push = -30.0;
         let along = |i: usize| if i == 2 { 1.0 } else { 0.0 };
         for share in [0.0, 20.0] {

@@ -1,7 +1,7 @@
-//! Loops in the widest registers the machine has. Lanes never mix across widths: the bits are the
-//! same on every machine.
+//! Loops in the widest registers of the machine. Lanes do not depend on the width, so results are
+//! bitwise equal on every machine.
 
-/// Lanes of a reduction; fixed, so that its order of summation is.
+/// Lanes of a reduction; constant, so that the order of summation is.
 const LANES: usize = 8;
 
 /// Calls `work` compiled for the widest vector instructions of this processor.
@@ -26,18 +26,18 @@ pub(crate) fn subtract_both<T: Copy + Into<f64>>(y: &mut [f64], a: [f64; 2], x: 
     }
 }
 
-/// x·y, summed in eight strands; x may be of single precision.
+/// x·y, summed in eight lanes; x may be of single precision.
 #[inline(always)]
 pub(crate) fn dot<T: Copy + Into<f64>>(x: &[T], y: &[f64]) -> f64 {
-    let (x, x_rest) = x.as_chunks::<LANES>();
-    let (y, y_rest) = y.as_chunks::<LANES>();
+    let (x, x_tail) = x.as_chunks::<LANES>();
+    let (y, y_tail) = y.as_chunks::<LANES>();
     let mut strands = [0.0; LANES];
     for (x, y) in x.iter().zip(y) {
         for l in 0..LANES {
             strands[l] += x[l].into() * y[l];
         }
     }
-    let rest: f64 = x_rest.iter().zip(y_rest).map(|(x, y)| (*x).into() * y).sum();
+    let tail: f64 = x_tail.iter().zip(y_tail).map(|(x, y)| (*x).into() * y).sum();
     let [a, b, c, d, e, f, g, h] = strands;
-    (((a + e) + (c + g)) + ((b + f) + (d + h))) + rest
+    (((a + e) + (c + g)) + ((b + f) + (d + h))) + tail
 }

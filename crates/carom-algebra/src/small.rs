@@ -1,7 +1,7 @@
-//! Vectors and matrices of the space a body lives in: `D` is 1, 2 or 3 and known at compile time.
+//! Vectors and matrices of the body's space: `D` is 1, 2 or 3 and known at compile time.
 //!
-//! Global nodal arrays are flat `Vec<f64>`; seen per node they are `&[[f64; D]]`
-//! (`slice::as_chunks`). A [`Vector`] is one such node's copy with arithmetic.
+//! Global nodal arrays are flat `Vec<f64>`, viewed per node as `&[[f64; D]]` (`slice::as_chunks`).
+//! A [`Vector`] is the copy of one node with arithmetic.
 
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
@@ -37,8 +37,8 @@ impl<const D: usize> Vector<D> {
     /// The zero vector.
     pub const ZERO: Self = Self([0.0; D]);
 
-    /// From its components. A loop, because `std::array::from_fn` is not always inlined and the
-    /// arithmetic here is that of the innermost loops.
+    /// From its components. A loop, because `std::array::from_fn` is not always inlined, and this
+    /// arithmetic runs in the innermost loops.
     #[inline(always)]
     fn of(component: impl Fn(usize) -> f64) -> Self {
         let mut vector = Self::ZERO;
@@ -68,8 +68,8 @@ impl<const D: usize> Vector<D> {
 }
 
 impl Vector<2> {
-    /// The vector turned by −90°: the outward normal of a boundary that is walked with the body on
-    /// its left.
+    /// The vector rotated by −90°: the outward normal of a boundary traversed with the body on its
+    /// left.
     #[inline(always)]
     pub fn turned_right(&self) -> Self {
         Self([self.0[1], -self.0[0]])
@@ -126,7 +126,7 @@ impl<const D: usize> Mat<D> {
         sum
     }
 
-    /// Matrix of cofactors, `det(A) A⁻ᵀ`; defined for singular matrices too.
+    /// Matrix of cofactors, `det(A) A⁻ᵀ`; also defined for singular matrices.
     #[inline(always)]
     pub fn cofactor(&self) -> Self {
         let a = &self.0;
@@ -158,7 +158,7 @@ impl<const D: usize> Mat<D> {
         product(&self.0[0], |j| c.0[0][j])
     }
 
-    /// Inverse; entries are not finite where the determinant is zero.
+    /// Inverse; its entries are not finite if the determinant is zero.
     #[inline(always)]
     pub fn inverse(&self) -> Self {
         self.cofactor().transposed() * (1.0 / self.det())

@@ -1,19 +1,19 @@
-//! Triangular solves with the inner part of a factor, L y = b and Lᵀ x = J y, part by part of the
-//! elimination: parts that do not touch each other on threads.
+//! Triangular solves with the inner part of a factor, L y = b and Lᵀ x = J y. Independent parts of
+//! the elimination run in parallel.
 
 use crate::elimination::{Elimination, Subtree};
 use crate::precision::Entry;
 use crate::simd::{dot, subtract, subtract_both, wide};
 use crate::threads::Threads;
 
-/// What one part needs of another is handed over at their common boundary, in one order.
+/// Parts exchange values only at their outer rows, in a fixed order.
 pub(crate) struct Solver<'a, T> {
     pub(crate) elimination: &'a Elimination,
     pub(crate) factors: &'a [T],
     pub(crate) inverse: &'a [f64],
-    /// J; empty where it is the identity.
+    /// J; empty if it is the identity.
     pub(crate) signs: &'a [f64],
-    /// Of the scale.
+    /// The square of the scale.
     pub(crate) square: f64,
     pub(crate) threads: &'a Threads,
 }
@@ -23,16 +23,16 @@ impl<T: Entry> Solver<'_, T> {
         let mut x = x;
         if let Some(parts) = &part.parts {
             let [a, b] = &**parts;
-            let (deeper, rest) = x.split_at_mut(a.length + b.length);
+            let (deeper, remaining) = x.split_at_mut(a.length + b.length);
             let (of_a, of_b) = deeper.split_at_mut(a.length);
             self.threads.join(|| self.forward(a, rhs, of_a), || self.forward(b, rhs, of_b));
-            self.take(part, rhs, rest);
+            self.take(part, rhs, remaining);
             for (part, x) in [(a, of_a), (b, of_b)] {
                 for (&row, value) in part.outer.iter().zip(&x[x.len() - part.outer.len()..]) {
-                    rest[row as usize] += value;
+                    remaining[row as usize] += value;
                 }
             }
-            x = rest;
+            x = remaining;
         } else {
             self.take(part, rhs, x);
         }
@@ -47,7 +47,7 @@ impl<T: Entry> Solver<'_, T> {
         );
     }
 
-    /// The right-hand side on a part's own columns; nothing yet on the rows outside.
+    /// Sets the right-hand side on a part's own columns and zero on its outer rows.
     fn take(&self, part: &Subtree, rhs: &[f64], x: &mut [f64]) {
         let (own, outside) = x.split_at_mut(part.columns.len());
         for (value, &i) in own.iter_mut().zip(&self.elimination.order[part.columns.clone()]) {
@@ -83,8 +83,8 @@ impl<T: Entry> Solver<'_, T> {
         }
     }
 
-    /// First place in the part's numbering, rows below in that numbering, values (column-major, all
-    /// rows), and a divisor for each column.
+    /// First column in the part's numbering, rows below in that numbering, values (column-major,
+    /// all rows), and the reciprocal diagonal.
     #[inline(always)]
     fn node(&self, s: usize, start: usize) -> (usize, &[u32], &[T], &[f64]) {
         let (columns, all) = (self.elimination.columns(s), self.elimination);
@@ -111,8 +111,8 @@ impl<T: Entry> Solver<'_, T> {
         if columns % 2 == 1 {
             let c = columns - 1;
             rows[c] *= inverse[c];
-            let (known, rest) = rows[c..].split_at_mut(1);
-            subtract(rest, known[0], &values[c * height + columns..]);
+            let (known, remaining) = rows[c..].split_at_mut(1);
+            subtract(remaining, known[0], &values[c * height + columns..]);
         }
         x[first..first + columns].copy_from_slice(&rows[..columns]);
         for (value, &row) in rows[columns..].iter().zip(below) {
@@ -120,7 +120,7 @@ impl<T: Entry> Solver<'_, T> {
         }
     }
 
-    /// Forward left z/σ; backward solves L'ᵀx = σ²(z/σ) − L'_BIᵀ x_B.
+    /// `forward` left z/σ; this solves L'ᵀx = σ²(z/σ) − L'_BIᵀ x_B.
     #[inline(always)]
     fn backward_node(&self, s: usize, start: usize, rows: &mut [f64], x: &mut [f64]) {
         let (first, below, values, inverse) = self.node(s, start);
@@ -134,7 +134,7 @@ impl<T: Entry> Solver<'_, T> {
         if !self.signs.is_empty() {
             own.iter_mut().zip(&self.signs[self.elimination.columns(s)]).for_each(|(x, sign)| *x *= sign);
         }
-        // The long sum does not wait for the column before.
+        // The long sum does not depend on the previous column.
         for c in (0..columns).rev() {
             let (near, far) = values[c * height + c + 1..(c + 1) * height].split_at(columns - c - 1);
             let known = dot(far, outside) + dot(near, &own[c + 1..]);

@@ -1,11 +1,11 @@
-//! Threads that the parts of a computation share. What is computed never depends on how many there
-//! are: work is cut into pieces by its structure alone, and every sum has one order.
+//! A thread pool shared by a computation. Results never depend on the number of threads: work is
+//! divided by its structure alone, and every sum has a fixed order.
 
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-/// A number of threads; copies share them.
+/// A number of threads; clones share them.
 ///
 /// ```
 /// use carom_algebra::Threads;
@@ -30,18 +30,18 @@ impl Threads {
         Self::default()
     }
 
-    /// As many threads; one where the machine gives no more.
+    /// `count` threads; one if no more can be started.
     pub fn new(count: usize) -> Self {
         let pool = || rayon::ThreadPoolBuilder::new().num_threads(count).build().ok().map(Arc::new);
         Self { pool: if count > 1 { pool() } else { None } }
     }
 
-    /// How many there are.
+    /// Number of threads.
     pub fn count(&self) -> usize {
         self.pool.as_ref().map_or(1, |pool| pool.current_num_threads())
     }
 
-    /// Does `work` on one of the threads: what it hands out from there costs no change of threads.
+    /// Runs `work` on one of the threads, so that nested parallel calls do not switch threads.
     pub fn within<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
             Some(pool) => pool.install(work),
@@ -49,7 +49,7 @@ impl Threads {
         }
     }
 
-    /// Does both, at the same time where there is a second thread.
+    /// Runs both, in parallel if there is a second thread.
     pub fn join<A: Send, B: Send>(
         &self,
         first: impl FnOnce() -> A + Send,
@@ -74,8 +74,8 @@ impl Threads {
         }
     }
 
-    /// Calls `work(first, block)` for blocks of `size` items, the last one maybe shorter; `first`
-    /// is the index of a block's first item.
+    /// Calls `work(first, block)` for blocks of `size` items, the last possibly shorter; `first` is
+    /// the index of a block's first item.
     pub fn for_each_block<T: Send>(
         &self,
         items: &mut [T],

@@ -1,5 +1,5 @@
-//! Search and gaps of contact with facets: an arc of secondary nodes, a part of which has just come
-//! through a flat side of linear, quadratic or cubic facets.
+//! Search and gaps of contact with facets: an arc of secondary nodes, some of which have just
+//! penetrated a flat side of linear, quadratic or cubic facets.
 //!
 //!     cargo bench -p carom-contact            times
 //!     bench/instructions.py carom-contact     instructions
@@ -19,11 +19,11 @@ fn main() {
     divan::main();
 }
 
-/// The contact, and positions before and after the step in which the arc comes through the side.
+/// The contact, and positions before and after the step in which the arc penetrates the side.
 fn scene(shape: FacetShape) -> (NodeToFacet, Vec<f64>, Vec<f64>) {
     let order = shape.degree();
     let points = FACETS * order;
-    // Walked with the body below on the left: from right to left.
+    // Traversed with the body below on the left: from right to left.
     let side = (0..=points).map(|k| [2.0 - 4.0 * k as f64 / points as f64, 0.0]);
     let angle = |k: usize| std::f64::consts::TAU * k as f64 / NODES as f64;
     let arc = |height: f64| (0..NODES).map(move |k| [angle(k).sin(), height - angle(k).cos()]);
@@ -47,7 +47,7 @@ fn found(contact: &NodeToFacet, before: &[f64], now: &[f64]) -> Pairing {
 
 /// All pairs are new.
 #[divan::bench(args = SHAPES)]
-fn detection_at_first_touch(bencher: Bencher, shape: FacetShape) {
+fn detection_at_first_contact(bencher: Bencher, shape: FacetShape) {
     let (contact, before, now) = scene(shape);
     let mut pairing = found(&contact, &before, &now);
     bencher.bench_local(|| {
@@ -56,7 +56,7 @@ fn detection_at_first_touch(bencher: Bencher, shape: FacetShape) {
     });
 }
 
-/// All pairs are known: their facets are looked over.
+/// All pairs are known: only their facets are checked.
 #[divan::bench(args = SHAPES)]
 fn detection_in_contact(bencher: Bencher, shape: FacetShape) {
     let (contact, before, now) = scene(shape);

@@ -1,31 +1,29 @@
-//! Which pairs hold their gap at zero: g ≥ 0, λ ≤ 0, λ g = 0 (eq. 12 as a complementarity).
+//! Which pairs have zero gap: g ≥ 0, λ ≤ 0, λ g = 0 (eq. 12 as a complementarity problem).
 //!
-//! Primal–dual active set: a pair is active in the next iteration where λ + c g < 0. With λ = 0 on
-//! open pairs and g = 0 on closed ones this is "activate where g < 0, release where λ > 0",
-//! whatever c > 0. Sets that were visited before are remembered: when the iteration comes back to
-//! one, changes wait until Newton has converged, and when it comes back again, only the worst pair
-//! changes at a time.
+//! Primal–dual active set: a pair is active in the next iteration if λ + c g < 0. With λ = 0 on
+//! inactive pairs and g = 0 on active ones this is "activate if g < 0, release if λ > 0", whatever
+//! c > 0. Visited sets are stored. When one recurs, changes wait until Newton has converged; when
+//! one recurs again, only the worst pair changes at a time.
 
 use std::collections::HashSet;
 
-/// A release needs λ above this fraction of the largest multiplier: ties stay closed.
+/// A release needs λ above this fraction of the largest multiplier: ties stay active.
 const RELEASE: f64 = 1e-10;
 
 /// Gap and multiplier of one pair, and whether it is active.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contender {
-    /// Whether its gap is held at zero now.
+    /// Whether its gap is constrained to zero.
     pub active: bool,
     /// Gap.
     pub gap: f64,
     /// Multiplier.
     pub lambda: f64,
-    /// Force that stands for one unit of gap (diagonal of the stage's tangent): makes gaps and
-    /// multipliers comparable.
+    /// Diagonal of the stage's tangent, a force per gap: makes gaps and multipliers comparable.
     pub stiffness: f64,
 }
 
-/// How freely the set may change.
+/// How often the set may change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Caution {
     EveryIteration,
@@ -33,7 +31,7 @@ enum Caution {
     OneAtATime,
 }
 
-/// Memory of the sets visited in one step.
+/// History of the sets visited in one step.
 #[derive(Clone, Debug)]
 pub struct ActiveSet {
     visited: HashSet<Vec<usize>>,
@@ -41,35 +39,35 @@ pub struct ActiveSet {
     gap_tolerance: f64,
 }
 
-/// The set keeps returning to one it has visited, whatever is tried.
+/// The set returns to a visited one in spite of all restrictions.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the active set cycles: pairs {pairs:?} open and close in turn")]
 pub struct Cycle {
-    /// Places of the pairs that would change.
+    /// Indices of the pairs that would change.
     pub pairs: Vec<usize>,
 }
 
 impl ActiveSet {
-    /// `gap_tolerance`: penetration that still counts as touching. `within`: changes are allowed
+    /// `gap_tolerance`: penetration that still counts as contact. `within`: changes are allowed
     /// before Newton has converged.
     pub fn new(gap_tolerance: f64, within: bool) -> Self {
         let caution = if within { Caution::EveryIteration } else { Caution::AfterConvergence };
         Self { visited: HashSet::new(), caution, gap_tolerance }
     }
 
-    /// Whether cycling forced more caution than the step began with.
+    /// Whether cycling has restricted changes to one pair at a time.
     pub fn is_cautious(&self) -> bool {
         self.caution == Caution::OneAtATime
     }
 
-    /// Places of the pairs that are to change, given the state of an iteration. Empty where the set
-    /// holds, or must not change yet.
+    /// Indices of the pairs to change, given the state of an iteration. Empty if the set is correct
+    /// or must not change yet.
     pub fn changes(&mut self, pairs: &[Contender], converged: bool) -> Result<Vec<usize>, Cycle> {
         if self.caution > Caution::EveryIteration && !converged {
             return Ok(Vec::new());
         }
         let strongest = pairs.iter().map(|p| p.lambda.abs()).fold(0.0, f64::max);
-        // How wrong a pair is, as a force; 0 where it is right.
+        // Violation of a pair's condition as a force; 0 if satisfied.
         let violation = |p: &Contender| -> f64 {
             if p.active {
                 if p.lambda > RELEASE * strongest { p.lambda } else { 0.0 }
@@ -109,7 +107,7 @@ impl ActiveSet {
         Ok(wrong)
     }
 
-    /// Forgets the visited sets: the pairs themselves have changed.
+    /// Clears the visited sets: the pairs themselves have changed.
     pub fn restart(&mut self) {
         self.visited.clear();
     }

@@ -1,5 +1,5 @@
 //! Contact: surfaces, search, gaps and their derivatives, laws, active sets. A function of
-//! positions; time and matrices are elsewhere.
+//! positions, independent of time integration and matrices.
 
 mod active_set;
 pub mod interface;

@@ -1,39 +1,38 @@
-//! What the next step is to know of a possible contact, and what happened to it.
+//! The state of a possible contact between steps, and its events.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-/// One secondary node against one facet of the primary side: where it touches, and with what
-/// history.
+/// One secondary node against one facet of the primary side: contact point and history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
-    /// Place of the secondary node in [`Kinematics::secondary`](crate::Kinematics::secondary).
+    /// Index of the secondary node in [`Kinematics::secondary`](crate::Kinematics::secondary).
     pub node: usize,
     /// Facet of the primary side; 0 for a rigid primary.
     pub facet: usize,
-    /// Contact point on the facet, −1 … 1; 0 where a facet is a point or a plane.
+    /// Contact point on the facet, −1 … 1; 0 if the facet is a point or a plane.
     pub xi: f64,
-    /// Whether it presses: for a constraint, whether its gap is held at zero.
+    /// Whether it is active: for a constraint, whether its gap is constrained to zero.
     pub active: bool,
     /// Multiplier λ ≤ 0; zero unless active.
     pub lambda: f64,
-    /// Gap at the step's start as an energy-conserving penalty counts it: carried, since Δg = ∇g·Δy
-    /// at the middle holds to second order only.
+    /// Gap at the step's start for an energy-conserving penalty. It is stored, since Δg = ∇g·Δy at
+    /// the midpoint holds to second order only.
     pub start: Option<f64>,
 }
 
 impl Pair {
-    /// An open pair at a place of a facet.
+    /// An inactive pair at a point of a facet.
     pub fn open(node: usize, facet: usize, xi: f64) -> Self {
         Self { node, facet, xi, active: false, lambda: 0.0, start: None }
     }
 }
 
-/// How far around a facet's path a node is watched, as a share of the path's size: before it
-/// touches, and as far as facets are extrapolated.
+/// Margin around a facet's path within which a node is tracked, relative to the path's size: before
+/// contact, and as far as facets are extrapolated.
 const WATCHED: f64 = 0.35;
-/// The same for who asks only what touches within the step.
+/// The same when only contacts within the step matter.
 const NEAR: f64 = 0.01;
 
 /// The pairs of one contact during one solve, ascending by node.
@@ -41,32 +40,32 @@ const NEAR: f64 = 0.01;
 pub struct Pairing {
     /// The pairs.
     pub pairs: Vec<Pair>,
-    /// How far around facets nodes are watched.
+    /// Margin around facets within which nodes are tracked.
     pub(crate) margin: f64,
-    /// Facet a node was handed over from in the present step: it does not go back within the step.
+    /// Facet from which a node was handed over in this step: it does not return within the step.
     pub(crate) left: BTreeMap<usize, usize>,
 }
 
 impl Pairing {
-    /// Pairs at the start of a solve: each is free to change facets again.
+    /// Pairs at the start of a solve: each may change facets again.
     pub fn new(pairs: Vec<Pair>) -> Self {
         Self { pairs, margin: WATCHED, left: BTreeMap::new() }
     }
 
-    /// The same for an explicit step, which cannot go further than it looks: only nodes that may
-    /// touch within it are watched.
+    /// The same for an explicit step, which moves no further than predicted: only nodes that may
+    /// come into contact within it are tracked.
     pub fn near(pairs: Vec<Pair>) -> Self {
         Self { margin: NEAR, ..Self::new(pairs) }
     }
 
-    /// Forgets the open pairs and which facets were left: what is found afresh depends on positions
+    /// Drops the inactive pairs and the hand-overs, so that a new search depends on positions
     /// alone.
     pub fn restart(&mut self) {
         self.pairs.retain(|pair| pair.active);
         self.left.clear();
     }
 
-    /// Becomes a copy of another one and keeps its memory.
+    /// Copies another one, reusing allocated memory.
     pub fn copy_from(&mut self, other: &Self) {
         self.pairs.clone_from(&other.pairs);
         self.margin = other.margin;
@@ -80,7 +79,7 @@ impl Default for Pairing {
     }
 }
 
-/// Something that happened to a pair, for the log.
+/// An event of a pair, for the log.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", tag = "event")]
 pub enum PairEvent {
@@ -102,7 +101,7 @@ pub enum PairEvent {
     },
 }
 
-/// Why a gap has no usable value.
+/// Why a gap is not usable.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ContactError {
     /// The node is as far behind the facet as the facet's radius of curvature: no unique closest

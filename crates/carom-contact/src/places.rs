@@ -1,5 +1,5 @@
 //! Positions of all nodes as contact reads them: padded with zeros to the plane, so that the end of
-//! a bar and a curved side are one code.
+//! a bar and a curved side share their code.
 
 use carom_algebra::Vector;
 
@@ -17,7 +17,7 @@ impl<'a> Places<'a> {
         Self { y, dimension }
     }
 
-    /// Coordinates of a node, as many as there are dimensions.
+    /// Coordinates of a node, one per dimension.
     #[inline]
     pub(crate) fn coordinates(&self, node: usize) -> &'a [f64] {
         &self.y[node * self.dimension..(node + 1) * self.dimension]

@@ -1,15 +1,15 @@
-//! Gaps with their gradients: one row per constraint over the nodes it depends on, in compressed
-//! rows.
+//! Gaps with their gradients: one row per constraint over the nodes on which it depends, in
+//! compressed rows.
 //!
-//! A gap g(y) is a frame-indifferent scalar, g < 0 penetrates. The force of a traction λ ≤ 0 on it
-//! is λ ∇g: balance of force and moment follows from that alone.
+//! A gap g(y) is a frame-indifferent scalar; g < 0 is penetration. The force of a traction λ ≤ 0 is
+//! λ ∇g, which implies balance of force and moment.
 
-/// Rows of constraints, all of one dimension.
+/// Constraint rows, all of one dimension.
 #[derive(Clone, Debug)]
 pub struct Rows {
     dimension: usize,
     gaps: Vec<f64>,
-    /// Where the nodes of each row start, and where the last ones end.
+    /// Start of the nodes of each row, and end of the last.
     starts: Vec<usize>,
     nodes: Vec<usize>,
     /// ∂g/∂y of each of these nodes.
@@ -19,7 +19,7 @@ pub struct Rows {
 /// One row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row<'a> {
-    /// Gap g; infinite where there is no unique closest point, which is far away.
+    /// Gap g; infinite without a unique closest point, for a remote pair.
     pub gap: f64,
     /// Global numbers of the nodes it depends on; the secondary node comes first.
     pub nodes: &'a [usize],
@@ -28,7 +28,7 @@ pub struct Row<'a> {
 }
 
 impl Rows {
-    /// No rows yet, over positions of a dimension.
+    /// No rows yet, for positions of a dimension.
     pub fn new(dimension: usize) -> Self {
         Self { dimension, gaps: Vec::new(), starts: vec![0], nodes: Vec::new(), gradients: Vec::new() }
     }
@@ -38,12 +38,12 @@ impl Rows {
         self.gaps.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.gaps.is_empty()
     }
 
-    /// Forgets all rows and keeps the memory.
+    /// Removes all rows and keeps the memory.
     pub fn clear(&mut self) {
         self.gaps.clear();
         self.starts.truncate(1);
@@ -51,8 +51,8 @@ impl Rows {
         self.gradients.clear();
     }
 
-    /// Adds a row from its nodes with their ∂g/∂y, of which as many components count as there are
-    /// dimensions.
+    /// Adds a row from its nodes with their ∂g/∂y, of which as many components are used as there
+    /// are dimensions.
     pub fn push<const P: usize>(&mut self, gap: f64, nodes: impl IntoIterator<Item = (usize, [f64; P])>) {
         self.gaps.push(gap);
         for (node, gradient) in nodes {
@@ -62,12 +62,12 @@ impl Rows {
         self.starts.push(self.nodes.len());
     }
 
-    /// Adds a row that is far away: it depends on nothing.
+    /// Adds the row of a remote pair: it depends on nothing.
     pub fn push_open(&mut self) {
         self.push::<0>(f64::INFINITY, []);
     }
 
-    /// Takes the last row away; its gap is returned, infinite where there was none.
+    /// Removes the last row and returns its gap, infinite if there was none.
     pub fn pop(&mut self) -> f64 {
         let Some(gap) = self.gaps.pop() else { return f64::INFINITY };
         self.starts.pop();
@@ -97,7 +97,7 @@ impl Rows {
         (0..self.len()).map(|row| self.row(row))
     }
 
-    /// The gap of a row, for change: springs count their own.
+    /// The gap of a row, mutable: springs have their own.
     pub fn gap_mut(&mut self, row: usize) -> &mut f64 {
         &mut self.gaps[row]
     }
@@ -128,7 +128,7 @@ impl Row<'_> {
         }
     }
 
-    /// ∂g/∂y of the secondary node, padded with zeros to space: the unit normal out of the primary.
+    /// ∂g/∂y of the secondary node padded with zeros to space: the primary's outward unit normal.
     pub fn normal(&self) -> [f64; 3] {
         let d = self.dimension();
         std::array::from_fn(|i| if i < d { self.gradient[i] } else { 0.0 })

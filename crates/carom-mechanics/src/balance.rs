@@ -1,19 +1,19 @@
-//! The balance of forces, eq. (15): where space, contact and time meet.
+//! The balance of forces, eq. (15), which combines space, contact and time.
 //!
 //! ```text
 //! r(d, λ) =  w.mass M a(d) + w.internal f_int + w.contact Gᵀλ − w.external f_ext
 //!          + b.mass M a_s  + b.internal f_int,s + b.contact f_cont,s − b.external f_ext,s
 //! ```
 //!
-//! with y = y_s + d, a(d) and the weights w (now), b (before) from the stage. The unknown is the
-//! increment d: formed from rounded positions, the acceleration would carry their last digit
-//! divided by Δt². A dof without mass has no inertia to average with: its balance holds at s + 1
-//! alone. f_ext is gravity and the loads at the same time (and, of pressures, positions) as f_int.
-//! The residual of a held dof is what its support must exert.
+//! with y = y_s + d, a(d) and the weights w (end of stage) and b (start of step) from the stage.
+//! The unknown is the increment d: formed from rounded positions, the acceleration would carry
+//! their last digit divided by Δt². A massless dof has no inertia to average with: its balance
+//! holds at s + 1 alone. f_ext is gravity and the loads, evaluated at the same time (and, for
+//! pressures, positions) as f_int. The residual of a constrained dof is its reaction force.
 //!
-//! At dofs that move as a formula says, the acceleration ü is known, and M ü acts on the neighbours
-//! like an external force, averaged with α_f. The scheme's own a is another quantity, late by (α_f
-//! − α_m)Δt (Erlicher, Bonaventura, Bursi 2002): ü averaged with α_m in its place costs an order.
+//! At prescribed dofs the acceleration ü is known, and M ü acts on the neighbours like an external
+//! force, averaged with α_f. The scheme's own a is another quantity, with a delay of (α_f − α_m)Δt
+//! (Erlicher, Bonaventura, Bursi 2002): averaging ü with α_m instead costs an order.
 
 use carom_time::{Stage, Weights};
 
@@ -33,19 +33,19 @@ pub(crate) struct Forces {
     pub contact: Vec<f64>,
 }
 
-/// Weight of a contact's force now and before: averaged like eq. (15), or all at the end.
+/// Weights of a contact's force at the end and the start: averaged as in eq. (15), or end only.
 pub(crate) fn contact_weights(stage: &Stage, at_the_end: bool) -> (f64, f64) {
     if at_the_end { (1.0, 0.0) } else { (stage.weights.contact, stage.before.contact) }
 }
 
-/// Mean over the step of the known acceleration of a moved dof: the weights are those of external
+/// Mean over the step of the known acceleration of a prescribed dof, with the weights of external
 /// forces.
 pub(crate) fn mean_acceleration(stage: &Stage, now: f64, before: f64) -> f64 {
     let (weight, known) = (stage.weights.external, stage.before.external);
     weight * (1.0 - stage.average) * now + (known + weight * stage.average) * before
 }
 
-/// The lower line of the balance: what is known from the state at the step's start.
+/// The second line of the balance: terms known from the state at the step's start.
 pub(crate) fn known_into(model: &Model, stage: &Stage, state: &State, known: &mut Vec<f64>) {
     let Weights { mass, internal, external, contact } = stage.before;
     known.clear();
@@ -64,8 +64,8 @@ pub(crate) fn known_into(model: &Model, stage: &Stage, state: &State, known: &mu
     }
 }
 
-/// r over all dofs. Its norm over the free ones is returned, and the sum of the norms of its terms,
-/// the scale it is small against.
+/// r over all dofs. Returns its norm over the free ones, and the sum of the norms of its terms as
+/// reference.
 pub(crate) fn residual_into(
     model: &Model,
     stage: &Stage,

@@ -1,22 +1,22 @@
-//! What the cells of a body contribute: computed by any number of threads, handed over one by one
-//! in the order of the cells, so that sums have the same bits whatever the number of threads.
+//! Contributions of a body's cells: computed by any number of threads and added one by one in the
+//! order of the cells, so that sums are bitwise independent of the number of threads.
 
 use carom_algebra::Threads;
 use carom_solid::Inverted;
 
-/// Cells that are computed before they are handed over: enough to share among threads, few enough
-/// for their caches.
+/// Cells computed before they are added: enough to share among threads, few enough for their
+/// caches.
 const BLOCK: usize = 1024;
-/// Cells that a thread takes at once.
+/// Cells per task of a thread.
 const SHARE: usize = 64;
-/// Cells below which one thread has computed them before another has woken up.
+/// Cells below which a second thread does not pay.
 const FEW: usize = 512;
 
-/// Calls `compute(cell, numbers)` for `count` cells, on all threads, and `add(cell, numbers)` with
-/// its results in the order of the cells; what `compute` returns is added up in that order.
+/// Calls `compute(cell, numbers)` for `count` cells on all threads, and `add(cell, numbers)` in the
+/// order of the cells. Returns the sum of the values of `compute` in that order.
 ///
 /// # Errors
-/// The first cell that is inverted.
+/// The first inverted cell.
 pub(crate) fn for_each(
     threads: &Threads,
     count: usize,
@@ -26,7 +26,7 @@ pub(crate) fn for_each(
 ) -> Result<f64, Inverted> {
     let mut sum = 0.0;
     if threads.count() == 1 || count < FEW {
-        // What has just been computed is still in the cache.
+        // The result is still in the cache.
         let mut local = vec![0.0; numbers];
         for cell in 0..count {
             sum += compute(cell, &mut local)?;

@@ -1,10 +1,10 @@
-//! The rows of the linear system that pressing contacts give, with what the system needs of them.
+//! The rows that active contacts add to the linear system, and their data.
 //!
-//! Not every pressing pair is a row: a redundant one would make the system singular, and its
-//! residual would not tell. A row counts where its gradient on free dofs, less what the rows before
-//! it say already, leaves something: a node on a symmetry axis keeps both its support and its
-//! contact, a corner node in two contacts at one facet keeps one, whichever contacts and nodes they
-//! belong to (Gaussian elimination of the sparse rows).
+//! Not every active pair is a row: a redundant one would make the system singular, which its
+//! residual would not reveal. A row is kept if its gradient on free dofs is linearly independent of
+//! those of the rows before. A node on a symmetry axis keeps its support and its contact; a corner
+//! node in two contacts with one facet keeps one of them, for any contacts and nodes (Gaussian
+//! elimination of the sparse rows).
 
 use std::collections::BTreeMap;
 
@@ -14,23 +14,23 @@ use crate::balance::contact_weights;
 use crate::equations::{Equations, Evaluation};
 use crate::model::Model;
 
-/// What elimination leaves of a row (gradients are of order one) that says nothing new about free
-/// dofs.
+/// Remainder after elimination (gradients are of order one) below which a row depends on the
+/// others.
 const DEPENDENT: f64 = 1e-8;
 
 /// Rows of a linear system.
 #[derive(Clone, Debug)]
 pub(crate) struct Constraints {
-    /// Contact and pair of each.
+    /// Contact and pair of each row.
     pub places: Vec<(usize, usize)>,
     pub rows: Rows,
-    /// Weight of its contact force in the balance.
+    /// Weight of the contact force in the balance.
     pub weights: Vec<f64>,
-    /// What a unit of multiplier gives of gap.
+    /// Gap per unit of multiplier.
     pub compliances: Vec<f64>,
-    /// What is left to close.
+    /// Gap still to be closed.
     pub open: Vec<f64>,
-    /// λ∇²g over the nodes of each row, row-major; empty where it was not asked for.
+    /// λ∇²g over the nodes of each row, row-major; empty if not requested.
     pub curvatures: Vec<Vec<f64>>,
 }
 
@@ -47,8 +47,8 @@ impl Constraints {
         }
     }
 
-    /// Rows as constraints of weight 1, without second derivatives: where velocities or
-    /// accelerations are solved for.
+    /// Rows as constraints of weight 1, without second derivatives, to solve for velocities or
+    /// accelerations.
     pub(crate) fn plain<'a>(
         dimension: usize,
         rows: impl IntoIterator<Item = ((usize, usize), Row<'a>)>,
@@ -93,12 +93,12 @@ impl Constraints {
         self.places.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no rows.
     pub(crate) fn is_empty(&self) -> bool {
         self.places.is_empty()
     }
 
-    /// The nodes all rows depend on, ascending.
+    /// The nodes of all rows, ascending.
     pub(crate) fn nodes(&self) -> Vec<usize> {
         let mut nodes: Vec<usize> = self.rows.iter().flat_map(|row| row.nodes.iter().copied()).collect();
         nodes.sort_unstable();
@@ -149,7 +149,7 @@ impl Constraints {
 }
 
 impl Evaluation {
-    /// Contact and pair of all that press.
+    /// Contact and pair of all active ones.
     pub(crate) fn pressing(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let pairs = self.at.pairings.iter().enumerate();
         pairs.flat_map(|(k, pairing)| {
@@ -159,27 +159,27 @@ impl Evaluation {
     }
 }
 
-/// Those of the places whose rows say something new about the free dofs.
+/// The places whose rows are linearly independent on the free dofs.
 pub(crate) fn independent_rows(
     model: &Model,
     places: impl Iterator<Item = (usize, usize)>,
     rows: &[Rows],
 ) -> Vec<(usize, usize)> {
-    let mut kept: Vec<Vec<(usize, f64)>> = Vec::new();
-    // Which kept row was eliminated by which dof.
+    let mut accepted: Vec<Vec<(usize, f64)>> = Vec::new();
+    // The accepted row whose pivot is this dof.
     let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
     let independent = |&(k, p): &(usize, usize)| {
         let mut row: Vec<(usize, f64)> =
             rows[k].row(p).entries().filter(|(dof, _)| !model.fixed[*dof]).collect();
         let mut from = 0;
-        // A kept row holds pivots of later ones only: in ascending order each is met once.
+        // An accepted row contains pivots of later ones only: in ascending order each occurs once.
         while let Some((r, factor)) = row
             .iter()
             .filter_map(|(dof, value)| Some((*pivots.get(dof)?, *value)))
             .filter(|(r, value)| *r >= from && *value != 0.0)
             .min_by_key(|(r, _)| *r)
         {
-            for &(dof, value) in &kept[r] {
+            for &(dof, value) in &accepted[r] {
                 match row.iter_mut().find(|(d, _)| *d == dof) {
                     Some((_, x)) => *x -= factor * value,
                     None => row.push((dof, -factor * value)),
@@ -194,8 +194,8 @@ pub(crate) fn independent_rows(
             return false;
         }
         row.iter_mut().for_each(|(_, x)| *x /= largest.1);
-        pivots.insert(largest.0, kept.len());
-        kept.push(row);
+        pivots.insert(largest.0, accepted.len());
+        accepted.push(row);
         true
     };
     places.filter(independent).collect()

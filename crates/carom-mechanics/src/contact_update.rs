@@ -1,5 +1,5 @@
-//! Who touches whom in an iterate: pairs found and handed over, the active set of each contact,
-//! pairs that nothing can hold.
+//! Contact status of an iterate: search and hand-over of pairs, active sets, and constraints that
+//! cannot be satisfied.
 
 use carom_contact::{ActiveSet, Contender, Pair, PairEvent, Pairing, Row};
 
@@ -11,21 +11,20 @@ use crate::system::System;
 use crate::timings::timed;
 use crate::workspace::Workspace;
 
-/// Penetration, as a fraction of L, that counts as touching.
+/// Penetration, as a fraction of L, that counts as contact.
 pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
-/// Gap, as a fraction of L, of nodes that touch before the first load step.
-const TOUCHING: f64 = 1e-9;
+/// Gap, as a fraction of L, of nodes in contact before the first load step.
+const INITIAL_GAP: f64 = 1e-9;
 
-/// Below this correction, relative to L, facets are handed over before the iteration has converged.
+/// Correction, relative to L, below which facets are handed over before convergence.
 const CLOSE: f64 = 1e-5;
-/// How often in a solve pairs are handed over as they slide, before corrections are as small as
-/// that.
-const FOLLOWS: u32 = 12;
+/// Number of early facet updates in a solve, before corrections are that small.
+const FACET_UPDATES: u32 = 12;
 
-/// Events of pairs, with the place of their contact.
+/// Events of pairs, with the index of their contact.
 pub(crate) type Events = Vec<(usize, PairEvent)>;
 
-/// Brings the pairs up to date with motion from `before` to `now`; whether that asks for another
+/// Updates the pairs for motion from `before` to `now`; returns whether that requires another
 /// solve.
 pub(crate) fn search(
     model: &Model,
@@ -42,19 +41,19 @@ pub(crate) fn search(
     changed
 }
 
-/// Before the first load step, lets bodies that supports leave free hold on to what they touch.
-/// Whether that is anything.
+/// Before the first load step, activates initial contacts if supports leave rigid motions free.
+/// Returns whether there are any.
 pub(crate) fn hold_on(model: &Model, evaluation: &mut Evaluation) -> bool {
     if model.unconstrained.is_empty() || evaluation.pressing().next().is_some() {
         return false;
     }
     let mut changed = false;
-    // A spring holds nothing before it is pressed.
+    // A spring exerts no force before it is compressed.
     let constraints =
         model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.is_constraint());
     for (k, _) in constraints {
         for (pair, row) in evaluation.at.pairings[k].pairs.iter_mut().zip(evaluation.rows[k].iter()) {
-            if row.gap <= TOUCHING * model.scale {
+            if row.gap <= INITIAL_GAP * model.scale {
                 (pair.active, changed) = (true, true);
             }
         }
@@ -62,30 +61,30 @@ pub(crate) fn hold_on(model: &Model, evaluation: &mut Evaluation) -> bool {
     changed
 }
 
-/// How the contacts of a stage change while it is solved.
+/// Contact changes during the solve of a stage.
 pub(crate) struct ContactUpdate {
     sets: Vec<ActiveSet>,
-    /// Times that pairs may still be handed over early.
-    follows: u32,
+    /// Remaining early facet updates.
+    facet_updates: u32,
 }
 
 impl ContactUpdate {
-    /// At the beginning of a stage.
+    /// The initial state for a stage.
     pub(crate) fn new(model: &Model) -> Self {
         let set = |contact: &Contact| ActiveSet::new(GAP_TOLERANCE * model.scale, contact.within);
-        Self { sets: model.contacts.iter().map(set).collect(), follows: FOLLOWS }
+        Self { sets: model.contacts.iter().map(set).collect(), facet_updates: FACET_UPDATES }
     }
 
-    /// Forgets the visited sets: the pairs themselves have changed.
+    /// Clears the visited sets: the pairs themselves have changed.
     pub(crate) fn restart(&mut self) {
         self.sets.iter_mut().for_each(ActiveSet::restart);
     }
 
-    /// Brings active sets and pairs up to date with an iterate; whether one changed. `settled`: all
-    /// that is left is this question; `step`: the last correction.
+    /// Updates active sets and pairs for an iterate; returns whether one changed. `settled`: the
+    /// iterate has otherwise converged; `step`: the last correction.
     ///
     /// # Errors
-    /// A set keeps returning to one visited before.
+    /// If a set returns to one visited before.
     #[allow(clippy::too_many_arguments)]
     pub(crate) fn update(
         &mut self,
@@ -100,12 +99,12 @@ impl ContactUpdate {
         let model = equations.model;
         let mut changed = self.change_sets(equations, now, &work.system, settled)?;
         let mut handed_over = false;
-        if !settled && self.follows > 0 && update_facets(model, now, events) {
-            self.follows -= 1;
+        if !settled && self.facet_updates > 0 && update_facets(model, now, events) {
+            self.facet_updates -= 1;
             handed_over = true;
         }
         changed |= handed_over;
-        // Where a node will slide to is known long before the last digits are.
+        // The facet is known long before the position has converged.
         let nearly = step <= CLOSE * model.scale;
         if !changed && (settled || nearly) {
             handed_over = timed(&mut work.timings.contact, || search_again(model, before, now, events));
@@ -117,8 +116,8 @@ impl ContactUpdate {
         Ok(changed)
     }
 
-    /// Lets each contact's active set change; a released pair loses its multiplier. Whether one
-    /// did.
+    /// Updates each contact's active set; a released pair loses its multiplier. Returns whether one
+    /// changed.
     fn change_sets(
         &mut self,
         equations: &Equations,
@@ -127,7 +126,7 @@ impl ContactUpdate {
         settled: bool,
     ) -> Result<bool, Rejected> {
         let (model, mut changed) = (equations.model, false);
-        // A spring presses or does not by its gap alone.
+        // The activity of a spring follows from its gap alone.
         let constraints =
             model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.is_constraint());
         for (k, contact) in constraints {
@@ -153,9 +152,9 @@ impl ContactUpdate {
     }
 }
 
-/// The same for an evaluated iterate: where nothing asks for another solve its pairs stay as they
-/// are. Open ones may have come and gone, and the rows at hand, of which the forces are made,
-/// belong to the pairs in their old order.
+/// The search for an evaluated iterate. Unless it requires another solve the pairs are restored:
+/// inactive ones may have changed, while the existing rows, and the forces made of them, refer to
+/// the old order.
 fn search_again(model: &Model, before: &[f64], evaluation: &mut Evaluation, found: &mut Events) -> bool {
     let pairings = evaluation.at.pairings.clone();
     let changed = search(model, before, &evaluation.y, &mut evaluation.at.pairings, found);
@@ -165,7 +164,7 @@ fn search_again(model: &Model, before: &[f64], evaluation: &mut Evaluation, foun
     changed
 }
 
-/// Hands over pairs that slid well past the end of their facet; whether there was one.
+/// Hands over pairs that slid well past the end of their facet; returns whether there was one.
 fn update_facets(model: &Model, evaluation: &mut Evaluation, found: &mut Events) -> bool {
     let (mut changed, mut events) = (false, Vec::new());
     for (k, (contact, pairing)) in model.contacts.iter().zip(&mut evaluation.at.pairings).enumerate() {
@@ -175,7 +174,7 @@ fn update_facets(model: &Model, evaluation: &mut Evaluation, found: &mut Events)
     changed
 }
 
-/// Names a pressing constraint that no row holds: supports leave it no way out.
+/// Reports an active constraint without a row: supports prevent it from being satisfied.
 pub(crate) fn check_stuck(equations: &Equations, evaluation: &Evaluation) -> Result<(), Rejected> {
     let model = equations.model;
     let rows = Constraints::of(equations, evaluation).places;
@@ -190,9 +189,9 @@ pub(crate) fn check_stuck(equations: &Equations, evaluation: &Evaluation) -> Res
 }
 
 impl Iterate {
-    /// The guess of a stage from where the iterate is: positions if the acceleration stayed for
-    /// `dt`, multipliers as they are, each pair free to change facets again. Open pairs are found
-    /// afresh, so that they depend on positions alone.
+    /// The initial guess of a stage: positions for constant acceleration over `dt`, unchanged
+    /// multipliers, each pair free to change facets again. Inactive pairs are searched again, so
+    /// that they depend on positions alone.
     pub(crate) fn predict(&mut self, v: &[f64], a: &[f64], dt: f64) {
         for (increment, (v, a)) in self.increment.iter_mut().zip(v.iter().zip(a)) {
             *increment += dt * (v + 0.5 * dt * a);

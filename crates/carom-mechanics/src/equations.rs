@@ -1,8 +1,8 @@
-//! A stage as a system of equations: the balance of forces and the conditions of the contacts,
-//! evaluated at an iterate.
+//! A stage as a system of equations: the balance of forces and the contact conditions, evaluated at
+//! an iterate.
 //!
 //! ```text
-//! r(d, λ) = 0   (balance.rs),   c(d, λ) = 0 for each pressing pair   (carom_contact::Interface)
+//! r(d, λ) = 0   (balance.rs),   c(d, λ) = 0 for each active pair   (carom_contact::Interface)
 //! ```
 
 use std::sync::Arc;
@@ -27,54 +27,53 @@ pub(crate) struct Iterate {
 }
 
 impl Iterate {
-    /// Where a step begins: no increment, the pairs of the state.
+    /// The start of a step: no increment, the pairs of the state.
     pub(crate) fn at_start(state: &State) -> Self {
         let pairings = state.pairs.iter().cloned().map(Pairing::new).collect();
         Self { increment: vec![0.0; state.y.len()], pairings }
     }
 }
 
-/// What an iterate gives.
+/// Results at an iterate.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Evaluation {
-    /// The iterate; contact points are moved to where its positions have them, springs press or do
-    /// not.
+    /// The iterate, with contact points updated to its positions and the activity of springs set.
     pub at: Iterate,
     /// y = y_s + d.
     pub y: Vec<f64>,
-    /// Positions that internal forces and loads are taken at; of a discrete gradient, the middle of
-    /// the step.
+    /// Positions at which internal forces and loads are evaluated; for a discrete gradient, the
+    /// midpoint of the step.
     pub place: Vec<f64>,
     /// Forces over all dofs.
     pub forces: Forces,
     /// a(d).
     pub acceleration: Vec<f64>,
-    /// r over all dofs: at held ones, the force of their support.
+    /// r over all dofs: the reaction force at constrained ones.
     pub residual: Vec<f64>,
-    /// A row for each pair of each contact.
+    /// A row per pair of each contact.
     pub rows: Vec<Rows>,
-    /// The interface's answer to each of them.
+    /// The interface's response to each row.
     pub answers: Vec<Vec<Answer>>,
-    /// Strain energy of the bodies at `y`, or where `average` says.
+    /// Strain energy of the bodies at `y`, or at the averaged positions.
     pub strain: f64,
-    /// Energy of the springs of penalties.
+    /// Energy of penalty springs.
     pub springs: f64,
-    /// Size of the residual, and what it is measured against.
+    /// Size of the residual and its reference.
     pub measure: Measure,
 }
 
-/// Size of a residual and what it is measured against.
+/// Size of a residual and its reference.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Measure {
     /// ‖r‖ over the free dofs.
     pub residual: f64,
     /// Sum of the norms of its terms.
     pub forces: f64,
-    /// Largest |g| of the pressing constraints.
+    /// Largest |g| of the active constraints.
     pub gap: f64,
 }
 
-/// Evaluations that are not needed any more: their memory is used again.
+/// Unused evaluations, whose memory is reused.
 #[derive(Debug, Default)]
 pub(crate) struct Spare(Vec<Evaluation>);
 
@@ -83,12 +82,12 @@ impl Spare {
         self.0.pop().unwrap_or_default()
     }
 
-    /// Gives the memory of an evaluation back.
+    /// Returns the memory of an evaluation.
     pub(crate) fn put(&mut self, evaluation: Evaluation) {
         self.0.push(evaluation);
     }
 
-    /// A copy of an iterate in memory that was used before.
+    /// A copy of an iterate in reused memory.
     pub(crate) fn copy(&mut self, of: &Iterate) -> Iterate {
         let mut iterate = self.0.last_mut().map(|spare| std::mem::take(&mut spare.at)).unwrap_or_default();
         iterate.increment.clone_from(&of.increment);
@@ -98,19 +97,19 @@ impl Spare {
     }
 }
 
-/// A stage that is to be solved: what its equations are made of.
+/// The equations of a stage.
 #[derive(Debug)]
 pub(crate) struct Equations<'a> {
     pub model: &'a Model,
     /// The state at the step's start.
     pub state: &'a State,
     pub stage: Stage,
-    /// The time internal forces are taken at, and the loads then.
+    /// The time at which internal forces are evaluated, and the loads then.
     pub time: f64,
     pub loads: LoadsAt,
-    /// Moved dofs at the stage's end.
+    /// Prescribed dofs at the stage's end.
     pub motions: Vec<Prescribed>,
-    /// What is known of the balance from the step's start.
+    /// Terms of the balance known from the step's start.
     pub known: Vec<f64>,
 }
 
@@ -124,7 +123,7 @@ impl<'a> Equations<'a> {
     /// The equations of a stage that ends at the time `to`.
     ///
     /// # Errors
-    /// A load or a motion has no value.
+    /// If a load or a motion has no value.
     pub(crate) fn new(model: &'a Model, state: &'a State, stage: Stage, to: f64) -> Result<Self, Rejected> {
         let average = stage.average;
         let time = if average == 0.0 { to } else { (1.0 - average) * to + average * state.time };
@@ -159,13 +158,13 @@ impl<'a> Equations<'a> {
     pub(crate) fn stiffness_factor(&self) -> f64 {
         match self.stage.internal {
             Internal::Gradient => self.stage.weights.internal * (1.0 - self.stage.average),
-            // Its tangent is that by the end of the step already.
+            // Its tangent already refers to the end of the step.
             Internal::DiscreteGradient => self.stage.weights.internal,
         }
     }
 
-    /// Factor of the internal tangent at one position: of a discrete gradient, the end has half of
-    /// that at the middle.
+    /// Factor of the internal tangent at one configuration: for a discrete gradient, the end
+    /// contributes half of the tangent at the midpoint.
     pub(crate) fn factor_stiffness(&self) -> f64 {
         if self.between() { 0.5 * self.stiffness_factor() } else { self.stiffness_factor() }
     }
@@ -175,7 +174,7 @@ impl<'a> Equations<'a> {
         self.stage.weights.external * (1.0 - self.stage.average)
     }
 
-    /// The point of a factor made at these positions, with these nodes last.
+    /// The point of a factor at these positions, with these nodes eliminated last.
     pub(crate) fn point(&self, at: &[f64], boundary: &[usize]) -> Arc<FactorPoint> {
         Arc::new(FactorPoint {
             at: at.to_vec(),
@@ -187,7 +186,7 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// What moved dofs still have to go, with their dofs.
+    /// Remaining displacements of prescribed dofs.
     pub(crate) fn remaining(&self, at: &Iterate) -> impl Iterator<Item = (usize, f64)> {
         self.motions.iter().map(move |moved| {
             let target = self.model.reference[moved.dof] + moved.motion[0];
@@ -195,7 +194,7 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// Puts moved dofs where they are to be, to the last digit.
+    /// Sets prescribed dofs to their exact positions.
     pub(crate) fn arrive(&self, increment: &mut [f64]) {
         for moved in &self.motions {
             increment[moved.dof] =
@@ -206,7 +205,7 @@ impl<'a> Equations<'a> {
     /// Forces, gaps and residual at an iterate.
     ///
     /// # Errors
-    /// A cell is inverted, or a pressing pair has no gap.
+    /// If a cell is inverted, or an active pair has no gap.
     pub(crate) fn evaluate(
         &self,
         at: Iterate,
@@ -251,22 +250,21 @@ impl<'a> Equations<'a> {
         stage.acceleration.value_into(&at.increment, acceleration);
         if !stage.is_static() {
             for moved in &self.motions {
-                // What makes the balance, whose averages are those of the scheme's a, take this
-                // mean.
+                // The acceleration for which the balance, with its averages, gives this mean.
                 let before = state.a[moved.dof];
                 let mean = mean_acceleration(stage, moved.motion[2], before);
                 acceleration[moved.dof] = (mean - stage.before.mass * before) / stage.weights.mass;
             }
         }
         model.mass.multiply_into(acceleration, &mut forces.inertia);
-        timed(&mut timings.contact, || self.touch(evaluation))?;
+        timed(&mut timings.contact, || self.evaluate_contacts(evaluation))?;
         let Evaluation { forces, residual, measure, .. } = evaluation;
         (measure.residual, measure.forces) = residual_into(model, stage, forces, &self.known, residual);
         Ok(())
     }
 
-    /// Rows of all pairs, what their interfaces answer, and the contact forces.
-    fn touch(&self, evaluation: &mut Evaluation) -> Result<(), Rejected> {
+    /// Rows of all pairs, the responses of their interfaces, and the contact forces.
+    fn evaluate_contacts(&self, evaluation: &mut Evaluation) -> Result<(), Rejected> {
         let Evaluation { at, y, place, forces, rows, answers, springs, measure, .. } = evaluation;
         forces.contact.clear();
         forces.contact.resize(self.model.dofs(), 0.0);
@@ -282,7 +280,7 @@ impl<'a> Equations<'a> {
             for (p, pair) in pairing.pairs.iter_mut().enumerate() {
                 let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
                 if between && pair.start.is_none() {
-                    // The gap a pair is found with; then it is carried.
+                    // The initial gap of a new pair; later it is updated.
                     pair.start = match contact.kinematics.measure(&mut pair.clone(), &self.state.y, rows) {
                         Ok(()) => Some(rows.pop()),
                         Err(error) if pair.active => return Err(failed(error)),
@@ -292,7 +290,7 @@ impl<'a> Equations<'a> {
                 match contact.kinematics.measure(pair, if between { place } else { y }, rows) {
                     Ok(()) => {}
                     Err(error) if pair.active => return Err(failed(error)),
-                    // An open pair whose closest point is not unique is far away.
+                    // An inactive pair without a unique closest point is remote.
                     Err(_) => rows.push_open(),
                 }
                 let start = pair.start.unwrap_or(f64::INFINITY);
@@ -315,7 +313,7 @@ impl<'a> Equations<'a> {
         Ok(())
     }
 
-    /// ∂r/∂y · `change` of bodies and loads at an iterate, contact apart; exact and not
+    /// ∂r/∂y · `change` of bodies and loads at an iterate, without contact; exact and not
     /// symmetrised.
     ///
     /// # Errors

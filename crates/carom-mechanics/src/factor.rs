@@ -1,5 +1,5 @@
-//! The factor that Newton's method has at hand: found again, taken up for the rows of an iterate,
-//! made anew.
+//! The factor used by Newton's method: restored, prepared for the rows of an iterate, or
+//! recomputed.
 
 use std::sync::Arc;
 
@@ -12,11 +12,10 @@ use crate::timings::timed;
 use crate::workspace::Workspace;
 
 impl Workspace {
-    /// Makes the factor that the state's point asks for: there already, but in a run that was
-    /// resumed.
+    /// Recomputes the factor of the state's point, which only a resumed run lacks.
     ///
     /// # Errors
-    /// A cell is inverted there.
+    /// If a cell is inverted there.
     pub(crate) fn restore_factor(
         &mut self,
         equations: &Equations,
@@ -28,10 +27,10 @@ impl Workspace {
         }
     }
 
-    /// Has a factor ready for these rows, a new one where it is due.
+    /// Prepares a factor for these rows, a new one if due.
     ///
     /// # Errors
-    /// A cell is inverted, or the rows depend on each other.
+    /// If a cell is inverted, or the rows are linearly dependent.
     pub(crate) fn factor_for(
         &mut self,
         equations: &Equations,
@@ -53,7 +52,7 @@ impl Workspace {
         Ok(())
     }
 
-    /// Makes a factor at the present positions, or else at the start of the step.
+    /// Factors at the current positions, or else at those of the step's start.
     fn renew(
         &mut self,
         equations: &Equations,
@@ -63,8 +62,8 @@ impl Workspace {
     ) -> Result<(), Rejected> {
         renewal.due = false;
         let boundary = boundary(equations.model, &now.place, rows, renewal.frozen.point.as_deref());
-        // An iterate far from the solution may have no positive definite tangent; the state the
-        // step began with nearly always has, with inertia.
+        // Far from the solution the tangent may be indefinite; with inertia, that at the step's
+        // start is almost always positive definite.
         let (present, start) =
             [&now.place, &equations.state.y].map(|at| equations.point(at, &boundary)).into();
         let mut chosen = &present;
@@ -81,7 +80,7 @@ impl Workspace {
         Ok(())
     }
 
-    /// Makes the factor of a point, unless it is there already; whether it is positive definite.
+    /// Computes the factor of a point unless it exists; returns whether it is positive definite.
     fn factor_at(
         &mut self,
         equations: &Equations,

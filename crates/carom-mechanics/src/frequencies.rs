@@ -1,17 +1,17 @@
-//! Natural frequencies of a model on its initial tangent: ω² of K x = ω² M x, the lowest that
-//! deform it and the highest.
+//! Natural frequencies of a model for its initial tangent: ω² of K x = ω² M x, the lowest
+//! deformation modes and the highest.
 //!
 //! ```text
-//! lowest    x ← (K + σM)⁻¹ M x, vector after vector, each kept M-orthogonal to those before (inverse iteration with deflation); σ = 1e-6 ω²_max
+//! lowest    x ← (K + σM)⁻¹ M x, vector by vector, each M-orthogonal to the previous ones (inverse iteration with deflation); σ = 1e-6 ω²_max
 //! highest   x ← M⁻¹ K x (power iteration)
 //! ```
 //!
-//! Rigid motions have ω² below 1e-9 of the highest and are left out. Rayleigh's quotient xᵀKx/xᵀMx
-//! gives ω² to twice the digits of x. Where a node has no mass the highest is infinite; σ then
-//! refers to the mean eigenvalue trace(K)/trace(M). Contact is open (Bathe, "Finite element
-//! procedures", §11.2).
+//! Rigid modes have ω² below 1e-9 of the highest and are omitted. Rayleigh's quotient xᵀKx/xᵀMx
+//! gives ω² to twice the digits of x. With a massless node the highest is infinite; σ then refers
+//! to the mean eigenvalue trace(K)/trace(M). Contact is open (Bathe, "Finite element procedures",
+//! §11.2).
 //!
-//! The spring of a penalty on its node alone, the other side at rest:
+//! A penalty spring on its node alone, the other side fixed:
 //!
 //! ```text
 //! ω² = k mᵢ⁻¹,   mᵢ⁻¹ = eᵢᵀ M⁻¹ eᵢ      acceleration of the node under a unit force at it; the stiffest of all nodes
@@ -25,24 +25,24 @@ use crate::renewal::Point;
 use crate::sums::dot;
 use crate::system::System;
 
-/// Iterations per vector at most, and the relative change of the quotient at which it is taken.
+/// Maximum iterations per vector, and relative change of the quotient at convergence.
 const ITERATIONS: usize = 400;
 const SETTLED: f64 = 1e-8;
-/// Vectors looked for at most, rigid ones included.
+/// Maximum number of vectors, including rigid modes.
 const VECTORS: usize = 12;
-/// ω² over the highest below which a motion is rigid.
+/// ω² relative to the highest below which a mode is rigid.
 const RIGID: f64 = 1e-9;
 
 /// Frequencies ω of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frequencies {
-    /// The lowest that deform the bodies, ascending; at most three.
+    /// The lowest of deformation modes, ascending; at most three.
     pub lowest: Vec<f64>,
-    /// The highest; none where a node has no mass.
+    /// The highest; none if a node is massless.
     pub highest: Option<f64>,
 }
 
-/// Frequencies of a model; none where its tangent or its mass cannot be factored.
+/// Frequencies of a model; none if its tangent or its mass cannot be factored.
 pub fn frequencies(model: &Model) -> Option<Frequencies> {
     let mut system = System::new(model);
     system.assemble(model, &model.reference).ok()?;
@@ -91,8 +91,8 @@ pub fn frequencies(model: &Model) -> Option<Frequencies> {
     Some(Frequencies { lowest, highest: highest.map(f64::sqrt) })
 }
 
-/// Frequency of the stiffest contact spring on its node; none without springs, or where a node has
-/// no mass.
+/// Frequency of the stiffest contact spring on its node; none without springs, or if a node is
+/// massless.
 pub fn spring(model: &Model) -> Option<f64> {
     if model.contacts.iter().all(|c| c.interface.is_constraint())
         || model.free.iter().any(|dof| model.massless[*dof])
@@ -134,7 +134,7 @@ fn power(model: &Model, system: &mut System, mut x: Vec<f64>) -> Option<f64> {
     Some(square)
 }
 
-/// The last factored matrix solved for a right-hand side on the free dofs.
+/// Solves with the last factor for a right-hand side on the free dofs.
 fn solved(model: &Model, system: &mut System, right: &[f64]) -> Option<Vec<f64>> {
     let (mut forces, mut answer) = (vec![0.0; model.dofs()], vec![0.0; model.dofs()]);
     model.free.iter().zip(right).for_each(|(dof, f)| forces[*dof] = *f);
@@ -142,7 +142,7 @@ fn solved(model: &Model, system: &mut System, right: &[f64]) -> Option<Vec<f64>>
     Some(model.free.iter().map(|dof| answer[*dof]).collect())
 }
 
-/// Makes xᵀMx = 1; Rayleigh's quotient.
+/// Scales to xᵀMx = 1; returns Rayleigh's quotient.
 fn normalise(model: &Model, system: &System, x: &mut [f64]) -> f64 {
     let weight = dot(x, &mass_product(model, x)).sqrt();
     x.iter_mut().for_each(|x| *x /= weight);

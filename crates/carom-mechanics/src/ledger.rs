@@ -1,16 +1,16 @@
-//! Where the energy of a step went (design.md §5): exact for eq. (15), because it uses the same
+//! The energy ledger of a step (design.md §5): exact for eq. (15), because it uses the same
 //! averaged forces.
 //!
 //! ```text
-//! F̄ = (1−α_f) F_{s+1} + α_f F_s,   Δy = y_{s+1} − y_s                    F̄ of other kernels: the mean their velocity update makes, `Stage::mean`
+//! F̄ = (1−α_f) F_{s+1} + α_f F_s,   Δy = y_{s+1} − y_s                    F̄ of other kernels: the mean of their velocity update, `Stage::mean`
 //! external_work += Δy·F̄_ext (beyond the potential) + Δy_moved·R̄ + Δy/Δt·M J        contact_work += −Δy·F̄_cont
 //! ```
 //!
-//! R̄ is the mean residual of the balance at moved dofs, the force of their supports. J = v_{s+1} −
-//! v_s − Δt ā at moved dofs is what their velocities change beyond their mean acceleration ā: where
-//! a motion's velocity jumps, the impulse M J is the support's too, and its work is that of the
-//! mean velocity. Load steps without inertia take the mean of both ends, F̄ = (F_{s+1} + F_s)/2:
-//! exact where forces are linear in the displacements.
+//! R̄ is the mean residual of the balance at prescribed dofs, their reaction force. J = v_{s+1} −
+//! v_s − Δt ā is the change of their velocities beyond their mean acceleration ā: where a
+//! prescribed velocity jumps, the impulse M J is a reaction too, and its work is that of the mean
+//! velocity. Load steps without inertia use the mean of both ends, F̄ = (F_{s+1} + F_s)/2: exact
+//! for forces linear in the displacements.
 //!
 //! The increment of the dissipation of the α family then equals (Δy·F̄_int − ΔU) − (γ+α_m−1) Δy·MΔa
 //! + Δt² (β−γ/2) Δa·M(a_s + γΔa) to round-off (Krenk 2006).
@@ -24,8 +24,8 @@ use crate::model::Model;
 use crate::state::{Means, Previous, State};
 use crate::sums::dot;
 
-/// Adds what a solved stage gives to the means over the step (cleared before the first stage).
-/// `previous`: the step before of a two-step scheme.
+/// Adds a solved stage to the means over the step (cleared before the first stage). `previous`: the
+/// previous step of a two-step scheme.
 pub(crate) fn add_stage(
     equations: &Equations,
     solved: &Evaluation,
@@ -57,14 +57,14 @@ pub(crate) fn add_stage(
         loads.add(model, stage, &solved.forces.loads, &state.f_external, &mut means.loads);
     }
     if let Some((old, before)) = before {
-        add_old(model, old, before, means);
+        add_previous(model, old, before, means);
     }
     if !equations.motions.is_empty() {
         add_supports(equations, solved, before, means);
     }
 }
 
-/// Work of the loads over a step of one stage whose balance is an average itself.
+/// Work of the loads over a step of one stage with an averaged balance.
 pub(crate) fn work_of_loads(equations: &Equations, solved: &Evaluation) -> f64 {
     let Equations { model, state, stage, .. } = equations;
     if model.loads.is_empty() {
@@ -76,13 +76,13 @@ pub(crate) fn work_of_loads(equations: &Equations, solved: &Evaluation) -> f64 {
     solved.at.increment.iter().zip(mean).map(|(moved, force)| moved * force).sum()
 }
 
-/// Where the mean of a stage's forces is taken.
+/// How the mean of a stage's forces is formed.
 enum Averaging {
     /// Without inertia, the mean of both ends.
     BothEnds,
-    /// The balance is that of the stage's end: [`Stage::mean`] weighs the ends.
+    /// The balance holds at the stage's end: [`Stage::mean`] weighs the ends.
     Ends,
-    /// The balance is an average itself.
+    /// The balance itself is averaged.
     Within,
 }
 
@@ -96,8 +96,8 @@ fn averaging(stage: &Stage) -> Averaging {
     }
 }
 
-/// Shares of a force at the stage's end and at the step's start; at dofs without inertia, where
-/// there is nothing to average with, of that at the step's end.
+/// Weights of a force at the stage's end and at the step's start; at massless dofs, which have
+/// nothing to average with, of that at the step's end.
 struct Shares {
     now: f64,
     start: f64,
@@ -116,8 +116,8 @@ impl Shares {
     }
 }
 
-/// The share of the step before, in the first stage of a two-step scheme.
-fn add_old(model: &Model, old: f64, before: &Means, means: &mut Means) {
+/// The share of the previous step, in the first stage of a two-step scheme.
+fn add_previous(model: &Model, old: f64, before: &Means, means: &mut Means) {
     for i in (0..model.dofs()).filter(|&i| !model.massless[i]) {
         means.contact[i] += old * before.contact[i];
         means.loads[i] += old * before.loads[i];
@@ -125,7 +125,7 @@ fn add_old(model: &Model, old: f64, before: &Means, means: &mut Means) {
     (0..3).for_each(|i| means.impulse[i] += old * before.impulse[i]);
 }
 
-/// Forces and accelerations of the supports that move.
+/// Forces and accelerations of moving supports.
 fn add_supports(
     equations: &Equations,
     solved: &Evaluation,
@@ -138,12 +138,12 @@ fn add_supports(
         Averaging::Ends => (stage.mean[2], stage.mean[1]),
         Averaging::Within => (1.0, 0.0),
     };
-    // What was left for the supports at the step's start.
-    let mut left = vec![0.0; if start == 0.0 { 0 } else { model.dofs() }];
+    // Residual at the step's start.
+    let mut residual = vec![0.0; if start == 0.0 { 0 } else { model.dofs() }];
     if start != 0.0 {
-        model.mass.multiply_into(&state.a, &mut left);
+        model.mass.multiply_into(&state.a, &mut residual);
         for i in model.motions.dofs() {
-            left[i] += state.f_internal[i] + state.f_contact[i] - model.gravity[i] - state.f_external[i];
+            residual[i] += state.f_internal[i] + state.f_contact[i] - model.gravity[i] - state.f_external[i];
         }
     }
     for moved in &equations.motions {
@@ -152,7 +152,8 @@ fn add_supports(
             means.supports[i] = solved.residual[i] / stage.weights.external;
             continue;
         }
-        means.supports[i] += now * solved.residual[i] + left.get(i).map_or(0.0, |left| start * left);
+        means.supports[i] +=
+            now * solved.residual[i] + residual.get(i).map_or(0.0, |residual| start * residual);
         means.accelerations[i] += match averaging(stage) {
             Averaging::BothEnds => 0.0,
             Averaging::Ends => now * moved.motion[2] + start * state.a[i],
@@ -165,7 +166,7 @@ fn add_supports(
     }
 }
 
-/// Books a step into `next`, before any projection: `last` is its last stage, `strain` the bodies'
+/// Records a step in `next`, before any projection: `last` is its last stage, `strain` the bodies'
 /// energy at its end.
 pub(crate) fn account(
     equations: &Equations,
@@ -180,7 +181,7 @@ pub(crate) fn account(
     for (moved, force) in increment.iter().zip(&means.contact) {
         next.ledger.contact_work -= moved * force;
     }
-    // What went into springs is not lost: it is counted with the strain energy.
+    // Spring energy is not lost: it is part of the strain energy.
     next.ledger.contact_work += last.springs - next.ledger.springs;
     next.ledger.springs = last.springs;
     if !model.loads.is_empty() {
@@ -197,7 +198,7 @@ pub(crate) fn account(
     book_kinetic(model, next);
 }
 
-/// Work of the supports that move.
+/// Work of moving supports.
 fn work_of_motions(equations: &Equations, next: &State, increment: &[f64], dt: f64, means: &Means) -> f64 {
     let Equations { model, state, stage, .. } = equations;
     let sum = dot(increment, &means.supports);
@@ -213,7 +214,7 @@ fn work_of_motions(equations: &Equations, next: &State, increment: &[f64], dt: f
     sum + dot(increment, &impulse) / dt
 }
 
-/// Force on a secondary side, −Σ λ ∂g/∂y_N, of the pairs that press.
+/// Force on a secondary side, −Σ λ ∂g/∂y_N over the active pairs.
 pub fn secondary_force<'a>(pairs: &[Pair], rows: impl Iterator<Item = Row<'a>>) -> [f64; 3] {
     let mut force = [0.0; 3];
     for (pair, row) in pairs.iter().zip(rows).filter(|(pair, _)| pair.active) {
@@ -223,21 +224,21 @@ pub fn secondary_force<'a>(pairs: &[Pair], rows: impl Iterator<Item = Row<'a>>) 
     force
 }
 
-/// Δy·ΔF of the loads: the work of the loads at the step's end less that of those at its start. A
-/// scheme's mean lies between the two; that of eq. (15) misses the trapezoidal work by (½ − α_f)
-/// Δy·ΔF, though nothing is created. The guard leaves the sum of it open.
+/// Δy·ΔF of the loads: their work with the forces at the step's end minus that with the forces at
+/// its start. A scheme's mean lies between the two; that of eq. (15) misses the trapezoidal work by
+/// (½ − α_f) Δy·ΔF, which creates no energy. The guard allows for its sum.
 pub(crate) fn open_work(state: &State, next: &State, increment: &[f64]) -> f64 {
     let forces = state.f_external.iter().zip(&next.f_external);
     increment.iter().zip(forces).map(|(moved, (before, now))| moved * (now - before)).sum()
 }
 
-/// Kinetic energy of the velocities, and the largest energy so far.
+/// Updates the kinetic energy and the largest energy so far.
 pub(crate) fn book_kinetic(model: &Model, state: &mut State) {
     state.ledger.kinetic = model.kinetic(&state.v);
     state.ledger.largest = state.ledger.largest.max(state.ledger.kinetic + state.ledger.strain);
 }
 
-/// Force on the secondary side of each contact at the state's positions.
+/// Updates the force on the secondary side of each contact at the state's positions.
 pub(crate) fn book_contact_forces(model: &Model, state: &mut State) {
     let mut rows = Rows::new(model.dimension);
     for (k, contact) in model.contacts.iter().enumerate() {

@@ -1,6 +1,6 @@
-//! The mechanics of Carom: a model of bodies, loads and contacts as plain numbers, the balance of
-//! forces, and the steppers that take its state from one time to the next. Knows no case file; the
-//! crate `carom` builds models from cases.
+//! The mechanics of Carom: a numeric model of bodies, loads and contacts, the balance of forces,
+//! and the steppers that advance its state in time. Independent of case files; the crate `carom`
+//! builds models from cases.
 
 mod balance;
 mod cells;

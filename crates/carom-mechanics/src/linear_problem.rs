@@ -1,17 +1,16 @@
-//! The linear problem of a Newton iteration: the tangent applied cell by cell and never formed, the
-//! kept factor as preconditioner.
+//! The linear problem of a Newton iteration: a matrix-free tangent, preconditioned by the reused
+//! factor.
 //!
 //! ```text
 //! [ K  Gᵀ ] [Δy]   [−r]       K = w.mass a' M + w.internal K_int − w.external K_ext + Σ w.contact λ∇²g   at the iterate
 //! [ G  −C ] [Δλ] = [−c]
 //! ```
 //!
-//! Each correction is that of the factor for what the ones before leave over; mixed (`mixing.rs`)
-//! they are the iterates of GMRES preconditioned from the left, and the first is the correction
-//! that an iteration with the kept factor alone would take: where that is enough, nothing is
-//! applied. As long as factor and rows stay and full steps are taken, what has been learnt serves
-//! the next iteration too. K need not be symmetric (pressures that follow, discrete gradients), nor
-//! positive definite.
+//! Each correction is the factor's solution for the current residual. Mixed (`mixing.rs`) they are
+//! the iterates of left-preconditioned GMRES. The first is the correction of an iteration with the
+//! reused factor alone: where it suffices, the tangent is never applied. While factor and rows are
+//! unchanged and full steps are taken, the mixing history carries over to the next iteration. K
+//! need not be symmetric (follower pressures, discrete gradients), nor positive definite.
 
 use carom_algebra::LinearError;
 
@@ -24,7 +23,7 @@ use crate::sums::max_abs;
 use crate::tangent_factor::TangentFactor;
 use crate::timings::{Timings, timed};
 
-/// Solves of one linear problem; then what has been found is taken as it is.
+/// Maximum number of solves of one linear problem; then the current solution is used.
 const MOST_SOLVES: u32 = 30;
 
 /// The step of a Newton iteration.
@@ -32,29 +31,29 @@ const MOST_SOLVES: u32 = 30;
 pub(crate) struct Correction {
     /// Δy.
     pub increment: Vec<f64>,
-    /// Δλ, one per row; of springs it means nothing, their multiplier is that of their gap.
+    /// Δλ, one per row; unused for springs, whose multiplier follows from their gap.
     pub multipliers: Vec<f64>,
     /// ‖·‖∞ of the first correction and of the last.
     pub first: f64,
     pub last: f64,
-    /// Solves it took.
+    /// Number of solves.
     pub solves: u32,
 }
 
-/// How far a linear problem is to be solved.
+/// Stopping criteria of a linear problem.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal {
-    /// Share of its first correction that may be left over.
+    /// Remainder relative to the first correction.
     pub forcing: f64,
-    /// Correction that ends the stage.
+    /// Correction at which the stage converges.
     pub step: f64,
-    /// The factor was made at this iterate: another one would be the same.
+    /// The factor was made at this iterate: refactoring would not change it.
     pub fresh: bool,
-    /// A first correction larger than this is of no use: it is returned as it is.
+    /// A first correction larger than this is useless: it is returned as it is.
     pub trust: f64,
 }
 
-/// Right-hand sides and buffers, and what the last corrections have shown.
+/// Right-hand sides, buffers and the history of corrections.
 #[derive(Debug, Default)]
 pub(crate) struct LinearProblem {
     forces: Vec<f64>,
@@ -63,24 +62,24 @@ pub(crate) struct LinearProblem {
     multipliers: Vec<f64>,
     product: Vec<f64>,
     mixing: Mixing,
-    /// Size of the last correction, where the next one compares with it.
+    /// Size of the last correction, if comparable with the next.
     comparable: Option<f64>,
     rows: Vec<(usize, usize)>,
 }
 
 impl LinearProblem {
-    /// With another factor, other rows, or after a shortened step, the corrections so far say
-    /// nothing.
+    /// Clears the history: with another factor, other rows, or after a shortened step it is
+    /// meaningless.
     pub(crate) fn restart(&mut self) {
         self.comparable = None;
         self.mixing.restart();
     }
 
-    /// Solves to the goal, or until a new factor is due; `depth` earlier corrections are
-    /// remembered.
+    /// Solves to the goal, or until a new factor is due; `depth` earlier corrections are used for
+    /// mixing.
     ///
     /// # Errors
-    /// A cell is inverted where the tangent is applied, or a solve failed.
+    /// If a cell is inverted where the tangent is applied, or a solve failed.
     pub(crate) fn solve(
         &mut self,
         equations: &Equations,
@@ -112,12 +111,12 @@ impl LinearProblem {
             if renewal.due || enough || total.solves == MOST_SOLVES {
                 return Ok(total);
             }
-            self.take_off(equations, now, rows, timings)?;
+            self.subtract_product(equations, now, rows, timings)?;
         }
     }
 
-    /// Right-hand sides, less what the way that moved supports still have to go brings; that way is
-    /// in `increment`.
+    /// Right-hand sides, minus the contribution of the remaining displacements of prescribed dofs,
+    /// which are in `increment`.
     fn begin(
         &mut self,
         equations: &Equations,
@@ -134,14 +133,14 @@ impl LinearProblem {
         self.multipliers.clear();
         self.multipliers.resize(rows.len(), 0.0);
         let mut remaining = false;
-        for (dof, left) in equations.remaining(&now.at) {
-            self.increment[dof] = left;
-            remaining |= left != 0.0;
+        for (dof, distance) in equations.remaining(&now.at) {
+            self.increment[dof] = distance;
+            remaining |= distance != 0.0;
         }
-        if remaining { self.take_off(equations, now, rows, timings) } else { Ok(()) }
+        if remaining { self.subtract_product(equations, now, rows, timings) } else { Ok(()) }
     }
 
-    /// One more correction with the factor, into `increment` and `multipliers`, and added up.
+    /// One more correction with the factor, into `increment` and `multipliers`, added to `total`.
     fn correct(
         &mut self,
         equations: &Equations,
@@ -165,8 +164,8 @@ impl LinearProblem {
         }
         total.solves += 1;
         self.mixing.improve([&mut self.increment, &mut self.multipliers], depth);
-        total.increment.iter_mut().zip(&self.increment).for_each(|(total, part)| *total += part);
-        total.multipliers.iter_mut().zip(&self.multipliers).for_each(|(total, part)| *total += part);
+        total.increment.iter_mut().zip(&self.increment).for_each(|(total, change)| *total += change);
+        total.multipliers.iter_mut().zip(&self.multipliers).for_each(|(total, change)| *total += change);
         Ok(())
     }
 
@@ -180,12 +179,12 @@ impl LinearProblem {
     ) -> [Vec<f64>; 2] {
         let (forces, gaps) = (vec![0.0; increment.len()], vec![0.0; multipliers.len()]);
         let mut problem = Self { forces, gaps, increment, multipliers, ..Self::default() };
-        problem.take_off(equations, now, rows, &mut Timings::default()).unwrap();
+        problem.subtract_product(equations, now, rows, &mut Timings::default()).unwrap();
         [problem.forces, problem.gaps].map(|right| right.iter().map(|value| -value).collect())
     }
 
-    /// Takes what the last correction brings off the right-hand sides.
-    fn take_off(
+    /// Subtracts the effect of the last correction from the right-hand sides.
+    fn subtract_product(
         &mut self,
         equations: &Equations,
         now: &Evaluation,

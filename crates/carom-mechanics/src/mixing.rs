@@ -1,4 +1,4 @@
-//! Corrections with an old tangent, accelerated: Anderson's mixing (D. G. Anderson, J. ACM 12
+//! Acceleration of corrections with an old tangent: Anderson's mixing (D. G. Anderson, J. ACM 12
 //! (1965) 547–560; H. F. Walker, P. Ni, SIAM J. Numer. Anal. 49 (2011) 1715–1735). With corrections
 //! c(z) at iterates z = (y, λ),
 //!
@@ -6,59 +6,59 @@
 //! γ = argmin ‖c_k − ΔC γ‖,    z_{k+1} = z_k + c_k − (ΔZ + ΔC) γ
 //! ```
 //!
-//! where the columns of ΔZ and ΔC are the last changes of z and c: what the old tangent gets wrong
-//! in the directions gone along is known from them. On a linear problem this is GMRES
-//! preconditioned with the old tangent. The norm is that of the positions.
+//! where the columns of ΔZ and ΔC are the last changes of z and c, which reveal the error of the
+//! old tangent in the directions taken. On a linear problem this is GMRES preconditioned with the
+//! old tangent. The norm is that of the positions.
 
 use std::collections::VecDeque;
 
 use crate::sums::dot;
 
-/// Numbers of a block.
+/// Numbers per block.
 const BLOCK: usize = 2048;
-/// Pivot, as a share of the direction's own square, below which it repeats the others.
+/// Pivot, relative to the direction's own square, below which it depends on the others.
 const DEPENDENT: f64 = 1e-8;
 
 /// Positions and multipliers.
 type Iterate = [Vec<f64>; 2];
 
-/// What one iteration has shown.
+/// One iteration of the history.
 #[derive(Debug, Default)]
 struct Change {
     /// Column of ΔC.
     correction: Iterate,
     /// Column of ΔZ + ΔC.
     both: Iterate,
-    /// Products of the correction's change with itself and with older ones, the latest first.
+    /// Products of the correction's change with itself and with older ones, latest first.
     products: Vec<f64>,
 }
 
-/// What the last iterations with one factor and one set of contacts have shown.
+/// The history of iterations with one factor and one set of contacts.
 #[derive(Debug, Default)]
 pub(crate) struct Mixing {
-    /// The last correction and the step that was taken for it, where there are any.
+    /// The last correction and the step taken for it, if any.
     last: Iterate,
     taken: Iterate,
     begun: bool,
-    /// The latest first.
+    /// Latest first.
     changes: VecDeque<Change>,
-    /// Memory to be used again.
+    /// Memory for reuse.
     spare: Vec<Change>,
 }
 
 impl Mixing {
-    /// Forgets all: with another factor or other contacts the old corrections say nothing.
+    /// Clears the history: with another factor or other contacts it is meaningless.
     pub(crate) fn restart(&mut self) {
         self.begun = false;
         self.spare.extend(self.changes.drain(..));
     }
 
-    /// Makes of a correction the step to take; `depth` changes are remembered.
+    /// Replaces a correction by the step to take; `depth` changes are stored.
     pub(crate) fn improve(&mut self, correction: [&mut [f64]; 2], depth: usize) {
         if depth == 0 {
             return;
         }
-        let mut right = self.take_up(&correction, depth);
+        let mut right = self.record(&correction, depth);
         let product = |i: usize, j: usize| self.changes[i.min(j)].products[i.abs_diff(j)];
         least_squares(product, &mut right);
         for (k, step) in correction.into_iter().enumerate() {
@@ -75,9 +75,9 @@ impl Mixing {
         }
     }
 
-    /// Remembers a correction and what has changed since the last one; products of the changes with
-    /// it.
-    fn take_up(&mut self, correction: &[&mut [f64]; 2], depth: usize) -> Vec<f64> {
+    /// Stores a correction and its change from the last one. Returns products of the changes with
+    /// the correction.
+    fn record(&mut self, correction: &[&mut [f64]; 2], depth: usize) -> Vec<f64> {
         let full = self.changes.len() == depth;
         let oldest = if self.begun && full { self.changes.pop_back() } else { self.spare.pop() };
         let mut new = oldest.unwrap_or_default();
@@ -129,7 +129,7 @@ fn add(sums: &mut [f64; 2], a: &[f64], b: &[f64], c: &[f64]) {
 }
 
 /// Overwrites the right-hand side of normal equations with their solution, by elimination; unknowns
-/// whose direction repeats the earlier ones are zero.
+/// with linearly dependent directions are zero.
 fn least_squares(product: impl Fn(usize, usize) -> f64, right: &mut [f64]) {
     let n = right.len();
     let mut matrix: Vec<f64> = (0..n * n).map(|k| product(k / n, k % n)).collect();
@@ -155,9 +155,9 @@ fn least_squares(product: impl Fn(usize, usize) -> f64, right: &mut [f64]) {
 mod tests {
     use super::*;
 
-    /// y = b − Ay with a matrix that contracts by 0.9 at worst: with as many directions as unknowns
-    /// the solution is reached in one step more (Walker, Ni, theorem 2.2), without any hardly a
-    /// digit is.
+    /// y = b − Ay with a contraction of at worst 0.9: with as many directions as unknowns the
+    /// solution is reached in one more step (Walker, Ni, theorem 2.2); without any, hardly a digit
+    /// is gained.
     #[test]
     fn linear_problems_end_after_as_many_steps_as_there_are_unknowns() {
         let old = [[0.9, 0.1, 0.0], [0.0, -0.4, 0.2], [0.1, 0.0, 0.5]];
@@ -171,7 +171,7 @@ mod tests {
                     (0..3).map(|i| away[i] - (0..3).map(|j| old[i][j] * away[j]).sum::<f64>()).collect();
                 let (mut step, mut multiplier) = (correction.clone(), [2.0 * correction[0]]);
                 mixing.improve([&mut step, &mut multiplier], depth);
-                // What is linear in the positions stays so.
+                // Quantities linear in the positions remain so.
                 assert!((multiplier[0] - 2.0 * step[0]).abs() < 1e-12);
                 y.iter_mut().zip(&step).for_each(|(y, step)| *y += step);
             }

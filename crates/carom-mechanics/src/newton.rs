@@ -1,10 +1,10 @@
-//! One stage solved: inexact Newton on positions and multipliers (R. S. Dembo, S. C. Eisenstat, T.
-//! Steihaug, SIAM J. Numer. Anal. 19 (1982) 400–408; forcing in the manner of S. C. Eisenstat, H.
-//! F. Walker, SIAM J. Sci. Comput. 17 (1996) 16–32), with the primal–dual active set inside.
+//! Solution of one stage: inexact Newton on positions and multipliers (R. S. Dembo, S. C.
+//! Eisenstat, T. Steihaug, SIAM J. Numer. Anal. 19 (1982) 400–408; forcing after S. C. Eisenstat,
+//! H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16–32), with an inner primal–dual active set.
 //!
-//! Converged means, all at once: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus the round-off the system's
-//! diagonal stands for); |g| ≤ 1e-12·L on every pressing constraint; no pair penetrates, pulls, or
-//! has slid off its facet. Nothing less is accepted.
+//! Convergence requires all of: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus round-off according to the
+//! system's diagonal); |g| ≤ 1e-12·L on every active constraint; no pair penetrates, pulls, or has
+//! slid off its facet. Nothing less is accepted.
 
 use crate::constraints::Constraints;
 use crate::contact_update::{ContactUpdate, Events, GAP_TOLERANCE, check_stuck, hold_on, search};
@@ -18,34 +18,34 @@ use crate::sums::max_abs;
 use crate::timings::timed;
 use crate::workspace::Workspace;
 
-/// How much smaller than the tolerance the residual gets where linear problems are not solved to
-/// the end.
+/// Factor below the tolerance to which the residual is reduced if linear problems are solved
+/// inexactly.
 const DIGITS: f64 = 1e-3;
-/// Loosest share of its first correction that a linear problem is solved to, and share of what the
-/// iteration before left of its residual.
+/// Largest forcing term of a linear problem, and its ratio to the reduction of the residual in the
+/// previous iteration.
 const FORCING: f64 = 0.1;
 const FORCING_RATIO: f64 = 0.9;
-/// Corrections with a kept factor that may be larger than the one before with the same contacts.
+/// Number of corrections with a reused factor that may grow without a change of contacts.
 const PATIENCE: u32 = 2;
-/// Halvings of a Newton step that inverts a cell or makes the residual much worse.
-const HALVINGS: usize = 8;
-/// Share of the predicted motion that its first correction may have: a predictor that needs more is
+/// Bisections of a Newton step that inverts a cell or greatly increases the residual.
+const BISECTIONS: usize = 8;
+/// Fraction of the predicted motion that its first correction may have; otherwise the predictor is
 /// discarded.
 const TRUST: f64 = 0.5;
 
-/// What a solve cost and what happened in it.
+/// Cost and events of a solve.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Effort {
     /// Linear solves.
     pub iterations: u32,
     /// Events of the pairs.
     pub events: Events,
-    /// The kept factor's point.
+    /// The point of the reused factor.
     pub frozen: FrozenTangent,
 }
 
-/// Solves a stage from a guess. `kept`: the factor of the stage before; `before`: positions at its
-/// end, for trajectories.
+/// Solves a stage from a guess. `frozen`: the factor of the previous stage; `before`: positions at
+/// its end, for trajectories.
 pub(crate) fn solve_stage(
     equations: &Equations,
     frozen: &FrozenTangent,
@@ -58,37 +58,37 @@ pub(crate) fn solve_stage(
     let mut effort = Effort::default();
     let (mass, stiffness) = (equations.mass_factor(), equations.factor_stiffness());
     let mut renewal = Renewal::new(frozen, mass, stiffness, settings.tangent != Tangent::Frozen);
-    // Without inertia corrections may well grow before they shrink, and what is enough is mostly
-    // round-off of positions: reactions would show what is left over.
-    let (anew, free) = (settings.tangent == Tangent::Full, equations.stage.is_static());
+    // Without inertia corrections may grow before they shrink, and the residual tolerance is mostly
+    // round-off of positions: a remaining residual would appear in reactions.
+    let (full, is_static) = (settings.tangent == Tangent::Full, equations.stage.is_static());
     work.linear.restart();
-    // Where contact begins, velocities and accelerations jump from node to node. That motion,
-    // predicted for a step, tears cells that the balance holds together or turns them over, and
-    // Newton's method begins better from rest.
+    // Where contact begins, velocities and accelerations jump from node to node. Extrapolated over
+    // a step, that motion distorts or inverts cells, and Newton's method starts better without a
+    // predictor.
     let predicted = max_abs(&guess.increment);
-    let mut rest = Some(Iterate {
+    let mut fallback = Some(Iterate {
         increment: before.iter().zip(&state.y).map(|(start, old)| start - old).collect(),
         pairings: guess.pairings.clone(),
     })
-    .filter(|_| !free);
+    .filter(|_| !is_static);
     let mut now = match begin(equations, before, guess, &mut effort.events, work) {
-        Err(Rejected::Inverted { .. }) if let Some(rest) = rest.take() => {
-            begin(equations, before, rest, &mut effort.events, work)?
+        Err(Rejected::Inverted { .. }) if let Some(fallback) = fallback.take() => {
+            begin(equations, before, fallback, &mut effort.events, work)?
         }
         begun => begun?,
     };
-    if free && hold_on(model, &mut now) {
+    if is_static && hold_on(model, &mut now) {
         now = again(equations, now, work)?;
     }
     work.restore_factor(equations, &renewal)?;
-    let digits = if free { DIGITS } else { 1.0 };
+    let digits = if is_static { DIGITS } else { 1.0 };
     let mut contact = ContactUpdate::new(model);
     let (mut step, mut ratio, mut grown, mut iteration) = (f64::INFINITY, 1.0_f64, 0, 0);
     loop {
-        // What a linear problem leaves over shrinks with the residual: the balance is taken further
-        // where it is not solved to the end.
+        // The error of an inexact linear solve shrinks with the residual, so the residual is
+        // reduced further if linear problems are solved inexactly.
         let enough = DIGITS * tolerance * now.measure.forces + work.system.round_off(equations);
-        let settled = step * if free { 1.0 } else { ratio.min(1.0) } <= tolerance * model.scale
+        let settled = step * if is_static { 1.0 } else { ratio.min(1.0) } <= tolerance * model.scale
             && now.measure.residual <= enough
             && now.measure.gap <= GAP_TOLERANCE * model.scale;
         let changed = contact.update(equations, before, &mut now, &mut effort.events, settled, step, work)?;
@@ -97,11 +97,11 @@ pub(crate) fn solve_stage(
             return Ok((now, effort));
         }
         if changed {
-            // The rows at hand belong to the pairs before.
+            // The existing rows belong to the previous pairs.
             now = again(equations, now, work)?;
             work.linear.restart();
         }
-        if iteration >= settings.max_iterations || (!free && grown > PATIENCE) {
+        if iteration >= settings.max_iterations || (!is_static && grown > PATIENCE) {
             check_stuck(equations, &now)?;
             return Err(Rejected::NoConvergence {
                 iterations: effort.iterations,
@@ -110,14 +110,14 @@ pub(crate) fn solve_stage(
             });
         }
         let rows = Constraints::of(equations, &now);
-        if free {
+        if is_static {
             check_held(&model.parts, &model.unconstrained, &now.place, rows.rows.iter())?;
         }
         let made = renewal.made;
-        renewal.due |= anew;
+        renewal.due |= full;
         work.factor_for(equations, &now, &rows, &mut renewal)?;
-        let trust = if rest.is_some() && predicted > 0.0 { TRUST * predicted } else { f64::INFINITY };
-        // No further than the iteration as a whole has come, and than what ends it.
+        let trust = if fallback.is_some() && predicted > 0.0 { TRUST * predicted } else { f64::INFINITY };
+        // Limited by the progress of the outer iteration, and by its convergence criterion.
         let pace = if changed { 1.0 } else { ratio };
         let forcing = digits * FORCING.min(FORCING_RATIO * pace).max(enough / now.measure.residual);
         let goal = Goal { forcing, step: tolerance * model.scale, fresh: renewal.made != made, trust };
@@ -133,13 +133,13 @@ pub(crate) fn solve_stage(
             timings,
         )?;
         (iteration, effort.iterations) = (iteration + 1, effort.iterations + correction.solves);
-        if let Some(rest) = rest.take()
+        if let Some(fallback) = fallback.take()
             && correction.first > trust
         {
             work.spare.put(now);
             contact.restart();
             work.linear.restart();
-            now = begin(equations, before, rest, &mut effort.events, work)?;
+            now = begin(equations, before, fallback, &mut effort.events, work)?;
             step = f64::INFINITY;
             continue;
         }
@@ -165,7 +165,7 @@ fn begin(
     equations.evaluate(guess, &mut work.spare, &mut work.timings)
 }
 
-/// Evaluates an iterate again: its pairs have changed.
+/// Re-evaluates an iterate whose pairs have changed.
 fn again(
     equations: &Equations,
     mut evaluation: Evaluation,
@@ -176,8 +176,8 @@ fn again(
     equations.evaluate(at, &mut work.spare, &mut work.timings)
 }
 
-/// Takes the Newton step, shortened where it inverts a cell or, with unchanged contacts, makes the
-/// residual much worse.
+/// Takes the Newton step, shortened if it inverts a cell or, with unchanged contacts, greatly
+/// increases the residual.
 fn advance(
     equations: &Equations,
     now: Evaluation,
@@ -188,8 +188,8 @@ fn advance(
 ) -> Result<Evaluation, Rejected> {
     let merit =
         |m: &Measure| (m.residual / m.forces.max(f64::MIN_POSITIVE)).max(m.gap / equations.model.scale);
-    // Before moved supports have arrived, the balance is that of another problem.
-    let compare = compare && equations.remaining(&now.at).all(|(_, left)| left == 0.0);
+    // Until moving supports have reached their positions, the balance is not comparable.
+    let compare = compare && equations.remaining(&now.at).all(|(_, distance)| distance == 0.0);
     let worse = |next: &Measure| compare && merit(next) > 2.0 * merit(&now.measure) && merit(next) > 1e-6;
     let take = |length: f64, work: &mut Workspace| {
         let mut at = work.spare.copy(&now.at);
@@ -203,7 +203,7 @@ fn advance(
         equations.evaluate(at, &mut work.spare, &mut work.timings)
     };
     let (mut length, mut outcome) = (1.0, take(1.0, work));
-    for _ in 0..HALVINGS {
+    for _ in 0..BISECTIONS {
         if outcome.as_ref().is_ok_and(|next| !worse(&next.measure)) {
             work.spare.put(now);
             return outcome;
@@ -216,8 +216,8 @@ fn advance(
         outcome = take(length, work);
     }
     if outcome.is_ok() {
-        // Where shortening does not help, the full step is as good as any: contact forces come and
-        // go.
+        // If shortening does not help, the full step is as good as any: contact forces appear and
+        // vanish.
         outcome = take(1.0, work).or(outcome);
     }
     work.spare.put(now);

@@ -1,13 +1,13 @@
-//! Where contact begins: velocities and accelerations made to agree with the constraints that now
-//! hold (persistency, g ġ = 0).
+//! Persistency: at activation of a contact, velocities and accelerations are made compatible with
+//! the active constraints (g ġ = 0).
 //!
 //! ```text
 //! M Δv + Gᵀp = 0,   G (v + Δv) = 0            then       M a + Gᵀλ = f_ext − f_int,   G a = −v·∇²g·v
 //! ```
 //!
-//! with all active rows as equalities. Projecting v alone leaves the accelerations of the impact
-//! behind and cures nothing (theory.md §5.3). Dofs without mass keep their velocity: they follow
-//! what the massive side does.
+//! with all active rows as equalities. Projecting v alone would retain the accelerations of the
+//! impact and does not remove the oscillations (theory.md §5.3). Massless dofs keep their velocity:
+//! they follow the massive side.
 
 use carom_contact::{Row, Rows};
 
@@ -18,8 +18,8 @@ use crate::rejected::Rejected;
 use crate::state::State;
 use crate::system::System;
 
-/// Projects `state` if one of the new contacts (contact, node) asks for it. The jump of kinetic
-/// energy is booked as contact work and returned.
+/// Projects `state` if one of the new contacts (contact, node) requires it. The jump of kinetic
+/// energy is recorded as contact work and returned.
 pub(crate) fn project(
     model: &Model,
     state: &mut State,
@@ -64,15 +64,15 @@ pub(crate) fn project(
     Ok(jump)
 }
 
-/// Contact and pair of all that press in a state.
+/// Contact and pair of all active ones in a state.
 pub(crate) fn pressing(state: &State) -> impl Iterator<Item = (usize, usize)> + '_ {
     let pairs = state.pairs.iter().enumerate();
     pairs.flat_map(|(k, pairs)| (0..pairs.len()).filter(|&p| pairs[p].active).map(move |p| (k, p)))
 }
 
-/// Right-hand sides of M a + Gᵀλ = f_ext − f_int, G a = −v·∇²g·v for these constraints, less what
-/// the accelerations of moving supports, in `state`, and the forces of all other pressing pairs,
-/// springs among them, contribute.
+/// Right-hand sides of M a + Gᵀλ = f_ext − f_int, G a = −v·∇²g·v for these constraints, minus the
+/// contributions of the accelerations of moving supports, in `state`, and of the forces of all
+/// other active pairs, including springs.
 pub(crate) fn drive(
     model: &Model,
     state: &State,
@@ -99,14 +99,14 @@ pub(crate) fn drive(
     (forces, constraints.places.iter().zip(constraints.rows.iter()).map(bending).collect())
 }
 
-/// Accelerations of free dofs that have mass; moving supports keep theirs.
+/// Sets the accelerations of free dofs with mass; moving supports keep theirs.
 pub(crate) fn take_accelerations(model: &Model, state: &mut State, solved: &[f64]) {
     for &i in &model.free {
         state.a[i] = if model.massless[i] { 0.0 } else { solved[i] };
     }
 }
 
-/// Rows of all pressing pairs at the state; those of open ones are far away.
+/// Rows of all active pairs at the state; those of inactive ones are open.
 pub(crate) fn measure_all(model: &Model, state: &mut State) -> Result<Vec<Rows>, Rejected> {
     let mut all = Vec::with_capacity(model.contacts.len());
     for (contact, pairs) in model.contacts.iter().zip(&mut state.pairs) {
@@ -126,7 +126,7 @@ pub(crate) fn measure_all(model: &Model, state: &mut State) -> Result<Vec<Rows>,
     Ok(all)
 }
 
-/// Σ Gᵀλ over the contacts whose force is averaged: what the next step takes its share of.
+/// Σ Gᵀλ over the contacts with averaged forces, for the next step.
 pub(crate) fn averaged_contact_into(model: &Model, state: &mut State, rows: &[Rows]) {
     let State { f_contact, pairs, .. } = state;
     f_contact.fill(0.0);
@@ -138,7 +138,7 @@ pub(crate) fn averaged_contact_into(model: &Model, state: &mut State, rows: &[Ro
     }
 }
 
-/// v·∇²g·v of a row, whose ∇²g is row-major.
+/// v·∇²g·v of a row, with row-major ∇²g.
 fn curvature(row: Row, second: &[f64], v: &[f64]) -> f64 {
     let along: Vec<f64> = row.entries().map(|(dof, _)| v[dof]).collect();
     let rows = second.chunks_exact(along.len());

@@ -1,4 +1,4 @@
-//! Why a step was not accepted: with names, for the log and for the person who reads it.
+//! Reasons for rejecting a step, with names, for the log and its readers.
 
 use carom_algebra::LinearError;
 use carom_contact::ContactError;
@@ -6,10 +6,10 @@ use carom_solid::Inverted;
 
 use crate::model::{NoValue, Unconstrained};
 
-/// A step that was not accepted; it is bisected, or ends the run.
+/// A rejected step; it is bisected, or ends the run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Rejected {
-    /// A cell turned inside out.
+    /// A cell is inverted.
     #[error("body \"{body}\": {inverted}")]
     Inverted {
         /// Body.
@@ -17,12 +17,12 @@ pub enum Rejected {
         /// Cell and J.
         inverted: Inverted,
     },
-    /// A gap has no usable value.
+    /// A gap is not usable.
     #[error("contact \"{contact}\": {error}")]
     Contact {
         /// Contact.
         contact: String,
-        /// What is wrong with the pair.
+        /// The error of the pair.
         error: ContactError,
     },
     /// Newton did not converge.
@@ -30,14 +30,14 @@ pub enum Rejected {
         "Newton's method did not converge in {iterations} iterations: last step {step:.2e} L, residual {residual:.2e} of the forces"
     )]
     NoConvergence {
-        /// Iterations made.
+        /// Number of iterations.
         iterations: u32,
         /// ‖Δy‖∞/L.
         step: f64,
         /// ‖r‖/Σ‖f‖.
         residual: f64,
     },
-    /// The active set keeps returning to one visited before.
+    /// The active set returns to one visited before.
     #[error("contact \"{contact}\": nodes {nodes:?} open and close in turn")]
     Cycle {
         /// Contact.
@@ -48,7 +48,7 @@ pub enum Rejected {
     /// The linear system could not be solved.
     #[error(transparent)]
     Linear(#[from] LinearError),
-    /// An active pair could not be held: its row says nothing about free dofs.
+    /// An active constraint cannot be satisfied: its row has no independent free dofs.
     #[error("contact \"{contact}\": node {node} penetrates by {depth:.3e} and supports leave it no way out")]
     Stuck {
         /// Contact.
@@ -58,7 +58,7 @@ pub enum Rejected {
         /// Penetration.
         depth: f64,
     },
-    /// The mass matrix does not make every motion cost energy.
+    /// The mass matrix is not positive definite.
     #[error(
         "the mass matrix is not positive definite: redistributed mass needs more nodes behind the contact"
     )]
@@ -66,10 +66,10 @@ pub enum Rejected {
     /// A load or a motion has no value.
     #[error(transparent)]
     NoValue(#[from] NoValue),
-    /// Without inertia, nothing holds a body.
+    /// Without inertia, a body is unconstrained.
     #[error(transparent)]
     Unconstrained(#[from] Unconstrained),
-    /// A moved support is not where its formula has it at the start.
+    /// A moving support does not start at the position of its formula.
     #[error(
         "a moved support would jump: node {node} is {distance:.3e} away from where its `move` has it at t = 0; let the formula begin where the node is"
     )]
@@ -79,24 +79,24 @@ pub enum Rejected {
         /// Distance along the moved direction.
         distance: f64,
     },
-    /// The contact forces of an explicit step do not settle.
+    /// The contact forces of an explicit step do not converge.
     #[error(
         "the contact forces of an explicit step did not settle in {rounds} rounds: a gap is still off by {gap:.3e}"
     )]
     Unsettled {
-        /// Linearisations made.
+        /// Number of linearisations.
         rounds: u32,
         /// Largest error of a gap.
         gap: f64,
     },
-    /// Deeper than the scheme's law allows in one step.
+    /// Penetration deeper than the scheme's law allows in one step.
     #[error(
         "a node penetrates by {depth:.3e}, more than the {bound:.3e} that the contact law explains in this step"
     )]
     Deep {
-        /// Deepest node.
+        /// Depth of the deepest node.
         depth: f64,
-        /// What the law allows.
+        /// The bound of the law.
         bound: f64,
     },
     /// A number is not finite.
@@ -108,7 +108,7 @@ pub enum Rejected {
 }
 
 impl Rejected {
-    /// One word for the log.
+    /// Keyword for the log.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Inverted { .. } => "inverted-cell",

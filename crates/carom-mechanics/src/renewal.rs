@@ -1,14 +1,13 @@
-//! When the frozen factor is made anew: the one rule.
+//! The refactoring criterion of the frozen tangent.
 //!
-//! A solve with the factor shrinks what is left by θ on average and costs about as much as a
-//! residual; a new factor costs as much as [`COST`] solves (Deuflhard, Newton Methods for Nonlinear
-//! Problems, §2.1.1). It is made anew within a step where θ promises that more solves are left to
-//! the end of the stage than that, and at the beginning of a step where the last one took more than
-//! the mean cost since it was made: the rule that makes this mean least when solves become more and
-//! more.
+//! A solve with the factor reduces the error by θ on average and costs about as much as a residual;
+//! a new factor costs as much as [`COST`] solves (Deuflhard, Newton Methods for Nonlinear Problems,
+//! §2.1.1). It is recomputed within a step if θ predicts more solves than that to the end of the
+//! stage. It is recomputed at the beginning of a step if the last one took more than the mean cost
+//! since the last refactoring, which minimises this mean for a growing number of solves.
 //!
-//! The factor is a function of the [`Point`] in the state alone, so a resumed run goes on with the
-//! same bits.
+//! The factor is a function of the [`Point`] in the state alone, so a resumed run is bitwise
+//! identical.
 
 use std::sync::Arc;
 
@@ -16,15 +15,15 @@ use serde::{Deserialize, Serialize};
 
 /// Cost of forming and factoring a tangent, in solves with the frozen one.
 const COST: f64 = 6.0;
-/// Shrinking by a solve that is expected of a factor nothing is known of.
+/// Expected reduction by a solve with an unknown factor.
 const EXPECTED: f64 = 0.1;
-/// ln of what a step is to shrink its first correction by.
+/// ln of the reduction of the first correction in a step.
 const DIGITS: f64 = 18.0;
-/// Stages whose factors of mass and stiffness agree to this, relatively, have the same matrix: both
-/// of a step of Bathe's rule do, but for round-off.
+/// Relative tolerance within which stages share a matrix by their factors of mass and stiffness:
+/// both of a step of Bathe's rule do, up to round-off.
 const SAME: f64 = 1e-12;
 
-/// All that the factor is made of.
+/// All data that determine the factor.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Positions of the internal tangent.
@@ -33,34 +32,34 @@ pub struct Point {
     pub(crate) mass: f64,
     /// Factor of the internal tangent.
     pub(crate) stiffness: f64,
-    /// Factor of the tangent of the loads, and their time.
+    /// Factor of the loads' tangent, and their time.
     pub(crate) follower: f64,
     pub(crate) time: f64,
-    /// Nodes that are eliminated last, ascending: contact acts on them alone.
+    /// Nodes eliminated last, ascending (interface nodes): contact acts on them alone.
     pub(crate) boundary: Vec<usize>,
 }
 
-/// The point of the frozen factor and what has been spent since it was made.
+/// The point of the frozen factor and the cost since it was made.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrozenTangent {
     pub(crate) point: Option<Arc<Point>>,
     steps: u32,
-    /// Solves, in all and in the last step.
+    /// Solves in total and in the last step.
     spent: f64,
     last: f64,
 }
 
-/// What one stage shows of the factor.
+/// Statistics of the factor in one stage.
 #[derive(Debug)]
 pub(crate) struct Renewal {
     pub(crate) frozen: FrozenTangent,
-    /// A new factor is wanted before the next solve.
+    /// A new factor is due before the next solve.
     pub(crate) due: bool,
-    /// Its numbers are to have all of their digits.
+    /// It is required in double precision.
     pub(crate) double: bool,
-    /// Factors made.
+    /// Number of factors made.
     pub(crate) made: u32,
-    /// How often what was left shrank with the present factor, and ln of by how much in all.
+    /// Number of observed reductions with the current factor, and the ln of their product.
     shrunk: (f64, f64),
 }
 
@@ -74,38 +73,38 @@ impl Renewal {
         Self { frozen: frozen.clone(), due, double, made: 0, shrunk: (0.0, 0.0) }
     }
 
-    /// A new factor was made.
+    /// Records a new factor.
     pub(crate) fn renewed(&mut self, point: Arc<Point>) {
         self.frozen = FrozenTangent { point: Some(point), ..FrozenTangent::default() };
         (self.due, self.shrunk) = (false, (0.0, 0.0));
         self.made += 1;
     }
 
-    /// Mean shrinking by a solve with the present factor.
+    /// Mean reduction by a solve with the current factor.
     fn rate(&self) -> f64 {
         if self.shrunk.0 > 0.0 { (self.shrunk.1 / self.shrunk.0).exp().min(0.99) } else { EXPECTED }
     }
 
-    /// Solves after the one that has left `size` until `goal` is left.
+    /// Number of further solves to reduce `size` to `goal`, after the last one.
     pub(crate) fn solves(&self, size: f64, goal: f64) -> f64 {
         (size * self.rate() / goal).ln() / -self.rate().ln()
     }
 
-    /// Whether so many solves are left to the `goal` of the stage that a new factor is cheaper.
+    /// Whether a new factor is cheaper than the remaining solves to the `goal` of the stage.
     pub(crate) fn pays(&self, size: f64, goal: f64) -> bool {
         self.shrunk.0 > 0.0 && self.solves(size, goal) > COST
     }
 
-    /// What is left was `ratio` times as large after a solve.
+    /// Records a reduction by the factor `ratio` in a solve.
     pub(crate) fn observe(&mut self, ratio: f64) {
         self.shrunk.0 += 1.0;
         self.shrunk.1 += ratio.clamp(1e-4, 2.0).ln();
     }
 
-    /// What the next step is to know.
+    /// The data for the next step.
     pub(crate) fn finish(mut self) -> FrozenTangent {
         self.frozen.steps += 1;
-        // A step of one solve has shown nothing slower than that.
+        // A step of one solve gives no evidence of slower convergence.
         let rate = if self.shrunk.0 > 0.0 { self.rate() } else { EXPECTED * EXPECTED };
         self.frozen.last = DIGITS / -rate.ln();
         self.frozen.spent += self.frozen.last;
@@ -138,7 +137,7 @@ mod tests {
             renewal.observe(0.01);
             renewal.finish()
         };
-        // ln 1e-2 takes 3.9 solves a step and the factor 6: the mean after n steps is 3.9 + 6/n.
+        // ln 1e-2 takes 3.9 solves per step and the factor 6: the mean after n steps is 3.9 + 6/n.
         for _ in 0..5 {
             let mut renewal = Renewal::new(&frozen, 1.0, 1.0, true);
             assert!(!renewal.due);

@@ -1,6 +1,6 @@
 //! Settings of Newton's method.
 
-/// How a stage is solved.
+/// Parameters of the solution of a stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// ‖Δy‖∞/L and ‖r‖/Σ‖f‖ at convergence.
@@ -9,14 +9,14 @@ pub struct Settings {
     pub max_iterations: usize,
     /// When the tangent is formed and factored.
     pub tangent: Tangent,
-    /// Earlier iterations with the same factor that each correction is improved by.
+    /// Number of earlier iterations with the same factor used to mix each correction.
     pub mixing: usize,
 }
 
 /// When the tangent is formed and factored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tangent {
-    /// When the kept one no longer pays; large factors in single precision.
+    /// When reusing the last one no longer pays; large factors in single precision.
     Frozen,
     /// The same, every factor in double precision.
     FrozenDouble,

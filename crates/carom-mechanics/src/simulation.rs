@@ -1,5 +1,5 @@
-//! The loop: steps on the grid of times n·Δt, bisected where one is rejected and brought back to
-//! the grid, watched by the energy guard.
+//! The time loop: steps on the grid of times n·Δt, bisected after a rejection and returned to the
+//! grid, monitored by the energy guard.
 
 use carom_contact::PairEvent;
 
@@ -11,13 +11,13 @@ use crate::stepper::Stepper;
 use crate::timings::Timings;
 use crate::workspace::Workspace;
 
-/// Halvings of Δt before the run stops.
-const MOST_HALVINGS: u32 = 12;
+/// Bisections of Δt before the run stops.
+const MAX_BISECTIONS: u32 = 12;
 
 /// Why a simulation stopped before its end; the state of the last grid time is kept.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Stopped {
-    /// No step from here, however small, is accepted.
+    /// No step from here is accepted, however small.
     #[error(
         "no step from t = {time:.6} is accepted, not even Δt = {dt:.3e} ({halvings} halvings): {rejected}"
     )]
@@ -26,9 +26,9 @@ pub enum Stopped {
         time: f64,
         /// Smallest step tried.
         dt: f64,
-        /// Halvings of the grid's step.
+        /// Bisections of the grid's step.
         halvings: u32,
-        /// Why that one was not accepted.
+        /// The reason for its rejection.
         rejected: Rejected,
     },
     /// The scheme created energy.
@@ -40,46 +40,46 @@ pub enum Stopped {
         time: f64,
         /// total − total at start − external work.
         created: f64,
-        /// Allowed share.
+        /// Allowed fraction.
         share: f64,
         /// Largest kinetic + strain energy so far.
         largest: f64,
     },
 }
 
-/// An event worth a line in the log.
+/// An event for the log.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LogEvent {
     /// A step was rejected and will be bisected.
     Rejected {
         /// Time at its start.
         time: f64,
-        /// Its size.
+        /// Step size.
         dt: f64,
-        /// Why.
+        /// Reason.
         rejected: Rejected,
     },
-    /// A secondary node came into contact, or left it.
+    /// A secondary node came into contact or left it.
     ActiveSet {
         /// Time at the end of the (sub)step.
         time: f64,
-        /// Place of the contact.
+        /// Index of the contact.
         contact: usize,
         /// Global node.
         node: usize,
-        /// Came (true) or left.
+        /// Whether it came (true) or left.
         active: bool,
     },
     /// A pair changed its facet or slid off the end.
     Pair {
         /// Time at the end of the (sub)step.
         time: f64,
-        /// Place of the contact.
+        /// Index of the contact.
         contact: usize,
-        /// What happened.
+        /// The event.
         event: PairEvent,
     },
-    /// Velocities were projected where contact began.
+    /// Velocities were projected at activation.
     Projection {
         /// Time.
         time: f64,
@@ -88,7 +88,7 @@ pub enum LogEvent {
     },
 }
 
-/// What happened between two grid times.
+/// Events between two grid times.
 #[derive(Clone, Debug, Default)]
 pub struct GridReport {
     /// Newton iterations of the accepted steps.
@@ -103,21 +103,21 @@ pub struct GridReport {
     pub events: Vec<LogEvent>,
 }
 
-/// A grid of times and what is done on it.
+/// A grid of times with its energy guard.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     /// Step Δt.
     pub dt: f64,
     /// Steps to the end.
     pub steps: u64,
-    /// Share of the largest energy so far that may be created before the run stops; none: it is not
-    /// watched.
+    /// Fraction of the largest energy so far that may be created before the run stops; none
+    /// disables the guard.
     pub guard: Option<f64>,
 }
 
-/// A model in motion.
+/// A model with its state.
 pub struct Simulation {
-    /// What does not change.
+    /// The constant data.
     pub model: Model,
     /// The state at the last grid time.
     pub state: State,
@@ -131,11 +131,11 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// A model at t = 0, with inertia or without, in its initial positions or where another run
-    /// ended. Cells are computed by this many threads; the result does not depend on it.
+    /// A model at t = 0, with or without inertia, in its initial positions or at the end of another
+    /// run. Cells are computed by this many threads; the result does not depend on it.
     ///
     /// # Errors
-    /// The start has no forces or no accelerations.
+    /// If the start has no forces or no accelerations.
     pub fn new(
         model: Model,
         stepper: Box<dyn Stepper>,
@@ -150,7 +150,7 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// A model that goes on from a state of an earlier run of it.
+    /// A model resumed from a state of an earlier run.
     pub fn resume(model: Model, stepper: Box<dyn Stepper>, grid: Grid, state: State, threads: usize) -> Self {
         let model = model.on_threads(threads);
         let work = Workspace::new(&model);
@@ -158,7 +158,7 @@ impl Simulation {
         Self { model, state, dt, steps, stepper, work, guard }
     }
 
-    /// Goes on from a state of an earlier run of the same case.
+    /// Resumes from a state of an earlier run of the same case.
     #[must_use]
     pub fn resumed(self, state: State) -> Self {
         Self { state, ..self }
@@ -179,11 +179,11 @@ impl Simulation {
         self.work.system.factorisations
     }
 
-    /// The tangent of the internal forces, assembled where the simulation is, as for every factor.
-    /// For measurements.
+    /// Assembles the tangent of the internal forces at the current state, as for every factor. For
+    /// measurements.
     ///
     /// # Errors
-    /// A cell is inverted.
+    /// If a cell is inverted.
     pub fn assemble(&mut self) -> Result<(), Rejected> {
         self.work.system.assemble(&self.model, &self.state.y)
     }
@@ -191,11 +191,10 @@ impl Simulation {
     /// Advances to the next grid time.
     ///
     /// # Errors
-    /// Why it cannot; `state` is then still that of the last grid time. The report tells what was
-    /// tried.
+    /// Why it cannot; `state` is then still that of the last grid time. The report contains the
+    /// attempts.
     pub fn advance(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
-        // On one of the threads: what a step hands out to the others from there costs no change of
-        // threads.
+        // On one of the threads, so that parallel calls within a step do not switch threads.
         let threads = self.model.threads.clone();
         threads.within(|| self.advance_here(report))
     }
@@ -253,7 +252,7 @@ impl Simulation {
                 Err(rejected) => {
                     report.rejected += 1;
                     report.events.push(LogEvent::Rejected { time, dt, rejected: rejected.clone() });
-                    if level == MOST_HALVINGS {
+                    if level == MAX_BISECTIONS {
                         return Err(Stopped::NoStep { time, dt, halvings: level, rejected });
                     }
                     level += 1;
@@ -270,12 +269,12 @@ impl Simulation {
         Ok(())
     }
 
-    /// The energy guard.
+    /// Checks the energy guard.
     fn watch(&self, state: &State) -> Result<(), Stopped> {
         let Some(share) = self.guard else { return Ok(()) };
         let ledger = &state.ledger;
         let created = ledger.created();
-        // Round-off of the energies themselves is not creation.
+        // Round-off of the energies themselves does not count.
         let noise = 1e-12
             * (ledger.kinetic + ledger.strain.abs() + ledger.potential.abs() + ledger.total_at_start.abs());
         if created > share * ledger.largest + ledger.open.abs() + noise {

@@ -1,11 +1,11 @@
-//! The longest stable step of an explicit scheme: Δt ≤ 2/ω_max, with ω_max² the largest eigenvalue
-//! of M⁻¹K on the initial tangent.
+//! The critical time step of an explicit scheme: Δt ≤ 2/ω_max, with ω_max² the largest eigenvalue
+//! of M⁻¹K for the initial tangent.
 //!
-//! The power iteration x ← M⁻¹K x gives it from below, by Rayleigh's quotient (for the cluster at
-//! the end of a mesh's spectrum within a percent in some hundred products). The largest eigenvalue
-//! of any cell alone bounds it from above (Irons, Treharne 1971), and ‖M_e^{-½} K_e M_e^{-½}‖_F
-//! bounds that one. [`SAFETY`] covers the first percent and some stiffening; a body that stiffens
-//! much more in compression needs a shorter step still, and the energy guard tells.
+//! The power iteration x ← M⁻¹K x approximates it from below, by Rayleigh's quotient (for the
+//! cluster at the end of a mesh's spectrum within a percent in some hundred products). The largest
+//! eigenvalue of any single cell bounds it from above (Irons, Treharne 1971), and ‖M_e^{-½} K_e
+//! M_e^{-½}‖_F bounds that one. [`SAFETY`] covers the first percent and some stiffening. A body
+//! that stiffens much more in compression needs a shorter step; the energy guard detects that.
 
 use carom_solid::cell_lumped_mass;
 
@@ -13,10 +13,9 @@ use crate::model::Model;
 use crate::sums::dot;
 use crate::system::System;
 
-/// Share of 2/ω_max that is accepted as a step.
+/// Fraction of 2/ω_max that is accepted as a step.
 pub const SAFETY: f64 = 0.95;
-/// Products with M⁻¹K at most, and the relative change of the quotient at which the iteration
-/// stops.
+/// Maximum number of products with M⁻¹K, and relative change of the quotient at convergence.
 const PRODUCTS: usize = 500;
 const SETTLED: f64 = 1e-6;
 
@@ -29,13 +28,17 @@ pub struct StableStep {
     pub cell: f64,
 }
 
-/// Stable step of a model with lumped masses at its initial tangent; `None` where a cell is
-/// inverted or a free node has no mass.
+/// Stable step of a model with lumped masses for its initial tangent; `None` if a cell is inverted
+/// or a free node is massless.
 pub fn stable_step(model: &Model) -> Option<StableStep> {
     let mut system = System::new(model);
     system.assemble(model, &model.initial_position).ok()?;
-    let mass: Vec<f64> =
-        lumped(model).into_iter().zip(&model.fixed).filter(|(_, held)| !**held).map(|(m, _)| m).collect();
+    let mass: Vec<f64> = lumped(model)
+        .into_iter()
+        .zip(&model.fixed)
+        .filter(|(_, constrained)| !**constrained)
+        .map(|(m, _)| m)
+        .collect();
     if mass.iter().any(|m| *m <= 0.0) {
         return None;
     }
@@ -60,7 +63,7 @@ pub fn stable_step(model: &Model) -> Option<StableStep> {
     Some(StableStep { power: 2.0 / square.sqrt(), cell: 2.0 / largest_of_cells(model)?.sqrt() })
 }
 
-/// Diagonal of the mass, per dof: masses are lumped.
+/// Diagonal of the lumped mass, per dof.
 pub(crate) fn lumped(model: &Model) -> Vec<f64> {
     (0..model.dofs()).map(|dof| model.mass.row(dof / model.dimension).map(|(_, m)| m).sum()).collect()
 }

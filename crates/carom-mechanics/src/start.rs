@@ -1,12 +1,12 @@
-//! The state before the first step, in the reference positions or where another run ended:
+//! The state before the first step, in the reference configuration or at the end of another run:
 //!
 //! ```text
 //! M a₀ + Gᵀλ₀ = f_ext − f_int,   G a₀ = −v₀·∇²g·v₀        at t = 0
 //! ```
 //!
-//! Contacts that were closed at the end of the other run stay closed; in the reference positions
-//! none is (λ₀ = 0). A moved support has its own v₀, a₀ and must begin where the bodies are.
-//! Without inertia v₀ and a₀ are zero, and the first load step finds the equilibrium.
+//! Contacts active at the end of the other run remain active; in the reference configuration there
+//! are none (λ₀ = 0). A moving support has its own v₀, a₀ and must start at the position of its
+//! body. Without inertia v₀ and a₀ are zero, and the first load step finds the equilibrium.
 
 use carom_contact::{Pair, Point, Rows};
 
@@ -18,7 +18,7 @@ use crate::rejected::Rejected;
 use crate::state::State;
 use crate::system::System;
 
-/// Where a run begins, if not in the initial positions.
+/// The start of a run, if not the initial positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Before {
     /// Positions.
@@ -29,14 +29,14 @@ pub struct Before {
     pub pairs: Vec<Vec<Pair>>,
 }
 
-/// A moved support may be this far, relative to L, from where its formula has it at t = 0.
+/// Tolerance, relative to L, between a moving support and its formula at t = 0.
 const NEAR: f64 = 1e-9;
 
-/// The state before the first step, with inertia or without.
+/// The state before the first step, with or without inertia.
 ///
 /// # Errors
-/// A cell is inverted, a load or a motion has no value at t = 0, a moved support would jump, or the
-/// mass matrix is singular.
+/// If a cell is inverted, a load or a motion has no value at t = 0, a moving support would jump, or
+/// the mass matrix is singular.
 pub(crate) fn start(
     model: &Model,
     inertia: bool,
@@ -90,14 +90,14 @@ pub(crate) fn start(
     Ok(state)
 }
 
-/// Springs of penalties take the forces of their gaps; their energy is returned.
+/// Evaluates the forces of penalty springs; returns their energy.
 fn press(model: &Model, state: &mut State, gaps: &[Rows]) -> f64 {
     let mut energy = 0.0;
     for (k, contact) in
         model.contacts.iter().enumerate().filter(|(_, contact)| !contact.interface.is_constraint())
     {
         for (pair, row) in state.pairs[k].iter_mut().zip(gaps[k].iter()) {
-            // The gap an energy-conserving spring has counted is of the other run.
+            // The gap stored by an energy-conserving spring is that of the other run.
             pair.start = None;
             let at = Point {
                 node: pair.node,
@@ -114,10 +114,10 @@ fn press(model: &Model, state: &mut State, gaps: &[Rows]) -> f64 {
     energy
 }
 
-/// Accelerations, and multipliers of what is closed.
+/// Computes accelerations, and multipliers of active constraints.
 fn accelerate(model: &Model, state: &mut State, gaps: &[Rows], system: &mut System) -> Result<(), Rejected> {
-    // A spring has the force of its gap. A row without mass has no acceleration to ask for: its
-    // contact keeps the force it had.
+    // A spring has the force of its gap. A row without mass does not determine an acceleration: its
+    // contact keeps its force.
     let asks = |&(k, p): &(usize, usize)| {
         let has_mass = |n: &usize| !model.massless[n * model.dimension];
         model.contacts[k].interface.is_constraint() && gaps[k].row(p).nodes.iter().any(has_mass)

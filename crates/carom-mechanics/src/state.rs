@@ -1,4 +1,4 @@
-//! All that the next step depends on. A clone is a checkpoint.
+//! All data that determine the next step. A clone is a checkpoint.
 
 use carom_contact::{Pair, Pairing};
 use serde::{Deserialize, Serialize};
@@ -10,50 +10,49 @@ use crate::renewal::FrozenTangent;
 pub struct Ledger {
     /// ½ vᵀM v.
     pub kinetic: f64,
-    /// U, of the bodies and of the springs of penalties.
+    /// U, of the bodies and of penalty springs.
     pub strain: f64,
-    /// The springs' part of it.
+    /// The contribution of the springs.
     pub springs: f64,
     /// Potential of constant conservative loads.
     pub potential: f64,
     /// Total energy at the start.
     pub total_at_start: f64,
-    /// Work of loads that are not in the potential, of supports and of moving primaries.
+    /// Work of loads without potential, of supports and of moving primaries.
     pub external_work: f64,
-    /// Σ Δy·ΔF of the loads: their work as they are at the ends of steps less that as they are at
-    /// the starts, the scale of what no scheme knows better. Where a load has only begun it is as
-    /// large as the work itself.
+    /// Σ Δy·ΔF of the loads: their work with the forces at the ends of steps minus that with the
+    /// forces at the starts, the scale of the scheme-dependent uncertainty. While a load is being
+    /// applied it can be as large as the work itself.
     pub open: f64,
-    /// Work of the contact forces on the bodies, and the jump of kinetic energy where contact
-    /// begins.
+    /// Work of the contact forces on the bodies, and the jumps of kinetic energy at activation.
     pub contact_work: f64,
     /// Largest kinetic + strain energy so far.
     pub largest: f64,
-    /// Time integral of the contact force on the secondary sides, projections included.
+    /// Time integral of the contact force on the secondary sides, including projections.
     pub impulse: [f64; 3],
 }
 
 impl Ledger {
-    /// Kinetic, strain and potential energy together.
+    /// Sum of kinetic, strain and potential energy.
     pub fn total(&self) -> f64 {
         self.kinetic + self.strain + self.potential
     }
 
-    /// Energy that the scheme has taken out; negative where it was created.
+    /// Energy dissipated by the scheme; negative if created.
     pub fn dissipation(&self) -> f64 {
         self.external_work + self.contact_work - (self.total() - self.total_at_start)
     }
 
-    /// Energy that came from nowhere: what the guard watches.
+    /// Energy created, which the guard limits.
     pub fn created(&self) -> f64 {
         self.total() - self.total_at_start - self.external_work
     }
 }
 
-/// What a two-step scheme takes from the step before.
+/// Data of the previous step for a two-step scheme.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Previous {
-    /// Size of that step: one of another size does not go on from it.
+    /// Size of that step, which must equal the next one.
     pub dt: f64,
     /// Increment of positions over it.
     pub increment: Vec<f64>,
@@ -63,30 +62,30 @@ pub struct Previous {
     pub means: Means,
 }
 
-/// Means over a step, as its own velocity update weighs start and stages; flat over all dofs.
+/// Means over a step, weighting start and stages as its velocity update; flat over all dofs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Means {
     /// Contact forces.
     pub contact: Vec<f64>,
-    /// Loads, gravity apart.
+    /// Loads without gravity.
     pub loads: Vec<f64>,
-    /// Forces of moved supports; zero at other dofs.
+    /// Forces of moving supports; zero at other dofs.
     pub supports: Vec<f64>,
-    /// Accelerations of moved supports; zero at other dofs.
+    /// Accelerations of moving supports; zero at other dofs.
     pub accelerations: Vec<f64>,
     /// Impulse of the contact forces on the secondary sides.
     pub impulse: [f64; 3],
 }
 
 impl Means {
-    /// Nothing yet.
+    /// Zero means.
     pub fn new(dofs: usize) -> Self {
         let mut means = Self::default();
         means.clear(dofs);
         means
     }
 
-    /// Back to nothing.
+    /// Resets to zero.
     pub(crate) fn clear(&mut self, dofs: usize) {
         for mean in [&mut self.contact, &mut self.loads, &mut self.supports, &mut self.accelerations] {
             mean.clear();
@@ -96,12 +95,12 @@ impl Means {
     }
 }
 
-/// What an explicit scheme knows beyond the state's time: the step it has looked ahead with.
+/// The half-step velocity of an explicit scheme, which leads the state's time.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HalfStepVelocity {
-    /// v_{n+½}, of which y_{n+1} = y_n + Δt v_{n+½} is admissible.
+    /// v_{n+½}, for which y_{n+1} = y_n + Δt v_{n+½} is admissible.
     pub velocity: Vec<f64>,
-    /// Its Δt; 0 where nothing is known yet. Another step begins anew from v_n.
+    /// Its Δt; 0 if not yet known. A step of another size starts from v_n.
     pub dt: f64,
 }
 
@@ -116,13 +115,13 @@ pub struct State {
     pub y: Vec<f64>,
     /// Velocities.
     pub v: Vec<f64>,
-    /// Algorithmic accelerations: carried, never derived anew from the balance.
+    /// Algorithmic accelerations: carried, never recomputed from the balance.
     pub a: Vec<f64>,
     /// Internal forces at `y`.
     pub f_internal: Vec<f64>,
-    /// Loads at `y`, gravity apart: their known share of the next step.
+    /// Loads at `y` without gravity, for the next step.
     pub f_external: Vec<f64>,
-    /// Σ Gᵀλ of the contacts whose force is averaged: the known share of the next step.
+    /// Σ Gᵀλ of the contacts with averaged forces, for the next step.
     pub f_contact: Vec<f64>,
     /// Force on the secondary side of each contact.
     pub contact_forces: Vec<[f64; 3]>,
@@ -130,18 +129,18 @@ pub struct State {
     pub pairs: Vec<Vec<Pair>>,
     /// Energies and works.
     pub ledger: Ledger,
-    /// The step before, for a two-step scheme; none at the start and where contact has just begun.
+    /// The previous step, for a two-step scheme; none at the start and after an activation.
     pub previous: Option<Previous>,
-    /// Of an explicit scheme.
+    /// For an explicit scheme.
     pub half_step: HalfStepVelocity,
-    /// What the kept factor was made of.
+    /// The data of the reused factor.
     pub frozen: FrozenTangent,
-    /// How grid steps went of late.
+    /// Recently bisected grid steps.
     pub bisection: Bisection,
 }
 
 impl State {
-    /// Becomes a copy of another state in the memory it has.
+    /// Copies another state, reusing allocated memory.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         let Self { step, time, y, v, a, f_internal, f_external, f_contact, contact_forces, pairs, .. } = self;
         (*step, *time) = (other.step, other.time);
@@ -159,32 +158,31 @@ impl State {
         self.bisection = other.bisection;
     }
 
-    /// Takes the pairs that a solve ended with.
+    /// Takes over the pairs at the end of a solve.
     pub(crate) fn take_pairs(&mut self, pairings: &[Pairing]) {
         self.pairs.iter_mut().zip(pairings).for_each(|(pairs, pairing)| pairs.clone_from(&pairing.pairs));
     }
 }
 
-/// Grid steps that had to be bisected: after several in a row the next ones begin with half the
-/// step, 1, 3, 7, … of them.
+/// Bisected grid steps: after several in a row the next 1, 3, 7, … start with half the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Bisection {
-    /// Grid steps left that begin with half the step.
+    /// Remaining grid steps that start with half the step.
     left: u32,
-    /// How many after the next one that is bisected.
+    /// Their number after the next bisected step.
     next: u32,
 }
 
 impl Bisection {
-    /// Most grid steps that begin with half the step before the whole one is tried again.
+    /// Largest number of grid steps that start with half the step before a full one is tried.
     const MOST: u32 = 63;
 
-    /// How often the next grid step is halved from the start.
+    /// Initial number of bisections of the next grid step.
     pub(crate) fn level(self) -> u32 {
         u32::from(self.left > 0)
     }
 
-    /// After a grid step; `bisected`: whether it was rejected in full.
+    /// Update after a grid step; `bisected`: whether the full step was rejected.
     #[must_use]
     pub(crate) fn after(self, bisected: bool) -> Self {
         match (self.left, bisected) {

@@ -1,35 +1,35 @@
-//! Sums of one fixed order: strands side by side, which processors add up at once.
+//! Sums of fixed order, in parallel lanes that processors add at once.
 
-/// Strands.
-const STRANDS: usize = 8;
+/// Number of lanes.
+const LANES: usize = 8;
 
 /// Scalar product.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (whole, rest) = a.as_chunks::<STRANDS>();
-    let (other, rest_of_other) = b.as_chunks::<STRANDS>();
-    let mut sums = [0.0; STRANDS];
+    let (whole, tail) = a.as_chunks::<LANES>();
+    let (other, other_tail) = b.as_chunks::<LANES>();
+    let mut sums = [0.0; LANES];
     for (a, b) in whole.iter().zip(other) {
-        for l in 0..STRANDS {
+        for l in 0..LANES {
             sums[l] += a[l] * b[l];
         }
     }
-    let rest: f64 = rest.iter().zip(rest_of_other).map(|(a, b)| a * b).sum();
-    sums.iter().sum::<f64>() + rest
+    let tail: f64 = tail.iter().zip(other_tail).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + tail
 }
 
-/// Largest absolute value; infinite where a number is none.
+/// Largest absolute value; infinite if a number is not finite.
 pub(crate) fn max_abs(x: &[f64]) -> f64 {
-    let (whole, rest) = x.as_chunks::<STRANDS>();
-    let (mut most, mut zeros) = ([0.0_f64; STRANDS], [0.0; STRANDS]);
+    let (whole, tail) = x.as_chunks::<LANES>();
+    let (mut most, mut zeros) = ([0.0_f64; LANES], [0.0; LANES]);
     for x in whole {
-        for l in 0..STRANDS {
+        for l in 0..LANES {
             most[l] = if x[l].abs() > most[l] { x[l].abs() } else { most[l] };
-            // Of a number, and of nothing else.
+            // Zero for finite numbers only.
             zeros[l] += 0.0 * x[l];
         }
     }
-    let finite = zeros.iter().all(|zero| *zero == 0.0) && rest.iter().all(|x| x.is_finite());
-    if finite { most.iter().chain(rest).fold(0.0, |m, x| f64::max(m, x.abs())) } else { f64::INFINITY }
+    let finite = zeros.iter().all(|zero| *zero == 0.0) && tail.iter().all(|x| x.is_finite());
+    if finite { most.iter().chain(tail).fold(0.0, |m, x| f64::max(m, x.abs())) } else { f64::INFINITY }
 }
 
 #[cfg(test)]

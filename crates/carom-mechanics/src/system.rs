@@ -1,10 +1,10 @@
-//! The matrices of the bodies over free dofs, in one pattern: the mass M, made once, the tangent K
-//! = ∂f_int/∂y at given positions, and the symmetric part of K_ext = ∂f_ext/∂y of follower
-//! pressures (all of it where the side is closed or its ends are held and the pressure is uniform);
-//! and the factors made of them.
+//! The matrices of the bodies over free dofs, in one pattern: the constant mass M, the tangent K =
+//! ∂f_int/∂y at given positions, and the symmetric part of K_ext = ∂f_ext/∂y of follower pressures
+//! (equal to it if the pressure is uniform and the side closed or constrained at its ends); and
+//! their factors.
 //!
-//! The pattern is made once, with the slots of every cell. Contact is no part of it: its rows act
-//! on the last unknowns of a factor (`tangent_factor.rs`).
+//! The pattern is built once, with the slots of every cell. It excludes contact, whose rows act on
+//! the last unknowns of a factor (`tangent_factor.rs`).
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ use crate::rejected::Rejected;
 use crate::renewal::Point;
 use crate::tangent_factor::TangentFactor;
 
-/// Slot of an entry that is not stored: that of a held dof, or of a facet's upper triangle.
+/// Slot of an entry that is not stored: of a constrained dof, or in a facet's upper triangle.
 const SKIP: u32 = u32::MAX;
 
 /// Matrices and factors.
@@ -26,16 +26,16 @@ pub(crate) struct System {
     pattern: Pattern,
     stiffness: Vec<f64>,
     mass: Vec<f64>,
-    /// Empty without such loads.
+    /// Empty without follower loads.
     follower: Vec<f64>,
-    /// Diagonals of both: read far more often than they are made.
+    /// Diagonals of both, cached.
     diagonals: [Vec<f64>; 2],
-    /// Slots of each cell's pairs of dofs, the lower triangle by rows, cell after cell through all
+    /// Slots of each cell's pairs of dofs, the lower triangle by rows, cell after cell over all
     /// bodies.
     slots: Vec<u32>,
-    /// Slots of every two dofs of the facets under pressure.
+    /// Slots of every pair of dofs of the facets under pressure.
     facet_slots: Vec<u32>,
-    /// The kept factor, and that of the mass.
+    /// The reused factor, and that of the mass.
     pub(crate) factor: TangentFactor,
     /// Factorisations so far.
     pub factorisations: u64,
@@ -89,10 +89,10 @@ impl System {
         }
     }
 
-    /// The tangent at positions.
+    /// Assembles the tangent at positions.
     ///
     /// # Errors
-    /// A cell is inverted there.
+    /// If a cell is inverted there.
     pub(crate) fn assemble(&mut self, model: &Model, y: &[f64]) -> Result<(), Rejected> {
         self.stiffness.fill(0.0);
         let mut slots = self.slots.iter();
@@ -119,8 +119,7 @@ impl System {
         Ok(())
     }
 
-    /// The symmetric part of the tangent of the loads at a time; it does not depend on the
-    /// positions.
+    /// Assembles the symmetric part of the loads' tangent at a time; independent of positions.
     fn assemble_loads(&mut self, model: &Model, time: f64) -> Result<(), Rejected> {
         let (mut at, mut slots) = (LoadsAt::default(), self.facet_slots.iter());
         model.loads.at(&model.parts, model.dofs(), time, &mut at)?;
@@ -137,14 +136,14 @@ impl System {
         Ok(())
     }
 
-    /// Diagonal of `mass_factor` M + `stiffness_factor` K over the free dofs: the force that stands
-    /// for one unit of displacement.
+    /// Diagonal of `mass_factor` M + `stiffness_factor` K over the free dofs: force per unit of
+    /// displacement.
     pub(crate) fn diagonal(&self, mass_factor: f64, stiffness_factor: f64) -> impl Iterator<Item = f64> + '_ {
         let [mass, stiffness] = &self.diagonals;
         mass.iter().zip(stiffness).map(move |(m, k)| mass_factor * m + stiffness_factor * k)
     }
 
-    /// What the last digits of the positions alone make of the residual.
+    /// Round-off of the residual due to that of the positions.
     pub(crate) fn round_off(&self, equations: &Equations) -> f64 {
         let diagonal = self.diagonal(equations.mass_factor(), equations.stiffness_factor());
         16.0 * f64::EPSILON * equations.model.scale * diagonal.map(|d| d * d).sum::<f64>().sqrt()
@@ -153,7 +152,7 @@ impl System {
     /// Mean diagonal of the tangent: makes a gap comparable with a multiplier.
     pub(crate) fn mean_stiffness(&self, equations: &Equations) -> f64 {
         let sum: f64 = self.diagonal(equations.mass_factor(), equations.stiffness_factor()).sum();
-        // Before a first tangent without inertia there is nothing to compare with.
+        // Without inertia there is no reference before the first tangent.
         if sum > 0.0 { sum / self.pattern.size() as f64 } else { 1.0 }
     }
 
@@ -162,11 +161,11 @@ impl System {
         self.pattern.multiply_add(&self.stiffness, x, out);
     }
 
-    /// Makes the kept factor that of a point, unless it is already; `double`: with all its digits.
-    /// Whether it is positive definite.
+    /// Factors the tangent at a point unless that is done; `double`: in double precision. Returns
+    /// whether it is positive definite.
     ///
     /// # Errors
-    /// A cell is inverted there, or a load has no value.
+    /// If a cell is inverted there, or a load has no value.
     pub(crate) fn factor_at(
         &mut self,
         model: &Model,
@@ -183,11 +182,11 @@ impl System {
         Ok(self.factor(model, point, double)?)
     }
 
-    /// Makes the kept factor that of the last tangent, by the factors of a point; whether it is
-    /// positive definite.
+    /// Factors the last tangent with the coefficients of a point; returns whether it is positive
+    /// definite.
     ///
     /// # Errors
-    /// A number is none.
+    /// If a number is not finite.
     pub(crate) fn factor(
         &mut self,
         model: &Model,
@@ -201,7 +200,7 @@ impl System {
     /// Factors [M Gᵀ; G 0] over the free dofs that have mass.
     ///
     /// # Errors
-    /// M is not positive definite there, or the rows depend on each other.
+    /// If M is not positive definite there, or the rows are linearly dependent.
     pub(crate) fn factor_mass(&mut self, model: &Model, rows: &Constraints) -> Result<(), Rejected> {
         self.factorisations += 1;
         self.factor.factor_mass(model, &self.pattern, &self.mass, rows)
@@ -214,7 +213,7 @@ fn diagonal_of(pattern: &Pattern, values: &[f64]) -> Vec<f64> {
 }
 
 /// The pattern of the bodies: unknowns of every two nodes that share a cell. Nodes are paired
-/// first, so that no list of all pairs of dofs is made.
+/// first, which avoids a list of all pairs of dofs.
 fn pattern(model: &Model) -> Pattern {
     let (d, mut neighbours) = (model.dimension, vec![Vec::new(); model.dofs() / model.dimension]);
     for part in &model.parts {
@@ -237,7 +236,7 @@ fn pattern(model: &Model) -> Pattern {
 }
 
 /// Calls `visit` with the unknowns of every two dofs of every cell, the larger first, in the order
-/// of the lower triangles of the cells' tangents; with none where one is held.
+/// of the lower triangles of the cells' tangents; with none if one is constrained.
 fn for_each_cell_pair(model: &Model, mut visit: impl FnMut(Option<(usize, usize)>)) {
     let mut unknowns = Vec::new();
     for part in &model.parts {

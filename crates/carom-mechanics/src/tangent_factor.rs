@@ -1,12 +1,12 @@
-//! The kept factor: bodies condensed on the nodes that contact can act on, contact itself solved on
-//! those alone.
+//! The frozen tangent: bodies condensed to the interface nodes, on which contact can act; contact
+//! is solved on those alone.
 //!
 //! ```text
-//! [ A + Σ w λ∇²g  Gᵀ ] [Δy]   [−r]       A = w.mass a' M + w.internal K_int − w.external K_ext at the kept point
+//! [ A + Σ w λ∇²g  Gᵀ ] [Δy]   [−r]       A = w.mass a' M + w.internal K_int − w.external K_ext at the frozen point
 //! [ G             0  ] [Δλ] = [−g]       (or M where velocities are projected)
 //! ```
 //!
-//! Gradients and second derivatives of the gaps are those of the present iterate: nodes may come,
+//! Gradients and second derivatives of the gaps are those of the current iterate: nodes may come,
 //! leave and slide without a new factor. Only A is old.
 
 use std::collections::VecDeque;
@@ -19,32 +19,32 @@ use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::renewal::Point;
 
-/// Factors of the kept tangent and of the mass matrix, and the scratch of their solves.
+/// Factors of the frozen tangent and of the mass matrix, and buffers of their solves.
 #[derive(Default)]
 pub(crate) struct TangentFactor {
-    /// What the tangent's factor was made of.
+    /// The point of the tangent's factor.
     point: Option<Arc<Point>>,
     positive: bool,
     tangent: Option<Condensed>,
     mass: Option<Condensed>,
     of_mass: bool,
-    /// Boundaries and structures, the one used last first: tangent and mass have the same as a
-    /// rule, and a rejected step goes back to the one before.
+    /// Interface nodes and structures, most recent first: tangent and mass usually share them, and
+    /// a rejected step returns to the previous one.
     latest: VecDeque<(Vec<usize>, Arc<Elimination>)>,
     saddle: Saddle,
-    /// The row of the dense system that each constraint is; none of springs.
+    /// The row of each constraint in the dense system; none for springs.
     places: Vec<Option<usize>>,
-    /// Right-hand side and solution, over unknowns and rows; and in the order of elimination.
+    /// Right-hand side and solution, over unknowns and rows; and in elimination order.
     solution: Vec<f64>,
     inner: Vec<f64>,
 }
 
 impl TangentFactor {
     /// Factors `mass` M + `stiffness` K − `follower` K_ext for a point; the matrices are given in
-    /// the slots of the pattern, the last may be empty. Whether the matrix is positive definite.
+    /// the slots of the pattern, the last may be empty. Returns whether it is positive definite.
     ///
     /// # Errors
-    /// A number is none.
+    /// If a number is not finite.
     pub(crate) fn factor(
         &mut self,
         model: &Model,
@@ -59,7 +59,7 @@ impl TangentFactor {
         let precision = if single { Precision::Single } else { Precision::Double };
         let fits = |t: &Condensed| Arc::ptr_eq(t.elimination(), &elimination) && t.precision() == precision;
         if !self.tangent.as_ref().is_some_and(fits) {
-            // The old factor is not wanted beside the new one.
+            // Free the old factor before allocating the new one.
             self.tangent = None;
             self.tangent = Some(Condensed::new(&elimination, precision).on(&model.threads));
         }
@@ -73,7 +73,7 @@ impl TangentFactor {
         Ok(self.positive)
     }
 
-    /// The order of elimination that leaves these nodes for last.
+    /// The elimination order with these nodes last.
     fn elimination(
         &mut self,
         model: &Model,
@@ -94,21 +94,21 @@ impl TangentFactor {
         Ok(elimination)
     }
 
-    /// Whether it is positive definite, if it is the factor of a point.
+    /// Whether it is positive definite, if it is the factor of this point.
     pub(crate) fn of(&self, point: &Arc<Point>) -> Option<bool> {
         (self.point.as_ref() == Some(point)).then_some(self.positive)
     }
 
-    /// Whether the kept factor can take these rows.
+    /// Whether the interface nodes of the frozen tangent include these rows.
     pub(crate) fn spans(&self, rows: &Constraints) -> bool {
         self.point.as_ref().is_some_and(|point| spans(&point.boundary, rows))
     }
 
-    /// Factors M with these rows, over the dofs that have mass: the others keep a unit diagonal and
-    /// stay out of the rows.
+    /// Factors M with these rows, over the dofs with mass: the others have a unit diagonal and are
+    /// excluded from the rows.
     ///
     /// # Errors
-    /// M is not positive definite, or the rows depend on each other.
+    /// If M is not positive definite, or the rows are linearly dependent.
     pub(crate) fn factor_mass(
         &mut self,
         model: &Model,
@@ -116,8 +116,8 @@ impl TangentFactor {
         mass: &[f64],
         rows: &Constraints,
     ) -> Result<(), Rejected> {
-        let kept = self.point.as_ref().filter(|point| spans(&point.boundary, rows));
-        let boundary = kept.map_or_else(|| rows.nodes(), |point| point.boundary.clone());
+        let current = self.point.as_ref().filter(|point| spans(&point.boundary, rows));
+        let boundary = current.map_or_else(|| rows.nodes(), |point| point.boundary.clone());
         let elimination = self.elimination(model, pattern, &boundary)?;
         if !self.mass.as_ref().is_some_and(|factor| Arc::ptr_eq(factor.elimination(), &elimination)) {
             self.mass = None;
@@ -135,22 +135,22 @@ impl TangentFactor {
         Ok(self.constrain(model, rows, false).map(|_| ())?)
     }
 
-    /// Takes the rows up for solves with the kept tangent; whether what is solved is positive
-    /// definite where the rows hold.
+    /// Prepares solves with the frozen tangent and these rows; returns whether the system is
+    /// positive definite on the kernel of the rows.
     ///
     /// # Errors
-    /// The rows depend on each other.
+    /// If the rows are linearly dependent.
     pub(crate) fn prepare(&mut self, model: &Model, rows: &Constraints) -> Result<bool, LinearError> {
         self.of_mass = false;
-        // A multiplier far from its value can bend the sides too much: without second derivatives
-        // there still is a descent.
+        // An inaccurate multiplier can make the curvature terms too large: without second
+        // derivatives there is still a descent direction.
         Ok(self.constrain(model, rows, true)?
             || self.constrain(model, rows, false)?
             || self.constrain(model, rows, true)?)
     }
 
-    /// The dense system on the boundary. A spring is no row of it: it adds its stiffness. Whether
-    /// all is positive definite.
+    /// The dense system on the interface. A spring adds its stiffness instead of a row. Returns
+    /// whether all is positive definite.
     fn constrain(&mut self, model: &Model, rows: &Constraints, curved: bool) -> Result<bool, LinearError> {
         let Some(condensed) = (if self.of_mass { &self.mass } else { &self.tangent }) else {
             return Err(no_factor(model));
@@ -158,14 +158,14 @@ impl TangentFactor {
         let (saddle, elimination) = (&mut self.saddle, condensed.elimination());
         self.places.clear();
         for compliance in &rows.compliances {
-            let before = self.places.iter().flatten().count();
-            self.places.push((*compliance == 0.0).then_some(before));
+            let index = self.places.iter().flatten().count();
+            self.places.push((*compliance == 0.0).then_some(index));
         }
         saddle.begin(condensed.schur(), elimination.schur_size(), self.places.iter().flatten().count());
         let place = |unknown: usize| elimination.kept_place(unknown);
         rows.each_entry(model, |r, unknown, slope| {
-            let part = !(self.of_mass && model.massless[model.free[unknown]]);
-            if let (Some(row), Some(a)) = (self.places[r].filter(|_| part), place(unknown)) {
+            let included = !(self.of_mass && model.massless[model.free[unknown]]);
+            if let (Some(row), Some(a)) = (self.places[r].filter(|_| included), place(unknown)) {
                 saddle.add_row(row, a, slope);
             }
         });
@@ -193,8 +193,8 @@ impl TangentFactor {
         condensed.substitute_into(&mut self.inner, x);
     }
 
-    /// Solves with what was prepared last: `forces` over all dofs, `gaps` one per row; answers
-    /// alike (held dofs and springs get zero).
+    /// Solves the prepared system: `forces` over all dofs, `gaps` one per row; results likewise
+    /// (zero for constrained dofs and springs).
     pub(crate) fn solve(
         &mut self,
         model: &Model,
@@ -221,13 +221,13 @@ impl TangentFactor {
     }
 }
 
-/// Whether half of the digits are enough for a factor: it is large, so that reading it is what a
-/// solve costs, and the matrix is so well conditioned that what rounding leaves over of a
-/// correction is far below what an old tangent leaves. Scaled to a unit diagonal, and with a
-/// stiffness that is positive semidefinite, the matrix has a condition number of at most some
-/// hundred times the largest quotient of its diagonal and the mass's: λ_max is at most the number
-/// of dofs of a cell, and λ_min at least that of the scaled mass matrix over that quotient. Another
-/// stiffness may do worse; iterations then contract slowly, and it is made anew.
+/// Whether single precision suffices for a factor: it is large, so that reading it dominates the
+/// cost of a solve, and the matrix is so well conditioned that the rounding error of a correction
+/// is far below the error of an old tangent. Scaled to a unit diagonal, and with a positive
+/// semidefinite stiffness, the matrix has a condition number of at most some hundred times the
+/// largest quotient of its diagonal and the mass's: λ_max is at most the number of dofs of a cell,
+/// and λ_min at least that of the scaled mass matrix over that quotient. An indefinite stiffness
+/// may be worse; iterations then converge slowly, and it is refactored.
 fn single_is_enough(pattern: &Pattern, point: &Point, mass: &[f64], stiffness: &[f64]) -> bool {
     let mut diagonal = pattern.starts[..pattern.size()].iter();
     let soft = |&k: &usize| point.stiffness * stiffness[k] <= STIFF * point.mass * mass[k];
@@ -242,17 +242,16 @@ fn spans(boundary: &[usize], rows: &Constraints) -> bool {
     rows.rows.iter().flat_map(|row| row.nodes).all(|node| boundary.binary_search(node).is_ok())
 }
 
-/// Nodes to eliminate last: those the rows touch and what lies around them on the sides in contact,
-/// so that it need not be chosen anew soon. The last choice is kept while it covers the rows and is
-/// not much too large.
+/// Nodes to eliminate last: those of the rows and nearby ones on the sides in contact, so that the
+/// choice lasts. The last choice is reused while it includes the rows and is not much too large.
 pub(crate) fn boundary(model: &Model, y: &[f64], rows: &Constraints, last: Option<&Point>) -> Vec<usize> {
-    let (touched, d) = (rows.nodes(), model.dimension);
+    let (row_nodes, d) = (rows.nodes(), model.dimension);
     let last = last.map_or(&[][..], |point| &point.boundary);
-    if touched.is_empty() {
+    if row_nodes.is_empty() {
         return last.to_vec();
     }
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for &node in &touched {
+    for &node in &row_nodes {
         for i in 0..d {
             (low[i], high[i]) = (low[i].min(y[node * d + i]), high[i].max(y[node * d + i]));
         }
@@ -261,23 +260,23 @@ pub(crate) fn boundary(model: &Model, y: &[f64], rows: &Constraints, last: Optio
     let within = |x: f64, i: usize| x >= low[i] - margin && x <= high[i] + margin;
     let near = |node: &usize| (0..d).all(|i| within(y[*node * d + i], i));
     let around = model.contacts.iter().flat_map(|contact| contact.surface.iter().copied().filter(near));
-    let mut chosen: Vec<usize> = touched.iter().copied().chain(around).collect();
+    let mut chosen: Vec<usize> = row_nodes.iter().copied().chain(around).collect();
     chosen.sort_unstable();
     chosen.dedup();
     if spans(last, rows) && last.len() <= 2 * chosen.len() { last.to_vec() } else { chosen }
 }
 
-/// Unknowns from which a factor does not fit into the processor's caches.
+/// Unknowns above which a factor exceeds the processor's caches.
 const LARGE: usize = 10_000;
-/// Largest ratio of stiffness to mass, (ωΔt)² and a factor, on the diagonal of a factor of single
-/// precision.
+/// Largest ratio of stiffness to mass, (ωΔt)² times a factor, on the diagonal of a single-precision
+/// factor.
 const STIFF: f64 = 1e3;
-/// Structures that are remembered.
+/// Number of stored structures.
 const REMEMBERED: usize = 2;
-/// What the rows add to the stiffness along themselves, as a multiple of it: enough that bending
-/// contact leaves it positive definite.
+/// Stiffness added along the rows, as a multiple of theirs: enough to outweigh the curvature terms
+/// of contact.
 const STIFFENING: f64 = 10.0;
-/// What is added on each side of the touched nodes, as a share of their extent.
+/// Margin around the nodes of the rows, relative to their extent.
 const MARGIN: f64 = 0.3;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The matrix of Newton's linear problem, applied, against differences of the whole residual.
+//! The matrix-free tangent of Newton's linear problem against differences of the whole residual.
 
 use carom_formula::Formula;
 use carom_solid::{Element, Law, generate};
@@ -14,7 +14,7 @@ use crate::sums::dot;
 use crate::testing::{contact, loaded, model, nodes, parts, simulation};
 use crate::workspace::Workspace;
 
-/// An iterate with its matrix.
+/// An iterate with its tangent.
 struct Tangent<'a> {
     equations: &'a Equations<'a>,
     at: Iterate,
@@ -23,7 +23,7 @@ struct Tangent<'a> {
 }
 
 impl<'a> Tangent<'a> {
-    /// Of the pairs of the state, with increments of a size all over the place.
+    /// For the pairs of the state, with irregular increments of a given size.
     fn new(equations: &'a Equations<'a>, size: f64) -> Self {
         let model = equations.model;
         let mut work = Workspace::new(model);
@@ -50,7 +50,7 @@ impl<'a> Tangent<'a> {
         free.iter().map(|&dof| forces[dof]).chain(gaps).collect()
     }
 
-    /// Residual at free dofs and weighted gaps of the rows, `e` along a direction.
+    /// Residual at free dofs and weighted gaps of the rows, at distance `e` along a direction.
     fn residual(&mut self, u: &[f64], e: f64) -> Vec<f64> {
         let Self { equations, at, rows, work } = self;
         let (free, mut at) = (&equations.model.free, at.clone());
@@ -65,7 +65,7 @@ impl<'a> Tangent<'a> {
         free.iter().map(|&dof| now.residual[dof]).chain(gaps).collect()
     }
 
-    /// Derivative of those along the direction, by central differences with steps `h` and 2`h`,
+    /// Their derivative along the direction, by central differences with steps `h` and 2`h`,
     /// extrapolated.
     fn derivative(&mut self, u: &[f64], h: f64) -> Vec<f64> {
         let mut slope = |h: f64| -> Vec<f64> {
@@ -106,7 +106,7 @@ fn strike() -> Model {
     model
 }
 
-/// With contact active and sliding; and the matrix is symmetric.
+/// With active, sliding contact; and the matrix is symmetric.
 #[test]
 fn the_whole_tangent_with_contact_is_the_derivative_of_the_residual() {
     let averaged = Scheme::hht(0.2).unwrap().with_forces(ForceRule::AverageState);
@@ -127,7 +127,7 @@ fn the_whole_tangent_with_contact_is_the_derivative_of_the_residual() {
     }
 }
 
-/// A block held at the left and moved at the right, with a pressure on another side.
+/// A block fixed at the left and moved at the right, with a pressure on another side.
 fn pressed(on: &str, pressure: &str) -> Model {
     let block = generate::rectangle(Element::T6, [0.0, 0.0], [1.0, 1.0], [3, 2]).unwrap();
     let parts = parts([block], Law::NeoHookean { lambda: 20.0, mu: 10.0 }, 1.0);
@@ -146,8 +146,8 @@ fn pressed(on: &str, pressure: &str) -> Model {
     model(parts, &fixed, motions, loads, Vec::new())
 }
 
-/// Follower pressure with open, free ends and a moving side: the matrix is symmetric only where the
-/// ends are held and the pressure is uniform.
+/// Follower pressure with free ends and a moving side: the matrix is symmetric only if the ends are
+/// constrained and the pressure is uniform.
 #[test]
 fn the_tangent_under_pressure_is_the_derivative_of_the_residual() {
     let scheme = Scheme::chung_hulbert(0.5).unwrap();
@@ -155,7 +155,7 @@ fn the_tangent_under_pressure_is_the_derivative_of_the_residual() {
         [("top", "3", true), ("top", "3*(1 + X^2)", false), ("bottom", "-2", true)]
     {
         let sim = simulation(pressed(on, pressure), scheme, 0.1);
-        // Without inertia and with soft springs the pressure is a good part of the tangent.
+        // Without inertia and with soft springs the pressure dominates the tangent.
         let equations = equations(&sim.model, &sim.state, &scheme, 1e3, 0.1);
         let mut tangent = Tangent::new(&equations, 1e-2);
         let (u, w) = (tangent.direction(0.1), tangent.direction(0.7));
@@ -168,7 +168,7 @@ fn the_tangent_under_pressure_is_the_derivative_of_the_residual() {
     }
 }
 
-/// Also of a discrete gradient, whose tangent is not symmetric.
+/// Also for a discrete gradient, whose tangent is not symmetric.
 #[test]
 fn the_product_of_a_discrete_gradient_is_the_derivative_of_its_force() {
     let sim = simulation(pressed("top", "3"), Scheme::chung_hulbert(0.5).unwrap(), 0.1);

@@ -1,4 +1,4 @@
-//! Small models in the plane from plain numbers, for unit tests.
+//! Small plane models from plain numbers, for unit tests.
 
 use carom_contact::{Detection, NodeToFacet, Surface, Unilateral};
 use carom_solid::{Law, LoadedSide, Mesh, body};
@@ -9,7 +9,7 @@ use crate::settings::{Settings, Tangent};
 use crate::simulation::{Grid, Simulation};
 use crate::stepper::Implicit;
 
-/// Bodies of one material, nodes numbered through.
+/// Bodies of one material, with consecutive node numbers.
 pub(crate) fn parts(meshes: impl IntoIterator<Item = Mesh>, law: Law, density: f64) -> Vec<BodyInstance> {
     let mut first_node = 0;
     let part = |(k, mesh): (usize, Mesh)| {
@@ -32,7 +32,7 @@ pub(crate) fn loaded(part: &BodyInstance, side: &str) -> LoadedSide {
     LoadedSide::new(mesh, &mesh.sides[side], part.first_node, 1.0).unwrap()
 }
 
-/// A side of one body kept out of a side of another, by multipliers.
+/// Contact of a side of one body with a side of another, by multipliers.
 pub(crate) fn contact(parts: &[BodyInstance], secondary: (usize, &str), primary: (usize, &str)) -> Contact {
     let facets = |(k, side): (usize, &str)| -> Vec<Vec<usize>> {
         let of =
@@ -40,13 +40,13 @@ pub(crate) fn contact(parts: &[BodyInstance], secondary: (usize, &str), primary:
         parts[k].body.mesh().sides[side].iter().map(of).collect()
     };
     let shape = |k: usize| parts[k].body.mesh().element.facet_shape().unwrap();
-    let (touching, target) = (nodes(&parts[secondary.0], secondary.1), facets(primary));
-    let mut surface = [&touching[..], &nodes(&parts[primary.0], primary.1)].concat();
+    let (secondary_nodes, target) = (nodes(&parts[secondary.0], secondary.1), facets(primary));
+    let mut surface = [&secondary_nodes[..], &nodes(&parts[primary.0], primary.1)].concat();
     surface.sort_unstable();
     let target = Surface::new(shape(primary.0), &target, &vec![1.0; target.len()]);
     Contact {
         name: "strike".to_owned(),
-        kinematics: Box::new(NodeToFacet::new(touching, target, Detection::ClosestPoint)),
+        kinematics: Box::new(NodeToFacet::new(secondary_nodes, target, Detection::ClosestPoint)),
         interface: Box::new(Unilateral),
         primary_part: Some(primary.0),
         secondary_facets: facets(secondary),
@@ -60,8 +60,8 @@ pub(crate) fn contact(parts: &[BodyInstance], secondary: (usize, &str), primary:
     }
 }
 
-/// A model with consistent masses, at rest in its reference positions; dofs that are fixed or move
-/// are held.
+/// A model with consistent masses, at rest in its reference configuration; fixed and prescribed
+/// dofs are constrained.
 pub(crate) fn model(
     mut parts: Vec<BodyInstance>,
     fixed: &[usize],
@@ -75,16 +75,16 @@ pub(crate) fn model(
     }
     let reference: Vec<f64> = parts.iter().flat_map(|part| part.body.mesh().nodes.flat()).copied().collect();
     let dofs = reference.len();
-    let mut held = vec![false; dofs];
-    fixed.iter().copied().chain(motions.dofs()).for_each(|dof| held[dof] = true);
-    let free: Vec<usize> = (0..dofs).filter(|&dof| !held[dof]).collect();
+    let mut constrained = vec![false; dofs];
+    fixed.iter().copied().chain(motions.dofs()).for_each(|dof| constrained[dof] = true);
+    let free: Vec<usize> = (0..dofs).filter(|&dof| !constrained[dof]).collect();
     let mut unknown = vec![usize::MAX; dofs];
     free.iter().enumerate().for_each(|(place, &dof)| unknown[dof] = place);
     Model {
         dimension: 2,
         initial_position: reference.clone(),
         initial_velocity: vec![0.0; dofs],
-        fixed: held,
+        fixed: constrained,
         free,
         unknown,
         massless: (0..dofs).map(|dof| mass.is_massless(dof / 2)).collect(),
@@ -103,7 +103,7 @@ pub(crate) fn model(
     }
 }
 
-/// A model in motion.
+/// A simulation of a model.
 pub(crate) fn simulation(model: Model, scheme: Scheme, dt: f64) -> Simulation {
     let settings = Settings { tolerance: 1e-9, max_iterations: 20, tangent: Tangent::Full, mixing: 0 };
     let stepper = Box::new(Implicit::new(Box::new(scheme), settings));

@@ -1,4 +1,4 @@
-//! What a step computes in: buffers that outlive it.
+//! The workspace of a step: buffers that outlive it.
 
 use crate::equations::Spare;
 use crate::linear_problem::LinearProblem;
@@ -8,7 +8,7 @@ use crate::stepper::Scratch;
 use crate::system::System;
 use crate::timings::Timings;
 
-/// Buffers that are rebuilt at will: no result travels through them.
+/// Buffers that may be discarded: no result depends on them.
 pub struct Workspace {
     /// Linear system.
     pub(crate) system: System,
@@ -20,7 +20,7 @@ pub struct Workspace {
     pub(crate) explicit: Scratch,
     /// Wall time by phase.
     pub timings: Timings,
-    /// The linear problem of an iteration, and what earlier ones have shown.
+    /// The linear problem of an iteration, and its history.
     pub(crate) linear: LinearProblem,
 }
 
@@ -37,14 +37,14 @@ impl Workspace {
         }
     }
 
-    /// A copy of a state, in memory that was used before.
+    /// A copy of a state, in reused memory.
     pub(crate) fn copy(&mut self, state: &State) -> State {
         let mut copy = self.states.pop().unwrap_or_default();
         copy.copy_from(state);
         copy
     }
 
-    /// Gives the memory of a state back.
+    /// Returns the memory of a state.
     pub(crate) fn put(&mut self, state: State) {
         self.states.push(state);
     }

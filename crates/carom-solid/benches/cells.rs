@@ -1,5 +1,5 @@
-//! Kernels of one cell, deformed by a few per cent: force, tangent and discrete gradient for every
-//! shape, the tangent for every law.
+//! Kernels of one cell under a deformation of a few per cent: force, tangent and discrete gradient
+//! for every shape, the tangent for every law.
 //!
 //!     cargo bench -p carom-solid              times
 //!     bench/instructions.py carom-solid       instructions
@@ -16,14 +16,14 @@ const LAWS: [Law; 3] = [
     Law::SaintVenantKirchhoff { lambda: 200.0, mu: 15.0 },
     Law::LinearElastic { lambda: 200.0, mu: 15.0 },
 ];
-/// An inner cell.
+/// An interior cell.
 const CELL: usize = 5;
 
 fn main() {
     divan::main();
 }
 
-/// A square of 32 cells, its reference positions and deformed ones.
+/// A square of 32 cells, its reference and deformed positions.
 fn square(element: Element, law: Law) -> (Box<dyn Body>, Vec<f64>, Vec<f64>) {
     let mesh = generate::rectangle(element, [0.0, 0.0], [1.0, 1.0], [4, 4]).expect("valid");
     let at = mesh.nodes.flat().to_vec();

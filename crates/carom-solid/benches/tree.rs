@@ -1,6 +1,6 @@
 //! The hierarchy of boxes over 10³ to 10⁵ facets of a closed chain in the plane and of a sphere:
-//! what a facet costs to take in, and what a query costs. Times per box grow with the logarithm;
-//! those of all boxes one by one grow with their number.
+//! cost of building per facet, and of a query. Times per box grow logarithmically with the number
+//! of boxes; those of the exhaustive search grow linearly.
 //!
 //!     cargo bench -p carom-solid --bench tree     times, and boxes or queries per second
 //!     bench/instructions.py carom-solid           instructions
@@ -13,7 +13,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 
 const COUNTS: [usize; 3] = [1_000, 10_000, 100_000];
-/// Those of which all pairs are looked at in less than a second.
+/// Those for which the exhaustive search takes less than a second.
 const FEW: [usize; 2] = [1_000, 10_000];
 
 fn main() {
@@ -31,7 +31,7 @@ fn circle(count: usize) -> Vec<Bounds> {
     (0..count).map(|k| facet(k as f64)).map(|nodes| hull.bounds(|a| &nodes[a])).collect()
 }
 
-/// Boxes of triangles on a sphere: its squares of longitude and latitude, halved.
+/// Boxes of triangles on a sphere: squares of longitude and latitude, cut in two.
 fn sphere(count: usize) -> Vec<Bounds> {
     let rows = (count as f64 / 4.0).sqrt().round() as usize;
     let columns = count / (2 * rows);
@@ -60,7 +60,7 @@ fn refit(bencher: Bencher, boxes: &[Bounds]) {
     bencher.counter(ItemsCount::new(boxes.len())).bench_local(|| tree.update(|k| black_box(boxes)[k]));
 }
 
-/// Of each box: itself and its neighbours.
+/// Queries with each box: itself and its neighbours.
 fn queries(bencher: Bencher, boxes: &[Bounds]) {
     let tree = tree(boxes);
     let mut found = Vec::new();

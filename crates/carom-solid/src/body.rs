@@ -1,16 +1,15 @@
-//! What the rest of Carom sees of a body: forces, tangents, masses and stresses at positions, cell
-//! by cell.
+//! The interface of a body: forces, tangents, masses and stresses at given positions, cell by cell.
 
 use crate::bounds::Bounds;
 use crate::mesh::Mesh;
 
-/// A cell turned inside out (J ≤ 0) at some quadrature point.
+/// A cell is inverted (J ≤ 0) at a quadrature point.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("cell {cell} is inverted: J = {det_f:.3e}")]
 pub struct Inverted {
     /// The cell.
     pub cell: usize,
-    /// Determinant of the deformation gradient found there.
+    /// Determinant of the deformation gradient at that point.
     pub det_f: f64,
 }
 
@@ -19,24 +18,24 @@ pub struct Inverted {
 pub struct PointState {
     /// Determinant of the (three-dimensional) deformation gradient.
     pub det_f: f64,
-    /// Cauchy stress, 3 × 3 with the out-of-plane component filled in.
+    /// Cauchy stress, 3 × 3 including the out-of-plane component.
     pub cauchy: [[f64; 3]; 3],
 }
 
 /// A deformable body: a mesh with one material. Node numbers are the body's own; D stands for the
 /// dimension of its mesh and N for the nodes of a cell.
 ///
-/// Units follow the case: forces per unit thickness × thickness. `y` always holds the positions of
-/// all nodes of the body, flat and node-major, as every vector over nodes.
+/// Units follow the case: forces per unit thickness × thickness. `y` is always the positions of all
+/// nodes of the body, flat and node-major, as every vector over nodes.
 pub trait Body: Send + Sync {
     /// Mesh with reference positions.
     fn mesh(&self) -> &Mesh;
 
-    /// Strain energy of a cell; adds nothing, overwrites `force` (`N·D`, node-major) with ∂U/∂y.
+    /// Returns the strain energy of a cell and overwrites `force` (`N·D`, node-major) with ∂U/∂y.
     fn cell_force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted>;
 
     /// As [`Self::cell_force`], and overwrites `tangent` (`(N·D)²`, row-major, symmetric, both
-    /// halves) with ∂²U/∂y².
+    /// triangles) with ∂²U/∂y².
     fn cell_tangent(
         &self,
         cell: usize,
@@ -46,7 +45,7 @@ pub trait Body: Send + Sync {
     ) -> Result<f64, Inverted>;
 
     /// Discrete gradient of the strain energy between `before` and `now`: overwrites `force` with f
-    /// such that f·(now − before) = U(now) − U(before) to round-off. U(now) is returned.
+    /// such that f·(now − before) = U(now) − U(before) to round-off. Returns U(now).
     fn cell_between(
         &self,
         cell: usize,
@@ -56,7 +55,7 @@ pub trait Body: Send + Sync {
     ) -> Result<f64, Inverted>;
 
     /// Overwrites `product` (`N·D`) with ∂f/∂y · `change`, f that of [`Self::cell_force`] or, with
-    /// `before`, of [`Self::cell_between`]; nothing of it is symmetrised.
+    /// `before`, of [`Self::cell_between`]. The tangent is not symmetrised.
     fn cell_product(
         &self,
         cell: usize,
@@ -69,7 +68,7 @@ pub trait Body: Send + Sync {
     /// Consistent mass of a cell between its nodes (`N²`, row-major): ∫ρ₀ φᵃφᵇ dΩ₀.
     fn cell_mass(&self, cell: usize, mass: &mut [f64]);
 
-    /// Nodal volumes of a cell (`N`): ∫φᵃ dΩ₀, what a unit body force per volume gives.
+    /// Nodal volumes of a cell (`N`): ∫φᵃ dΩ₀, the nodal forces of a unit body force.
     fn cell_volumes(&self, cell: usize, volumes: &mut [f64]);
 
     /// Visits the quadrature points of a cell for volume integrals: shape functions (`N`),
@@ -99,15 +98,15 @@ pub trait Body: Send + Sync {
     /// Reference coordinates of a cell's nodes (`N`).
     fn reference_nodes(&self) -> Vec<Vec<f64>>;
 
-    /// Cells and reference coordinates at a reference point: one inside a cell, all cells that
-    /// share it where it is a node or lies on an edge; empty outside the body.
+    /// Cells and reference coordinates at a reference point: one for an interior point, all cells
+    /// that share a node or an edge point; empty outside the body.
     fn locate(&self, point: &[f64]) -> Vec<(usize, Vec<f64>)>;
 
-    /// Box around a cell whose nodes are at `y`, wide enough for every point that [`Self::invert`]
-    /// finds in it.
+    /// Box around a cell whose nodes are at `y`, large enough for every point that [`Self::invert`]
+    /// accepts.
     fn cell_bounds(&self, cell: usize, y: &[f64]) -> Bounds;
 
-    /// Reference coordinates of a point of a cell, its boundary included, whose nodes are at `y`;
+    /// Reference coordinates of a point of a cell, including its boundary, whose nodes are at `y`;
     /// `None` if it lies outside.
     fn invert(&self, cell: usize, y: &[f64], point: &[f64]) -> Option<Vec<f64>>;
 

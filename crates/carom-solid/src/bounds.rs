@@ -1,16 +1,16 @@
-//! Axis-parallel boxes in up to three dimensions; axes that a point does not have are 0..0.
+//! Axis-aligned boxes in up to three dimensions; axes that a point does not have are 0..0.
 
-/// Axis-parallel box. It is never too small: a coordinate that is not finite makes it boundless
-/// along its axis.
+/// Axis-aligned box. It is conservative: a coordinate that is not finite makes it unbounded along
+/// that axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
-    // NaN where the box is empty: comparisons with it are false, and `min` and `max` pass over it.
+    // NaN for an empty box: comparisons with it are false, and `min` and `max` ignore it.
     low: [f64; 3],
     high: [f64; 3],
 }
 
 impl Bounds {
-    /// The box without a point.
+    /// The empty box.
     pub const EMPTY: Self = Self { low: [f64::NAN; 3], high: [f64::NAN; 3] };
 
     /// Box of one point of one to three coordinates.
@@ -21,7 +21,7 @@ impl Bounds {
         bounds
     }
 
-    /// Widens the box to hold a point of one to three coordinates.
+    /// Extends the box to a point of one to three coordinates.
     pub fn add(&mut self, point: &[f64]) {
         for i in 0..3 {
             let x = point.get(i).copied().unwrap_or(0.0);
@@ -42,7 +42,7 @@ impl Bounds {
         self
     }
 
-    /// Wider by `by` ≥ 0 on every side; an empty box stays empty.
+    /// Enlarged by `by` ≥ 0 on every side; an empty box stays empty.
     #[must_use]
     pub fn grown(mut self, by: f64) -> Self {
         let by = if by.is_nan() { f64::INFINITY } else { by };
@@ -53,16 +53,16 @@ impl Bounds {
         self
     }
 
-    /// Whether the boxes have a point in common, be it on their boundaries. An empty box meets
-    /// nothing.
+    /// Whether the boxes have a point in common, possibly on their boundaries. An empty box meets
+    /// none.
     #[must_use]
     #[inline]
     pub fn meets(&self, other: &Self) -> bool {
         (0..3).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
     }
 
-    /// Whether a point of one to three coordinates lies in the box, its boundary included; one that
-    /// is not finite lies in no box with bounds.
+    /// Whether a point of one to three coordinates lies in the box, including its boundary. A point
+    /// that is not finite lies in no bounded box.
     #[must_use]
     pub fn contains(&self, point: &[f64]) -> bool {
         (0..3).all(|i| {
@@ -101,10 +101,10 @@ impl Bounds {
         std::array::from_fn(|i| self.high[i] - self.low[i])
     }
 
-    /// Centre; 0 along an axis without bounds and for an empty box.
+    /// Centre; 0 along an unbounded axis and for an empty box.
     #[must_use]
     pub fn centre(&self) -> [f64; 3] {
-        // Halved first: the sum of two large coordinates may have no number.
+        // Halved first: the sum of two large coordinates may overflow.
         let middle = |i: usize| 0.5 * self.low[i] + 0.5 * self.high[i];
         std::array::from_fn(|i| if middle(i).is_finite() { middle(i) } else { 0.0 })
     }

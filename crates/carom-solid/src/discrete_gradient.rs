@@ -5,21 +5,21 @@
 //! P = F_m S,   S = S(E_m) + φ ΔE,   φ = [W₁ − W₀ − S(E_m):ΔE] / (ΔE:ΔE),   F_m = (F₀ + F₁)/2,   E_m = (E₀ + E₁)/2,   ΔE = E₁ − E₀ = sym(F_mᵀ ΔF)
 //! ```
 //!
-//! so that P:ΔF = S:ΔE = W₁ − W₀ exactly, S is symmetric (moment of momentum) and turns with the
-//! body. S(E_m) comes from the law itself, S = F̂⁻¹ P(F̂) with the triangular F̂ᵀF̂ = I + 2E_m, and
-//! so does its derivative: dF̂ = F̂⁻ᵀ dE has sym(F̂ᵀ dF̂) = dE, and dS = F̂⁻¹ (dP − dF̂ S). A law
-//! of the small strain has a quadratic energy in H: its stress at the middle is such a gradient as
-//! it stands.
+//! so that P:ΔF = S:ΔE = W₁ − W₀ exactly, and S is symmetric (angular momentum) and objective.
+//! S(E_m) comes from the law itself, S = F̂⁻¹ P(F̂) with the triangular F̂ᵀF̂ = I + 2E_m, and so
+//! does its derivative: dF̂ = F̂⁻ᵀ dE has sym(F̂ᵀ dF̂) = dE, and dS = F̂⁻¹ (dP − dF̂ S). For small
+//! strains the energy is quadratic in H, and the stress at the midpoint is a discrete gradient
+//! already.
 
 use carom_algebra::Mat;
 
 use crate::material::{Material, NotPositive};
 
-/// Below this ΔE:ΔE the correction is left out: it is of third order in ΔE and would be the
-/// rounding of W divided by ‖ΔE‖.
+/// Below this ΔE:ΔE the correction is omitted: it is of third order in ΔE and would amount to the
+/// round-off of W divided by ‖ΔE‖.
 const NO_STRAIN: f64 = 1e-12;
 
-/// W₁ and P. Compiled once for a law, not into every loop: what a call costs is little beside it.
+/// W₁ and P. Not inlined: the cost of a call is small in comparison.
 #[inline(never)]
 pub(crate) fn between<const D: usize, L: Material<D>>(
     law: &L,
@@ -32,7 +32,7 @@ pub(crate) fn between<const D: usize, L: Material<D>>(
     Ok((law.energy(&end), law.stress(&middle)))
 }
 
-/// ∂P/∂F₁ : dF₁, which is not symmetric: F_m stands on its left, F₁ on its right.
+/// ∂P/∂F₁ : dF₁. It is not symmetric: F_m multiplies from the left, F₁ from the right.
 #[inline(never)]
 pub(crate) fn change_between<const D: usize, L: Material<D>>(
     law: &L,
@@ -56,7 +56,7 @@ pub(crate) fn change_between<const D: usize, L: Material<D>>(
     Ok(*dh * s * 0.5 + f * ds)
 }
 
-/// What the formulas above are made of.
+/// Terms of the formulas above.
 struct Middle<const D: usize, P> {
     /// W₁.
     energy: f64,
@@ -103,22 +103,22 @@ fn strain<const D: usize>(h: &Mat<D>) -> Mat<D> {
 }
 
 /// F̂ − I with F̂ upper triangular and F̂ᵀF̂ = I + 2E (Cholesky); √(1 + x) − 1 = x/(1 + √(1 + x))
-/// keeps the digits of a small E.
+/// avoids cancellation for small E.
 #[inline(always)]
 fn root<const D: usize>(e: &Mat<D>) -> Option<Mat<D>> {
     let mut h = Mat::ZERO;
     for i in 0..D {
         for j in i..D {
             let known: f64 = (0..i).map(|k| h.0[k][i] * h.0[k][j]).sum();
-            let rest = 2.0 * e.0[i][j] - known;
+            let remainder = 2.0 * e.0[i][j] - known;
             if i == j {
-                let diagonal = (1.0 + rest).sqrt();
+                let diagonal = (1.0 + remainder).sqrt();
                 if diagonal.is_nan() || diagonal <= 0.0 {
                     return None;
                 }
-                h.0[i][i] = rest / (1.0 + diagonal);
+                h.0[i][i] = remainder / (1.0 + diagonal);
             } else {
-                h.0[i][j] = rest / (1.0 + h.0[i][i]);
+                h.0[i][j] = remainder / (1.0 + h.0[i][i]);
             }
         }
     }
@@ -141,12 +141,12 @@ mod tests {
         assert_eq!(end, energy(&h1));
         let work = p.double_dot(&(h1 - h0));
         assert!((work - (end - energy(&h0))).abs() < 1e-14, "{work}");
-        // P F_mᵀ symmetric: no moment.
+        // P F_mᵀ is symmetric: angular momentum is conserved.
         if L::OBJECTIVE {
             let tau = p * (Mat::identity() + (h0 + h1) * 0.5).transposed();
             assert!((tau.0[0][1] - tau.0[1][0]).abs() < 1e-14);
         }
-        // Turned as a whole, P turns along.
+        // P rotates with the body.
         let (s, c) = 0.8_f64.sin_cos();
         let q = Mat([[c, -s], [s, c]]);
         let turned = |h: &Mat<2>| q * (Mat::identity() + *h) - Mat::identity();

@@ -1,9 +1,9 @@
-//! Shapes of facets, the pieces of a body's boundary: a point at the end of a bar, a curve in the
+//! Shapes of facets, the cells of a body's boundary: a point at the end of a bar, a curve in the
 //! plane.
 //!
-//! A facet of dimension D has D − 1 coordinates ξ, and D − 1 tangents. Its normal, with the length
-//! of its measure, is ±1 for a point and the tangent turned right for a curve that is walked with
-//! the body on its left.
+//! A facet of dimension D has D − 1 coordinates ξ, and D − 1 tangents. Its normal, as long as its
+//! measure, is ±1 for a point, and for a curve traversed with the body on its left the tangent
+//! rotated to the right.
 
 use crate::quadrature;
 use crate::shape::{LineShape, line_shape};
@@ -37,19 +37,18 @@ impl FacetShape {
         }
     }
 
-    /// Polynomial degree; 0 of a point.
+    /// Polynomial degree; 0 for a point.
     pub fn degree(self) -> usize {
         self.nodes() - 1
     }
 
-    /// Shape functions and their derivatives; of a point all derivatives are zero.
+    /// Shape functions and their derivatives; for a point all derivatives are zero.
     #[inline]
     pub fn at(self, xi: f64) -> LineShape {
         line_shape(self.nodes(), xi)
     }
 
-    /// Quadrature points and weights that are exact for polynomials of a degree; a point counts
-    /// once.
+    /// Quadrature points and weights exact for polynomials of a degree; a point has weight one.
     pub fn rule(self, degree: usize) -> Vec<(f64, f64)> {
         match self {
             Self::Point => vec![(0.0, 1.0)],

@@ -1,5 +1,5 @@
-//! From a mesh and a law, known when a case has been read, to a body whose shape and law were known
-//! when Carom was compiled.
+//! Builds a body, whose shape and law are compile-time types, from a mesh and a law known at run
+//! time.
 
 use crate::body::Body;
 use crate::material::{Law, LinearElastic, Material, NeoHookean, PlaneStress, SaintVenantKirchhoff};
@@ -7,7 +7,7 @@ use crate::mesh::{Element, Mesh};
 use crate::shape::{Line2, Line3, Line4, Shape, Tri3, Tri6, Tri10};
 use crate::solid::{Solid, SolidError};
 
-/// Body of a mesh, of any dimension; in the plane of plane strain. `thickness` is the area of the
+/// Body of a mesh of any dimension; plane strain in the plane. `thickness` is the area of the
 /// cross-section in dimension 1.
 ///
 /// ```
@@ -19,8 +19,8 @@ use crate::solid::{Solid, SolidError};
 /// ```
 ///
 /// # Errors
-/// If a number is out of its range, a cell is degenerate, or the element has another dimension than
-/// the mesh.
+/// If a number is out of range, a cell is degenerate, or the element has another dimension than the
+/// mesh.
 pub fn body(mesh: Mesh, law: Law, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError> {
     match law {
         Law::NeoHookean { lambda, mu } => any(mesh, NeoHookean { lambda, mu }, density, thickness),
@@ -54,7 +54,7 @@ pub fn plane_stress_body(
     }
 }
 
-/// Body of a law that is known in every dimension.
+/// Body of a law defined in every dimension.
 fn any<L>(mesh: Mesh, law: L, density: f64, thickness: f64) -> Result<Box<dyn Body>, SolidError>
 where
     L: Material<1> + Material<2> + Material<3>,
@@ -69,7 +69,7 @@ where
     }
 }
 
-/// Body of a law of the plane.
+/// Body of a law defined in the plane.
 fn plane<L: Material<2>>(
     mesh: Mesh,
     law: L,

@@ -1,22 +1,22 @@
-//! What loads on a side put on its nodes, by quadrature over its facets (P. Wriggers, *Nonlinear
-//! Finite Element Methods*, Springer 2008, §4.2.5):
+//! Nodal forces of loads on a side, by quadrature over its facets (P. Wriggers, *Nonlinear Finite
+//! Element Methods*, Springer 2008, §4.2.5):
 //!
 //! ```text
 //! dead traction t̄ per reference area    fᵃ = Σ w φᵃ t̄ |X′|
 //! follower pressure p                    fᵃ = −Σ w φᵃ p R y′,     ∂fᵃ/∂yᵇ = −Σ w φᵃ p φᵇ′ R,     R = [0 1; −1 0]
 //! ```
 //!
-//! R turns the tangent y′ right, out of the body, so R y′ dξ is the current area with its normal,
+//! R rotates the tangent y′ to the right, out of the body, so R y′ dξ is the current area vector,
 //! and the force is linear in the positions. The tangent is exact and not symmetric: ∫ (φᵃ φᵇ′ +
-//! φᵃ′ φᵇ) p dξ leaves what happens at the ends of the side and where p changes along it. At the
-//! end of a bar the facet is a point, its normal ±1 and its measure the cross-section; the tangent
-//! is zero.
+//! φᵃ′ φᵇ) p dξ leaves terms at the ends of the side and where p varies along it. At the end of a
+//! bar the facet is a point with normal ±1, and its measure is the cross-section; the tangent is
+//! zero.
 
 use crate::facet::FacetShape;
 use crate::mesh::{Facet, Mesh};
 use crate::shape::LineShape;
 
-/// A side with its quadrature points; nodes are numbered as the mesh's, plus `first_node`.
+/// A side with its quadrature points; nodes are numbered as in the mesh, plus `first_node`.
 pub struct LoadedSide {
     shape: FacetShape,
     dimension: usize,
@@ -36,13 +36,13 @@ struct Point {
 }
 
 impl LoadedSide {
-    /// Points of the facets of a side; none where the mesh has no facets to load. `thickness` is
+    /// Points of the facets of a side; none if the element has no facets to load. `thickness` is
     /// the area of the cross-section in dimension 1.
     pub fn new(mesh: &Mesh, facets: &[Facet], first_node: usize, thickness: f64) -> Option<Self> {
         let shape = mesh.element.facet_shape()?;
         let dimension = mesh.dimension();
-        // A curved facet's |X′| is no polynomial, and neither is a load's formula: twice the degree
-        // of the shape functions' products.
+        // A curved facet's |X′| is not a polynomial, nor is the formula of a load: twice the degree
+        // of the products of shape functions.
         let rule = shape.rule(4 * mesh.element.degree() + 2);
         let orientations: Vec<f64> = facets.iter().map(|facet| mesh.orientation(facet)).collect();
         let mut points = Vec::new();
@@ -160,11 +160,11 @@ mod tests {
         top.add_traction(traction.iter().map(|t| &t[..]), &mut force);
         let [fx, fy] = total(&force);
         assert!((fx - 1.0).abs() < 1e-14 && (fy - 2.0).abs() < 1e-14, "{fx} {fy}");
-        // The moment of a cubic traction too: φ reproduces x exactly.
+        // Also the moment of a cubic traction: φ reproduces x exactly.
         let moment: f64 = force.as_chunks::<2>().0.iter().zip(&mesh.nodes).map(|(f, x)| f[1] * x[0]).sum();
         assert!((moment - 0.5 * 32.0 / 5.0).abs() < 1e-14);
 
-        // The circle's length, by cubics through points of it: an error of the fourth order.
+        // The circle's length by cubics through its points: the error is of fourth order.
         let errors = [0.5, 0.25].map(|size| {
             let mesh = generate::disc(Element::T10, 2.0, [0.0, 0.0], size).unwrap();
             let arc = side(&mesh, "arc");
@@ -185,7 +185,7 @@ mod tests {
         arc.add_pressure(&vec![3.0; arc.positions().len()], &y, &mut force);
         let [fx, fy] = total(&force);
         assert!(fx.abs() + fy.abs() < 1e-13);
-        // Virial: Σ f·y = −2 p A, with A the enclosed area by the same polynomials.
+        // Virial: Σ f·y = −2 p A, with A the area enclosed by the same polynomials.
         let virial: f64 = force.iter().zip(&y).map(|(f, y)| f * y).sum();
         assert!(virial < 0.0);
     }

@@ -1,8 +1,8 @@
 //! A mesh of one element type with named sides.
 //!
 //! Node order inside a cell and a facet is Gmsh's (and VTK's): corners, then the nodes of each edge
-//! in the direction of the edge, then the interior. In the plane a boundary is walked with the body
-//! on its left, so a facet's outward normal is its tangent turned right.
+//! in the direction of the edge, then the interior. In the plane a boundary is traversed with the
+//! body on its left, so a facet's outward normal is its tangent rotated to the right.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ pub enum Element {
     T3,
     T6,
     T10,
-    /// Keeps the code beneath honest about the third dimension.
+    /// Tests that the code does not assume the plane.
     #[cfg(test)]
     Tet4,
 }
@@ -48,7 +48,7 @@ impl Element {
         }
     }
 
-    /// Nodes of a cell.
+    /// Number of nodes of a cell.
     pub fn nodes(self) -> usize {
         self.dofs() / self.dimension()
     }
@@ -67,8 +67,8 @@ impl Element {
         }
     }
 
-    /// Facets of a cell: places of their nodes in the cell, corners first, each walked with the
-    /// body on its left.
+    /// Facets of a cell: local numbers of their nodes, corners first, each traversed with the body
+    /// on its left.
     pub fn facets(self) -> &'static [&'static [usize]] {
         match self {
             Self::L2 | Self::L3 | Self::L4 => &[&[0], &[1]],
@@ -80,7 +80,7 @@ impl Element {
         }
     }
 
-    /// Shape of those facets; none has one in space yet.
+    /// Shape of those facets; not yet available in three dimensions.
     pub fn facet_shape(self) -> Option<FacetShape> {
         match self {
             Self::L2 | Self::L3 | Self::L4 => Some(FacetShape::Point),
@@ -93,10 +93,10 @@ impl Element {
     }
 }
 
-/// A piece of a body's boundary: one node of a cell in dimension 1, one edge in the plane.
+/// A cell of a body's boundary: a node in dimension 1, an edge in the plane.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Facet {
-    /// The cell it bounds.
+    /// The cell that it bounds.
     pub cell: usize,
     /// Its nodes: start, end, then the interior ones from start to end.
     pub nodes: Vec<usize>,
@@ -111,15 +111,14 @@ pub struct Mesh {
     pub nodes: Positions,
     /// Node numbers, cell after cell.
     pub cells: Vec<usize>,
-    /// Facets of each named side, in the order in which the boundary is walked.
+    /// Facets of each named side, in the order of traversal.
     pub sides: BTreeMap<String, Vec<Facet>>,
-    /// What was repaired when the mesh was read from a file, as sentences; nothing for built-in
-    /// shapes.
+    /// Repairs made when the mesh was read from a file, as sentences; empty for built-in shapes.
     pub repairs: Vec<String>,
 }
 
 impl Mesh {
-    /// Coordinates of each node.
+    /// Number of coordinates of each node.
     pub fn dimension(&self) -> usize {
         self.nodes.dimension()
     }
@@ -135,7 +134,7 @@ impl Mesh {
         &self.cells[cell * n..(cell + 1) * n]
     }
 
-    /// The nodes of a side, each once, in the order of the walk.
+    /// The nodes of a side, each once, in the order of traversal.
     pub fn side_nodes(&self, side: &str) -> Option<Vec<usize>> {
         let facets = self.sides.get(side)?;
         let mut seen = std::collections::HashSet::new();
@@ -148,20 +147,20 @@ impl Mesh {
         Some(nodes)
     }
 
-    /// Direction of a facet: that of its outward normal where the facet is a point, ±1; 1 where the
-    /// walk along the boundary gives the normal.
+    /// Sign of a facet's outward normal: ±1 if the facet is a point; 1 if the direction of
+    /// traversal gives the normal.
     pub fn orientation(&self, facet: &Facet) -> f64 {
         if self.element.facet_shape() != Some(FacetShape::Point) {
             return 1.0;
         }
-        // Out of the body is away from the other nodes of the end's cell.
+        // The outward direction points away from the other nodes of the end's cell.
         let (end, cell) = (self.nodes[facet.nodes[0]][0], self.cell(facet.cell));
         (end - cell.iter().map(|&n| self.nodes[n][0]).sum::<f64>() / cell.len() as f64).signum()
     }
 
-    /// Whether each node lies on the boundary: on a facet of one cell alone.
+    /// Whether each node lies on the boundary: on a facet of only one cell.
     pub fn on_boundary(&self) -> Vec<bool> {
-        // Nodes of a facet in ascending order, as a name that both its cells know it by.
+        // Nodes of a facet in ascending order, as a key common to both its cells.
         let mut alone: BTreeMap<Vec<usize>, bool> = BTreeMap::new();
         for cell in (0..self.cell_count()).map(|c| self.cell(c)) {
             for facet in self.element.facets() {

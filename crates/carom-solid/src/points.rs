@@ -1,12 +1,11 @@
-//! Quadrature points side by side: sums over the nodes of a cell, for four points at once in one
-//! register.
+//! Quadrature points in lanes: sums over the nodes of a cell, for the four points of a register.
 //!
-//! Each lane is a point; lanes are added up at the end, (0 + 1) + (2 + 3). The order of every sum
-//! is fixed, so the bits are the same on every machine.
+//! Each lane is a point; lanes are added at the end, (0 + 1) + (2 + 3). The order of every sum is
+//! fixed, so results are bitwise equal on every machine.
 
 use carom_algebra::{Mat, Vector};
 
-/// Points at once: the doubles of a register of 256 bits.
+/// Number of lanes: doubles in a register of 256 bits.
 pub const LANES: usize = 4;
 
 /// A number at each of the points.
@@ -15,19 +14,19 @@ pub(crate) type Lanes = [f64; LANES];
 /// A matrix at each of the points: `[i][j][point]`.
 pub(crate) type Mats<const D: usize> = [[Lanes; D]; D];
 
-/// The blocks Kᵐⁿ, m ≤ n, of a tangent as `[n][m]`, still a strand for each lane.
+/// The blocks Kᵐⁿ, m ≤ n, of a tangent as `[n][m]`, before the sum over lanes.
 pub(crate) type Blocks<const D: usize, const N: usize> = [[Mats<D>; N]; N];
 
 /// ∂P/∂F at one point as blocks: `[J][L].0[i][j]` is ∂P_iJ/∂F_jL.
 pub(crate) type Moduli<const D: usize> = [[Mat<D>; D]; D];
 
-/// Up to four quadrature points: of one cell, or of all that have the same but for an affine map.
+/// Up to four quadrature points of one cell, or of all cells that share them up to an affine map.
 pub(crate) struct Points<const D: usize, const N: usize> {
-    /// Gradients of φᵃ as `[a][j][point]`; zero where there is no point.
+    /// Gradients of φᵃ as `[a][j][point]`; zero in unused lanes.
     pub(crate) gradients: [[Lanes; D]; N],
-    /// Weights with what they hold of volume.
+    /// Weights, including the volume factor.
     pub(crate) weights: Lanes,
-    /// How many there are.
+    /// Number of points.
     pub(crate) count: usize,
 }
 
@@ -61,7 +60,7 @@ impl<const D: usize, const N: usize> Points<D, N> {
         times(&h, a)
     }
 
-    /// fᵃ += P Aᵀ∇φᵃ, with stresses that hold the weight.
+    /// fᵃ += P Aᵀ∇φᵃ, with stresses multiplied by the weight.
     #[inline(always)]
     pub(crate) fn add_force(&self, stress: &Mats<D>, a: &Mat<D>, force: &mut [[Lanes; D]; N]) {
         let stress = times(stress, &a.transposed());
@@ -74,8 +73,8 @@ impl<const D: usize, const N: usize> Points<D, N> {
         }
     }
 
-    /// Kᵐⁿ += ∂P/∂F : Aᵀ∇φᵐ Aᵀ∇φⁿ, with moduli that hold the weight. K is bilinear in the
-    /// gradients: the law is asked for unit vectors only.
+    /// Kᵐⁿ += ∂P/∂F : Aᵀ∇φᵐ Aᵀ∇φⁿ, with moduli multiplied by the weight. K is bilinear in the
+    /// gradients: the law is evaluated for unit vectors only.
     #[inline(always)]
     pub(crate) fn add_tangent(&self, moduli: &[[Mats<D>; D]; D], a: &Mat<D>, blocks: &mut Blocks<D, N>) {
         let moduli = pulled_back(moduli, a);
@@ -97,7 +96,7 @@ impl<const D: usize, const N: usize> Points<D, N> {
     }
 }
 
-/// Takes the moduli of one point up, times its weight.
+/// Stores the moduli of one point times its weight.
 #[inline(always)]
 pub(crate) fn set_moduli<const D: usize>(
     moduli: &mut [[Mats<D>; D]; D],
@@ -112,7 +111,7 @@ pub(crate) fn set_moduli<const D: usize>(
     }
 }
 
-/// Takes the matrix of one point up, times its weight.
+/// Stores the matrix of one point times its weight.
 #[inline(always)]
 pub(crate) fn set<const D: usize>(mats: &mut Mats<D>, point: usize, of: &Mat<D>, weight: f64) {
     for i in 0..D {
@@ -154,7 +153,7 @@ fn times<const D: usize>(b: &Mats<D>, a: &Mat<D>) -> Mats<D> {
     product
 }
 
-/// The moduli for gradients that A has yet to act on: Σ A(m, j) A(n, l) moduli(j, l).
+/// Applies A to the gradient indices of the moduli: Σ A(m, j) A(n, l) moduli(j, l).
 #[inline(always)]
 fn pulled_back<const D: usize>(moduli: &[[Mats<D>; D]; D], a: &Mat<D>) -> [[Mats<D>; D]; D] {
     let zero = [[[[[0.0; LANES]; D]; D]; D]; D];

@@ -1,5 +1,5 @@
-//! Points in one, two or three dimensions, side by side in memory: what a mesh and everything above
-//! the cells sees. A kernel of known dimension reads them as `&[[f64; D]]`.
+//! Points in one, two or three dimensions, contiguous in memory: the interface of a mesh to
+//! everything above the cells. A kernel of known dimension reads them as `&[[f64; D]]`.
 
 use std::ops::{Index, IndexMut};
 
@@ -21,13 +21,13 @@ impl Positions {
     /// Points from their coordinates, point after point.
     ///
     /// # Panics
-    /// If the coordinates do not make whole points.
+    /// If the number of coordinates is not a multiple of the dimension.
     pub fn new(dimension: usize, values: Vec<f64>) -> Self {
         assert!(dimension > 0 && values.len().is_multiple_of(dimension), "coordinates of whole points");
         Self { dimension, values }
     }
 
-    /// Coordinates of each point.
+    /// Number of coordinates of each point.
     pub fn dimension(&self) -> usize {
         self.dimension
     }
@@ -37,7 +37,7 @@ impl Positions {
         self.values.len() / self.dimension
     }
 
-    /// Whether there are none.
+    /// Whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
@@ -50,7 +50,7 @@ impl Positions {
     /// The points as arrays.
     ///
     /// # Panics
-    /// If they are of another dimension.
+    /// If they have another dimension.
     #[inline(always)]
     pub fn of_dimension<const D: usize>(&self) -> &[[f64; D]] {
         assert!(self.dimension == D);
@@ -62,7 +62,7 @@ impl Positions {
         self.values.chunks_exact(self.dimension)
     }
 
-    /// The points one by one, for change.
+    /// The points one by one, mutable.
     pub fn iter_mut(&mut self) -> std::slice::ChunksExactMut<'_, f64> {
         self.values.chunks_exact_mut(self.dimension)
     }

@@ -146,8 +146,8 @@ pub fn tetrahedron(degree: usize) -> Rule<3> {
     }
 }
 
-/// The cube of Gauss–Legendre points collapsed to the tetrahedron, ξ = (u(1−v)(1−w), v(1−w), w):
-/// what the map adds to the degree, 1 along v and 2 along w, the rules along them take up.
+/// The cube of Gauss–Legendre points collapsed to the tetrahedron, ξ = (u(1−v)(1−w), v(1−w), w).
+/// The map raises the degree by 1 along v and 2 along w; the rules there are that much higher.
 fn collapsed(degree: usize) -> Rule<3> {
     let on_unit = |degree: usize| {
         let rule = line(degree);

@@ -1,11 +1,11 @@
 //! The reference map X(ξ) = Σ φᵃ Xᵃ of a cell: its gradient ∂X/∂ξ, the gradients ∇₀φ = (∂X/∂ξ)⁻ᵀ
-//! ∂φ/∂ξ, and its inverse by Newton's method, which finds the cell that holds a point.
+//! ∂φ/∂ξ, and its inverse by Newton's method, which locates the cell of a point.
 
 use carom_algebra::{Mat, Vector};
 
 use crate::shape::{Domain, Shape};
 
-/// A place where a cell is degenerate or turned over.
+/// A point at which a cell is degenerate or inverted.
 pub(crate) struct Degenerate<const D: usize> {
     pub(crate) place: [f64; D],
     pub(crate) jacobian: f64,
@@ -41,7 +41,7 @@ pub(crate) fn map<const D: usize, const N: usize, S: Shape<D, N>>(
     let local = S::gradients(xi);
     let derivative = gradient(x, &local);
     let jacobian = derivative.det();
-    // Compared with the lengths of the columns, so that a sliver is none at any scale.
+    // Relative to the lengths of the columns, so that slivers are rejected at any scale.
     let size: f64 = derivative.transposed().0.map(|column| Vector(column).norm()).iter().product();
     if jacobian > 1e-12 * size {
         let inverse_transposed = derivative.inverse().transposed();
@@ -51,13 +51,13 @@ pub(crate) fn map<const D: usize, const N: usize, S: Shape<D, N>>(
     }
 }
 
-/// A point this far outside a cell, in reference coordinates, still belongs to it: places are typed
-/// with six digits.
+/// A point this far outside a cell, in reference coordinates, still belongs to it: input has about
+/// six digits.
 const TOLERANCE: f64 = 1e-6;
 
-/// How far such a point may lie outside the hull of the cell's control points, compared with the
-/// size of its box. Where barycentric coordinates are ≥ −ε the Bernstein polynomials of degree k
-/// add up to at most (1 + 2dε)ᵏ, in d ≤ 3 dimensions: the point is outside by no more than dkε.
+/// How far such a point may lie outside the hull of the cell's control points, relative to the size
+/// of its box. Where barycentric coordinates are ≥ −ε the Bernstein polynomials of degree k sum to
+/// at most (1 + 2dε)ᵏ in d ≤ 3 dimensions: the point is outside by at most dkε.
 pub(crate) const MARGIN: f64 = 20.0 * TOLERANCE;
 
 /// Whether the reference map is not affine.

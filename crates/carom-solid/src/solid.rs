@@ -3,15 +3,15 @@
 //!   H = Σ (yᵃ − Xᵃ) ⊗ ∇₀φᵃ,   U = Σ w Ψ,   fᵃ = Σ w P ∇₀φᵃ,   Kᵃᵇ = Σ w ∂P/∂F : ∇₀φᵃ ∇₀φᵇ,
 //!
 //! (Coda, Paccola, Latin Am. J. Solids Struct. 4 (2007), positions as unknowns; Holzapfel,
-//! Nonlinear Solid Mechanics, §8). The difference y − X is formed here, once, so that small motions
-//! keep their digits. ∇₀φ and w = weight · det(∂X/∂ξ) · thickness of every quadrature point of a
-//! curved cell are computed when the body is made. Straight cells share the points of the reference
-//! cell, and have one map each, ∇₀φ = (∂X/∂ξ)⁻ᵀ ∂φ/∂ξ: what is read less is not waited for. Four
-//! points are computed at once (`points.rs`).
+//! Nonlinear Solid Mechanics, §8). Only here is y − X formed, so that small displacements keep
+//! their accuracy. ∇₀φ and w = weight · det(∂X/∂ξ) · thickness are precomputed at every quadrature
+//! point of a curved cell. Straight cells share the points of the reference cell and store one map
+//! each, ∇₀φ = (∂X/∂ξ)⁻ᵀ ∂φ/∂ξ, which saves memory bandwidth. Four points are computed at once
+//! (`points.rs`).
 //!
-//! Degrees of the rules, shape functions of degree k: straight cells 2k for force and mass; cells
-//! with curved edges 2k (k ≤ 2) or 4(k − 1) for force, 4k − 2 for mass; a law whose energy is a
-//! polynomial of degree m in F at least m (k − 1).
+//! Degrees of the rules for shape functions of degree k: straight cells 2k for force and mass;
+//! cells with curved edges 2k (k ≤ 2) or 4(k − 1) for force, 4k − 2 for mass; at least m (k − 1)
+//! for a law whose energy is a polynomial of degree m in F.
 
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -27,7 +27,7 @@ use crate::reference::{self, Degenerate, gradient};
 use crate::shape::{Domain, Hull, Shape};
 use crate::tree::Tree;
 
-/// Why a body cannot be made.
+/// Why a body cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs)]
 pub enum SolidError {
@@ -65,15 +65,15 @@ pub struct Solid<const D: usize, const N: usize, S, L> {
     law: L,
     density: f64,
     thickness: f64,
-    /// Where each cell has its quadrature points for forces.
+    /// Quadrature points for forces of each cell.
     places: Vec<Place<D>>,
-    /// Those of the reference cell first, then those of each curved cell.
+    /// Points of the reference cell first, then those of each curved cell.
     points: Vec<Points<D, N>>,
     curved: Vec<bool>,
     /// Rules for masses of straight and of curved cells.
     mass_rules: [Rule<D>; 2],
     hull: Hull,
-    /// Of the cells' boxes in the reference position, once a point has been asked for.
+    /// Hierarchy of the cells' boxes in the reference configuration, built on the first query.
     tree: OnceLock<Tree>,
     shape: PhantomData<S>,
 }
@@ -83,8 +83,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
     /// cross-section).
     ///
     /// # Errors
-    /// If a number is out of its range or the reference shape of a cell is degenerate or turned
-    /// over.
+    /// If a number is out of range, or the reference shape of a cell is degenerate or inverted.
     pub fn new(mesh: Mesh, law: L, density: f64, thickness: f64) -> Result<Self, SolidError> {
         check::<D, N>(&mesh, density, thickness)?;
         let k = S::DEGREE;
@@ -174,14 +173,14 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
     }
 }
 
-/// Points side by side, from their gradients and weights.
+/// Packs points into lanes, from their gradients and weights.
 fn pack<const D: usize, const N: usize>(
     points: impl Iterator<Item = ([Vector<D>; N], f64)>,
 ) -> Vec<Points<D, N>> {
     points.collect::<Vec<_>>().chunks(LANES).map(Points::new).collect()
 }
 
-/// Numbers in range, cells whole, nodes there.
+/// Checks ranges of numbers and completeness of cells.
 fn check<const D: usize, const N: usize>(
     mesh: &Mesh,
     density: f64,

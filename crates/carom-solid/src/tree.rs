@@ -1,18 +1,17 @@
-//! A hierarchy of boxes: which of n boxes meet a given one, in O(log n + found).
+//! A bounding volume hierarchy: which of n boxes meet a given one, in O(log n + found).
 //!
-//! Built from the top by halving at the median of the boxes' centres along the longest axis
-//! (Ericson, Real-Time Collision Detection, §6.2), it has a leaf per box and lies in one array,
-//! each node before its left branch and that before the right one: who skips a node goes on where
-//! its branch ends, without a stack.
-//! When boxes move, the tree is refitted, O(n); when that has made it poor, it is built anew, O(n
-//! log n). What is found depends on neither. It is ours because what there is brings a library of
-//! vectors (`bvh` nalgebra, `parry` and `obvhs` glam, the last in single precision, which is not
-//! conservative) or cannot be refitted (`rstar`).
+//! Built top-down by splitting at the median of the boxes' centres along the longest axis (Ericson,
+//! Real-Time Collision Detection, §6.2). It has a leaf per box and lies in one array in preorder:
+//! to skip a node, a traversal continues at the end of its branch, without a stack. When boxes
+//! move, the tree is refitted, O(n). If its quality has degraded, it is rebuilt, O(n log n). The
+//! result depends on neither. Existing crates bring a vector library (`bvh` nalgebra, `parry` and
+//! `obvhs` glam, the last in single precision, which is not conservative) or cannot be refitted
+//! (`rstar`).
 
 use crate::bounds::Bounds;
 
-/// The tree is built anew when its boxes, compared with the outermost, have become larger by this
-/// factor since it was built last.
+/// The tree is rebuilt when its boxes, relative to the outermost, have grown by this factor since
+/// it was last built.
 pub const REBUILT: f64 = 1.5;
 
 /// Hierarchy of the boxes numbered 0, 1, ….
@@ -25,7 +24,7 @@ pub struct Tree {
 #[derive(Clone, Debug)]
 struct Node {
     bounds: Bounds,
-    /// Where the node's branch ends; that of a leaf is the leaf alone.
+    /// End of the node's branch; that of a leaf is the leaf alone.
     end: usize,
     /// Number of a leaf's box.
     item: usize,
@@ -47,7 +46,7 @@ impl Tree {
         self.nodes.len().div_ceil(2)
     }
 
-    /// Whether there is no box.
+    /// Whether there are no boxes.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
@@ -59,11 +58,11 @@ impl Tree {
         self.nodes.first().map_or(Bounds::EMPTY, |root| root.bounds)
     }
 
-    /// Takes in new boxes, and builds the tree anew if that has made it poor; whether it did is
-    /// returned.
+    /// Updates the boxes, and rebuilds the tree if its quality has degraded. Returns whether it
+    /// did.
     pub fn update(&mut self, bounds: impl Fn(usize) -> Bounds) -> bool {
         self.refit(bounds);
-        // A box without bounds has no size to compare: built anew every time.
+        // An unbounded box has no size to compare: rebuilt every time.
         let good = self.expense() <= REBUILT * self.cost;
         if !good {
             let mut boxes = vec![Bounds::EMPTY; self.len()];
@@ -74,7 +73,7 @@ impl Tree {
         !good
     }
 
-    /// Takes in new boxes and keeps the tree's shape.
+    /// Updates the boxes without changing the tree's structure.
     pub fn refit(&mut self, bounds: impl Fn(usize) -> Bounds) {
         for k in (0..self.nodes.len()).rev() {
             self.nodes[k].bounds = if self.nodes[k].is_leaf(k) {
@@ -86,7 +85,7 @@ impl Tree {
         }
     }
 
-    /// The boxes that meet another, in an order that depends on how the tree was built.
+    /// The boxes that meet another, in an order that depends on the tree's history.
     pub fn meeting(&self, query: &Bounds) -> impl Iterator<Item = usize> {
         let mut k = 0;
         std::iter::from_fn(move || {
@@ -111,8 +110,8 @@ impl Tree {
         found.sort_unstable();
     }
 
-    /// What is nearest to a point, and its distance as `distance` gives it, `None` for what does
-    /// not count; of equals the first. A thing must lie in its box, round-off included.
+    /// The item nearest to a point, and its distance according to `distance`, which returns `None`
+    /// to exclude an item; the first of equals. An item must lie in its box, round-off included.
     pub fn nearest(
         &self,
         point: &[f64],
@@ -184,8 +183,8 @@ impl Tree {
         self.nodes[here].end = self.nodes.len();
     }
 
-    /// Edges of the inner boxes, added up, over those of the outermost: how many boxes a query has
-    /// to look at, but for a factor.
+    /// Total edge length of the inner boxes over that of the outermost: proportional to the number
+    /// of boxes that a query visits.
     fn expense(&self) -> f64 {
         let edges = |node: &Node| node.bounds.extents().iter().map(|e| e.max(0.0)).sum::<f64>();
         let inner = self.nodes.iter().enumerate().filter(|(k, node)| !node.is_leaf(*k));
@@ -195,7 +194,7 @@ impl Tree {
 }
 
 impl Node {
-    /// Whether it is one, at place `k`.
+    /// Whether the node at index `k` is a leaf.
     fn is_leaf(&self, k: usize) -> bool {
         self.end == k + 1
     }

@@ -8,8 +8,8 @@
 use crate::scheme::{ForceRule, Scheme};
 use crate::stage::{Internal, Kernel, Memory, Stage, Weights};
 
-/// One implicit solve per step. The acceleration carried from step to step is the algorithmic one:
-/// deriving it anew from the balance costs an order.
+/// One implicit solve per step. The algorithmic acceleration is carried from step to step:
+/// recomputing it from the balance costs an order.
 impl Kernel for Scheme {
     fn stages(&self) -> usize {
         1
@@ -35,7 +35,7 @@ impl Kernel for Scheme {
 
         let (mass, old_mass) = (1.0 - self.alpha_m, self.alpha_m);
         let (new, old) = (1.0 - self.alpha_f, self.alpha_f);
-        // Contact is averaged as forces under both rules: its constraint holds at the step's end.
+        // Contact forces are averaged under both rules: the constraint holds at the step's end.
         stage.mean = [0.0, old, new];
         stage.internal = Internal::Gradient;
         (stage.weights, stage.before, stage.average) = match self.forces {

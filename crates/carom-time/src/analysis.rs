@@ -1,4 +1,4 @@
-//! What the four parameters imply: the scheme on the test oscillator a + ω²u = 0 at Ω = ωΔt.
+//! Properties of the scheme on the test oscillator a + ω²u = 0 at Ω = ωΔt.
 //!
 //! In two-step form (13)–(15) read, with the shift z and q = Ω²,
 //!
@@ -12,23 +12,23 @@
 //! 4s²(1 + ms) + q (1 + fs)(1 + gs + hs²) = 0
 //! ```
 //!
-//! from which all below follows: roots without cancellation at small Ω, the limit Ω → ∞, stability
-//! by Routh and Hurwitz. Definitions of damping and period error: Hilber and Hughes 1978. Both
-//! force rules are the same scheme on this linear equation.
+//! from which everything below follows: roots without cancellation at small Ω, the limit Ω → ∞,
+//! stability by Routh and Hurwitz. Definitions of damping and period error: Hilber and Hughes 1978.
+//! Both force rules coincide on this linear equation.
 use crate::cubic::{Root, cubic, quadratic};
 use crate::scheme::Scheme;
 
-/// Within this the condition of order 2 counts as met: parameters come from quotients.
+/// Tolerance of the condition for order 2: parameters come from quotients.
 const ROUND_OFF: f64 = 1e-12;
 
-/// The oscillating pair of roots at some Ω.
+/// The oscillating pair of roots at one Ω.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Principal {
-    /// |z|, the factor of the amplitude per step.
+    /// |z|, the amplification per step.
     pub modulus: f64,
     /// Numerical damping ratio ξ = −ln|z| / arg z.
     pub damping_ratio: f64,
-    /// Relative lengthening of the period, PE = Ω / arg z − 1, the shift by damping included.
+    /// Relative period elongation, PE = Ω / arg z − 1, including the shift by damping.
     pub period_error: f64,
 }
 
@@ -58,15 +58,15 @@ impl Scheme {
         [row([1.0, 1.0, 0.5 - beta], beta), row([0.0, 1.0, 1.0 - gamma], gamma), a]
     }
 
-    /// The roots in s at q = Ω²; those missing lie at infinity, z = −1.
+    /// The roots in s at q = Ω²; missing ones lie at infinity, z = −1.
     fn s_roots(&self, omega_dt: f64) -> Vec<Root> {
         let q = omega_dt * omega_dt;
         let [m, f, g, h] = self.coefficients();
         cubic(4.0 * m + q * f * h, 4.0 + q * (h + f * g), q * (f + g), q)
     }
 
-    /// The three eigenvalues of [`Scheme::amplification`]: the principal pair first where it
-    /// oscillates, the spurious root last.
+    /// The three eigenvalues of [`Scheme::amplification`]: first the principal pair, if it
+    /// oscillates, last the spurious root.
     pub fn roots(&self, omega_dt: f64) -> [Root; 3] {
         padded(&self.s_roots(omega_dt))
     }
@@ -95,25 +95,25 @@ impl Scheme {
         largest(&self.constrained_roots()).max(force_root.abs())
     }
 
-    /// The map (Δt v, Δt² a)_s → (Δt v, Δt² a)_{s+1} of a dof whose position is constrained: what
-    /// contact does to the dof it constrains. Row-major.
+    /// The map (Δt v, Δt² a)_s → (Δt v, Δt² a)_{s+1} of a dof whose position is constrained, as by
+    /// contact. Row-major.
     pub fn held_map(&self) -> [[f64; 2]; 2] {
         let Self { beta, gamma, .. } = *self;
         [[1.0 - gamma / beta, 1.0 - 0.5 * gamma / beta], [-1.0 / beta, 1.0 - 0.5 / beta]]
     }
 
-    /// Eigenvalues of [`Scheme::held_map`], which are those at Ω → ∞ but for −α_f/(1 − α_f): from 1
+    /// Eigenvalues of [`Scheme::held_map`], which are those at Ω → ∞ except −α_f/(1 − α_f): from 1
     /// + gs + hs² = 0.
     pub fn constrained_roots(&self) -> [Root; 2] {
         let [_, _, g, h] = self.coefficients();
-        // Most members have a double root by construction; g and h know it to the rounding of β and
-        // γ only.
+        // Most members have a double root by construction; g and h satisfy it only to the round-off
+        // of β and γ.
         let snap = 16.0 * f64::EPSILON * (self.beta.abs() + self.gamma.abs());
         let roots = padded(&quadratic(h, g, 1.0, snap));
         [roots[0], roots[1]]
     }
 
-    /// The oscillating pair at Ω, if there is one.
+    /// The oscillating pair at Ω, if it exists.
     ///
     /// ```
     /// let at = carom_time::Scheme::hu().principal(std::f64::consts::TAU / 10.0);
@@ -133,7 +133,7 @@ impl Scheme {
         })
     }
 
-    /// Order of convergence on smooth motion: 2 iff γ = ½ − α_m + α_f, else 1; 0 where errors grow
+    /// Order of convergence on smooth motion: 2 iff γ = ½ − α_m + α_f, else 1; 0 if errors grow
     /// from step to step (α_m > ½).
     pub fn order(&self) -> u8 {
         let shift = self.gamma - (0.5 - self.alpha_m + self.alpha_f);
@@ -144,22 +144,22 @@ impl Scheme {
         }
     }
 
-    /// Whether no Ω grows: m ≥ 0, fh ≥ 0, h + fg ≥ 0, f + g ≥ m, g(h + f² + fg) ≥ 0 (Routh and
-    /// Hurwitz for every q > 0).
+    /// Whether the scheme is stable for every Ω: m ≥ 0, fh ≥ 0, h + fg ≥ 0, f + g ≥ m, g(h + f² +
+    /// fg) ≥ 0 (Routh and Hurwitz for every q > 0).
     pub fn is_a_stable(&self) -> bool {
         let [m, f, g, h] = self.coefficients();
         [m, f * h, h + f * g, f + g - m, g * (h + f * f + f * g)].iter().all(|&x| x >= -ROUND_OFF)
     }
 
-    /// |v₁| / (Ω ω|u₀|) as Ω → ∞ of a stiff mode released from u₀ with a₀ = −ω²u₀: |1 − γ/(2β)|. Zero: no overshoot in velocity.
-    /// Displacements of the family do not overshoot beyond a factor free of Ω (Hilber and Hughes
-    /// 1978).
+    /// |v₁| / (Ω ω|u₀|) as Ω → ∞ of a stiff mode released from u₀ with a₀ = −ω²u₀: |1 − γ/(2β)|.
+    /// Zero means no overshoot in velocity. Displacements of the family do not overshoot beyond a
+    /// factor independent of Ω (Hilber and Hughes 1978).
     pub fn velocity_overshoot(&self) -> f64 {
         (1.0 - 0.5 * self.gamma / self.beta).abs()
     }
 }
 
-/// Roots in z of those in s, filled up with −1.
+/// Roots in z from those in s, padded with −1.
 fn padded(s_roots: &[Root]) -> [Root; 3] {
     let mut z = [Root::real(-1.0); 3];
     for (z, s) in z.iter_mut().zip(s_roots) {

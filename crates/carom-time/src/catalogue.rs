@@ -1,4 +1,4 @@
-//! Schemes looked up by name in the table of kinds.
+//! Look-up of schemes by name in the table of kinds.
 
 use std::collections::BTreeMap;
 
@@ -36,7 +36,7 @@ pub fn scheme(
 }
 
 impl Name {
-    /// What it stands for. `forces` is for the α family.
+    /// The integrator of this name. `forces` is for the α family.
     ///
     /// # Errors
     /// As [`scheme`].

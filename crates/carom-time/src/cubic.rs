@@ -1,8 +1,8 @@
 //! Roots of real polynomials up to degree three, for the analysis of schemes.
 //!
 //! Cubic: Newton's iteration to an outer real root from a start beyond which it is monotone, then
-//! deflation from the end that loses least (W. Kahan, *To Solve a Real Cubic Equation*, 1986).
-//! Quadratic: the root of larger size by addition, the other by the product.
+//! deflation from the end with the smaller loss (W. Kahan, *To Solve a Real Cubic Equation*, 1986).
+//! Quadratic: the larger root by addition, the other by the product.
 
 /// A root in the complex plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,9 +24,9 @@ impl Root {
     }
 }
 
-/// Roots of a z² + b z + c; fewer where leading coefficients are zero. A discriminant within ±
-/// `snap` counts as zero: a double root known to exist is not to be split by the rounding of its
-/// coefficients into two with half the digits.
+/// Roots of a z² + b z + c; fewer if leading coefficients vanish. A discriminant within ± `snap`
+/// counts as zero: the round-off of the coefficients must not split a known double root into two
+/// with half the digits.
 pub(crate) fn quadratic(a: f64, b: f64, c: f64, snap: f64) -> Vec<Root> {
     if a == 0.0 {
         return if b == 0.0 { vec![] } else { vec![Root::real(-c / b)] };
@@ -44,7 +44,7 @@ pub(crate) fn quadratic(a: f64, b: f64, c: f64, snap: f64) -> Vec<Root> {
     vec![Root::real(larger / a), Root::real(c / larger)]
 }
 
-/// Roots of a z³ + b z² + c z + d; fewer where leading coefficients are zero.
+/// Roots of a z³ + b z² + c z + d; fewer if leading coefficients vanish.
 pub(crate) fn cubic(a: f64, b: f64, c: f64, d: f64) -> Vec<Root> {
     if a == 0.0 {
         return quadratic(b, c, d, 0.0);
@@ -54,7 +54,7 @@ pub(crate) fn cubic(a: f64, b: f64, c: f64, d: f64) -> Vec<Root> {
     } else {
         let x = outer_root(a, b, c, d);
         let b1 = a * x + b;
-        // Deflate upwards from d or downwards from a, whichever is the smaller perturbation.
+        // Deflate upwards from d or downwards from a, whichever perturbs less.
         if (a * x * x).abs() > (d / x).abs() {
             let c2 = -d / x;
             (x, (c2 - c) / x, c2)
@@ -80,7 +80,7 @@ fn outer_root(a: f64, b: f64, c: f64, d: f64) -> f64 {
     let side = 1.0f64.copysign(v);
     let mut x = inflection;
     let mut next = inflection - side * reach;
-    // Monotone towards the inflection point until round-off turns it back.
+    // Monotone towards the inflection point until round-off reverses it.
     for _ in 0..200 {
         if side * next <= side * x && x != inflection {
             break;

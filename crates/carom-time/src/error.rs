@@ -1,13 +1,13 @@
-//! What can be wrong with a scheme as asked for. Every variant names the key it is about, for a
-//! reader of files to point at.
+//! Errors in the specification of a scheme. Every variant names its key, for readers of files to
+//! point at.
 
-/// A scheme that does not exist or cannot be stepped.
+/// A scheme that does not exist or cannot take a step.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SchemeError {
     /// No scheme of this name.
     #[error("unknown scheme kind `{kind}`; known: {}", .known.join(", "))]
     UnknownKind {
-        /// As asked for.
+        /// As requested.
         kind: String,
         /// All names.
         known: Vec<&'static str>,
@@ -19,31 +19,31 @@ pub enum SchemeError {
         kind: &'static str,
         /// The missing key.
         key: &'static str,
-        /// Key sets the kind takes, in words.
+        /// Key sets of the kind, in words.
         expected: String,
-        /// Keys the kind knows.
+        /// Keys of the kind.
         known: Vec<&'static str>,
     },
-    /// A parameter the kind does not take, alone or next to the others.
+    /// A parameter that the kind does not take, alone or together with the others.
     #[error("scheme `{kind}` does not take `{key}`; it takes {expected}")]
     Superfluous {
         /// Name of the scheme.
         kind: &'static str,
         /// The superfluous key.
         key: String,
-        /// Key sets the kind takes, in words.
+        /// Key sets of the kind, in words.
         expected: String,
-        /// Keys the kind knows.
+        /// Keys of the kind.
         known: Vec<&'static str>,
     },
-    /// A value no step can be taken with.
+    /// A value with which no step is possible.
     #[error("{key} = {value} is outside {range}: {hint}")]
     OutOfRange {
         /// Key of the parameter.
         key: &'static str,
         /// As given.
         value: f64,
-        /// What is allowed.
+        /// The valid range.
         range: &'static str,
         /// What to try.
         hint: String,
@@ -51,7 +51,7 @@ pub enum SchemeError {
 }
 
 impl SchemeError {
-    /// The key of the scheme's table this is about; `kind` where the name itself is wrong.
+    /// The key of the scheme's table concerned; `kind` if the name itself is wrong.
     pub fn key(&self) -> &str {
         match self {
             Self::UnknownKind { .. } => "kind",
@@ -60,7 +60,7 @@ impl SchemeError {
         }
     }
 
-    /// What could stand in the key's place, for a suggestion: kinds, or keys of the kind.
+    /// Valid replacements of the key, for a suggestion: kinds, or keys of the kind.
     pub fn known(&self) -> &[&'static str] {
         match self {
             Self::UnknownKind { known, .. }

@@ -1,5 +1,5 @@
-//! What `carom explain` knows of a scheme: its parameters in every convention, its accuracy, and
-//! what contact makes of it.
+//! The output of `carom explain` for a scheme: its parameters in every convention, its accuracy,
+//! and its behaviour in contact.
 use std::f64::consts::TAU;
 
 use serde::Serialize;
@@ -12,68 +12,68 @@ use crate::oscillator::Oscillator;
 use crate::scheme::{ForceRule, Scheme};
 use crate::stage::{Kernel, Stage};
 
-/// Below this a root counts as zero, and 1 minus it as one.
+/// A root below this counts as zero, and one this close to 1 as one.
 const NOTHING: f64 = 1e-9;
 
 /// The scheme under one convention for its parameters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Convention {
-    /// Whose convention.
+    /// Source of the convention.
     pub name: &'static str,
     /// Symbols and values.
     pub values: Vec<(&'static str, f64)>,
 }
 
-/// Accuracy at some resolution of a period.
+/// Accuracy at one resolution of a period.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Accuracy {
     /// T/Δt.
     pub steps_per_period: u32,
     /// Largest modulus of all roots.
     pub spectral_radius: f64,
-    /// ξ of the oscillating pair, none where nothing oscillates.
+    /// ξ of the oscillating pair; none if nothing oscillates.
     pub damping_ratio: Option<f64>,
     /// PE of the oscillating pair.
     pub period_error: Option<f64>,
 }
 
-/// What happens to velocity and acceleration of a dof whose position contact holds.
+/// Velocity and acceleration of a dof whose position is constrained by contact.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Constrained {
-    /// Largest modulus of the roots that act on it.
+    /// Largest modulus of the roots that govern it.
     pub radius: f64,
-    /// Steps until the transient is below 1 % of v₀/Δt; none where it does not settle.
+    /// Steps until the transient is below 1 % of v₀/Δt; none if it does not settle.
     pub steps: Option<u32>,
     /// In words.
     pub text: String,
 }
 
-/// All of it.
+/// Everything known of a scheme.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Explanation {
-    /// The four parameters and the rule, of a member of the α family.
+    /// The four parameters and the force rule, for a member of the α family.
     pub scheme: Option<Scheme>,
-    /// Ways to ask for it.
+    /// Ways to request it.
     pub names: Vec<Name>,
-    /// Where it was published.
+    /// Publications.
     pub references: Vec<&'static str>,
     /// Parameters in every convention.
     pub conventions: Vec<Convention>,
     /// Order on smooth motion.
     pub order: u8,
-    /// Stable at any step on linear motion.
+    /// Whether it is stable for any step on linear motion.
     pub a_stable: bool,
     /// Spectral radius at infinity.
     pub rho_inf: f64,
     /// At 5, 10, 20, 50 and 100 steps per period.
     pub accuracy: Vec<Accuracy>,
-    /// What is conserved, and what is not.
+    /// What is conserved and what is not.
     pub conserves: Vec<&'static str>,
-    /// Under contact.
+    /// Behaviour in contact.
     pub constrained: Constrained,
-    /// What else its parameters imply.
+    /// Further properties of its parameters.
     pub remarks: Vec<String>,
-    /// In other codes.
+    /// Names in other codes.
     pub elsewhere: Vec<Elsewhere>,
 }
 
@@ -89,11 +89,11 @@ pub fn explain(scheme: &Scheme) -> Explanation {
     explained(scheme, names(scheme))
 }
 
-/// The same of one that was asked for by this name.
-pub(crate) fn explain_alpha(scheme: &Scheme, asked: &Name) -> Explanation {
+/// The same for a scheme requested by this name.
+pub(crate) fn explain_alpha(scheme: &Scheme, requested: &Name) -> Explanation {
     let mut names = names(scheme);
-    if names.iter().all(|name| name.kind != asked.kind) {
-        names.insert(0, asked.clone());
+    if names.iter().all(|name| name.kind != requested.kind) {
+        names.insert(0, requested.clone());
     }
     explained(scheme, names)
 }
@@ -101,7 +101,7 @@ pub(crate) fn explain_alpha(scheme: &Scheme, asked: &Name) -> Explanation {
 fn explained(scheme: &Scheme, names: Vec<Name>) -> Explanation {
     let mut references: Vec<_> = names.iter().filter_map(|name| Some(info(name.kind)?.reference)).collect();
     references.dedup();
-    // The raw parameters are one more way to say it, not one more source.
+    // The raw parameters are another way to state it, not another source.
     if references.len() > 1 {
         references.pop();
     }
@@ -121,7 +121,7 @@ fn explained(scheme: &Scheme, names: Vec<Name>) -> Explanation {
     }
 }
 
-/// Explains any other kernel, by the numbers its map gives.
+/// Explains any other kernel from its numeric map.
 pub(crate) fn explain_kernel(kernel: &dyn Kernel, name: &Name) -> Explanation {
     let rho_inf = map::spectral_radius_at_infinity(kernel);
     let sweep = || (-20..40).map(|k| map::spectral_radius(kernel, 1.3_f64.powi(k)));
@@ -160,8 +160,8 @@ pub(crate) fn accuracy_of(kernel: &dyn Kernel, steps_per_period: u32) -> Accurac
     }
 }
 
-/// What a constrained dof does, by the map with its position constrained: v₀ = 1 at the start, Δt =
-/// 1, λ = −m a.
+/// The behaviour of a constrained dof, by the map with its position constrained: v₀ = 1 at the
+/// start, Δt = 1, λ = −m a.
 pub(crate) fn constrained_of(kernel: &dyn Kernel) -> Constrained {
     let radius = map::spectral_radius_at_infinity(kernel);
     if radius >= 1.0 - NOTHING {
@@ -204,7 +204,7 @@ pub(crate) fn accuracy(scheme: &Scheme, steps_per_period: u32) -> Accuracy {
 fn conventions(scheme: &Scheme, names: &[Name]) -> Vec<Convention> {
     let Scheme { alpha_m, alpha_f, beta, gamma, .. } = *scheme;
     let is = |kind: &str| names.iter().any(|name| name.kind == kind);
-    let mut told = vec![
+    let mut list = vec![
         Convention {
             name: "index s + 1 − α, shares of the old terms (here; Chung and Hulbert)",
             values: vec![("α_m", alpha_m), ("α_f", alpha_f), ("β", beta), ("γ", gamma)],
@@ -215,55 +215,55 @@ fn conventions(scheme: &Scheme, names: &[Name]) -> Vec<Convention> {
         },
     ];
     if is("hht") {
-        told.push(Convention {
+        list.push(Convention {
             name: "Hilber, Hughes and Taylor's own", values: vec![("α", 0.0 - alpha_f)]
         });
     }
     if is("wbz") {
-        told.push(Convention {
+        list.push(Convention {
             name: "Wood, Bossak and Zienkiewicz's own",
             values: vec![("α_B = α_m", alpha_m)],
         });
     }
-    told.push(Convention {
+    list.push(Convention {
         name: "spectral radius at infinity",
         values: vec![("ρ∞", scheme.spectral_radius_at_infinity())],
     });
-    told
+    list
 }
 
 fn conserves(scheme: &Scheme) -> Vec<&'static str> {
-    let mut told = vec!["momentum: exactly"];
+    let mut list = vec!["momentum: exactly"];
     let lossless = scheme.order() == 2 && scheme.rho_is_one_everywhere();
     let midpoint = lossless
         && scheme.alpha_m == 0.5
         && scheme.alpha_f == 0.5
         && scheme.forces == ForceRule::AverageState;
-    told.push(if midpoint {
+    list.push(if midpoint {
         "moment of momentum: exactly but for contact (this is the midpoint rule)"
     } else {
         "moment of momentum: to the order of the scheme"
     });
-    told.push(if lossless {
+    list.push(if lossless {
         "energy: no mode of linear motion is damped; not exact for nonlinear forces or contact"
     } else {
         "energy: dissipates, high frequencies most; see the damping above"
     });
     if !scheme.is_a_stable() {
-        told.pop();
-        told.push("energy: may grow, the scheme is not stable at every step");
+        list.pop();
+        list.push("energy: may grow, the scheme is not stable at every step");
     }
-    told
+    list
 }
 
-/// The map of a constrained dof in words (theory: a constrained dof sees the limit Ω → ∞, whatever
-/// the step).
+/// The map of a constrained dof in words (theory: a constrained dof sees the limit Ω → ∞ for any
+/// step).
 pub(crate) fn constrained(scheme: &Scheme) -> Constrained {
     let roots = scheme.constrained_roots();
     let multiplier = (scheme.alpha_f / (1.0 - scheme.alpha_f)).abs();
     let own = roots[0].modulus().max(roots[1].modulus());
     let radius = own.max(multiplier);
-    // Two equal roots give n ρⁿ; the multiplier's, if equal too, n² ρⁿ.
+    // Two equal roots give n ρⁿ; with the multiplier's root equal too, n² ρⁿ.
     let double = (roots[0].re - roots[1].re).hypot(roots[0].im - roots[1].im) < NOTHING;
     let power = usize::from(double) + usize::from((multiplier - own).abs() < NOTHING);
     let (steps, text) = if radius < NOTHING {
@@ -292,8 +292,8 @@ pub(crate) fn constrained(scheme: &Scheme) -> Constrained {
     Constrained { radius, steps, text }
 }
 
-/// Steps until |Δt a| and |Δt λ/m| of a mass stopped at v₀ stay below `share` of v₀. Eq. (15) gives
-/// λ with the constraint active from the step's start.
+/// Steps until |Δt a| and |Δt λ/m| of a mass stopped at v₀ remain below `share` of v₀. Eq. (15)
+/// gives λ with the constraint active from the step's start.
 fn ringing(scheme: &Scheme, share: f64) -> u32 {
     let [[vv, va], [av, aa]] = scheme.held_map();
     let Scheme { alpha_m, alpha_f, .. } = *scheme;
@@ -316,7 +316,7 @@ impl Scheme {
             && self.principal(0.1).is_some_and(|pair| pair.damping_ratio.abs() < NOTHING)
     }
 
-    /// What the parameters imply beyond numbers: loss of order, instability, overshoot, a wasted α.
+    /// Further consequences of the parameters: loss of order, instability, overshoot, a useless α.
     ///
     /// ```
     /// assert!(carom_time::Scheme::hht(0.4)?.remarks().iter().any(|remark| remark.contains("ρ∞ rises")));
@@ -324,42 +324,42 @@ impl Scheme {
     /// ```
     pub fn remarks(&self) -> Vec<String> {
         let Self { alpha_m, alpha_f, gamma, .. } = *self;
-        let mut told = Vec::new();
+        let mut list = Vec::new();
         if self.order() == 0 {
-            told.push(format!(
+            list.push(format!(
                 "α_m = {alpha_m} > ½: errors of the acceleration grow from step to step; it does not converge"
             ));
         } else if self.order() == 1 {
             let needed = 0.5 - alpha_m + alpha_f;
-            told.push(format!(
+            list.push(format!(
                 "first order: second order needs γ = ½ − α_m + α_f = {}, not {}",
                 short(needed),
                 short(gamma)
             ));
         }
         if *self == (Self { forces: self.forces, ..Self::hu() }) {
-            told.push(
+            list.push(
                 "γ and β are those of Chung and Hulbert at ρ∞ = 0; α_m = −1 would make it second order"
                     .to_owned(),
             );
         }
         if !self.is_a_stable() {
-            told.push("not unconditionally stable: some Ω = ωΔt grows".to_owned());
+            list.push("not unconditionally stable: some Ω = ωΔt grows".to_owned());
         }
         let constrained = self.constrained_roots().iter().map(|root| root.modulus()).fold(0.0, f64::max);
         let averaged = alpha_f / (1.0 - alpha_f);
         if averaged > constrained + NOTHING {
-            told.push(format!(
+            list.push(format!(
                 "α_f/(1 − α_f) = {averaged:.3} exceeds the other roots at infinity ({constrained:.3}): ρ∞ rises again with α_f"
             ));
         }
         let overshoot = self.velocity_overshoot();
         if overshoot > NOTHING {
-            told.push(format!("overshoot: a stiff mode released from u₀ has velocity {overshoot:.3} Ω ω u₀ after a step; displacements stay bounded"));
+            list.push(format!("overshoot: a stiff mode released from u₀ has velocity {overshoot:.3} Ω ω u₀ after a step; displacements stay bounded"));
         }
         if self.forces == ForceRule::AverageState && alpha_f != 0.0 {
-            told.push("averaged state and averaged forces differ as soon as forces are nonlinear; linear analysis cannot tell them apart".to_owned());
+            list.push("averaged state and averaged forces differ as soon as forces are nonlinear; linear analysis cannot tell them apart".to_owned());
         }
-        told
+        list
     }
 }

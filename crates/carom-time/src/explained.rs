@@ -1,4 +1,4 @@
-//! All that is known of an integrator of the catalogue, of whichever family it is.
+//! The explanation of an integrator of the catalogue, for every family.
 
 use std::fmt::{Display, Formatter, Result};
 
@@ -8,27 +8,27 @@ use crate::explain::{Explanation, explain_alpha, explain_kernel};
 use crate::integrator::Integrator;
 use crate::nonsmooth_text::{NonsmoothExplanation, explain_nonsmooth};
 
-/// All that is known of an integrator.
+/// The explanation of an integrator.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Explained {
     /// A list of implicit stages.
     Stages(Box<Explanation>),
-    /// A scheme with a contact law of its own.
+    /// A scheme with its own contact law.
     Nonsmooth(NonsmoothExplanation),
 }
 
 impl Display for Explained {
     fn fmt(&self, f: &mut Formatter) -> Result {
         match self {
-            Self::Stages(told) => told.fmt(f),
-            Self::Nonsmooth(told) => told.fmt(f),
+            Self::Stages(explanation) => explanation.fmt(f),
+            Self::Nonsmooth(explanation) => explanation.fmt(f),
         }
     }
 }
 
 impl Integrator {
-    /// All that is known of it.
+    /// Everything known of the integrator.
     ///
     /// ```
     /// use carom_time::{Explained, ForceRule, scheme};

@@ -1,24 +1,24 @@
-//! Explicit schemes: central differences of smooth motion, whatever their contact keeps out. On
+//! Explicit schemes: central differences for smooth motion, with various contact conditions. On
 //! linear motion
 //!
 //! ```text
 //! z² + (Ω² − 2)z + 1 = 0,   Ω = ωΔt:   |z| = 1 and sin(arg z/2) = Ω/2 up to Ω = 2
 //! ```
 
-/// Central differences, and what their contact keeps out.
+/// Central differences with a contact condition.
 #[derive(Clone, Copy, Debug)]
 pub struct Explicit {
     /// One sentence.
     pub summary: &'static str,
     /// Order of convergence on smooth motion.
     pub order: u8,
-    /// Whether the restitution of a contact means something.
+    /// Whether the contact's coefficient of restitution is used.
     pub restitution: bool,
-    /// What contact does.
+    /// Treatment of contact.
     pub contact: &'static [&'static str],
 }
 
-/// Largest Ω at which no mode grows.
+/// Largest Ω for which no mode grows.
 pub(crate) const STABLE: f64 = 2.0;
 
 /// Modulus and angle of the oscillating pair at Ω.
@@ -26,7 +26,7 @@ pub(crate) fn oscillation(omega_dt: f64) -> Option<(f64, f64)> {
     (omega_dt < STABLE).then(|| (1.0, 2.0 * (0.5 * omega_dt).asin()))
 }
 
-/// The larger root.
+/// Modulus of the larger root.
 pub(crate) fn spectral_radius(omega_dt: f64) -> f64 {
     let half = (0.5 * omega_dt * omega_dt - 1.0).max(1.0);
     half + (half * half - 1.0).sqrt()

@@ -1,5 +1,5 @@
-//! What a name in the catalogue stands for: a member of the α family, whose analysis is closed, any
-//! other list of stages, whose analysis is numeric, or a scheme with a contact law of its own.
+//! The integrator behind a name of the catalogue: a member of the α family, with closed-form
+//! analysis; another list of stages, with numeric analysis; or a scheme with its own contact law.
 
 use crate::name::Name;
 use crate::nonsmooth::Nonsmooth;
@@ -9,7 +9,7 @@ use crate::stage::Kernel;
 /// An integrator of the catalogue.
 #[derive(Debug)]
 pub enum Integrator {
-    /// A member of the α family, and the name it was asked for by.
+    /// A member of the α family, and the name by which it was requested.
     Alpha(Scheme, Name),
     /// Another implicit kernel, and its name.
     Stages(Box<dyn Kernel>, Name),
@@ -18,7 +18,7 @@ pub enum Integrator {
 }
 
 impl Integrator {
-    /// The list of stages; none where contact is not a force in their balance.
+    /// The list of stages; none if contact is not a force in their balance.
     pub fn kernel(&self) -> Option<&dyn Kernel> {
         match self {
             Self::Alpha(scheme, _) => Some(scheme),
@@ -27,7 +27,7 @@ impl Integrator {
         }
     }
 
-    /// The list of stages, to keep.
+    /// The list of stages, by value.
     pub fn into_kernel(self) -> Option<Box<dyn Kernel>> {
         match self {
             Self::Alpha(scheme, _) => Some(Box::new(scheme)),
@@ -36,7 +36,7 @@ impl Integrator {
         }
     }
 
-    /// Its four parameters, where it is of the α family.
+    /// Its four parameters, if it is of the α family.
     pub fn alpha(&self) -> Option<Scheme> {
         match self {
             Self::Alpha(scheme, _) => Some(*scheme),

@@ -1,7 +1,6 @@
-//! A kind of scheme as the table [`crate::KINDS`] holds it: name, keys, text, what builds it, and
-//! members with what their papers claim. Reader, schema, help, `explain` and the tests that are the
-//! same for every scheme go through the table; the claims are numbers, against which the tests
-//! measure.
+//! A kind of scheme as stored in the table [`crate::KINDS`]: name, keys, text, constructor, and
+//! members with the claims of their papers. Reader, schema, help, `explain` and the tests common to
+//! all schemes use the table. The claims are numbers, which the tests verify.
 use std::collections::BTreeMap;
 
 use crate::error::SchemeError;
@@ -16,42 +15,42 @@ use crate::stage::Kernel;
 /// A published scheme by name.
 #[derive(Clone, Copy, Debug)]
 pub struct KindInfo {
-    /// As written in a case file.
+    /// Name in a case file.
     pub name: &'static str,
     /// One sentence.
     pub summary: &'static str,
-    /// Where it was published.
+    /// Publication.
     pub reference: &'static str,
-    /// Sets of parameters, of which exactly one is to be given in full.
+    /// Sets of parameters, exactly one of which must be given in full.
     pub sets: &'static [&'static [Parameter]],
-    /// What `explain` shows beside other kinds and what tests measure.
+    /// Members shown by `explain` and measured by tests.
     pub members: &'static [Member],
     pub(crate) build: Build,
 }
 
-/// One scheme of a kind, and what is published of it.
+/// One scheme of a kind, with its published properties.
 #[derive(Clone, Copy, Debug)]
 pub struct Member {
     /// One set of parameters by key.
     pub parameters: &'static [(&'static str, f64)],
     /// Order of convergence on smooth motion.
     pub order: u8,
-    /// Spectral radius at infinity; infinite where the scheme is stable up to a limit of the step
-    /// only.
+    /// Spectral radius at infinity; infinite if the scheme is only stable up to a limit of the
+    /// step.
     pub rho_inf: f64,
-    /// How much too far it falls from rest or any other start in n steps, in units of g Δt².
+    /// Excess of free fall from any start after n steps, in units of g Δt².
     pub falls: fn(f64) -> f64,
-    /// Whether it stands in the table of `explain`; otherwise it is there for the tests.
+    /// Whether `explain` shows it in its table; otherwise it only serves the tests.
     pub shown: bool,
 }
 
 impl Member {
-    /// A member that falls exactly.
+    /// A member with exact free fall.
     pub const fn new(parameters: &'static [(&'static str, f64)], order: u8, rho_inf: f64) -> Self {
         Self { parameters, order, rho_inf, falls: |_| 0.0, shown: true }
     }
 
-    /// One that falls too far by `by(n)` g Δt² in n steps.
+    /// One whose free fall is too long by `by(n)` g Δt² after n steps.
     pub const fn falling(self, by: fn(f64) -> f64) -> Self {
         Self { falls: by, ..self }
     }
@@ -62,8 +61,8 @@ impl Member {
     }
 }
 
-/// What a kind makes of the values of a set in its order; of the α family, of the number of the set
-/// too.
+/// Builds a scheme from the values of a parameter set in its order; the α family also receives the
+/// index of the set.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Build {
     Alpha(fn(usize, &[f64]) -> Result<Scheme, SchemeError>),
@@ -84,17 +83,17 @@ impl KindInfo {
         all
     }
 
-    /// Whether it is of the α family, whose forces may be averaged in two ways.
+    /// Whether it is of the α family, with its two ways to average forces.
     pub fn is_alpha(&self) -> bool {
         matches!(self.build, Build::Alpha(_))
     }
 
-    /// Whether it has a contact law of its own.
+    /// Whether it has its own contact law.
     pub fn is_nonsmooth(&self) -> bool {
         matches!(self.build, Build::Explicit(_) | Build::Impulse(_))
     }
 
-    /// How a member is asked for.
+    /// The name by which a member is requested.
     pub fn named(&self, member: &Member) -> Name {
         Name { kind: self.name, parameters: member.parameters.iter().copied().collect() }
     }
@@ -112,13 +111,13 @@ impl KindInfo {
         self.parameters().iter().map(|parameter| parameter.key).collect()
     }
 
-    /// The scheme that these parameters make of it. `forces` is for the α family.
+    /// Builds the scheme of these parameters. `forces` is for the α family.
     pub(crate) fn build(
         &self,
         given: &BTreeMap<String, f64>,
         forces: ForceRule,
     ) -> Result<Integrator, SchemeError> {
-        // The set that explains most of what was given; the first one if nothing was.
+        // The set with the most given parameters; the first one if there are none.
         let mut best = (0, &[][..], 0);
         for (number, set) in self.sets.iter().enumerate() {
             let hits = set.iter().filter(|parameter| given.contains_key(parameter.key)).count();

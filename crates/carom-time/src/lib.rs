@@ -1,5 +1,5 @@
-//! Time integration schemes as data, their analysis, and the stages a step is made of. Depends on
-//! none of Carom's crates.
+//! Time integration schemes as data, their analysis, and the stages of a step. Depends on no other
+//! crate of Carom.
 
 mod alpha;
 mod analysis;

@@ -1,11 +1,10 @@
 //! Any kernel on the test oscillator a + ω²u = 0: its amplification matrix as a numeric map, and
-//! what follows from its eigenvalues.
+//! the properties of its eigenvalues.
 //!
-//! The matrix A takes (u, Δt v, Δt² a) over one step of Ω = ωΔt; that of a two-step kernel takes
-//! (u, Δt v, Δt² a, d, Δt v₋) with d and v₋ of the step before. Its columns are steps of the kernel
-//! from unit vectors, so the map is the kernel and not a second derivation. Ω → ∞ is the map with u
-//! constrained at zero at every stage's end. Definitions of damping and period error: Hilber and
-//! Hughes 1978.
+//! The matrix A maps (u, Δt v, Δt² a) over one step of Ω = ωΔt; that of a two-step kernel maps (u,
+//! Δt v, Δt² a, d, Δt v₋) with d and v₋ of the previous step. Its columns are steps of the kernel
+//! from unit vectors, so that it is no second derivation. Ω → ∞ is the map with u constrained to
+//! zero at every stage's end. Definitions of damping and period error: Hilber and Hughes 1978.
 use crate::analysis::Principal;
 use crate::cubic::Root;
 use crate::oscillator::Oscillator;
@@ -18,8 +17,8 @@ pub fn amplification(kernel: &dyn Kernel, omega_dt: f64) -> Vec<Vec<f64>> {
     columns(kernel, |before, start, stage| oscillator.step_after(kernel, 1.0, before, start, stage))
 }
 
-/// The map of a dof whose position is constrained at zero at every stage's end: what contact does
-/// to a dof, and A as Ω → ∞.
+/// The map of a dof whose position is constrained to zero at every stage's end, as by contact; A as
+/// Ω → ∞.
 pub fn held_amplification(kernel: &dyn Kernel) -> Vec<Vec<f64>> {
     let free = Oscillator { mass: 1.0, stiffness: 0.0, force: 0.0 };
     columns(kernel, |before, start, stage| free.held_step_after(kernel, 1.0, before, start, stage, 0.0))
@@ -44,7 +43,7 @@ fn columns(
     matrix
 }
 
-/// Eigenvalues of a map, after a similarity that makes its entries comparable: velocities by Ω,
+/// Eigenvalues of a map, after a similarity transform that balances it: velocities scaled by Ω,
 /// accelerations by Ω².
 fn eigenvalues(mut matrix: Vec<Vec<f64>>, omega_dt: f64) -> Vec<Root> {
     let s = omega_dt.max(1.0);
@@ -67,7 +66,7 @@ pub fn spectral_radius_at_infinity(kernel: &dyn Kernel) -> f64 {
     largest(&eigenvalues(held_amplification(kernel), 1.0))
 }
 
-/// The oscillating pair at Ω, if there is one: the least damped.
+/// The oscillating pair at Ω, if it exists: the least damped one.
 pub fn principal(kernel: &dyn Kernel, omega_dt: f64) -> Option<Principal> {
     let oscillating =
         eigenvalues(amplification(kernel, omega_dt), omega_dt).into_iter().filter(|z| z.im > 1e-7);
@@ -80,8 +79,8 @@ pub fn principal(kernel: &dyn Kernel, omega_dt: f64) -> Option<Principal> {
     })
 }
 
-/// Order of convergence on smooth motion, measured: the principal root departs from exp(iΩ) like
-/// Ω^(p + 1). Zero where nothing oscillates.
+/// Order of convergence on smooth motion, measured: the principal root deviates from exp(iΩ) as
+/// Ω^(p + 1). Zero if nothing oscillates.
 pub fn order(kernel: &dyn Kernel) -> u8 {
     let defect = |omega_dt: f64| {
         principal(kernel, omega_dt).map(|p| {

@@ -1,13 +1,13 @@
-//! A way to ask for a scheme, as in a case file.
+//! The name of a scheme with its parameters, as in a case file.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-/// A way to ask for a scheme.
+/// The name of a scheme with its parameters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Name {
-    /// As in [`crate::KINDS`].
+    /// Kind as in [`crate::KINDS`].
     pub kind: &'static str,
     /// Parameters by key.
     pub parameters: BTreeMap<&'static str, f64>,
@@ -24,7 +24,7 @@ impl std::fmt::Display for Name {
     }
 }
 
-/// A number for reading: twelve significant digits, no trailing noise.
+/// A number for display: twelve significant digits, no trailing noise.
 pub(crate) fn short(x: f64) -> String {
     format!("{x:.11e}").parse::<f64>().unwrap_or(x).to_string()
 }

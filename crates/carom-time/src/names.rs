@@ -1,11 +1,11 @@
-//! The names a scheme goes by, found from its parameters: in a case file, and in other codes. Facts
-//! about other codes are what their sources and manuals say, by parameter.
+//! The names of a scheme, found from its parameters: in a case file, and in other codes. Facts
+//! about other codes are from their sources and manuals.
 use serde::Serialize;
 
 use crate::name::Name;
 use crate::scheme::Scheme;
 
-/// How another code names the scheme, or departs from it.
+/// How another code names the scheme, or deviates from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Elsewhere {
     /// The code.
@@ -14,8 +14,8 @@ pub struct Elsewhere {
     pub note: &'static str,
 }
 
-/// The published ways to ask for these four parameters that are known here, most particular first.
-/// Each candidate is built through the catalogue and compared.
+/// The known published names of these four parameters, most specific first. Each candidate is built
+/// through the catalogue and compared.
 pub(crate) fn names(of: &Scheme) -> Vec<Name> {
     let Scheme { alpha_m, alpha_f, beta, gamma, .. } = *of;
     let candidates: [(&'static str, &[(&'static str, f64)]); 7] = [
@@ -36,7 +36,7 @@ pub(crate) fn names(of: &Scheme) -> Vec<Name> {
         pairs.iter().all(|(a, b)| (a - b).abs() <= 1e-12)
     };
     let made = candidates.into_iter().filter_map(|(kind, parameters)| {
-        // ρ∞ from a quotient may leave [0, 1] by a rounding.
+        // ρ∞ from a quotient may leave [0, 1] by round-off.
         let clean = |x: f64| if (x - x.round()).abs() < 1e-14 { x.round() + 0.0 } else { x };
         let parameters = parameters.iter().map(|&(key, value)| (key, clean(value))).collect();
         let name = Name { kind, parameters };
@@ -46,7 +46,7 @@ pub(crate) fn names(of: &Scheme) -> Vec<Name> {
     made.collect()
 }
 
-/// What is known of other codes about a scheme with these names.
+/// Notes on other codes for a scheme with these names.
 pub(crate) fn elsewhere(of: &Scheme, names: &[Name]) -> Vec<Elsewhere> {
     let is = |kind: &str| names.iter().any(|name| name.kind == kind);
     let averaged = of.alpha_m != 0.0 || of.alpha_f != 0.0;
@@ -121,7 +121,7 @@ mod tests {
         }
     }
 
-    /// ρ∞ and order of other codes' defaults, as the notes state them.
+    /// ρ∞ and order of other codes' defaults, as stated in the notes.
     #[test]
     fn the_notes_numbers_are_those_of_the_analysis() {
         let table = [

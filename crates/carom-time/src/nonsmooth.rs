@@ -1,25 +1,25 @@
-//! Schemes that bring their own treatment of contact: explicit ones, and those whose unknown at an
-//! impact is an impulse.
+//! Schemes with their own treatment of contact: explicit ones, and those whose unknown at an impact
+//! is an impulse.
 //!
-//! An impulse scheme holds 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0 where the gap is predicted to be closed.
-//! It is a [`crate::Stage`] with the unknown d = y_{n+1} − y_n, without contact forces, and an
-//! impulse beside it with the three shares of [`ImpulseShares`].
+//! An impulse scheme imposes 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0 where the gap is predicted to be
+//! closed. It is a [`crate::Stage`] with the unknown d = y_{n+1} − y_n, without contact forces,
+//! plus an impulse with the three coefficients of [`ImpulseShares`].
 
 use crate::explicit::{self, Explicit};
 use crate::map;
 use crate::scheme::Scheme;
 use crate::stage::Kernel;
 
-/// A scheme with a contact law of its own.
+/// A scheme with its own contact law.
 #[derive(Debug)]
 pub enum Nonsmooth {
-    /// Without a system to solve.
+    /// Explicit, without a system to solve.
     Explicit(Explicit),
     /// Implicit, with impulses.
     Impulse(Box<dyn Impulse>),
 }
 
-/// A scheme whose contact is an impulse. Its stage gives contact no weight of its own.
+/// A scheme whose contact is an impulse. Its stage has no weight for contact forces.
 pub trait Impulse: Kernel {
     /// One sentence.
     fn summary(&self) -> &'static str;
@@ -27,13 +27,13 @@ pub trait Impulse: Kernel {
     /// Where the impulse enters the stage of a step of size `dt`.
     fn shares(&self, dt: f64) -> ImpulseShares;
 
-    /// Whether the gap that decides is that at the end of the step solved without contact;
+    /// Whether the contact decision uses the gap at the end of the step solved without contact;
     /// otherwise that at y_n + Δt v_n/2.
     fn predicts_by_solving(&self) -> bool {
         false
     }
 
-    /// Its step between impacts where that is of the α family, whose analysis is closed.
+    /// Its step between impacts if it is of the α family, with closed-form analysis.
     fn alpha(&self) -> Option<Scheme> {
         None
     }
@@ -69,12 +69,12 @@ impl Nonsmooth {
         }
     }
 
-    /// Largest Ω = ωΔt at which no mode grows; none: any.
+    /// Largest Ω = ωΔt for which no mode grows; none: unlimited.
     pub fn stable_omega_dt(&self) -> Option<f64> {
         matches!(self, Self::Explicit(_)).then_some(explicit::STABLE)
     }
 
-    /// Spectral radius on linear motion as Ω → ∞; none where the scheme is not stable there.
+    /// Spectral radius on linear motion as Ω → ∞; none if the scheme is unstable there.
     pub fn rho_inf(&self) -> Option<f64> {
         match self {
             Self::Explicit(_) => None,
@@ -85,8 +85,8 @@ impl Nonsmooth {
         }
     }
 
-    /// Spectral radius of the whole map of smooth motion at Ω, the root of a carried acceleration
-    /// included.
+    /// Spectral radius of the whole map of smooth motion at Ω, including the root of a carried
+    /// acceleration.
     pub fn spectral_radius(&self, omega_dt: f64) -> f64 {
         match self {
             Self::Explicit(_) => explicit::spectral_radius(omega_dt),
@@ -123,13 +123,13 @@ mod tests {
         })
     }
 
-    /// Where the analysis is that of the α family, the stage moves an oscillator so, third root
-    /// included.
+    /// Where the analysis is that of the α family, the stage moves an oscillator accordingly,
+    /// including the third root.
     #[test]
     fn a_closed_analysis_is_that_of_the_stage() {
         for (scheme, alpha) in impulses().filter_map(|scheme| scheme.alpha().map(|alpha| (scheme, alpha))) {
             for omega_dt in [0.01, 0.4, 1.0, 10.0, 1e3] {
-                // The numeric map's triple root at infinity is known to a third of the digits.
+                // The numeric map resolves the triple root at infinity to a third of the digits.
                 let (got, want) = (map::spectral_radius(&*scheme, omega_dt), alpha.spectral_radius(omega_dt));
                 assert!((got - want).abs() < 1e-3, "{scheme:?} {omega_dt}: {got} {want}");
             }
@@ -138,8 +138,8 @@ mod tests {
         }
     }
 
-    /// A free mass stopped by an impulse: momentum is M v whatever the scheme, and the acceleration
-    /// carried is that of the forces or of the whole step.
+    /// A free mass stopped by an impulse: momentum is M v for every scheme, and the carried
+    /// acceleration is that of the forces or of the whole step.
     #[test]
     fn an_impulse_changes_the_velocity_by_itself_over_the_mass() {
         let (dt, mass, v, p) = (0.1, 2.0, -3.0, 6.0);
@@ -155,7 +155,7 @@ mod tests {
                 - shares.acceleration * p / mass;
             assert!((end - (v + p / mass)).abs() < 1e-13, "{scheme:?}: {end}");
             assert!(a.abs() < 1e-12 || (a - p / mass / dt).abs() < 1e-12, "{scheme:?}: {a}");
-            // The jump moves the position by a share of Δt w.
+            // The jump moves the position by a fraction of Δt w.
             let share = (d / dt - v) / (p / mass);
             assert!((0.5 - 1e-13..1.0 + 1e-13).contains(&share), "{scheme:?}: {share}");
             assert!(scheme.alpha().is_none() || (share - 0.5).abs() < 1e-13, "{scheme:?}: {share}");

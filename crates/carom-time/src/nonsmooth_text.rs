@@ -1,4 +1,4 @@
-//! What `carom explain` knows of schemes with a contact law of their own.
+//! The output of `carom explain` for schemes with their own contact law.
 use std::f64::consts::TAU;
 use std::fmt::{Display, Formatter, Result};
 
@@ -9,32 +9,32 @@ use crate::explain::Accuracy;
 use crate::name::{Name, short};
 use crate::nonsmooth::Nonsmooth;
 
-/// All of it.
+/// Everything known of such a scheme.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NonsmoothExplanation {
-    /// As in a case file.
+    /// Name in a case file.
     pub kind: &'static str,
     /// Parameters by key.
     pub parameters: Vec<(&'static str, f64)>,
     /// One sentence.
     pub summary: &'static str,
-    /// Where it was published.
+    /// Publication.
     pub reference: &'static str,
     /// Order on smooth motion.
     pub order: u8,
-    /// Largest ωΔt at which no mode grows; none: any.
+    /// Largest ωΔt for which no mode grows; none: unlimited.
     pub stable_omega_dt: Option<f64>,
-    /// Spectral radius at infinity; none where the scheme is not stable there.
+    /// Spectral radius at infinity; none if the scheme is unstable there.
     pub rho_inf: Option<f64>,
     /// At 5, 10, 20, 50 and 100 steps per period.
     pub accuracy: Vec<Accuracy>,
-    /// What contact does.
+    /// Treatment of contact.
     pub contact: &'static [&'static str],
-    /// What is conserved, and what is not.
+    /// What is conserved and what is not.
     pub conserves: Vec<&'static str>,
 }
 
-/// Explains a scheme with a contact law of its own, by the name it was asked for.
+/// Explains a scheme with its own contact law, by the name that was requested.
 pub(crate) fn explain_nonsmooth(scheme: &Nonsmooth, name: &Name) -> NonsmoothExplanation {
     let accuracy: Vec<_> = [5, 10, 20, 50, 100].iter().filter_map(|&steps| accuracy(scheme, steps)).collect();
     let lossless = accuracy.iter().all(|row| row.damping_ratio.is_some_and(|xi| xi.abs() < 1e-9));

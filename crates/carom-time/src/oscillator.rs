@@ -1,5 +1,5 @@
-//! One degree of freedom, m a + k u = f: the smallest thing a kernel can drive, and the place to
-//! measure what its analysis claims.
+//! One degree of freedom, m a + k u = f: the smallest system for a kernel, and the place to verify
+//! its analysis.
 use crate::stage::{Affine, Before, Kernel, Memory, Stage, Weights};
 
 /// m a + k u = f with constant f, driven by any kernel.
@@ -25,17 +25,17 @@ pub struct Oscillator {
 pub type Motion = [f64; 3];
 
 impl Oscillator {
-    /// The starting state with the acceleration of the balance, m a = f − k u.
+    /// The initial state with the acceleration of the balance, m a = f − k u.
     pub fn start(&self, u: f64, v: f64) -> Motion {
         [u, v, (self.force - self.stiffness * u) / self.mass]
     }
 
-    /// One step of size `dt`; `stage` is scratch.
+    /// One step of size `dt`; `stage` is scratch space.
     pub fn step(&self, kernel: &dyn Kernel, dt: f64, start: Motion, stage: &mut Stage) -> Motion {
         self.step_after(kernel, dt, None, start, stage)
     }
 
-    /// One step of a two-step kernel: `before` is the increment over the step before and the
+    /// One step of a two-step kernel: `before` is the increment over the previous step and the
     /// velocity at its start.
     pub fn step_after(
         &self,
@@ -48,7 +48,7 @@ impl Oscillator {
         run(kernel, dt, before, start, stage, |stage| self.increment(stage, start))
     }
 
-    /// One step with the position imposed at the end of every stage: a dof held by a contact.
+    /// One step with the position imposed at the end of every stage: a dof constrained by contact.
     pub fn held_step(
         &self,
         kernel: &dyn Kernel,

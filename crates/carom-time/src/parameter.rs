@@ -1,21 +1,21 @@
-//! Parameters of schemes: what a case file may say of one, and those that several kinds share.
+//! Parameters of schemes: the keys of a case file, and those common to several kinds.
 
 use std::ops::Bound::{self, Excluded, Included, Unbounded};
 
 /// A parameter: a finite number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
-    /// As written in a case file.
+    /// Key in a case file.
     pub key: &'static str,
-    /// Ends of the values it takes.
+    /// Bounds of valid values.
     pub range: (Bound<f64>, Bound<f64>),
-    /// What it means, a sentence.
+    /// Its meaning, a sentence.
     pub meaning: &'static str,
     /// A value, as TOML.
     pub example: &'static str,
 }
 
-/// ρ∞, the parameter of most.
+/// ρ∞, the most common parameter.
 pub(crate) const RHO_INF: Parameter = Parameter {
     key: "rho_inf",
     range: (Included(0.0), Included(1.0)),

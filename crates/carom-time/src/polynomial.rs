@@ -1,7 +1,7 @@
 //! Characteristic polynomials of small matrices and their roots, for schemes without a closed form.
 //!
-//! Coefficients by Faddeev and Le Verrier, roots all at once by Ehrlich and Aberth (O. Aberth,
-//! Math. Comp. 27 (1973) 339–344); zero roots are taken out first.
+//! Coefficients by Faddeev and Le Verrier, all roots simultaneously by Ehrlich and Aberth (O.
+//! Aberth, Math. Comp. 27 (1973) 339–344); zero roots are removed first.
 use crate::cubic::{Root, cubic};
 
 /// Coefficients of det(z I − A), the leading one (1) first.
@@ -28,7 +28,7 @@ fn product(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..n).map(|i| (0..n).map(|j| (0..n).map(|k| a[i][k] * b[k][j]).sum()).collect()).collect()
 }
 
-/// All roots of a monic polynomial. Coefficients below the rounding of the largest count as zero.
+/// All roots of a monic polynomial. Coefficients below the round-off of the largest count as zero.
 pub(crate) fn roots(coefficients: &[f64]) -> Vec<Root> {
     let size = coefficients.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
     let mut degree = coefficients.len() - 1;
@@ -103,7 +103,7 @@ fn aberth(p: &[f64]) -> Vec<Root> {
 mod tests {
     use super::*;
 
-    /// A companion matrix has the polynomial it was made of, and its roots rebuild it.
+    /// The companion matrix of a polynomial reproduces it, and its roots rebuild it.
     #[test]
     fn roots_are_the_eigenvalues() {
         // (z − 0.5)(z + 0.3)(z² − 1.6 z + 0.8)

@@ -1,5 +1,4 @@
-//! The α family as data: what a step of eq. (15) needs. The published ways to choose it are files
-//! of `schemes/`.
+//! The α family as data: the parameters of eq. (15). Published choices are in `schemes/`.
 //!
 //! ```text
 //! (1 − α_m) M a_{s+1} + α_m M a_s + (1 − α_f) f_{s+1} + α_f f_s = 0                              (15)
@@ -7,13 +6,13 @@
 //! v_{s+1} = v_s + Δt [(1 − γ) a_s + γ a_{s+1}]                                                   (14)
 //! ```
 //!
-//! Index s + 1 − α: an α is the share of the *old* term (Chung and Hulbert 1993).
+//! Index s + 1 − α: an α is the weight of the *old* term (Chung and Hulbert 1993).
 //! [`crate::explain`] translates.
 use serde::{Deserialize, Serialize};
 
 use crate::error::SchemeError;
 
-/// What is averaged over the step with α_f: the forces (eq. 15) or the state they are evaluated at.
+/// What α_f averages over the step: the forces (eq. 15) or the state at which they are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ForceRule {
@@ -24,13 +23,12 @@ pub enum ForceRule {
     AverageState,
 }
 
-/// One member of the α family, index s + 1 − α (eq. 15). Values are used as given; nothing is
-/// clamped.
+/// A member of the α family, index s + 1 − α (eq. 15). Values are used as given, without clamping.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scheme {
-    /// Share of the old inertia force.
+    /// Weight of the old inertia force.
     pub alpha_m: f64,
-    /// Share of the old other forces.
+    /// Weight of the old other forces.
     pub alpha_f: f64,
     /// Newmark's β.
     pub beta: f64,
@@ -40,7 +38,7 @@ pub struct Scheme {
     pub forces: ForceRule,
 }
 
-/// Constructors by published name stand in [`crate::schemes`]; all average forces, see
+/// Constructors by published name are in [`crate::schemes`]; all average forces, see
 /// [`Scheme::with_forces`].
 impl Scheme {
     /// The same scheme with another rule for what α_f averages.
@@ -49,7 +47,7 @@ impl Scheme {
         Self { forces, ..self }
     }
 
-    /// The scheme itself if a step can be taken with it; for one read from a file.
+    /// The scheme itself if a step is possible with it; for schemes read from a file.
     pub fn checked(self) -> Result<Self, SchemeError> {
         let parameters = [
             ("alpha_m", self.alpha_m),

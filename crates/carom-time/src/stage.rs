@@ -1,5 +1,5 @@
-//! What a solver sees of a time integrator: one unknown, velocity and acceleration affine in it,
-//! and the weights of the balance.
+//! The interface of a time integrator to a solver: one unknown, velocity and acceleration affine in
+//! it, and the weights of the balance.
 //!
 //! A step is a list of stages. At the end of each, positions y = y_s + d solve
 //!
@@ -9,12 +9,12 @@
 //! ```
 //!
 //! with f_int at (1 − average) y + average y_s, or a discrete gradient between y_s and y, and
-//! f_cont = Gᵀλ at y. Time knows neither space nor contact.
+//! f_cont = Gᵀλ at y. Independent of space and contact.
 //!
-//! The maps take the increment d since the step's start, and a solver should keep d as its unknown:
-//! as a function of y the acceleration carries the last digit of y divided by Δt². Free fall from y
-//! = 1.5 over 400 steps of 1.875e-3 errs by 2e-11 with maps of y, 2e-12 with d formed as a
-//! difference of rounded y, 1e-13 with d kept (`tests/free_fall.rs`).
+//! The maps take the increment d since the step's start, and a solver should use d as its unknown:
+//! as a function of y the acceleration carries the last digit of y divided by Δt². The error of
+//! free fall from y = 1.5 over 400 steps of 1.875e-3 is 2e-11 with maps of y, 2e-12 with d formed
+//! as a difference of rounded y, 1e-13 with d stored (`tests/free_fall.rs`).
 
 /// Weights of the four force families in the balance of a stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Weights {
 }
 
 impl Weights {
-    /// Every force in full.
+    /// Weight one for every force.
     pub const FULL: Self = Self { mass: 1.0, internal: 1.0, external: 1.0, contact: 1.0 };
 }
 
@@ -40,7 +40,7 @@ impl Weights {
 pub struct Affine {
     /// Factor of the unknown.
     pub slope: f64,
-    /// Its value where nothing has moved, y = y_s; one entry per dof.
+    /// Its value without motion, y = y_s; one entry per dof.
     pub at_start: Vec<f64>,
 }
 
@@ -53,7 +53,7 @@ impl Affine {
     }
 }
 
-/// How internal forces follow from positions.
+/// Evaluation of internal forces from positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Internal {
     /// ∂U/∂y at one configuration, (1 − average) y + average y_s.
@@ -66,7 +66,7 @@ pub enum Internal {
 /// One implicit solve.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stage {
-    /// Where in the step the unknown lives: 0 start, 1 end.
+    /// Position of the stage's end in the step: 0 start, 1 end.
     pub end: f64,
     /// v(y − y_s).
     pub velocity: Affine,
@@ -76,19 +76,19 @@ pub struct Stage {
     pub weights: Weights,
     /// Weights at the step's start.
     pub before: Weights,
-    /// Internal forces are taken at (1 − average) y + average y_s; external forces at that time
+    /// Internal forces are evaluated at (1 − average) y + average y_s; external forces at that time
     /// too.
     pub average: f64,
     /// Rule of the internal forces.
     pub internal: Internal,
-    /// What the stage adds to the mean of a force over the step, as the step's own velocity update
-    /// weighs it: shares of the mean over the step before, of the force at the step's start, of the
-    /// force at the stage's end. Over all stages they add up to one.
+    /// Contribution of the stage to the mean force over the step, according to the step's velocity
+    /// update: weights of the mean over the previous step, of the force at the step's start, of the
+    /// force at the stage's end. Over all stages they sum to one.
     pub mean: [f64; 3],
 }
 
 impl Stage {
-    /// Everything but the maps of a stage whose balance holds at its end.
+    /// Everything except the maps of a stage with its balance at its end.
     pub fn at_the_end(&mut self, end: f64, mean: [f64; 3]) {
         (self.end, self.mean) = (end, mean);
         (self.weights, self.before, self.average) = (Weights::FULL, Weights::default(), 0.0);
@@ -102,20 +102,20 @@ impl Stage {
     }
 }
 
-/// What is known when a stage begins: the step's start, then the ends of the stages before.
+/// Known data at the beginning of a stage: the step's start, then the ends of earlier stages.
 #[derive(Clone, Copy, Debug)]
 pub struct Memory<'a> {
     /// (y, v, a) at the step's start, then at each finished stage's end; flat, one entry per dof.
     pub states: &'a [(&'a [f64], &'a [f64], &'a [f64])],
-    /// The step before, where it had the same size and nothing happened since; only for kernels
-    /// that ask for it.
+    /// The previous step, if it had the same size and nothing intervened; only for kernels that
+    /// request it.
     pub before: Option<Before<'a>>,
 }
 
-/// What a two-step scheme needs of the step before.
+/// Data of the previous step for a two-step scheme.
 #[derive(Clone, Copy, Debug)]
 pub struct Before<'a> {
-    /// Increment of positions over that step: kept, not formed from rounded positions.
+    /// Increment of positions over that step, stored to avoid the rounding of positions.
     pub increment: &'a [f64],
     /// Velocity at its start.
     pub velocity: &'a [f64],
@@ -123,22 +123,22 @@ pub struct Before<'a> {
 
 /// An implicit integrator as a list of stages.
 pub trait Kernel: Send + Sync + std::fmt::Debug {
-    /// Stages of a step.
+    /// Number of stages of a step.
     fn stages(&self) -> usize;
 
-    /// Whether it uses the step before. Its first step, and every one after something abrupt, has
+    /// Whether it uses the previous step. At the first step, and after any abrupt event, there is
     /// none: [`Memory::before`] is empty.
     fn two_step(&self) -> bool {
         false
     }
 
     /// Whether its only stage is Newmark's y = y_s + Δt v_s + Δt² (…), so that a contact law may
-    /// put another position in place of y_s + Δt v_s.
+    /// replace y_s + Δt v_s by another position.
     fn has_predictor(&self) -> bool {
         false
     }
 
-    /// What it conserves or costs beyond what linear analysis measures, one sentence each.
+    /// Properties or costs beyond linear analysis, one sentence each.
     fn notes(&self) -> &'static [&'static str] {
         &[]
     }

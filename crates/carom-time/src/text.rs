@@ -10,7 +10,7 @@ use crate::nonsmooth_text::NonsmoothExplanation;
 use crate::scheme::{ForceRule, Scheme};
 use crate::schemes::KINDS;
 
-/// ξ and PE without noise of the last digits.
+/// ξ and PE without noise in the last digits.
 fn cell(x: Option<f64>, scale: f64) -> String {
     match x.map(|x| x * scale) {
         None => "–".to_owned(),
@@ -72,28 +72,28 @@ impl Display for Explanation {
 /// A line of the [`Catalogue`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CatalogueRow {
-    /// As in a case file.
+    /// Name in a case file.
     pub kind: &'static str,
-    /// The parameters shown, in words.
+    /// The displayed parameters, in words.
     pub parameters: String,
-    /// What they make, in the α family.
+    /// The resulting scheme, in the α family.
     pub scheme: Option<Scheme>,
     /// Order on smooth motion.
     pub order: u8,
     /// Spectral radius at infinity.
     pub rho_inf: f64,
-    /// At ten steps per period.
+    /// Accuracy at ten steps per period.
     pub accuracy: Accuracy,
-    /// Steps a constrained dof rings; none: for ever.
+    /// Steps for which a constrained dof rings; none: for ever.
     pub constrained_steps: Option<u32>,
 }
 
-/// Typical members of every kind, side by side.
+/// Typical members of every kind, in a table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Catalogue {
     /// In the order of the catalogue.
     pub rows: Vec<CatalogueRow>,
-    /// Those with a contact law of their own.
+    /// Those with their own contact law.
     pub nonsmooth: Vec<NonsmoothExplanation>,
 }
 
@@ -104,30 +104,30 @@ pub struct Catalogue {
 /// assert_eq!(hu.map(|row| (row.order, row.rho_inf, row.constrained_steps)), Some((1, 0.0, Some(2))));
 /// ```
 pub fn explain_all() -> Catalogue {
-    let mut told = Catalogue { rows: Vec::new(), nonsmooth: Vec::new() };
+    let mut table = Catalogue { rows: Vec::new(), nonsmooth: Vec::new() };
     let shown = KINDS.iter().flat_map(|kind| kind.members.iter().map(move |member| (kind, member)));
     for (kind, member) in shown.filter(|(_, member)| member.shown) {
         match kind.named(member).integrator(ForceRule::AverageForces).map(|made| made.explain()) {
-            Ok(Explained::Stages(scheme)) => told.rows.extend(row(kind.name, member.parameters, *scheme)),
-            Ok(Explained::Nonsmooth(scheme)) => told.nonsmooth.push(scheme),
+            Ok(Explained::Stages(scheme)) => table.rows.extend(row(kind.name, member.parameters, *scheme)),
+            Ok(Explained::Nonsmooth(scheme)) => table.nonsmooth.push(scheme),
             Err(_) => {}
         }
     }
-    told
+    table
 }
 
-fn row(kind: &'static str, parameters: &[(&str, f64)], told: Explanation) -> Option<CatalogueRow> {
-    // Raw parameters stand in their columns.
+fn row(kind: &'static str, parameters: &[(&str, f64)], explanation: Explanation) -> Option<CatalogueRow> {
+    // Raw parameters have their own columns.
     let shown = if parameters.len() > 2 { &[] } else { parameters };
     let words: Vec<_> = shown.iter().map(|(key, value)| format!("{key} {value}")).collect();
     Some(CatalogueRow {
         kind,
         parameters: words.join(", "),
-        scheme: told.scheme,
-        order: told.order,
-        rho_inf: told.rho_inf,
-        accuracy: told.accuracy.into_iter().find(|a| a.steps_per_period == 10)?,
-        constrained_steps: told.constrained.steps,
+        scheme: explanation.scheme,
+        order: explanation.order,
+        rho_inf: explanation.rho_inf,
+        accuracy: explanation.accuracy.into_iter().find(|a| a.steps_per_period == 10)?,
+        constrained_steps: explanation.constrained.steps,
     })
 }
 
@@ -160,13 +160,13 @@ impl Display for Catalogue {
             "\nwith a contact law of their own{:>51}{:>10}{:>10}{:>10}",
             "order", "ρ∞", "ξ(T/10)", "PE(T/10)"
         )?;
-        for told in &self.nonsmooth {
+        for explanation in &self.nonsmooth {
             let words: Vec<_> =
-                told.parameters.iter().map(|(key, value)| format!("{key} {value:.3}")).collect();
-            let rho = told.rho_inf.map_or("ωΔt ≤ 2".to_owned(), |rho| format!("{rho:.3}"));
-            let tenth = told.accuracy.iter().find(|row| row.steps_per_period == 10);
+                explanation.parameters.iter().map(|(key, value)| format!("{key} {value:.3}")).collect();
+            let rho = explanation.rho_inf.map_or("ωΔt ≤ 2".to_owned(), |rho| format!("{rho:.3}"));
+            let tenth = explanation.accuracy.iter().find(|row| row.steps_per_period == 10);
             let (xi, pe) = tenth.map_or((None, None), |row| (row.damping_ratio, row.period_error));
-            write!(f, "{:<32}{:<42}{:>8}{rho:>10}", told.kind, words.join(", "), told.order)?;
+            write!(f, "{:<32}{:<42}{:>8}{rho:>10}", explanation.kind, words.join(", "), explanation.order)?;
             writeln!(f, "{:>10}{:>10}", cell(xi, 1.0), format!("{} %", cell(pe, 100.0)))?;
         }
         write!(
@@ -181,14 +181,14 @@ mod tests {
     use super::*;
     use crate::explain;
 
-    /// All but equilibrium, which integrates nothing.
+    /// All but statics, which integrates nothing.
     #[test]
     fn every_kind_is_shown() {
         let table = explain_all();
         let shown = KINDS.iter().flat_map(|kind| kind.members).filter(|member| member.shown);
         assert_eq!(table.rows.len() + table.nonsmooth.len(), shown.count());
         let names =
-            || table.rows.iter().map(|row| row.kind).chain(table.nonsmooth.iter().map(|told| told.kind));
+            || table.rows.iter().map(|row| row.kind).chain(table.nonsmooth.iter().map(|row| row.kind));
         assert!(KINDS.iter().all(|kind| kind.name == crate::STATIC || names().any(|name| name == kind.name)));
     }
 

@@ -1,4 +1,4 @@
-//! What a step is made of, on the jobs of `cases/perf/` in mid-contact: cells, detection, gaps,
+//! The components of a step, on the jobs of `cases/perf/` in mid-contact: cells, detection, gaps,
 //! assembly and factor, solve, whole steps.
 //!
 //!     cargo bench -p carom                    times
@@ -22,7 +22,7 @@ const SMALL: &str = include_str!("../../../cases/perf/disc-2k.toml");
 const LARGE: &str = include_str!("../../../cases/perf/disc-19k.toml");
 const BAR: &str = include_str!("../../../cases/perf/bar.toml");
 
-/// A job of the discs and its dofs.
+/// A job of the discs, displayed by its dofs.
 #[derive(Clone, Copy)]
 enum Job {
     Small,
@@ -52,7 +52,7 @@ fn at_start(job: Job) -> Simulation {
     carom::simulation(&case_of(text), 1).expect("valid")
 }
 
-/// The job at a time with a dozen nodes (2k) in contact, or some forty (19k).
+/// The job with about a dozen nodes (2k) or forty (19k) in contact.
 fn in_contact(job: Job) -> Simulation {
     let mut sim = at_start(job);
     while sim.state.step < 60 {
@@ -124,8 +124,8 @@ fn gaps(bencher: Bencher, job: Job) {
     });
 }
 
-/// The consistent mass on the pattern of the tangent, positive definite; left for last are the
-/// nodes that the pairs act on.
+/// The consistent mass on the pattern of the tangent, positive definite; the nodes on which pairs
+/// act are eliminated last.
 fn mass_matrix(sim: &Simulation) -> (Pattern, Vec<f64>, Vec<usize>, Vec<usize>) {
     let mass = &sim.model.mass;
     let entries = (0..mass.nodes()).flat_map(|a| mass.row(a).map(move |(b, value)| (a, b, value)));
@@ -143,10 +143,10 @@ fn mass_matrix(sim: &Simulation) -> (Pattern, Vec<f64>, Vec<usize>, Vec<usize>) 
     }
     let groups = (0..sim.model.dofs()).map(|dof| dof / 2).collect();
     let kinematics = &sim.model.contacts[0].kinematics;
-    let touched =
+    let nodes_of =
         |pair: &Pair| [&[kinematics.secondary()[pair.node]], kinematics.facet_nodes(pair.facet)].concat();
-    let touched: BTreeSet<usize> = sim.state.pairs[0].iter().flat_map(touched).collect();
-    let last = touched.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
+    let contact_nodes: BTreeSet<usize> = sim.state.pairs[0].iter().flat_map(nodes_of).collect();
+    let last = contact_nodes.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
     (pattern, values, groups, last)
 }
 

@@ -1,18 +1,18 @@
-//! A start elsewhere than in the reference positions: of a motion that is given, or `[initial]
+//! Initial states other than the reference configuration: of a manufactured motion, or `[initial]
 //! from`, positions, velocities and contact at the end of another run of the same meshes.
 //!
-//! The meshes are made again from the case that run was resolved with, and compared node by node:
-//! names alone would let a changed mesh pass.
+//! The meshes are rebuilt from the resolved case of that run and compared node by node: names alone
+//! would not detect a changed mesh.
 
 use carom_case::{Case, InitialSpec, Problem, Velocities};
 use carom_mechanics::model::{Manufactured, Model};
 use carom_mechanics::{Before, State};
 use carom_record::{Manifest, Status, last_checkpoint};
 
-/// Where a motion that is given begins.
+/// The initial state of a manufactured motion.
 ///
 /// # Errors
-/// A formula without a value at t = 0.
+/// If a formula has no value at t = 0.
 pub(crate) fn given(motion: &Manufactured, model: &Model) -> Result<Before, Vec<Problem>> {
     let (mut y, mut v) = (Vec::new(), Vec::new());
     for place in model.reference.chunks_exact(model.dimension) {
@@ -26,10 +26,10 @@ pub(crate) fn given(motion: &Manufactured, model: &Model) -> Result<Before, Vec<
     Ok(Before { y, v, pairs: vec![Vec::new(); model.contacts.len()] })
 }
 
-/// Reads the end of the run a case starts from.
+/// Reads the end of the run from which a case starts.
 ///
 /// # Errors
-/// There is no such run, it is not finished, or its bodies are not those of the case; all under
+/// If there is no such run, it is not finished, or its bodies are not those of the case; all under
 /// `initial.from`.
 pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<Before, Vec<Problem>> {
     let directory = spec.from.display();

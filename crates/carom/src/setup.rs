@@ -1,4 +1,4 @@
-//! From a case to what moves: the model with a stepper, on the grid of times.
+//! Builds the simulation of a case: the model with a stepper, on the grid of times.
 
 use carom_case::{Case, NewtonSpec, Problem, TangentRule};
 use carom_mechanics::model::Model;
@@ -15,7 +15,7 @@ use crate::initial::{before, given};
 /// result does not depend on it.
 ///
 /// # Errors
-/// Everything wrong with the case that only its meshes show.
+/// All problems of the case that only its meshes reveal.
 pub fn simulation(case: &Case, threads: usize) -> Result<Simulation, Vec<Problem>> {
     let model = build(case)?;
     let placed = case.initial.is_some() || case.manufactured.is_some();
@@ -35,8 +35,8 @@ pub fn simulation(case: &Case, threads: usize) -> Result<Simulation, Vec<Problem
         .map_err(|rejected| vec![no_start(case, placed, &rejected)])
 }
 
-/// Builds the model of a case and goes on from a state of an earlier run of it; the run its
-/// `[initial]` names is not needed any more.
+/// Builds the model of a case and resumes from a state of an earlier run of it; the run of its
+/// `[initial]` is no longer needed.
 ///
 /// # Errors
 /// As [`simulation`].
@@ -47,13 +47,13 @@ pub fn resumed(case: &Case, threads: usize, state: State) -> Result<Simulation, 
 }
 
 fn grid(case: &Case) -> Grid {
-    // Load steps create nothing: what their works miss of the energies is the error of a sum over
-    // few steps.
+    // Load steps create no energy: the difference between works and energies is the error of a sum
+    // over few steps.
     let guard = case.time.energy_guard.filter(|_| !case.time.scheme.is_static());
     Grid { dt: case.time.step, steps: (case.time.end / case.time.step).round() as u64, guard }
 }
 
-/// Why a case has no start, with its place and a way out.
+/// Why a case has no initial state, with its key and a suggestion.
 fn no_start(case: &Case, placed: bool, rejected: &Rejected) -> Problem {
     let (path, what, help) = match rejected {
         Rejected::NoValue(_) => {
@@ -106,7 +106,7 @@ fn settings(newton: &NewtonSpec) -> Settings {
     }
 }
 
-/// The refusal of a step longer than an explicit scheme is stable with.
+/// The problem of a step longer than the stable one of an explicit scheme.
 pub fn too_long(case: &Case, model: &Model) -> Vec<Problem> {
     if !case.time.scheme.is_explicit() {
         return Vec::new();

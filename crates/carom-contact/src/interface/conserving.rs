@@ -1,18 +1,18 @@
-//! Springs that conserve energy: the discrete gradient of U(g) = k/2 min(g, 0)² along a gap that is
-//! itself carried from step to step (F. Armero, E. Petőcz, Comput. Methods Appl. Mech. Engrg. 158
+//! Energy-conserving springs: the discrete gradient of U(g) = k/2 min(g, 0)² along a gap that is
+//! itself updated from step to step (F. Armero, E. Petőcz, Comput. Methods Appl. Mech. Engrg. 158
 //! (1998) 269–300).
 //!
 //! ```text
 //! g₁ = g₀ + ∇g(y_m)·Δy,   λ = (U(g₁) − U(g₀)) / (g₁ − g₀)   (U'(g₀) where they are equal),   f = λ ∇g(y_m),   y_m = (y₀ + y₁)/2
 //! ```
 //!
-//! so that f·Δy = U(g₁) − U(g₀) exactly, and force and moment balance at y_m as those of any Σ λ ∇g
-//! do. Where g is linear in y, g₁ is the gap; else it departs from it by terms of third order in
-//! Δy, and begins anew with each contact.
+//! so that f·Δy = U(g₁) − U(g₀) exactly, and force and moment balance at y_m as for any Σ λ ∇g. If
+//! g is linear in y, g₁ is the gap. Otherwise it deviates by terms of third order in Δy, and is
+//! reset at each new contact.
 
 use super::{Answer, Interface, Point};
 
-/// Energy-conserving springs with a stiffness for each secondary node.
+/// Energy-conserving springs with a stiffness per secondary node.
 #[derive(Clone, Debug)]
 pub struct ConservingPenalty {
     stiffness: Vec<f64>,
@@ -53,7 +53,7 @@ impl Interface for ConservingPenalty {
     }
 }
 
-/// λ = ΔU/Δg of U = k/2 min(g, 0)² from `start` over `moved`, and ∂λ/∂g₁.
+/// λ = ΔU/Δg of U = k/2 min(g, 0)² from `start` to `start + moved`, and ∂λ/∂g₁.
 fn discrete_gradient(k: f64, start: f64, moved: f64) -> (f64, f64) {
     let end = start + moved;
     match (start < 0.0, end < 0.0) {

@@ -1,8 +1,8 @@
-//! Contact by springs of the potential U(g) = k/2 min(g, 0)²: λ = U'(g).
+//! Penalty contact with the potential U(g) = k/2 min(g, 0)²: λ = U'(g).
 
 use super::{Answer, Interface, Point};
 
-/// Springs with a stiffness for each secondary node.
+/// Springs with a stiffness per secondary node.
 #[derive(Clone, Debug)]
 pub struct Penalty {
     stiffness: Vec<f64>,

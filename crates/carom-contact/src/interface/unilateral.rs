@@ -1,5 +1,5 @@
-//! A constraint without friction, g ≥ 0, λ ≤ 0, λ g = 0, by a Lagrange multiplier: while a pair is
-//! in the active set its gap is held at zero and λ is an unknown.
+//! Frictionless constraint, g ≥ 0, λ ≤ 0, λ g = 0, by a Lagrange multiplier: while a pair is in the
+//! active set its gap is constrained to zero and λ is an unknown.
 
 use super::{Answer, Interface, Point};
 

@@ -1,5 +1,5 @@
-//! Where two surfaces are to each other: pairs worth watching, their gaps and the gaps'
-//! derivatives, at given positions. Knows no time step, no law and no matrix.
+//! The relative position of two surfaces: candidate pairs, their gaps and the gaps' derivatives, at
+//! given positions. Independent of time steps, laws and matrices.
 //!
 //! Positions are flat over all nodes, `dimension` components each.
 
@@ -18,45 +18,45 @@ use crate::rows::Rows;
 
 /// A way to measure gaps between two sides.
 pub trait Kinematics: Send + Sync {
-    /// Global numbers of the secondary nodes, each once.
+    /// Global numbers of the secondary nodes, without duplicates.
     fn secondary(&self) -> &[usize];
 
     /// Global numbers of the nodes of a primary facet; empty for a rigid primary.
     fn facet_nodes(&self, facet: usize) -> &[usize];
 
-    /// Most nodes that one gap depends on.
+    /// Largest number of nodes that one gap depends on.
     fn stencil(&self) -> usize;
 
-    /// Signed distance of a secondary node (its place) to the nearest point of the primary side;
-    /// `None` where no facet faces it.
+    /// Signed distance of a secondary node, given by index, to the nearest point of the primary
+    /// side; `None` if no facet faces it.
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64>;
 
-    /// Brings the pairs worth watching between positions `before` (no penetration) and `now` up to
-    /// date: adds those that came near, hands over those that slid off their facet, drops those
-    /// that left. Whether anything but an open pair changed is returned.
+    /// Updates the pairs between positions `before` (no penetration) and `now`: adds candidates,
+    /// hands over those that slid off their facet, drops those that left. Returns whether anything
+    /// but an inactive pair changed.
     fn search(&self, before: &[f64], now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>)
     -> bool;
 
-    /// Hands over active pairs that have slid well past the end of their facet while the iteration
-    /// goes on: what a facet extrapolates to there is no surface. Unlike [`search`](Self::search),
-    /// it lets a pair come back. Whether there was one is returned.
+    /// Hands over active pairs that have slid well past the end of their facet during the
+    /// iteration: a facet's extrapolation is not the surface. Unlike [`search`](Self::search), it
+    /// allows a pair to return. Returns whether there was one.
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
         let _ = (now, pairing, events);
         false
     }
 
-    /// Adds the row of a pair at positions `y` to `rows`. Moves `pair.xi` to the closest point.
+    /// Adds the row of a pair at positions `y` to `rows`. Sets `pair.xi` to the closest point.
     ///
     /// # Errors
-    /// There is no unique closest point; nothing was added.
+    /// If there is no unique closest point; no row is added.
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError>;
 
-    /// ∂²g/∂y∂y of a pair that was measured at `y`, over the nodes of its row: overwrites the first
-    /// `(n·D)²` of `curvature`, row-major.
+    /// ∂²g/∂y∂y of a pair measured at `y`, over the nodes of its row: overwrites the first `(n·D)²`
+    /// entries of `curvature`, row-major.
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]);
 }
 
-/// Where a gap costs nothing, every node is watched in every step.
+/// If gaps cost nothing, every node is tracked in every step.
 fn watch_every_node(nodes: usize, pairs: &mut Vec<Pair>) {
     if pairs.len() == nodes {
         return;

@@ -1,7 +1,7 @@
 //! Secondary nodes against a primary side of facets: curved ones of any order in the plane, a point
 //! at the end of a bar.
 //!
-//! Gap at the closest point ξ of the pair's facet, with t = y_S', J = |t|, n = t turned right / J,
+//! Gap at the closest point ξ of the pair's facet, with t = y_S', J = |t|, n = t rotated right / J,
 //! κ = n·y_S'', a = J² − gκ (theory.md §1):
 //!
 //! ```text
@@ -9,9 +9,9 @@
 //! ∇²g = −(N_t T_nᵀ + T_n N_tᵀ)/a − κ/(a J²) N_t N_tᵀ − (g/a) T_n T_nᵀ,    N_t = (t; −φᵅ t),  T_n = (0; φ'ᵅ n)
 //! ```
 //!
-//! Of a point n = ±1, the direction out of its body, and ∇²g = 0. ξ is solved again in every call,
-//! up to |ξ| = 1.2 beyond an end; the pair is handed to the neighbour only between solves, and
-//! never back within a step.
+//! For a point n = ±1, the outward direction, and ∇²g = 0. ξ is solved for in every call, up to
+//! |ξ| = 1.2 beyond an end. The pair is handed to the neighbour only between solves, and never
+//! back within a step.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -26,21 +26,21 @@ use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
 use crate::rows::Rows;
 
-/// How far beyond its end a facet is extrapolated.
+/// |ξ| up to which a facet is extrapolated.
 const REACH: f64 = 1.2;
-/// How far the closest point may wander while Newton has not converged.
+/// |ξ| allowed for the closest point before Newton has converged.
 const WANDER: f64 = 3.0;
-/// Beyond this a pair is handed over while Newton is on its way, and beyond that also back.
-const FOLLOWED: f64 = 1.02;
-const FOLLOWED_BACK: f64 = 1.1;
-/// Cosine of the kink between neighbouring facets above which a node past both ends has left the
-/// side (a corner's vertex cone).
+/// |ξ| beyond which a pair is handed over, or back, before Newton has converged.
+const HAND_OVER: f64 = 1.02;
+const HAND_BACK: f64 = 1.1;
+/// Cosine of the kink between neighbouring facets that marks a corner, in whose vertex cone a node
+/// past both ends has left the side.
 const CORNER_COSINE: f64 = 0.87;
-/// A node this much behind a facet (times the facet's length) at the start of a step came from
-/// elsewhere, not through the facet.
+/// A node this far behind a facet (relative to its length) at the start of a step has not crossed
+/// the facet.
 const BEHIND: f64 = 1e-6;
 
-/// Which gap decides that a node has reached the primary.
+/// The gap that decides that a node has reached the primary side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detection {
     /// The gap at the closest point; trajectories only give candidates.
@@ -59,8 +59,8 @@ pub struct NodeToFacet {
 }
 
 impl NodeToFacet {
-    /// Secondary nodes and primary surface in global node numbers; a node of the primary itself is
-    /// left out of the secondary.
+    /// Secondary nodes and primary surface in global node numbers; nodes of the primary are removed
+    /// from the secondary.
     pub fn new(secondary: Vec<usize>, primary: Surface, detection: Detection) -> Self {
         let search = Mutex::new(Search::new(&primary));
         Self { secondary, primary, detection, search }
@@ -75,8 +75,8 @@ impl NodeToFacet {
         (y.at(node) - c.position).dot(&c.normal)
     }
 
-    /// Facet and ξ where a node may touch: the first crossing of trajectories, else the closest
-    /// facet at `now` that the node was not behind before.
+    /// Facet and ξ of possible contact of a node: the first crossing of trajectories, else the
+    /// closest facet at `now` that the node was not behind before.
     fn candidate(
         &self,
         search: &mut Search,
@@ -110,8 +110,8 @@ impl NodeToFacet {
         (!came_from_behind).then_some((facet, xi, false))
     }
 
-    /// Where a pair past the end of its facet goes.
-    fn next_facet(&self, pair: &Pair, left: Option<usize>, y: Places) -> Next {
+    /// The next facet of a pair that is past the end of its facet.
+    fn next_facet(&self, pair: &Pair, came_from: Option<usize>, y: Places) -> Next {
         if pair.xi.abs() <= 1.0 + 1e-9 {
             return Next::Stay;
         }
@@ -120,7 +120,7 @@ impl NodeToFacet {
         let Some(neighbour) = self.primary.neighbour(pair.facet, forward) else {
             return if pair.xi.abs() <= REACH { Next::Stay } else { Next::Leave };
         };
-        if left == Some(neighbour) {
+        if came_from == Some(neighbour) {
             return if pair.xi.abs() <= REACH { Next::Stay } else { Next::Leave };
         }
         if let Some(xi) = self.primary.facet(neighbour).closest_point(y, y.at(node), REACH) {
@@ -129,8 +129,8 @@ impl NodeToFacet {
                 return Next::HandOver(neighbour, xi);
             }
         }
-        // Past both ends: the vertex cone of a convex kink. A blunt one is bridged by
-        // extrapolation, at a corner the node is free.
+        // Past both ends: the vertex cone of a convex kink. A small kink is bridged by
+        // extrapolation; at a corner the node is free.
         let end = if forward { 1.0 } else { -1.0 };
         let here = self.primary.facet(pair.facet).at(y, end).tangent;
         let there = self.primary.facet(neighbour).at(y, -end).tangent;
@@ -176,7 +176,7 @@ impl Kinematics for NodeToFacet {
         events: &mut Vec<PairEvent>,
     ) -> bool {
         if self.primary.shape() == FacetShape::Point {
-            // A point has no neighbours to search among, and cannot be slid off.
+            // A point has no neighbours to search, and no ends to slide off.
             watch_every_node(self.secondary.len(), &mut pairing.pairs);
             return false;
         }
@@ -185,8 +185,8 @@ impl Kinematics for NodeToFacet {
         let mut changed = false;
         pairs.retain_mut(|pair| {
             let node = self.secondary[pair.node];
-            // Neighbours in turn until the closest point lies on the facet; bounded by the facets
-            // there are.
+            // Moves on to neighbours until the closest point lies on the facet, at most as many
+            // times as there are facets.
             for _ in 0..=self.primary.facets() {
                 match self.next_facet(pair, left.get(&pair.node).copied(), now) {
                     Next::Stay => return true,
@@ -194,7 +194,7 @@ impl Kinematics for NodeToFacet {
                         if pair.active {
                             events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
                         }
-                        // In a concave joint an open pair may be in front of the one facet and
+                        // At a concave joint an inactive pair may be in front of one facet and
                         // behind the other.
                         changed |= pair.active || self.gap(node, facet, xi, now) < 0.0;
                         left.insert(pair.node, pair.facet);
@@ -228,12 +228,12 @@ impl Kinematics for NodeToFacet {
                 let gap = self.gap(node, facet, xi, now);
                 match self.detection {
                     Detection::ClosestPoint => {
-                        // A candidate that is already behind must be looked at again by the solver.
+                        // A candidate that already penetrates must be rechecked by the solver.
                         changed |= gap < 0.0;
                         pairs.push(pair);
                     }
-                    // Eq. (8) decides at the crossing. A node that was already in by round-off
-                    // crosses nothing: its closest point decides.
+                    // Eq. (8) decides at the crossing. A node inside by round-off crosses nothing:
+                    // its closest point decides.
                     Detection::Trajectory if gap < 0.0 || (crossed && gap == 0.0) => {
                         changed = true;
                         pairs.push(Pair { active: true, ..pair });
@@ -252,17 +252,17 @@ impl Kinematics for NodeToFacet {
         let mut changed = false;
         for pair in pairs.iter_mut().filter(|pair| pair.active) {
             let came_from = left.get(&pair.node).copied();
-            if pair.xi.abs() <= if came_from.is_some() { FOLLOWED_BACK } else { FOLLOWED } {
+            if pair.xi.abs() <= if came_from.is_some() { HAND_BACK } else { HAND_OVER } {
                 continue;
             }
-            let (from, mut before) = (pair.facet, None);
+            let (from, mut previous) = (pair.facet, None);
             for _ in 0..self.primary.facets() {
-                let Next::HandOver(facet, xi) = self.next_facet(pair, before, now) else { break };
-                before = Some(pair.facet);
+                let Next::HandOver(facet, xi) = self.next_facet(pair, previous, now) else { break };
+                previous = Some(pair.facet);
                 (pair.facet, pair.xi) = (facet, xi);
             }
             if pair.facet != from {
-                left.extend(before.map(|facet| (pair.node, facet)));
+                left.extend(previous.map(|facet| (pair.node, facet)));
                 events.push(PairEvent::HandOver { node: self.secondary[pair.node], from, to: pair.facet });
                 changed = true;
             }

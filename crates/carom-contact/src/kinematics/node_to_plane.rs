@@ -14,8 +14,8 @@ pub struct NodeToPlane {
 }
 
 impl NodeToPlane {
-    /// Keeps the secondary nodes on the side of `point` that `normal` (any length > 0) points to;
-    /// both have as many components as there are dimensions, at most three.
+    /// Keeps the secondary nodes on the side of `point` to which `normal` (any length > 0) points.
+    /// Both have one component per dimension, at most three.
     pub fn new(secondary: Vec<usize>, point: &[f64], normal: &[f64]) -> Self {
         let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
         let padded = |x: &[f64], factor: f64| std::array::from_fn(|i| x.get(i).map_or(0.0, |x| x * factor));

@@ -8,7 +8,7 @@ use carom_solid::FacetShape;
 
 use crate::places::Places;
 
-/// A facet: its shape, its nodes, and the direction of its normal where it is a point.
+/// A facet: its shape, its nodes, and the sign of its normal if it is a point.
 #[derive(Clone, Copy)]
 pub(crate) struct Facet<'a> {
     pub(crate) shape: FacetShape,
@@ -23,7 +23,7 @@ pub(crate) struct FacetPoint {
     pub(crate) tangent: Vector<2>,
     pub(crate) second: Vector<2>,
     pub(crate) normal: Vector<2>,
-    /// Length of y_S'; 1 of a point.
+    /// Length of y_S'; 1 for a point.
     pub(crate) measure: f64,
 }
 
@@ -43,19 +43,19 @@ impl Facet<'_> {
         FacetPoint { position, tangent, second, normal: normal * measure.recip(), measure }
     }
 
-    /// Whether it has coordinates at all: a point has none, and is its own closest point.
+    /// Whether it is a point, which has no coordinate and is its own closest point.
     fn is_point(&self) -> bool {
         self.shape == FacetShape::Point
     }
 
-    /// Slope of half the squared distance and its derivative a.
+    /// Derivative of half the squared distance, and its derivative a.
     fn distance_slope(&self, y: Places, from: Vector<2>, xi: f64) -> (f64, f64) {
         let c = self.at(y, xi);
         let d = from - c.position;
         (-d.dot(&c.tangent), c.tangent.dot(&c.tangent) - d.dot(&c.second))
     }
 
-    /// Newton from a good guess; `None` where it does not settle on a minimum within |ξ| ≤ `reach`.
+    /// Newton from a good guess; `None` if it does not converge to a minimum within |ξ| ≤ `reach`.
     pub(crate) fn closest_from(&self, y: Places, from: Vector<2>, start: f64, reach: f64) -> Option<f64> {
         if self.is_point() {
             return Some(0.0);
@@ -71,7 +71,7 @@ impl Facet<'_> {
             if xi.abs() > reach {
                 return None;
             }
-            // Below the second bound, round-off, a step changes nothing any more.
+            // Below the second bound, round-off, a step has no effect.
             if step.abs() <= 1e-15 * (1.0 + xi.abs()) || step.abs() <= 4e-15 {
                 return Some(xi);
             }
@@ -79,8 +79,8 @@ impl Facet<'_> {
         None
     }
 
-    /// Closest stationary point within |ξ| ≤ `reach`, by sampling and refinement; `None` where the
-    /// distance only falls towards an end.
+    /// Closest stationary point within |ξ| ≤ `reach`, by sampling and refinement; `None` if the
+    /// distance decreases towards an end.
     pub(crate) fn closest_point(&self, y: Places, from: Vector<2>, reach: f64) -> Option<f64> {
         const SAMPLES: usize = 12;
         if self.is_point() {
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn finds_the_nearest_of_two_valleys() {
-        // A cubic through (−1, 1) (1, 1) with interior nodes pulled down unevenly: compare with a
+        // A cubic through (−1, 1) (1, 1) with unevenly lowered interior nodes, compared with a
         // dense scan.
         let y = [-1.0, 1.0, 1.0, 1.0, -0.4, -0.3, 0.4, -0.6];
         let y = Places::new(&y, 2);

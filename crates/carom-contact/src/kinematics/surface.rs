@@ -1,5 +1,5 @@
 //! A primary side as a chain of curved facets in global node numbers, with neighbours, and the
-//! search for those that a node's path comes near.
+//! search for facets near a node's path.
 
 use std::collections::HashMap;
 
@@ -8,7 +8,7 @@ use carom_solid::{Bounds, FacetShape, Hull, Tree};
 use super::projection::Facet;
 use crate::places::Places;
 
-/// Facets of a side, all of one shape, and who follows whom.
+/// Facets of a side, all of one shape, and their neighbours.
 #[derive(Clone, Debug)]
 pub struct Surface {
     shape: FacetShape,
@@ -18,18 +18,18 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Facets as lists of global nodes (start, end, interior), walked with the body on their left;
-    /// `orientations` counts for points alone
+    /// Facets as lists of global nodes (start, end, interior), traversed with the body on their
+    /// left; `orientations` only matters for points
     /// ([`Mesh::orientation`](carom_solid::Mesh::orientation)).
     pub fn new(shape: FacetShape, facets: &[Vec<usize>], orientations: &[f64]) -> Self {
         let end = |facet: &[usize]| facet[shape.nodes().min(2) - 1];
         let starts: HashMap<usize, usize> = facets.iter().enumerate().map(|(k, f)| (f[0], k)).collect();
         let ends: HashMap<usize, usize> = facets.iter().enumerate().map(|(k, f)| (end(f), k)).collect();
-        let follows = |f: &Vec<usize>| [ends.get(&f[0]).copied(), starts.get(&end(f)).copied()];
+        let neighbours_of = |f: &Vec<usize>| [ends.get(&f[0]).copied(), starts.get(&end(f)).copied()];
         let none = |_| [None, None];
         let neighbours = match shape {
             FacetShape::Point => facets.iter().map(none).collect(),
-            FacetShape::L2 | FacetShape::L3 | FacetShape::L4 => facets.iter().map(follows).collect(),
+            FacetShape::L2 | FacetShape::L3 | FacetShape::L4 => facets.iter().map(neighbours_of).collect(),
         };
         Self { shape, nodes: facets.concat(), orientations: orientations.to_vec(), neighbours }
     }
@@ -54,7 +54,7 @@ impl Surface {
         }
     }
 
-    /// The facet that follows (or precedes) along the walk.
+    /// The facet that follows (or precedes) it in the direction of traversal.
     pub fn neighbour(&self, facet: usize, forward: bool) -> Option<usize> {
         self.neighbours[facet][usize::from(forward)]
     }
@@ -66,9 +66,8 @@ impl Surface {
     }
 }
 
-/// Facets by the boxes of their paths during a step, which hold them wherever they are curved to:
-/// nothing that comes near is missed. A cache that never changes a result; O(facets) to bring up to
-/// date, O(log facets) to ask.
+/// Bounding boxes of the facets' paths during a step. They contain curved facets, so no near facet
+/// is missed. A cache that never changes a result; O(facets) per update, O(log facets) per query.
 #[derive(Debug)]
 pub(crate) struct Search {
     hull: Hull,
@@ -82,8 +81,8 @@ impl Search {
         Self { hull: Hull::line(surface.shape.nodes(), 1.0), tree: None, found: Vec::new() }
     }
 
-    /// Takes motion from `before` to `now` up, with a `margin` around facets as a share of their
-    /// size; whether the path of any of these nodes comes near the path of any facet.
+    /// Updates to the motion from `before` to `now`, with a `margin` around facets relative to
+    /// their size. Returns whether any of these nodes' paths is near the path of a facet.
     pub(crate) fn update(
         &mut self,
         surface: &Surface,
@@ -108,23 +107,23 @@ impl Search {
             all.add(before.coordinates(node));
             all.add(now.coordinates(node));
         }
-        self.tree.as_ref().is_some_and(|tree| tree.bounds().meets(&all.grown(AHEAD * all.size())))
+        self.tree.as_ref().is_some_and(|tree| tree.bounds().meets(&all.grown(PATH_MARGIN * all.size())))
     }
 
-    /// Facets whose path comes near a node's path, ascending.
+    /// Facets whose path is near a node's path, ascending.
     pub(crate) fn near(&mut self, node: usize, before: Places, now: Places) -> &[usize] {
         let mut path = Bounds::EMPTY;
         path.add(before.coordinates(node));
         path.add(now.coordinates(node));
         if let Some(tree) = &self.tree {
-            tree.find_into(&path.grown(AHEAD * path.size()), &mut self.found);
+            tree.find_into(&path.grown(PATH_MARGIN * path.size()), &mut self.found);
         }
         &self.found
     }
 }
 
-/// How far around a node's path facets are looked for, as a share of the path's size.
-const AHEAD: f64 = 0.1;
+/// Margin around a node's path in the search for facets, relative to the path's size.
+const PATH_MARGIN: f64 = 0.1;
 
 #[cfg(test)]
 mod tests {

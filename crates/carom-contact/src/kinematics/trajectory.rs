@@ -1,21 +1,21 @@
 //! Crossing of trajectories, eqs. (6)–(8): y_N(θ) = y_S(ξ, θ), both moving on straight lines from θ
 //! = 0 to θ = 1.
 //!
-//! The facet is cut into chords; a chord's ends and the node move linearly, so "on the chord's
-//! line" is a quadratic in θ and every root is found. Each root starts a Newton iteration on the
-//! curve itself. The smallest admissible θ wins.
+//! The facet is divided into chords. A chord's ends and the node move linearly, so "on the chord's
+//! line" is a quadratic in θ, of which every root is found. Each root starts a Newton iteration on
+//! the curve itself. The smallest admissible θ is the crossing.
 
 use carom_algebra::Vector;
 
 use super::projection::Facet;
 use crate::places::Places;
 
-/// θ may lie outside [0, 1], and |ξ| above 1, by this much: a node exactly on the surface must not
-/// slip through.
+/// θ may lie outside [0, 1], and |ξ| above 1, by this much: a node exactly on the surface must be
+/// detected.
 const TOLERANCE: f64 = 1e-6;
 const CHORDS: usize = 6;
 
-/// Where a node's path meets a facet's.
+/// Intersection of a node's path with a facet's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Crossing {
     pub theta: f64,
@@ -70,8 +70,8 @@ fn linear_cross_roots(e0: Vector<2>, e1: Vector<2>, p0: Vector<2>, p1: Vector<2>
     [admissible(q / a), if q == 0.0 { None } else { admissible(c / q) }]
 }
 
-/// Newton on the curve from a chord's root. Only crossings inwards count: the node's velocity
-/// relative to the surface points against its normal.
+/// Newton on the curve from a chord's root. Only inward crossings count: the node's velocity
+/// relative to the surface is opposite to its normal.
 fn polished(facet: Facet, before: Places, now: Places, node: usize, start: Crossing) -> Option<Crossing> {
     let Crossing { mut theta, mut xi } = start;
     for _ in 0..20 {
@@ -112,7 +112,7 @@ mod tests {
 
     use super::*;
 
-    /// Facet along x walked so that its normal is +y, i.e. from right to left.
+    /// Facet along x traversed so that its normal is +y, i.e. from right to left.
     const FACET: Facet = Facet { shape: FacetShape::L4, nodes: &[1, 2, 3, 4], orientation: 1.0 };
 
     fn scene(from: [f64; 2], to: [f64; 2], bulge: f64) -> (Vec<f64>, Vec<f64>) {

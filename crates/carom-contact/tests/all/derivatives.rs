@@ -7,7 +7,7 @@ use carom_solid::FacetShape;
 
 const SHAPES: [FacetShape; 3] = [FacetShape::L2, FacetShape::L3, FacetShape::L4];
 
-/// A bent facet of 2, 3 or 4 nodes (1 …) and a node (0) near it, inside or outside.
+/// A curved facet of 2, 3 or 4 nodes (1 …) and a node (0) near it, inside or outside.
 fn scene(shape: FacetShape, height: f64) -> (NodeToFacet, Vec<f64>) {
     let mut y = vec![0.23, height, 1.0, 0.1, -1.1, -0.05];
     match shape {
@@ -41,7 +41,7 @@ fn force(contact: &NodeToFacet, y: &[f64], lambda: f64) -> Vec<f64> {
     full
 }
 
-/// λ ∂²g/∂y∂y over the same.
+/// λ ∂²g/∂y∂y over all dofs of the scene.
 fn stiffness(contact: &NodeToFacet, y: &[f64], lambda: f64) -> Vec<f64> {
     let (rows, pair) = measured(contact, y);
     let dofs: Vec<usize> = rows.row(0).entries().map(|(dof, _)| dof).collect();
@@ -100,7 +100,7 @@ fn the_gap_does_not_see_a_rigid_motion() {
     assert!((gap(&contact, &y) - gap(&contact, &moved)).abs() < 1e-13);
 }
 
-/// A chain of straight facets walked from right to left (body below): y = 0 for x > 0, rising to
+/// A chain of straight facets traversed from right to left (body below): y = 0 for x > 0, rising to
 /// the left by `kink`.
 fn chain(kink: f64) -> (Surface, Vec<f64>) {
     let y = vec![1.0, 0.0, 0.0, 0.0, -1.0, kink];
@@ -127,8 +127,7 @@ fn a_sliding_node_is_handed_over_once_and_not_back() {
 
 #[test]
 fn a_fast_node_is_caught_on_a_closed_thin_body() {
-    // A plate of thickness 0.01, all four sides one loop; the node flies right through it in one
-    // step.
+    // A plate of thickness 0.01, all four sides one loop; the node passes through it in one step.
     let plate = [-1.0, 0.0, 1.0, 0.0, 1.0, 0.01, -1.0, 0.01];
     let [y0, y1] = [[0.3, 2.0], [0.31, -2.0]].map(|node| [&plate[..], &node].concat());
     let loop_ = Surface::new(FacetShape::L2, &[vec![0, 1], vec![1, 2], vec![2, 3], vec![3, 0]], &[1.0; 4]);
@@ -150,8 +149,8 @@ fn a_node_behind_a_plate_that_never_crossed_its_upper_side_is_left_alone() {
     assert!(pairing.pairs.is_empty());
 }
 
-/// A node that round-off left inside crosses no surface any more; missing it once would be missing
-/// it for ever.
+/// A node inside by round-off no longer crosses a surface; if it were missed once, it would always
+/// be missed.
 #[test]
 fn a_node_inside_by_round_off_is_found_under_both_rules() {
     for detection in [Detection::ClosestPoint, Detection::Trajectory] {

@@ -1,4 +1,4 @@
-//! Contact from outside: one program, so that it is linked once.
+//! Contact through its interface, in one binary, so that it is linked once.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,16 +1,16 @@
-//! A body among the others: its nodes and dofs in the numbering of the model.
+//! A body instance: a body with its nodes and dofs in the numbering of the model.
 
 use carom_solid::Body;
 
 use super::formulas::NoValue;
 
-/// A body and its place among the global nodes.
+/// A body and its position among the global nodes.
 pub struct BodyInstance {
     /// Name in the case.
     pub name: String,
     /// Global number of its first node.
     pub first_node: usize,
-    /// Forces, masses and stresses at positions.
+    /// The body: forces, masses and stresses at given positions.
     pub body: Box<dyn Body>,
     /// Total mass.
     pub total_mass: f64,
@@ -45,7 +45,7 @@ impl BodyInstance {
         self.first_node..self.first_node + self.body.mesh().nodes.len()
     }
 
-    /// Its share of a vector over all nodes.
+    /// Its section of a vector over all nodes.
     pub fn of<'a>(&self, all: &'a [f64]) -> &'a [f64] {
         let (nodes, d) = (self.nodes(), self.body.mesh().dimension());
         &all[nodes.start * d..nodes.end * d]
@@ -60,7 +60,7 @@ impl BodyInstance {
     /// fᵃ += ∫φᵃ b dΩ₀ with b per reference volume, flat over all nodes.
     ///
     /// # Errors
-    /// The first place where b has no value.
+    /// The first point where b has no value.
     pub(super) fn add_body_force(
         &self,
         density: impl Fn(&[f64], &mut [f64]) -> Result<(), NoValue>,

@@ -3,8 +3,7 @@
 use carom_contact::{Interface, Kinematics};
 use carom_solid::FacetShape;
 
-/// A contact: where its surfaces are to each other, what its gaps are answered with, and what
-/// schemes are to do about it.
+/// A contact: relative position of its surfaces, contact law, and treatment by the schemes.
 #[allow(clippy::struct_excessive_bools)] // Each is a choice of the case, independent of the others.
 pub struct Contact {
     /// Name in the case.
@@ -15,21 +14,21 @@ pub struct Contact {
     pub interface: Box<dyn Interface>,
     /// Body of the primary side; `None` for a rigid primary.
     pub primary_part: Option<usize>,
-    /// Facets of the secondary side in global nodes: for consistent weights.
+    /// Facets of the secondary side in global nodes, for consistent weights.
     pub secondary_facets: Vec<Vec<usize>>,
     /// Their shape.
     pub secondary_shape: FacetShape,
-    /// Whether the predictor y + Δt v is kept out of the primary too.
+    /// Whether penetration by the predictor y + Δt v is prevented too.
     pub predictor: bool,
     /// Nodes of both sides, ascending.
     pub surface: Vec<usize>,
-    /// Whether its force is all taken at the end of the step, not averaged with the scheme's
+    /// Whether its force acts entirely at the end of the step, not averaged with the scheme's
     /// weights.
     pub at_the_end: bool,
-    /// Whether velocities and accelerations are projected where it begins.
+    /// Whether velocities and accelerations are projected at activation.
     pub projects: bool,
     /// Whether the active set may change before Newton's method has converged.
     pub within: bool,
-    /// Newton's e; 0 unless the scheme treats contact itself.
+    /// Coefficient of restitution e; 0 unless the scheme has its own contact law.
     pub restitution: f64,
 }

@@ -1,4 +1,4 @@
-//! Formulas of place and time: evaluated with their arguments, and refused with them where they
+//! Formulas of position and time: evaluated with their arguments, and reported with them if they
 //! have no value.
 
 use carom_formula::Formula;
@@ -7,15 +7,15 @@ use carom_formula::Formula;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{what} has no finite value at X = {place:?}, t = {time}: {formula} = {value}")]
 pub struct NoValue {
-    /// Whose formula.
+    /// The source of the formula.
     pub what: String,
     /// The formula as written.
     pub formula: String,
-    /// Reference place.
+    /// Reference position.
     pub place: Vec<f64>,
     /// Time.
     pub time: f64,
-    /// What came out.
+    /// The resulting value.
     pub value: f64,
 }
 
@@ -37,10 +37,10 @@ impl Arguments {
     }
 }
 
-/// Value of a formula of place and time.
+/// Value of a formula of position and time.
 ///
 /// # Errors
-/// It is not finite.
+/// If it is not finite.
 pub fn value(formula: &Formula, what: &str, place: &[f64], time: f64) -> Result<f64, NoValue> {
     let value = formula.value(Arguments::new(place, time).as_slice());
     finite(value, formula, what, place, time)

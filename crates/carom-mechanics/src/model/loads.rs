@@ -1,6 +1,6 @@
-//! Loads as nodal forces f_ext(y, t), gravity apart: dead tractions and body forces, known when the
-//! time is, and follower pressures, which turn with the side (`carom_solid::LoadedSide`). Where the
-//! motion is given, the load that makes it one is the only load.
+//! Loads as nodal forces f_ext(y, t) without gravity: dead tractions and body forces, which depend
+//! on time only, and follower pressures, which rotate with the side (`carom_solid::LoadedSide`). A
+//! manufactured motion adds its own load.
 
 use carom_formula::Formula;
 use carom_solid::LoadedSide;
@@ -18,19 +18,19 @@ pub struct Loads {
     tractions: Vec<Load<LoadedSide>>,
     pressures: Vec<Load<LoadedSide>>,
     body_forces: Vec<Load<usize>>,
-    /// The motion that was given, if one was.
+    /// The manufactured motion, if any.
     pub manufactured: Option<Manufactured>,
 }
 
-/// A load: where it acts, its components as formulas of place and time, its name in messages.
+/// A load: where it acts, its components as formulas of position and time, its label.
 pub struct Load<On> {
-    /// A side, or the place of a body.
+    /// A side, or the index of a body.
     pub on: On,
-    /// Components; of a pressure one.
+    /// Components; one for a pressure.
     pub value: Vec<Formula>,
     /// Name in messages.
     pub label: String,
-    /// Factor over time; none is 1.
+    /// Factor over time; none means 1.
     pub amplitude: Option<Amplitude>,
 }
 
@@ -39,7 +39,7 @@ impl<On> Load<On> {
         self.amplitude.as_ref().map_or(1.0, |amplitude| amplitude(time))
     }
 
-    /// The components at a place, times the factor.
+    /// The components at a point, times the factor.
     fn vector_into(&self, place: &[f64], time: f64, factor: f64, out: &mut [f64]) -> Result<(), NoValue> {
         for (out, formula) in out.iter_mut().zip(&self.value) {
             *out = factor * value(formula, &self.label, place, time)?;
@@ -48,7 +48,7 @@ impl<On> Load<On> {
     }
 }
 
-/// Loads at one time: what does not depend on the positions.
+/// Loads at one time, without their dependence on positions.
 #[derive(Clone, Debug, Default)]
 pub struct LoadsAt {
     /// Nodal forces of the dead loads, flat.
@@ -68,12 +68,12 @@ impl Loads {
         self.pressures.push(load);
     }
 
-    /// Adds a dead force per reference volume of a body, named by its place.
+    /// Adds a dead force per reference volume of a body, given by index.
     pub fn add_body_force(&mut self, load: Load<usize>) {
         self.body_forces.push(load);
     }
 
-    /// Whether there are none.
+    /// Whether there are no loads.
     pub fn is_empty(&self) -> bool {
         self.tractions.is_empty()
             && self.pressures.is_empty()
@@ -81,7 +81,7 @@ impl Loads {
             && self.manufactured.is_none()
     }
 
-    /// Whether some depend on the positions.
+    /// Whether any depend on the positions.
     pub fn follow_sides(&self) -> bool {
         !self.pressures.is_empty()
     }
@@ -135,7 +135,7 @@ impl Loads {
     }
 
     /// Calls `visit(nodes, tangent)` for every facet under pressure, tangent = ∂f_ext/∂y (`(n·D)²`,
-    /// row-major); without `at`, of zeros.
+    /// row-major); zero without `at`.
     pub(crate) fn each_facet_tangent(
         &self,
         dimension: usize,

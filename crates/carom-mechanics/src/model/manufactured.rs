@@ -1,15 +1,14 @@
-//! A motion given by formulas, and the load that makes it a solution: the method of manufactured
-//! solutions.
+//! A motion prescribed by formulas, and the load for which it is a solution: the method of
+//! manufactured solutions.
 //!
 //! ```text
 //! b = ρ₀ ÿ − Div P(∂y/∂X)          per reference volume; ÿ, ∂y/∂X and ∂²y/∂X² are the formulas' own derivatives
 //! error_l2 = √∫ |y_h − y|² dΩ₀,   error_h1 = √∫ |∂y_h/∂X − ∂y/∂X|² dΩ₀
 //! ```
 //!
-//! All nodes of the boundary are moved as the formulas say, and the bodies start with their
-//! positions and velocities. With cells of degree k the errors fall with the orders k + 1 and k (P.
-//! J. Roache, "Code verification by the method of manufactured solutions", J. Fluids Eng. 124,
-//! 2002).
+//! All boundary nodes follow the formulas, and the bodies start with their positions and
+//! velocities. With cells of degree k the errors converge with the orders k + 1 and k (P. J.
+//! Roache, "Code verification by the method of manufactured solutions", J. Fluids Eng. 124, 2002).
 
 use carom_formula::Formula;
 
@@ -23,20 +22,20 @@ pub struct Manufactured {
     y: Vec<Formula>,
 }
 
-/// y, H = ∂y/∂X − 1 and second derivatives at a place, flat.
-struct Bent {
+/// y, H = ∂y/∂X − 1 and second derivatives at a point, flat.
+struct Deformation {
     y: Vec<f64>,
     h: Vec<f64>,
     second: Vec<f64>,
 }
 
 impl Manufactured {
-    /// The motion of these components.
+    /// The motion with these components.
     pub fn new(y: Vec<Formula>) -> Self {
         Self { y }
     }
 
-    /// Position and velocity of a place.
+    /// Position and velocity at a point.
     ///
     /// # Errors
     /// A formula without a finite value or derivative there.
@@ -44,15 +43,15 @@ impl Manufactured {
         let mut motion = [Vec::new(), Vec::new()];
         for formula in &self.y {
             let along = formula.with_derivatives(Arguments::new(place, time).as_slice(), place.len());
-            for (value, kept) in along.into_iter().zip(&mut motion) {
-                kept.push(finite(value, formula, WHAT, place, time)?);
+            for (value, component) in along.into_iter().zip(&mut motion) {
+                component.push(finite(value, formula, WHAT, place, time)?);
             }
         }
         Ok(motion)
     }
 
-    fn bent(&self, place: &[f64], time: f64) -> Result<Bent, NoValue> {
-        let mut bent = Bent { y: Vec::new(), h: Vec::new(), second: Vec::new() };
+    fn deformation(&self, place: &[f64], time: f64) -> Result<Deformation, NoValue> {
+        let mut deformation = Deformation { y: Vec::new(), h: Vec::new(), second: Vec::new() };
         for (i, formula) in self.y.iter().enumerate() {
             let (value, mut gradient, second) =
                 formula.with_gradient(Arguments::new(place, time).as_slice(), place.len());
@@ -60,14 +59,14 @@ impl Manufactured {
                 finite(*number, formula, WHAT, place, time)?;
             }
             gradient[i] -= 1.0;
-            bent.y.push(value);
-            bent.h.extend(gradient);
-            bent.second.extend(second);
+            deformation.y.push(value);
+            deformation.h.extend(gradient);
+            deformation.second.extend(second);
         }
-        Ok(bent)
+        Ok(deformation)
     }
 
-    /// Force per reference volume at a place.
+    /// Force per reference volume at a point.
     fn load_into(
         &self,
         part: &BodyInstance,
@@ -75,7 +74,7 @@ impl Manufactured {
         time: f64,
         load: &mut [f64],
     ) -> Result<(), NoValue> {
-        let Bent { h, second, .. } = self.bent(place, time)?;
+        let Deformation { h, second, .. } = self.deformation(place, time)?;
         part.body.stress_divergence(&h, &second, load).map_err(|det_f| {
             let formula = self.y.iter().map(Formula::text).collect::<Vec<_>>().join(", ");
             let what = "the strain energy of [manufactured], of the determinant J,".to_owned();
@@ -92,7 +91,7 @@ impl Manufactured {
     /// force += ∫φᵃ b dΩ₀.
     ///
     /// # Errors
-    /// The first place where the load has no value.
+    /// The first point where the load has no value.
     pub(super) fn add_load(
         &self,
         parts: &[BodyInstance],
@@ -111,7 +110,7 @@ impl Manufactured {
         for part in parts {
             for cell in 0..part.body.mesh().cell_count() {
                 part.body.each_moved_point(cell, part.of(y), &mut |place, moved, h, volume| {
-                    let Ok(exact) = self.bent(place, time) else { return squares = [f64::NAN; 2] };
+                    let Ok(exact) = self.deformation(place, time) else { return squares = [f64::NAN; 2] };
                     squares[0] += volume * square(moved, &exact.y);
                     squares[1] += volume * square(h, &exact.h);
                 });

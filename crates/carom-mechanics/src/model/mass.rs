@@ -1,11 +1,11 @@
-//! Mass matrix M = ∫ρ₀ NᵀN dΩ₀ between nodes; the same for every direction.
+//! Mass matrix M = ∫ρ₀ NᵀN dΩ₀ between nodes; equal in every direction.
 
 use carom_algebra::Threads;
 use carom_solid::cell_lumped_mass;
 
 use super::body_instance::BodyInstance;
 
-/// Nodes whose products a thread computes at once.
+/// Nodes per block of a product.
 const BLOCK: usize = 2048;
 
 /// Symmetric matrix between nodes, compressed by rows, both triangles.
@@ -77,7 +77,7 @@ impl Mass {
             .zip(self.values[range].iter().copied())
     }
 
-    /// The same for change.
+    /// The same, mutable.
     pub(super) fn row_mut(&mut self, node: usize) -> impl Iterator<Item = (usize, &mut f64)> + '_ {
         let range = self.starts[node]..self.starts[node + 1];
         self.columns[range.clone()].iter().map(|&column| column as usize).zip(&mut self.values[range])
@@ -93,7 +93,7 @@ impl Mass {
         self.add_product(x, 1.0, 0.0, out);
     }
 
-    /// out = `factor` M x + `share` out over all dofs; a share of 0 overwrites whatever is there.
+    /// out = `factor` M x + `share` out over all dofs; a share of 0 overwrites any content.
     pub fn add_product(&self, x: &[f64], factor: f64, share: f64, out: &mut [f64]) {
         match self.directions {
             1 => self.multiply::<1>(x, factor, share, out),
@@ -103,7 +103,7 @@ impl Mass {
         }
     }
 
-    /// Lets these threads compute products.
+    /// Sets the threads that compute products.
     pub(crate) fn on(&mut self, threads: &Threads) {
         self.threads = threads.clone();
     }

@@ -1,4 +1,4 @@
-//! A model: bodies with their nodes numbered through, masses, loads, supports, contacts and probes.
+//! A model: bodies with consecutive node numbers, masses, loads, supports, contacts and probes.
 
 mod body_instance;
 mod contact;

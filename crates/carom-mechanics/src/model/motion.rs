@@ -1,4 +1,4 @@
-//! Supports that move: y = X + u(X, t) with v = u̇ and a = ü by the formula's own derivatives. The
+//! Moving supports: y = X + u(X, t) with v = u̇ and a = ü from the formula's own derivatives. The
 //! scheme's relations between d, v and a are not used for these dofs, so they cannot ring, and
 //! their inertia M a acts on their neighbours.
 
@@ -6,11 +6,11 @@ use carom_formula::Formula;
 
 use super::formulas::{Arguments, NoValue, finite};
 
-/// A dof that moves as a formula says.
+/// A prescribed dof.
 #[derive(Clone, Debug)]
 struct Moved {
     dof: usize,
-    /// Place in `formulas`.
+    /// Index into `formulas`.
     formula: usize,
     place: Vec<f64>,
 }
@@ -32,8 +32,8 @@ pub struct Prescribed {
 }
 
 impl Motions {
-    /// Displacements of dofs by formulas of place and time: formulas with their names in messages,
-    /// and each moved dof once, ascending, with the place of its formula and its reference
+    /// Prescribed displacements by formulas of position and time: formulas with their labels, and
+    /// each prescribed dof once, ascending, with the index of its formula and its reference
     /// position.
     pub fn new(
         formulas: Vec<(String, Formula)>,
@@ -43,12 +43,12 @@ impl Motions {
         Self { formulas, moved }
     }
 
-    /// Whether nothing moves.
+    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.moved.is_empty()
     }
 
-    /// Moved dofs, ascending.
+    /// Prescribed dofs, ascending.
     pub fn dofs(&self) -> impl Iterator<Item = usize> + '_ {
         self.moved.iter().map(|m| m.dof)
     }

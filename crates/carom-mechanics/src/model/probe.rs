@@ -1,16 +1,16 @@
-//! Points whose quantities become columns: interpolated in their cell; a stress at a node is the
-//! mean over its cells.
+//! Points whose quantities are recorded as columns, interpolated in their cell; a stress at a node
+//! is the mean over its cells.
 //!
-//! A state is accepted when J > 0 at every quadrature point; in a corner of a badly bent cell it
-//! may still be ≤ 0, and the law has no stress there. Such a cell is left out of the mean; where no
-//! cell is left the stress is NaN, and the log says when that begins. J itself is always the mean
-//! over all cells, of whatever sign.
+//! A state is accepted if J > 0 at every quadrature point. In a corner of a strongly distorted cell
+//! J may still be ≤ 0, where the law has no stress. Such a cell is excluded from the mean; without
+//! any cell the stress is NaN, and the log reports when that begins. J itself is always the mean
+//! over all cells, of either sign.
 
 use carom_solid::Body;
 
 use super::body_instance::BodyInstance;
 
-/// What can be recorded at a point; axes count from 0.
+/// Quantities of a probe; axes count from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Displacement along an axis.
@@ -32,17 +32,17 @@ pub enum Quantity {
 pub struct Probe {
     /// Name in the case.
     pub name: String,
-    /// Body, by its place.
+    /// Index of its body.
     pub part: usize,
-    /// Cells and reference coordinates that meet at the point.
+    /// Cells that contain the point, with its reference coordinates.
     pub places: Vec<(usize, Vec<f64>)>,
-    /// What to record.
+    /// Quantities to record.
     pub record: Vec<Quantity>,
 }
 
 impl Probe {
     /// The recorded quantities at positions, velocities and accelerations of all nodes, in order; a
-    /// stress is NaN where no cell at the point has one.
+    /// stress is NaN if no cell at the point has one.
     pub fn values(&self, parts: &[BodyInstance], reference: &[f64], motion: [&[f64]; 3], out: &mut Vec<f64>) {
         let (part, [y, v, a]) = (&parts[self.part], motion);
         let nodal = |field: &[f64], i: usize| {
@@ -59,7 +59,7 @@ impl Probe {
         }
     }
 
-    /// Whether the stresses it records, if any, exist at positions.
+    /// Whether the stresses it records, if any, exist at given positions.
     pub fn has_stress(&self, parts: &[BodyInstance], y: &[f64]) -> bool {
         let part = &parts[self.part];
         let y = part.of(y);
@@ -101,7 +101,7 @@ fn interpolated(body: &dyn Body, cell: usize, xi: &[f64], field: &[f64], i: usiz
     nodes.iter().zip(&shape).map(|(&n, s)| s * field[n * d + i]).sum()
 }
 
-/// √(3/2 s:s) with s the deviator.
+/// √(3/2 s:s) with the deviator s.
 pub fn von_mises(s: &[[f64; 3]; 3]) -> f64 {
     let mean = (s[0][0] + s[1][1] + s[2][2]) / 3.0;
     let mut square = 0.0;

@@ -1,24 +1,24 @@
-//! A mass matrix without mass on the nodes of contacts (H. B. Khenous, P. Laborde, Y. Renard, Eur.
-//! J. Mech. A/Solids 27 (2008) 918–932): the index of the constrained equations drops, the contact
-//! force depends continuously on time, and nothing rings.
+//! Mass redistribution: a mass matrix without mass on contact nodes (H. B. Khenous, P. Laborde, Y.
+//! Renard, Eur. J. Mech. A/Solids 27 (2008) 918–932). It lowers the index of the constrained
+//! equations; the contact force depends continuously on time and does not ring.
 //!
-//! Rows and columns of the light nodes are zeroed, M → M'. The others get δ on their diagonals, the
-//! smallest change relative to M_nn that keeps the mass, the centre and the second moments, and so
-//! the momenta and energies of every affine motion:
+//! Rows and columns of the light nodes are zeroed, M → M'. The others receive δ on their diagonals,
+//! the smallest change relative to M_nn that preserves the mass, the centre and the second moments,
+//! and hence the momenta and energies of every affine motion:
 //!
 //! ```text
 //! min Σ δ_n²/M_nn   with   Σ δ_n f(X_n) h(X_n) = fᵀM h − fᵀM'h   for all f, h ∈ {1, X, Y}
 //! ```
 //!
-//! or, nearest, every entry that was zeroed goes to the heavy node it belongs to, an entry between
-//! light nodes to their heavy neighbours: mass is kept, the centre is not.
+//! or, with `nearest`, every zeroed entry is moved to its heavy node, an entry between light nodes
+//! to their heavy neighbours: mass is preserved, the centre is not.
 
 use super::mass::Mass;
 
-/// Takes the mass of the light nodes of `nodes`, a body's, and gives it to the others.
+/// Moves the mass of the light nodes of `nodes`, a body's, to the others.
 ///
 /// # Errors
-/// In words, where the others cannot carry it.
+/// In words, if the others cannot carry it.
 pub fn redistribute(
     mass: &mut Mass,
     nodes: std::ops::Range<usize>,
@@ -34,7 +34,7 @@ pub fn redistribute(
     let away = |n: usize, i: usize| at(n, i) - center[i];
     let axes = nodes.clone().flat_map(|n| (0..dimension).map(move |i| (n, i)));
     let reach = axes.map(|(n, i)| away(n, i).abs()).fold(0.0, f64::max);
-    // 1, X, Y of a node, of order one.
+    // 1, X, Y at a node, of order one.
     let function = |n: usize, i: usize| if i == 0 { 1.0 } else { away(n, i - 1) / reach };
     let products: Vec<(usize, usize)> =
         (0..=dimension).flat_map(|i| (i..=dimension).map(move |j| (i, j))).collect();
@@ -98,7 +98,7 @@ fn least_change(
     }
     let largest = (0..size).map(|k| system[k][k]).fold(0.0, f64::max);
     for k in 0..size {
-        // Symmetric and positive: the diagonal will do as pivot.
+        // Symmetric and positive definite: no pivoting is needed.
         let pivot = system[k].clone();
         if pivot[k] <= 1e-12 * largest {
             return Err("too few nodes keep their mass to keep its centre and second moments".into());

@@ -1,22 +1,22 @@
-//! Rigid motions that supports leave to a body: where there is no inertia, only contact can hold
-//! them, and what holds nothing has no equilibrium.
+//! Rigid modes that supports leave free. Without inertia only contact can constrain them; otherwise
+//! there is no equilibrium.
 //!
-//! The rigid motions of a body are its translations and rotations about its middle, u = t + ω × (x
-//! − c)/size: one in dimension 1, three in the plane, six in space. Held dofs (supports) and active
-//! contacts (their gradients) are rows over these few unknowns; what is orthogonal to all rows is
-//! free.
+//! The rigid modes of a body are its translations and rotations about its centre, u = t + ω × (x −
+//! c)/size: one in dimension 1, three in the plane, six in space. Constrained dofs (supports) and
+//! active contacts (their gradients) are rows over these few unknowns; the null space of the rows
+//! is free.
 
 use carom_contact::Row;
 
 use super::body_instance::BodyInstance;
 
-/// Rows shorter than this (they are of order one) hold nothing.
+/// Norm (rows are of order one) below which a row constrains nothing.
 const SHORT: f64 = 1e-8;
 
-/// A rigid motion of a body that no support hinders.
+/// A rigid mode of a body that supports leave free.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// Place of the body.
+    /// Index of the body.
     pub part: usize,
     translation: [f64; 3],
     rotation: [f64; 3],
@@ -24,7 +24,7 @@ pub struct Mode {
     size: f64,
 }
 
-/// A body that nothing holds.
+/// An unconstrained body.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
     "body \"{body}\" is free to {motion}: supports do not hold it there, and no closed contact does. Hold it with a [[support]], press it with \
@@ -33,11 +33,11 @@ pub struct Mode {
 pub struct Unconstrained {
     /// Its name.
     pub body: String,
-    /// What it is free to do.
+    /// Its free motion.
     pub motion: &'static str,
 }
 
-/// Axes of the translations and of the rotations there are in a dimension.
+/// Axes of the translations and of the rotations in a dimension.
 fn axes(dimension: usize) -> (&'static [usize], &'static [usize]) {
     match dimension {
         1 => (&[0], &[]),
@@ -47,19 +47,19 @@ fn axes(dimension: usize) -> (&'static [usize], &'static [usize]) {
 }
 
 impl Mode {
-    /// All rigid motions of a body.
+    /// All rigid modes of a body.
     fn all(place: usize, part: &BodyInstance) -> Vec<Self> {
         let mesh = part.body.mesh();
         let mut centre = [0.0; 3];
         for i in 0..mesh.dimension() {
             centre[i] = mesh.nodes.iter().map(|x| x[i]).sum::<f64>() / mesh.nodes.len() as f64;
         }
-        let still =
+        let zero =
             Self { part: place, translation: [0.0; 3], rotation: [0.0; 3], centre, size: mesh.diameter() };
         let unit = |axis: usize| std::array::from_fn(|i| f64::from(u8::from(i == axis)));
         let (along, about) = axes(mesh.dimension());
-        let translations = along.iter().map(|&i| Self { translation: unit(i), ..still.clone() });
-        translations.chain(about.iter().map(|&i| Self { rotation: unit(i), ..still.clone() })).collect()
+        let translations = along.iter().map(|&i| Self { translation: unit(i), ..zero.clone() });
+        translations.chain(about.iter().map(|&i| Self { rotation: unit(i), ..zero.clone() })).collect()
     }
 
     /// Σ shares · modes, of one body.
@@ -70,14 +70,14 @@ impl Mode {
         Self { translation: sum(&|m| m.translation), rotation: sum(&|m| m.rotation), ..modes[0].clone() }
     }
 
-    /// Displacement of a place along an axis.
+    /// Displacement of a point along an axis.
     fn at(&self, place: &[f64], axis: usize) -> f64 {
         let arm = |i: usize| place.get(i).map_or(0.0, |x| (x - self.centre[i]) / self.size);
         let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
         self.translation[axis] + self.rotation[j] * arm(k) - self.rotation[k] * arm(j)
     }
 
-    /// Its name by the largest share.
+    /// Its name, from the largest share.
     pub fn motion(&self) -> &'static str {
         const NAMES: [&str; 4] = ["turn", "move along x", "move along y", "move along z"];
         let turn = self.rotation.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -87,24 +87,25 @@ impl Mode {
     }
 }
 
-/// Rigid motions that held dofs leave to the bodies.
+/// Rigid modes that constrained dofs leave to the bodies.
 pub fn free_motions(parts: &[BodyInstance], fixed: &[bool]) -> Vec<Mode> {
     let mut free = Vec::new();
     for (place, part) in parts.iter().enumerate() {
         let (mesh, modes) = (part.body.mesh(), Mode::all(place, part));
         let d = mesh.dimension();
-        let held = part.nodes().flat_map(|n| (0..d).map(move |i| (n, i))).filter(|(n, i)| fixed[n * d + i]);
+        let constrained =
+            part.nodes().flat_map(|n| (0..d).map(move |i| (n, i))).filter(|(n, i)| fixed[n * d + i]);
         let row = |(node, axis): (usize, usize)| {
             modes.iter().map(|m| m.at(&mesh.nodes[node - part.first_node], axis)).collect::<Vec<f64>>()
         };
         free.extend(
-            null_space(modes.len(), held.map(row)).iter().map(|shares| Mode::combined(&modes, shares)),
+            null_space(modes.len(), constrained.map(row)).iter().map(|shares| Mode::combined(&modes, shares)),
         );
     }
     free
 }
 
-/// A basis of what is orthogonal to all rows, of `size` entries each.
+/// A basis of the null space of all rows, of `size` entries each.
 fn null_space(size: usize, rows: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     // Orthonormal vectors, by Gram–Schmidt twice: first those that span the rows.
@@ -136,8 +137,8 @@ fn null_space(size: usize, rows: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>
     basis.split_off(spanned)
 }
 
-/// Refuses pressing contacts, by their rows at positions `y`, that leave a body free to move as its
-/// supports do.
+/// Checks that active contacts, by their rows at positions `y`, constrain the rigid modes left free
+/// by supports.
 ///
 /// # Errors
 /// The body and its motion.
@@ -159,8 +160,9 @@ pub(crate) fn check_held<'a>(
         };
         free.iter().map(along).collect()
     };
-    let Some(left) = null_space(free.len(), rows.map(row)).into_iter().next() else { return Ok(()) };
-    let largest = (0..left.len()).max_by(|a, b| left[*a].abs().total_cmp(&left[*b].abs())).unwrap_or(0);
+    let Some(remaining) = null_space(free.len(), rows.map(row)).into_iter().next() else { return Ok(()) };
+    let largest =
+        (0..remaining.len()).max_by(|a, b| remaining[*a].abs().total_cmp(&remaining[*b].abs())).unwrap_or(0);
     let mode = &free[largest];
     Err(Unconstrained { body: parts[mode.part].name.clone(), motion: mode.motion() })
 }

@@ -1,5 +1,5 @@
-//! Everything a step needs to know that does not change, as plain numbers. Every vector over nodes
-//! is flat, `dimension` components a node.
+//! The constant data of a simulation as plain numbers. Every vector over nodes is flat, with
+//! `dimension` components per node.
 
 use carom_algebra::Threads;
 use carom_solid::Inverted;
@@ -19,15 +19,15 @@ use crate::sums::dot;
 pub struct Support {
     /// Name in the case.
     pub name: String,
-    /// Global dofs it holds.
+    /// Global dofs that it constrains.
     pub dofs: Vec<usize>,
 }
 
-/// Everything a step needs to know that does not change.
+/// The constant data of a simulation.
 pub struct Model {
     /// Components of a position: 1 or 2.
     pub dimension: usize,
-    /// Bodies, nodes numbered through in this order.
+    /// Bodies; their nodes are numbered consecutively in this order.
     pub parts: Vec<BodyInstance>,
     /// Reference positions X, flat.
     pub reference: Vec<f64>,
@@ -35,23 +35,23 @@ pub struct Model {
     pub initial_position: Vec<f64>,
     /// Initial velocities, flat; zero where fixed.
     pub initial_velocity: Vec<f64>,
-    /// Whether a dof is held, fixed or moved.
+    /// Whether a dof is constrained: fixed or prescribed.
     pub fixed: Vec<bool>,
-    /// Dofs that are not held, ascending.
+    /// Unconstrained dofs, ascending.
     pub free: Vec<usize>,
-    /// Place of a dof among the free ones; `usize::MAX` where held.
+    /// Index of a dof among the free ones; `usize::MAX` if constrained.
     pub unknown: Vec<usize>,
     /// Mass matrix.
     pub mass: Mass,
-    /// Whether a dof has no mass.
+    /// Whether a dof is massless.
     pub massless: Vec<bool>,
     /// Gravity as nodal forces; constant, with potential −f·y.
     pub gravity: Vec<f64>,
     /// Loads on sides and in bodies.
     pub loads: Loads,
-    /// Supports that move.
+    /// Moving supports.
     pub motions: Motions,
-    /// Rigid motions that supports leave to bodies; only looked for where there is no inertia.
+    /// Rigid modes that supports leave free; only determined without inertia.
     pub unconstrained: Vec<Mode>,
     /// Contacts.
     pub contacts: Vec<Contact>,
@@ -61,35 +61,34 @@ pub struct Model {
     pub probes: Vec<Probe>,
     /// Length L that tolerances refer to: the largest body's diameter.
     pub scale: f64,
-    /// What computes; no result depends on how many there are.
+    /// Threads; no result depends on their number.
     pub threads: Threads,
 }
 
 impl Model {
-    /// Number of dofs, held ones included.
+    /// Number of dofs, including constrained ones.
     pub fn dofs(&self) -> usize {
         self.reference.len()
     }
 
-    /// The place of a dof among the unknowns, if it is one.
+    /// The index of a dof among the unknowns, if it is one.
     pub(crate) fn unknown(&self, dof: usize) -> Option<usize> {
         Some(self.unknown[dof]).filter(|&place| place != usize::MAX)
     }
 
-    /// Internal forces ∂U/∂y at positions `y`, overwriting `force`; the strain energy U is
-    /// returned.
+    /// Internal forces ∂U/∂y at positions `y`, overwriting `force`. Returns the strain energy U.
     ///
     /// # Errors
-    /// The body's name and the cell that is inverted.
+    /// The body's name and the inverted cell.
     pub fn internal_force(&self, y: &[f64], force: &mut [f64]) -> Result<f64, (String, Inverted)> {
         self.add_cells(force, |part, cell, local| part.body.cell_force(cell, part.of(y), local))
     }
 
-    /// Discrete gradient of the strain energy between positions, overwriting `force`; U(now) is
-    /// returned.
+    /// Discrete gradient of the strain energy between positions, overwriting `force`. Returns
+    /// U(now).
     ///
     /// # Errors
-    /// The body's name and the cell that is inverted.
+    /// The body's name and the inverted cell.
     pub fn internal_between(
         &self,
         before: &[f64],
@@ -101,11 +100,11 @@ impl Model {
         })
     }
 
-    /// ∂f_int/∂y · `change` at `y`, overwriting `product`; with `before`, of the discrete gradient
-    /// from there.
+    /// ∂f_int/∂y · `change` at `y`, overwriting `product`; with `before`, that of the discrete
+    /// gradient from there.
     ///
     /// # Errors
-    /// The body's name and the cell that is inverted.
+    /// The body's name and the inverted cell.
     pub fn internal_product(
         &self,
         before: Option<&[f64]>,
@@ -142,7 +141,7 @@ impl Model {
         Ok(strain)
     }
 
-    /// Loads at a time and positions `y`, overwriting `force`; gravity is not among them.
+    /// Loads at a time and positions `y`, overwriting `force`; without gravity.
     ///
     /// # Errors
     /// A formula without a finite value.
@@ -160,7 +159,7 @@ impl Model {
         Ok(())
     }
 
-    /// The same model, computed by this many threads.
+    /// The same model, using this many threads.
     #[must_use]
     pub fn on_threads(mut self, count: usize) -> Self {
         self.threads = Threads::new(count);
@@ -175,7 +174,7 @@ impl Model {
         0.5 * dot(v, &momentum)
     }
 
-    /// Potential of gravity, −f·(y − X): zero in the reference position.
+    /// Potential of gravity, −f·(y − X): zero in the reference configuration.
     pub fn potential(&self, y: &[f64]) -> f64 {
         -(0..y.len()).map(|i| self.gravity[i] * (y[i] - self.reference[i])).sum::<f64>()
     }

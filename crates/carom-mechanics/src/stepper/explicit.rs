@@ -6,22 +6,22 @@
 //! 0 ≤ P_n ⊥ g(ȳ) ≥ 0,   ȳ = (y_{n+1} + e y_{n−1})/(1 + e),   central-difference: e = 0
 //! ```
 //!
-//! P_n keeps y_{n+1} out, and is the force at t_n: it acts along G_n = ∇g(y_n), as in SHAKE
-//! (Ryckaert, Ciccotti, Berendsen 1977), so that force and moment balance at t_n. With g
-//! linearised, P solves a small complementarity problem with G M⁻¹Gᵀ; the linearisation is repeated
-//! until every gap agrees to 1e-12 L.
+//! P_n prevents penetration at y_{n+1}, and is the force at t_n: it acts along G_n = ∇g(y_n), as in
+//! SHAKE (Ryckaert, Ciccotti, Berendsen 1977), so that force and moment balance at t_n. With
+//! linearised g, P solves a small complementarity problem with G M⁻¹Gᵀ; the linearisation is
+//! repeated until every gap agrees to 1e-12 L.
 //!
-//! The state at t_n therefore looks ahead: it holds v_{n+½} and with it P_n, v_n = (v_{n−½} +
-//! v_{n+½})/2 = (y_{n+1} − y_{n−1})/2Δt, and a_n, and M a_n + f_int − f_ext − G_nᵀP_n = 0 in every
-//! row of the record. Works and the impulse of contact are those of the trapezoidal rule, which is
-//! exact for momentum and leaves, with R = M a,
+//! The state at t_n therefore includes v_{n+½} and with it P_n, v_n = (v_{n−½} + v_{n+½})/2 =
+//! (y_{n+1} − y_{n−1})/2Δt, and a_n; M a_n + f_int − f_ext − G_nᵀP_n = 0 in every row of the
+//! record. Works and the impulse of contact follow the trapezoidal rule, which is exact for
+//! momentum and gives, with R = M a,
 //!
 //! ```text
 //! Δ dissipation = Δy·½(f_int,n + f_int,n+1) − ΔU − Δt²/8 Δ(a·M a)
 //! ```
 //!
-//! The first step, and one of another size, begins anew: v_{n−½} := v_n − Δt/2 M⁻¹f_n, and a
-//! contact force at t_n then acts over a whole step.
+//! The first step, and one of another size, starts with v_{n−½} := v_n − Δt/2 M⁻¹f_n; a contact
+//! force at t_n then acts over a whole step.
 
 use carom_algebra::complementarity;
 use carom_contact::{Pairing, Rows};
@@ -39,14 +39,14 @@ use crate::state::State;
 use crate::timings::timed;
 use crate::workspace::Workspace;
 
-/// Linearisations of the gaps in a step before it is rejected; two to five are usual.
+/// Linearisations of the gaps in a step before it is rejected; two to five are typical.
 const ROUNDS: u32 = 60;
 
 /// The explicit stepper.
 pub struct Explicit {
     /// Mass per dof.
     mass: Vec<f64>,
-    /// 1/m per dof; zero where held.
+    /// 1/m per dof; zero if constrained.
     inverse_mass: Vec<f64>,
 }
 
@@ -54,11 +54,11 @@ impl Explicit {
     /// A stepper for a model with lumped masses.
     pub fn new(model: &Model) -> Self {
         let mass = lumped(model);
-        let inverse = |(mass, held): (&f64, &bool)| if *held { 0.0 } else { mass.recip() };
+        let inverse = |(mass, constrained): (&f64, &bool)| if *constrained { 0.0 } else { mass.recip() };
         Self { inverse_mass: mass.iter().zip(&model.fixed).map(inverse).collect(), mass }
     }
 
-    /// Kinetic energy ½ Σ m v², and the largest energy so far.
+    /// Updates the kinetic energy ½ Σ m v², and the largest energy so far.
     fn book_kinetic(&self, state: &mut State) {
         state.ledger.kinetic = 0.5 * self.mass.iter().zip(&state.v).map(|(m, v)| m * v * v).sum::<f64>();
         state.ledger.largest = state.ledger.largest.max(state.ledger.kinetic + state.ledger.strain);
@@ -91,13 +91,13 @@ impl Stepper for Explicit {
                 .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
         model.loads_into(to, &next.y, &mut work.explicit.loads, &mut next.f_external)?;
         next.time = to;
-        self.look_ahead(model, &mut next, &start.half_step.velocity, dt, work, &mut report)?;
+        self.advance_half_step(model, &mut next, &start.half_step.velocity, dt, work, &mut report)?;
         self.book(model, start, &mut next, dt);
 
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
-        // Positions were made admissible when they were looked ahead at; a node handed over since
-        // may be behind its new facet by a share of what it slid.
+        // Positions were admissible when they were predicted; a node handed over since may be
+        // behind its new facet by a fraction of its sliding distance.
         let bound = depth(model, start) + approach(model, &start.half_step.velocity, dt);
         let deepest = depth(model, &next);
         if let Some(state) = begun {
@@ -113,14 +113,14 @@ impl Explicit {
         let ledger = &mut next.ledger;
         if !model.loads.is_empty() {
             for (i, (before, now)) in start.f_external.iter().zip(&next.f_external).enumerate() {
-                // v_n is a mean of half steps: of M v·v/2 a load has made Δt²/8 f·M⁻¹f before its
-                // work is booked.
+                // v_n is a mean of half steps: a load has contributed Δt²/8 f·M⁻¹f to M v·v/2
+                // before its work is recorded.
                 ledger.open += 0.125 * dt * dt * self.inverse_mass[i] * (now * now - before * before);
                 ledger.external_work += dt * start.half_step.velocity[i] * 0.5 * (before + now);
             }
         }
-        let touching = |state: &State| state.pairs.iter().flatten().any(|pair| pair.active);
-        if touching(start) || touching(next) {
+        let in_contact = |state: &State| state.pairs.iter().flatten().any(|pair| pair.active);
+        if in_contact(start) || in_contact(next) {
             for (v, (before, now)) in
                 start.half_step.velocity.iter().zip(start.f_contact.iter().zip(&next.f_contact))
             {
@@ -136,7 +136,7 @@ impl Explicit {
         self.book_kinetic(next);
     }
 
-    /// Makes `state` look ahead by a step of this size, from its positions and velocities alone.
+    /// Initialises the half-step velocity for a step of this size, from positions and velocities.
     fn begin(
         &self,
         model: &Model,
@@ -149,12 +149,12 @@ impl Explicit {
             |i: usize| self.inverse_mass[i] * (model.gravity[i] + state.f_external[i] - state.f_internal[i]);
         let before: Vec<f64> = (0..state.v.len()).map(|i| state.v[i] - 0.5 * dt * free(i)).collect();
         let (velocity, kinetic) = (state.v.clone(), state.ledger.kinetic);
-        self.look_ahead(model, state, &before, dt, work, report)?;
+        self.advance_half_step(model, state, &before, dt, work, report)?;
         if state.pairs.iter().flatten().all(|p| !p.active) {
-            // Without contact v_n is what it was, to the last bit.
+            // Without contact v_n remains bitwise unchanged.
             state.v = velocity;
         }
-        // Half of the contact force's step lies before t_n: a jump there.
+        // Half of the step of the contact force precedes t_n: a jump there.
         self.book_kinetic(state);
         report.projection = state.ledger.kinetic - kinetic;
         state.ledger.contact_work += report.projection;
@@ -166,8 +166,8 @@ impl Explicit {
         Ok(())
     }
 
-    /// From y_n and f_int,n in `state` and v_{n−½}: contact forces, a_n, v_n and v_{n+½}.
-    fn look_ahead(
+    /// Computes contact forces, a_n, v_n and v_{n+½} from y_n and f_int,n in `state` and v_{n−½}.
+    fn advance_half_step(
         &self,
         model: &Model,
         state: &mut State,
@@ -180,9 +180,11 @@ impl Explicit {
             state.a[i] =
                 self.inverse_mass[i] * (model.gravity[i] + state.f_external[i] - state.f_internal[i]);
         }
-        let mut ahead = std::mem::take(&mut state.half_step.velocity);
+        let mut velocity = std::mem::take(&mut state.half_step.velocity);
         let Workspace { explicit: scratch, timings, .. } = work;
-        timed(&mut timings.contact, || self.contact(model, state, before, dt, &mut ahead, scratch, report))?;
+        timed(&mut timings.contact, || {
+            self.contact(model, state, before, dt, &mut velocity, scratch, report)
+        })?;
 
         state.take_pairs(&scratch.pairings);
         state.f_contact.fill(0.0);
@@ -194,7 +196,7 @@ impl Explicit {
             state.v[i] = before[i] + 0.5 * dt * state.a[i];
         }
         book_contact_forces(model, state);
-        (state.half_step.velocity, state.half_step.dt) = (ahead, dt);
+        (state.half_step.velocity, state.half_step.dt) = (velocity, dt);
         Ok(())
     }
 
@@ -207,7 +209,7 @@ impl Explicit {
         state: &State,
         before: &[f64],
         dt: f64,
-        ahead: &mut Vec<f64>,
+        velocity: &mut Vec<f64>,
         scratch: &mut Scratch,
         report: &mut StepReport,
     ) -> Result<(), Rejected> {
@@ -218,19 +220,19 @@ impl Explicit {
         carry_into(model, state, Pairing::near, pairings);
         let mut row = Rows::new(model.dimension);
         at.resize(free.len(), 0.0);
-        ahead.clone_from(free);
+        velocity.clone_from(free);
         for round in 0..=ROUNDS {
-            place(state, before, dt, 0.0, ahead, at);
+            place(state, before, dt, 0.0, velocity, at);
             let changed = search(model, &state.y, at, pairings, &mut report.events);
             measure_into(model, &state.y, pairings, rows)?;
-            // Gaps where the law looks, in the place of those at y_n; a pair that is wrong joins
-            // the working set and stays.
+            // Gaps at the positions of the law replace those at y_n; a violated pair joins the
+            // working set and stays.
             let mut worst = 0.0_f64;
             for (k, contact) in model.contacts.iter().enumerate() {
                 if pairings[k].pairs.is_empty() {
                     continue;
                 }
-                place(state, before, dt, contact.restitution, ahead, at);
+                place(state, before, dt, contact.restitution, velocity, at);
                 for (p, pair) in pairings[k].pairs.iter_mut().enumerate() {
                     let gap = rows[k].gap_mut(p);
                     if gap.is_finite() {
@@ -261,14 +263,14 @@ impl Explicit {
                 rows[k].row(p).add_to(*force, at);
             }
             for i in 0..free.len() {
-                ahead[i] = free[i] + dt * self.inverse_mass[i] * at[i];
+                velocity[i] = free[i] + dt * self.inverse_mass[i] * at[i];
             }
         }
         for (contact, pairing) in model.contacts.iter().zip(pairings) {
             for pair in &mut pairing.pairs {
                 pair.active = pair.lambda < 0.0;
                 if pair.active {
-                    // The contact point of the record is that of the force: at y_n.
+                    // The recorded contact point is that of the force: at y_n.
                     gap_at(contact, pair, &state.y, &mut row);
                 }
             }
@@ -276,7 +278,7 @@ impl Explicit {
         Ok(())
     }
 
-    /// G M⁻¹Gᵀ over the rows, and what it has to make of the linearised gaps: (1 + e) g/Δt² − G
+    /// G M⁻¹Gᵀ over the rows, and the right-hand side from the linearised gaps: (1 + e) g/Δt² − G
     /// M⁻¹Gᵀ P.
     fn problem(
         &self,
@@ -310,9 +312,9 @@ impl Explicit {
     }
 }
 
-/// ȳ = (y_{n+1} + e y_{n−1})/(1 + e), where a law with restitution e looks.
-fn place(state: &State, before: &[f64], dt: f64, e: f64, ahead: &[f64], at: &mut [f64]) {
+/// ȳ = (y_{n+1} + e y_{n−1})/(1 + e), where a law with restitution e evaluates gaps.
+fn place(state: &State, before: &[f64], dt: f64, e: f64, velocity: &[f64], at: &mut [f64]) {
     for i in 0..at.len() {
-        at[i] = state.y[i] + dt * (ahead[i] - e * before[i]) / (1.0 + e);
+        at[i] = state.y[i] + dt * (velocity[i] - e * before[i]) / (1.0 + e);
     }
 }

@@ -1,5 +1,5 @@
-//! Every kernel that is a list of implicit stages: guess, solve, account, and where contact begins
-//! project.
+//! Kernels that are lists of implicit stages: guess, solve, record, and project at activation of
+//! contact.
 
 use carom_contact::{Pairing, Rows};
 use carom_time::{Before, Kernel, Memory, Stage, Weights};
@@ -24,7 +24,7 @@ pub struct Implicit {
 }
 
 impl Implicit {
-    /// A stepper of a kernel.
+    /// A stepper for a kernel.
     pub fn new(kernel: Box<dyn Kernel>, settings: Settings) -> Self {
         Self { kernel, settings }
     }
@@ -91,7 +91,7 @@ impl Stepper for Implicit {
         next.y.clone_from(&solved.y);
         for (i, massless) in model.massless.iter().enumerate() {
             if *massless && !equations.stage.is_static() {
-                // Without inertia there is nothing to integrate: the velocity is the mean one, the
+                // Without inertia there is no integration: the velocity is the mean one, the
                 // acceleration zero.
                 (next.v[i], next.a[i]) = (solved.at.increment[i] / dt, 0.0);
             }
@@ -110,8 +110,8 @@ impl Stepper for Implicit {
         averaged_contact_into(model, &mut next, &solved.rows);
         ledger::account(&equations, &solved, &mut next, strain, dt, &means);
         if let Some(shift) = &shift {
-            // Positions moved by the predictor's contact, against the forces of the step: M (v −
-            // v_s)/Δt is their sum.
+            // Work on positions shifted by the predictor's contact: the forces of the step sum to M
+            // (v − v_s)/Δt.
             let change: Vec<f64> = next.v.iter().zip(&state.v).map(|(v, old)| (v - old) / dt).collect();
             let mut forces = vec![0.0; model.dofs()];
             model.mass.multiply_into(&change, &mut forces);
@@ -121,7 +121,7 @@ impl Stepper for Implicit {
             model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.acts_between())
         {
             debug_assert_eq!(next.pairs[k].len(), solved.rows[k].len(), "contact {}", contact.name);
-            // The next step goes on from the gap that was counted.
+            // The next step continues from the accumulated gap.
             let gaps = solved.rows[k].iter().map(|row| Some(row.gap));
             next.pairs[k].iter_mut().zip(gaps).for_each(|(pair, gap)| pair.start = gap);
         }
@@ -144,15 +144,15 @@ impl Stepper for Implicit {
 
 impl Implicit {
     /// The law "predictor" (P. Deuflhard, R. Krause, S. Ertel, Int. J. Numer. Meth. Engng 73 (2008)
-    /// 1274–1290): in place of y_s + Δt v_s in Newmark's formula stands the nearest point, in the
-    /// mass, without penetration,
+    /// 1274–1290): y_s + Δt v_s in Newmark's formula is replaced by the nearest admissible point in
+    /// the mass norm,
     ///
     /// ```text
     /// min ½ ‖q − (y_s + Δt v_s)‖²_M   with   g(q) ≥ 0
     /// ```
     ///
-    /// and velocities do not see the difference. It is solved as a stage of its own; q − (y_s + Δt
-    /// v_s) is returned, none where nothing would penetrate.
+    /// and velocities are not affected by the difference. It is solved as a separate stage. Returns
+    /// q − (y_s + Δt v_s), or none if nothing would penetrate.
     fn predictor_shift(
         &self,
         model: &Model,
@@ -171,7 +171,7 @@ impl Implicit {
         let mut equations = Equations::new(model, state, stage, to)?;
         let mut guess = Iterate::at_start(state);
         guess.predict(&state.v, &vec![0.0; model.dofs()], dt);
-        // A support goes where it is moved to, whatever the contact.
+        // A support takes its prescribed position regardless of contact.
         equations.arrive(&mut guess.increment);
         let free = guess.increment.clone();
         equations.stage.acceleration.at_start = free.iter().map(|d| -d / (dt * dt)).collect();
@@ -201,7 +201,7 @@ impl Implicit {
     }
 }
 
-/// Velocities and accelerations of the supports that move are their own, not the scheme's.
+/// Moving supports have their own velocities and accelerations, not the scheme's.
 fn take_motions(equations: &Equations, next: &mut State) {
     for moved in equations.motions.iter().filter(|_| !equations.stage.is_static()) {
         [next.v[moved.dof], next.a[moved.dof]] = [moved.motion[1], moved.motion[2]];

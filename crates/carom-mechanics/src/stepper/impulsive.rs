@@ -6,16 +6,16 @@
 //! 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0,   v_{n+1} = v(d) + c M⁻¹GᵀP
 //! ```
 //!
-//! G and the gaps that decide who takes part are those at the predicted positions. In each
-//! iteration, with K the tangent of the balance at P = 0,
+//! G and the gaps that select the contacts are those at the predicted positions. In each iteration,
+//! with K the tangent of the balance at P = 0,
 //!
 //! ```text
 //! d := d − K⁻¹r₀ + s K⁻¹GᵀP,    G v_{n+1} = b + D P,    D = v' s G K⁻¹Gᵀ + c G M⁻¹Gᵀ
 //! ```
 //!
 //! so that P solves a small complementarity problem, exactly, and Newton's method converges as
-//! without contact. D is symmetric and positive definite. Velocities are held, not positions: a
-//! node penetrates by up to Δt times its speed when it arrives, and that is recorded as it is.
+//! without contact. D is symmetric and positive definite. Velocities are constrained, not
+//! positions: an arriving node penetrates by up to Δt times its speed, which is recorded as it is.
 
 use carom_algebra::complementarity;
 use carom_contact::Pairing;
@@ -36,33 +36,33 @@ use crate::sums::max_abs;
 use crate::timings::timed;
 use crate::workspace::Workspace;
 
-/// A predicted gap above minus this fraction of L is open: at a tie round-off must not decide.
+/// A predicted gap above minus this fraction of L is open, so that round-off does not decide ties.
 const TIE: f64 = 1e-10;
-/// Halvings of a Newton step that inverts a cell.
-const HALVINGS: usize = 8;
+/// Bisections of a Newton step that inverts a cell.
+const BISECTIONS: usize = 8;
 
-/// The stepper of impulses.
+/// The stepper of impulse schemes.
 pub struct Impulsive {
     scheme: Box<dyn Impulse>,
     settings: Settings,
 }
 
-/// The contacts that take part in a step, and their impulses.
+/// The contacts of a step, and their impulses.
 struct Impulses {
     /// Rows at the predicted positions.
     rows: Constraints,
-    /// e of each.
+    /// e of each contact.
     restitution: Vec<f64>,
     /// G v_n.
     before: Vec<f64>,
     /// P ≥ 0.
     values: Vec<f64>,
-    /// M⁻¹Gᵀ, where the scheme needs it.
+    /// M⁻¹Gᵀ, if the scheme needs it.
     released: Vec<Vec<f64>>,
 }
 
 impl Impulsive {
-    /// A stepper of a scheme.
+    /// A stepper for a scheme.
     pub fn new(scheme: Box<dyn Impulse>, settings: Settings) -> Self {
         Self { scheme, settings }
     }
@@ -137,7 +137,7 @@ impl Stepper for Impulsive {
         for (&(k, p), impulse) in impulses.rows.places.iter().zip(&impulses.values) {
             pairings[k].pairs[p].lambda = -impulse / dt;
         }
-        // Nodes that came in later in the step than was looked at are watched from now on.
+        // Nodes that arrived later in the step than the prediction are tracked from now on.
         measure_into(model, &next.y, &mut pairings, &mut Vec::new())?;
         search(model, &state.y, &next.y, &mut pairings, &mut report.events);
         next.take_pairs(&pairings);
@@ -157,7 +157,7 @@ impl Stepper for Impulsive {
 }
 
 impl Impulsive {
-    /// Newton's method on the increment and the impulses; `iterations` are added to.
+    /// Newton's method on the increment and the impulses; adds to `iterations`.
     fn solve(
         &self,
         equations: &Equations,
@@ -217,7 +217,7 @@ impl Impulsive {
             step = max_abs(&correction);
             let old = impulses.values.clone();
             let mut length = 1.0;
-            for halving in 0..=HALVINGS {
+            for bisection in 0..=BISECTIONS {
                 let moved = now.at.increment.iter().zip(&correction).map(|(d, c)| d + length * c).collect();
                 for (value, (old, new)) in impulses.values.iter_mut().zip(old.iter().zip(&target)) {
                     *value = old + length * (new - old);
@@ -227,7 +227,7 @@ impl Impulsive {
                         work.spare.put(std::mem::replace(&mut now, next));
                         break;
                     }
-                    Err(rejected) if halving == HALVINGS => return Err(rejected),
+                    Err(rejected) if bisection == BISECTIONS => return Err(rejected),
                     Err(_) => length *= 0.5,
                 }
             }
@@ -236,7 +236,7 @@ impl Impulsive {
     }
 }
 
-/// P of the linearised step: b and D from the answers to −r₀ and to each row.
+/// P of the linearised step: b and D from the solutions for −r₀ and for each row.
 fn impulses_into(
     equations: &Equations,
     shares: ImpulseShares,
@@ -263,7 +263,7 @@ fn impulses_into(
     Ok(complementarity(&matrix, &right, values)?)
 }
 
-/// Forces and residual at an increment, the impulses as contact forces.
+/// Forces and residual at an increment, with the impulses as contact forces.
 fn evaluate(
     equations: &Equations,
     shares: ImpulseShares,
@@ -296,7 +296,7 @@ impl Impulses {
         }
     }
 
-    /// Those of the pairs whose gap is closed at the predicted positions.
+    /// The contacts whose gap is closed at the predicted positions.
     fn closed(
         model: &Model,
         state: &State,
@@ -345,7 +345,7 @@ impl Impulses {
         }
     }
 
-    /// Impulses into the ledger and, as the forces P/Δt, into those of the contacts: work ½(Gv⁻ +
+    /// Adds impulses to the ledger and, as forces P/Δt, to those of the contacts: work ½(Gv⁻ +
     /// Gv⁺)·P.
     fn book(&self, dt: f64, next: &mut State) {
         next.contact_forces.fill([0.0; 3]);

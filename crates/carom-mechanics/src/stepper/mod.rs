@@ -1,4 +1,4 @@
-//! From the state at one time to the state at the next.
+//! Time steppers: from the state at one time to the state at the next.
 
 mod explicit;
 mod implicit;
@@ -18,7 +18,7 @@ use crate::rejected::Rejected;
 use crate::state::State;
 use crate::workspace::Workspace;
 
-/// What happened in a step, for the record.
+/// Events of a step, for the record.
 #[derive(Clone, Debug, Default)]
 pub struct StepReport {
     /// Newton iterations.
@@ -27,13 +27,13 @@ pub struct StepReport {
     pub activations: Vec<(usize, usize)>,
     /// Secondary nodes that left contact.
     pub releases: Vec<(usize, usize)>,
-    /// Hand-overs and slides off the end, with the place of their contact.
+    /// Hand-overs and slides off the end, with the index of their contact.
     pub events: Vec<(usize, PairEvent)>,
-    /// Jump of kinetic energy where contact began.
+    /// Jump of kinetic energy at activation.
     pub projection: f64,
 }
 
-/// A step that was accepted: finite, converged, not penetrating. Only a stepper makes one.
+/// An accepted step: finite, converged, without penetration. Only a stepper creates one.
 #[derive(Debug)]
 pub struct Accepted {
     state: State,
@@ -41,7 +41,7 @@ pub struct Accepted {
 }
 
 impl Accepted {
-    /// Checks the last things a result must hold to.
+    /// Makes the final checks of a result.
     fn new(state: State, report: StepReport) -> Result<Self, Rejected> {
         for (what, values) in
             [("a position", &state.y), ("a velocity", &state.v), ("an acceleration", &state.a)]
@@ -56,12 +56,12 @@ impl Accepted {
         Ok(Self { state, report })
     }
 
-    /// As [`Self::new`], for laws that let nodes penetrate: by no more than `bound`.
+    /// As [`Self::new`], for laws that allow penetration by up to `bound`.
     fn within(state: State, report: StepReport, depth: f64, bound: f64) -> Result<Self, Rejected> {
         if depth > bound { Err(Rejected::Deep { depth, bound }) } else { Self::new(state, report) }
     }
 
-    /// The state at the end of the step and what happened on the way.
+    /// The state at the end of the step and its events.
     pub fn into_parts(self) -> (State, StepReport) {
         (self.state, self.report)
     }
@@ -69,8 +69,8 @@ impl Accepted {
 
 /// A time stepper.
 pub trait Stepper: Send + Sync {
-    /// One step of size `dt` from `state` to the time `to`. The grid index of the result is the
-    /// caller's to set.
+    /// One step of size `dt` from `state` to the time `to`. The caller sets the grid index of the
+    /// result.
     fn step(
         &self,
         model: &Model,

@@ -9,7 +9,7 @@ use crate::model::LoadsAt;
 pub(crate) struct Scratch {
     /// v_{n+½} without contact.
     pub free: Vec<f64>,
-    /// Positions that are looked at, and forces of contact.
+    /// Positions to be evaluated, and forces of contact.
     pub at: Vec<f64>,
     pub pairings: Vec<Pairing>,
     pub rows: Vec<Rows>,

@@ -1,6 +1,6 @@
-//! Pairs of the steppers that treat contact themselves: found along the step, and kept from step to
-//! step while they touch or penetrate. The search takes a node behind a facet at the start of a
-//! step for one that came from elsewhere, so a law that lets nodes penetrate must not forget them.
+//! Pairs of the steppers with their own contact law: found along the step, and kept from step to
+//! step while in contact or penetrating. The search ignores a node behind a facet at the start of a
+//! step, so pairs of a law that allows penetration must persist.
 
 use carom_contact::{Pair, Pairing, Rows};
 
@@ -8,8 +8,8 @@ use crate::model::{Contact, Model};
 use crate::rejected::Rejected;
 use crate::state::State;
 
-/// The pairs a step begins with: those that touched or are behind, released and without multiplier;
-/// `watch` says how far others are looked for.
+/// The initial pairs of a step: those in contact or penetrating, deactivated and without
+/// multiplier; `watch` sets the search margin for others.
 pub(super) fn carry_into(
     model: &Model,
     state: &State,
@@ -21,26 +21,26 @@ pub(super) fn carry_into(
     for ((contact, pairs), pairing) in model.contacts.iter().zip(&state.pairs).zip(pairings) {
         pairing.pairs.clone_from(pairs);
         pairing.pairs.retain_mut(|pair| {
-            let kept = pair.active || gap_at(contact, pair, &state.y, &mut row) < 0.0;
+            let carried = pair.active || gap_at(contact, pair, &state.y, &mut row) < 0.0;
             (pair.active, pair.lambda) = (false, 0.0);
-            kept
+            carried
         });
         *pairing = watch(std::mem::take(&mut pairing.pairs));
     }
 }
 
-/// Gap of a pair at positions `y`, its contact point moved there; infinite where there is no unique
-/// closest point, which is far away. `row` is overwritten.
+/// Gap of a pair at positions `y`, updating its contact point; infinite without a unique closest
+/// point, for a remote pair. `row` is overwritten.
 pub(super) fn gap_at(contact: &Contact, pair: &mut Pair, y: &[f64], row: &mut Rows) -> f64 {
     row.clear();
     let found = contact.kinematics.measure(pair, y, row);
     found.map_or(f64::INFINITY, |()| row.row(0).gap)
 }
 
-/// Gaps and gradients of all pairs at `y`, their contact points moved there.
+/// Gaps and gradients of all pairs at `y`, updating their contact points.
 ///
 /// # Errors
-/// An active pair has no unique closest point.
+/// If an active pair has no unique closest point.
 pub(super) fn measure_into(
     model: &Model,
     y: &[f64],
@@ -63,7 +63,7 @@ pub(super) fn measure_into(
     Ok(())
 }
 
-/// Contact and pair of all that are active.
+/// Contact and pair of all active ones.
 pub(super) fn active(pairings: &[Pairing]) -> impl Iterator<Item = (usize, usize)> + '_ {
     let pairs = pairings.iter().enumerate();
     pairs.flat_map(|(k, pairing)| {
@@ -72,7 +72,7 @@ pub(super) fn active(pairings: &[Pairing]) -> impl Iterator<Item = (usize, usize
     })
 }
 
-/// Depth of the deepest watched node at a state, ≥ 0.
+/// Depth of the deepest tracked node at a state, ≥ 0.
 pub(super) fn depth(model: &Model, state: &State) -> f64 {
     let mut row = Rows::new(model.dimension);
     let pairs =
@@ -80,7 +80,7 @@ pub(super) fn depth(model: &Model, state: &State) -> f64 {
     pairs.map(|(contact, pair)| -gap_at(contact, &mut pair.clone(), &state.y, &mut row)).fold(0.0, f64::max)
 }
 
-/// How far a node can come closer to a facet within a step at these velocities.
+/// Bound on the approach of a node to a facet within a step at these velocities.
 pub(super) fn approach(model: &Model, v: &[f64], dt: f64) -> f64 {
     let square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>();
     2.0 * dt * v.chunks_exact(model.dimension).map(square).fold(0.0, f64::max).sqrt()

@@ -1,10 +1,10 @@
-//! Delaunay triangles of a wanted size inside an outline.
+//! Delaunay triangulation of given size inside an outline.
 //!
 //! Ruppert's refinement (J. Algorithms 18 (1995) 548–585; the crate `spade`) makes the outline's
-//! own features angles of 26° and more: it may cut sides further. Triangles whose circumcircle is
-//! larger than h asks for then get its centre as a node, the worst first (S. Rebay, J. Comput.
-//! Phys. 106 (1993) 125–138), and inner nodes move to the mean of their neighbours as long as the
-//! smallest angle grows. Nothing here iterates over a hash: the same outline gives the same mesh.
+//! features at angles of at least 26°: it may divide sides further. Triangles whose circumcircle is
+//! too large for h then get its centre as a node, worst first (S. Rebay, J. Comput. Phys. 106
+//! (1993) 125–138), and inner nodes move to the mean of their neighbours while the smallest angle
+//! grows. Nothing iterates over a hash: the same outline gives the same mesh.
 
 use spade::handles::FixedFaceHandle;
 use spade::handles::InnerTag;
@@ -18,22 +18,22 @@ use super::elevate::{Side, Skeleton};
 
 type Cdt = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
-/// Smallest angle that refinement asks for, in degrees, where the outline's own angles allow it.
+/// Smallest angle requested, in degrees, where the outline's own angles allow it.
 const ANGLE: f64 = 26.0;
-/// Circumradius over h beyond which a triangle is divided; an equilateral one with edges h has
-/// 0.577.
+/// Circumradius over h above which a triangle is divided; 0.577 for an equilateral one with edges
+/// h.
 const LARGE: f64 = 0.72;
-/// Rounds of moving inner nodes.
+/// Rounds of smoothing.
 const ROUNDS: usize = 12;
 
-/// Corners of a polygon and the points between them, side after side.
+/// Corners of a polygon and the points between them on each side.
 pub(super) struct Outline {
     pub(super) corners: Vec<[f64; 2]>,
     pub(super) sides: Vec<Vec<[f64; 2]>>,
     pub(super) clockwise: bool,
 }
 
-/// Triangles inside an outline with edges of about `length`; sides `side1` and so on.
+/// Triangulates an outline with edges of about `length`; sides are `side1` and so on.
 pub(super) fn fill(outline: &Outline, length: &dyn Fn(&[f64; 2]) -> f64) -> Result<Skeleton, MeshError> {
     let failed = |_: InsertionError| MeshError::Angles { angle: ANGLE };
     let mut cdt = outline.triangulated().map_err(failed)?;
@@ -48,11 +48,11 @@ pub(super) fn fill(outline: &Outline, length: &dyn Fn(&[f64; 2]) -> f64) -> Resu
     let sides = outline.walks(&cdt);
     let (mut points, mut triangles) = (positions(&cdt), inside(&cdt));
     let mut best = smallest_angle(&points, &triangles);
-    let held: Vec<usize> = sides.iter().flatten().flatten().copied().collect();
+    let fixed: Vec<usize> = sides.iter().flatten().flatten().copied().collect();
     let mut moved = points.clone();
     let mut around = triangles.clone();
     for _ in 0..ROUNDS {
-        smooth(&mut moved, &around, &held);
+        smooth(&mut moved, &around, &fixed);
         cdt = triangulated(&moved, &sides).map_err(failed)?;
         around = inside(&cdt);
         let angle = smallest_angle(&moved, &around);
@@ -95,7 +95,7 @@ impl Outline {
         let mut sides = vec![Vec::new(); n];
         let mut at = 0;
         for k in 0..n {
-            // Clockwise outlines are walked backwards: the last side first.
+            // Clockwise outlines are traversed backwards: the last side first.
             let (side, end) = if self.clockwise { (n - 1 - k, (n - 1 - k) % n) } else { (k, (k + 1) % n) };
             while let Some(to) = next(at) {
                 sides[side].push([at, to]);
@@ -121,7 +121,7 @@ fn triangulated(points: &[[f64; 2]], sides: &[Vec<[usize; 2]>]) -> Result<Cdt, I
     Ok(cdt)
 }
 
-/// Gives every triangle that is too large the centre of its circumcircle, the worst first.
+/// Inserts the circumcentre of every triangle that is too large, the worst first.
 fn divide(cdt: &mut Cdt, length: &dyn Fn(&[f64; 2]) -> f64) -> Result<(), InsertionError> {
     loop {
         let within = faces_inside(cdt);
@@ -137,7 +137,7 @@ fn divide(cdt: &mut Cdt, length: &dyn Fn(&[f64; 2]) -> f64) -> Result<(), Insert
         large.sort_by(|a, b| {
             b.0.total_cmp(&a.0).then(a.1[0].total_cmp(&b.1[0])).then(a.1[1].total_cmp(&b.1[1]))
         });
-        // One round takes centres that are no nearer to each other than to the nodes around them.
+        // One round takes centres no nearer to each other than to the nodes around them.
         let mut taken = Buckets::default();
         let before = cdt.num_vertices();
         for (_, center, radius) in large {
@@ -151,7 +151,7 @@ fn divide(cdt: &mut Cdt, length: &dyn Fn(&[f64; 2]) -> f64) -> Result<(), Insert
     }
 }
 
-/// Whether a point lies inside the outline and in the diametral circle of none of the sides' edges
+/// Whether a point lies inside the outline and outside the diametral circles of the boundary edges
 /// near it.
 fn is_free(cdt: &Cdt, within: &[bool], p: [f64; 2]) -> bool {
     let PositionInTriangulation::OnFace(face) = cdt.locate(Point2::new(p[0], p[1])) else { return false };
@@ -172,9 +172,9 @@ fn is_free(cdt: &Cdt, within: &[bool], p: [f64; 2]) -> bool {
 struct Buckets(std::collections::BTreeMap<u64, Vec<[f64; 2]>>);
 
 impl Buckets {
-    /// Takes a point unless one was taken within `radius`.
+    /// Takes a point unless another was taken within `radius`.
     fn take(&mut self, p: [f64; 2], radius: f64) -> bool {
-        // The order of the bits of a number is its own order once the sign is seen to.
+        // The bits of a number are ordered as the number once the sign is handled.
         let key = |x: f64| {
             let bits = x.to_bits();
             if x.is_sign_negative() { !bits } else { bits | 1 << 63 }
@@ -188,7 +188,7 @@ impl Buckets {
     }
 }
 
-/// Which faces lie inside: those the outer face does not reach without crossing the outline.
+/// Which faces lie inside: those not reached from the outer face without crossing the outline.
 fn faces_inside(cdt: &Cdt) -> Vec<bool> {
     let mut inside = vec![true; cdt.num_all_faces()];
     let outer = cdt.outer_face();
@@ -226,16 +226,15 @@ fn inside(cdt: &Cdt) -> Vec<[usize; 3]> {
         .collect()
 }
 
-/// Moves every node that is not held to the mean of its neighbours, unless a triangle would turn
-/// over.
-fn smooth(points: &mut [[f64; 2]], triangles: &[[usize; 3]], held: &[usize]) {
+/// Moves every free node to the mean of its neighbours, unless a triangle would be inverted.
+fn smooth(points: &mut [[f64; 2]], triangles: &[[usize; 3]], fixed: &[usize]) {
     let mut around = vec![Vec::new(); points.len()];
     for t in triangles {
         for k in 0..3 {
             around[t[k]].push([t[(k + 1) % 3], t[(k + 2) % 3]]);
         }
     }
-    held.iter().for_each(|&n| around[n].clear());
+    fixed.iter().for_each(|&n| around[n].clear());
     for node in 0..points.len() {
         let star = &around[node];
         if star.is_empty() {
@@ -254,7 +253,7 @@ fn twice_area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// In radians.
+/// Smallest angle in radians.
 fn smallest_angle(points: &[[f64; 2]], triangles: &[[usize; 3]]) -> f64 {
     let angle = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| {
         twice_area(a, b, c).atan2((b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1]))
@@ -266,7 +265,7 @@ fn smallest_angle(points: &[[f64; 2]], triangles: &[[usize; 3]]) -> f64 {
     triangles.iter().map(of).fold(f64::INFINITY, f64::min)
 }
 
-/// The skeleton, without nodes that only triangles outside had.
+/// The skeleton without nodes used by outer triangles only.
 fn used(points: Vec<[f64; 2]>, mut triangles: Vec<[usize; 3]>, mut sides: Vec<Vec<[usize; 2]>>) -> Skeleton {
     let mut number = vec![usize::MAX; points.len()];
     triangles.iter().flatten().for_each(|&n| number[n] = 0);
@@ -276,7 +275,7 @@ fn used(points: Vec<[f64; 2]>, mut triangles: Vec<[usize; 3]>, mut sides: Vec<Ve
     }
     triangles.iter_mut().flatten().for_each(|n| *n = number[*n]);
     sides.iter_mut().flatten().flatten().for_each(|n| *n = number[*n]);
-    let kept = points.into_iter().zip(&number).filter(|(_, n)| **n < usize::MAX).map(|(p, _)| p).collect();
+    let in_use = points.into_iter().zip(&number).filter(|(_, n)| **n < usize::MAX).map(|(p, _)| p).collect();
     let named = |(k, edges)| Side { name: format!("side{}", k + 1), edges, circle: None };
-    Skeleton { points: kept, triangles, sides: sides.into_iter().enumerate().map(named).collect() }
+    Skeleton { points: in_use, triangles, sides: sides.into_iter().enumerate().map(named).collect() }
 }

@@ -1,9 +1,8 @@
-//! Disc and half-disc of n = radius/size concentric rings around a node, rounded.
+//! Disc and half-disc of n = radius/size (rounded) concentric rings around a node.
 //!
-//! Ring k has 6k (half: 3k) equal edges, so that edges are about `size` long everywhere; each sixth
-//! of a ring holds k triangles that stand on it and k − 1 that hang between them. A cell has at
-//! most one edge on the arc. The half-disc is the right half of the disc, node for node, and the
-//! disc its own mirror image.
+//! Ring k has 6k (half: 3k) equal edges, so that edges are about `size` long everywhere. Each sixth
+//! of a ring consists of k outward and k − 1 inward triangles. A cell has at most one edge on the
+//! arc. The half-disc is the right half of the disc, node for node, and the disc is symmetric.
 
 use std::f64::consts::PI;
 
@@ -11,11 +10,11 @@ use super::MeshError;
 use super::elevate::{Circle, Side, Skeleton, elevate};
 use crate::mesh::{Element, Mesh};
 
-/// Disc with edges of about `size`; side `arc`, a closed loop from its lowest node
-/// counter-clockwise.
+/// Disc with edges of about `size`; side `arc`, a closed loop counter-clockwise from its lowest
+/// node.
 ///
 /// # Errors
-/// If radius or size is not positive, or the element is no triangle.
+/// If radius or size is not positive, or the element is not a triangle.
 pub fn disc(element: Element, radius: f64, center: [f64; 2], size: f64) -> Result<Mesh, MeshError> {
     let n = check(element, radius, center, size)?;
     Ok(elevate(Rings { n, sixths: 6 }.skeleton(radius, center), element))
@@ -25,7 +24,7 @@ pub fn disc(element: Element, radius: f64, center: [f64; 2], size: f64) -> Resul
 /// bottom.
 ///
 /// # Errors
-/// If radius or size is not positive, or the element is no triangle.
+/// If radius or size is not positive, or the element is not a triangle.
 ///
 /// ```
 /// use carom_solid::{Element, generate};
@@ -115,8 +114,8 @@ impl Rings {
     }
 }
 
-/// The i-th of 6k equally spaced points of the unit circle from (0, −1) counter-clockwise; the left
-/// half mirrors the right, bit for bit.
+/// The i-th of 6k equally spaced points of the unit circle counter-clockwise from (0, −1); the left
+/// half mirrors the right bitwise.
 fn on_circle(k: usize, i: usize) -> [f64; 2] {
     if i > 3 * k {
         let [x, y] = on_circle(k, 6 * k - i);

@@ -1,10 +1,10 @@
-//! From corners to every order: nodes on edges and inside cells.
+//! From linear cells to every order: nodes on edges and inside cells.
 //!
-//! Nodes of an edge are equally spaced: along the chord, or in angle along the true circle. The
-//! inner node of a T10 with corners c and edge nodes e is Σe/4 − Σc/6, the map that reproduces
-//! every quadratic, so that the third derivatives of a curved cell's reference map are O(h³), as
-//! optimal order asks for (P. G. Ciarlet, P.-A. Raviart, CMAME 1 (1972) 217–249; M. Lenoir, SIAM J.
-//! Numer. Anal. 23 (1986) 562–580). Only edges on the boundary are curved.
+//! Edge nodes are equally spaced along the chord, or in angle along the true circle. The inner node
+//! of a T10 with corners c and edge nodes e is Σe/4 − Σc/6, which reproduces quadratic maps, so
+//! that the third derivatives of a curved cell's reference map are O(h³), as optimal order requires
+//! (P. G. Ciarlet, P.-A. Raviart, CMAME 1 (1972) 217–249; M. Lenoir, SIAM J. Numer. Anal. 23 (1986)
+//! 562–580). Only edges on the boundary are curved.
 
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::{PI, TAU};
@@ -21,7 +21,7 @@ pub(super) struct Skeleton {
     pub(super) sides: Vec<Side>,
 }
 
-/// Edges of a side in the order of the walk, on a circle or straight.
+/// Edges of a side in order of traversal, on a circle or straight.
 pub(super) struct Side {
     pub(super) name: String,
     pub(super) edges: Vec<[usize; 2]>,
@@ -36,7 +36,7 @@ pub(super) struct Circle {
 }
 
 impl Circle {
-    /// The point a fraction `t` of the shorter arc from `a` to `b`.
+    /// The point at fraction `t` of the shorter arc from `a` to `b`.
     fn between(&self, a: [f64; 2], b: [f64; 2], t: f64) -> [f64; 2] {
         let angle = |p: [f64; 2]| (p[1] - self.center[1]).atan2(p[0] - self.center[0]);
         let (start, turn) = (angle(a), angle(b) - angle(a));
@@ -56,7 +56,7 @@ impl Circle {
 pub(super) fn elevate(skeleton: Skeleton, element: Element) -> Mesh {
     let Skeleton { points: mut nodes, triangles, sides } = skeleton;
     let k = element.degree();
-    // Nodes between two corners, and the circle they lie on; an edge is known by its corners in
+    // Nodes between two corners, and the circle they lie on; the key of an edge is its corners in
     // ascending order.
     let key = |[i, j]: [usize; 2]| [i.min(j), i.max(j)];
     let mut circles = HashMap::new();
@@ -107,7 +107,7 @@ pub(super) fn elevate(skeleton: Skeleton, element: Element) -> Mesh {
     Mesh { element, nodes: nodes.into(), cells, sides, repairs: Vec::new() }
 }
 
-/// The nodes between an edge's corners in its direction.
+/// The nodes between an edge's corners, in its direction.
 fn directed(inner: &[usize], [i, j]: [usize; 2]) -> Vec<usize> {
     if i < j { inner.to_vec() } else { inner.iter().rev().copied().collect() }
 }

@@ -1,6 +1,6 @@
-//! Built-in meshes: interval, rectangle, disc, half-disc, ring and polygon. The geometric cells of
-//! a shape are the same for every order; see `elevate` for the nodes between corners. `*_nodes`
-//! count without building: ask them first whether a mesh fits the memory.
+//! Built-in meshes: interval, rectangle, disc, half-disc, ring and polygon. The cells of a shape
+//! are the same for every order; `elevate` adds the nodes between corners. `*_nodes` count without
+//! building, to check first whether a mesh fits into memory.
 
 mod delaunay;
 mod disc;
@@ -51,7 +51,7 @@ pub enum MeshError {
 /// The line from `min` to `max` in equal cells; sides `left` and `right`, one node each.
 ///
 /// # Errors
-/// If `min` ≥ `max`, there are no cells, or the element is no line.
+/// If `min` ≥ `max`, there are no cells, or the element is not a line.
 ///
 /// ```
 /// use carom_solid::{Element, generate};

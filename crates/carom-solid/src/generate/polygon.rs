@@ -1,19 +1,19 @@
-//! Polygon, convex or not, of nearly equilateral triangles: its sides are cut into edges of the
-//! wanted length, `delaunay` fills it.
+//! Polygon, convex or not, of nearly equilateral triangles. Its sides are divided into edges of the
+//! requested length; `delaunay` fills it.
 //!
-//! Near a refined place edges have its size s; from its radius r on they grow by 3/10 of the
-//! distance, h(x) = min(size, s + 0.3 max(0, |x − near| − r)), and a side is cut where ∫ ds/h is a
-//! whole number.
+//! Around a refined point edges have its size s; beyond its radius r they grow by 3/10 of the
+//! distance, h(x) = min(size, s + 0.3 max(0, |x − near| − r)). A side is divided where ∫ ds/h is an
+//! integer.
 
 use super::delaunay::{Outline, fill};
 use super::elevate::elevate;
 use super::{MeshError, lerp};
 use crate::mesh::{Element, Mesh};
 
-/// Growth of the edges away from a refined place.
+/// Growth of edges away from a refined point.
 const GROWTH: f64 = 0.3;
 
-/// A place with finer cells.
+/// A point with finer cells around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refinement {
     /// Its centre.
@@ -24,13 +24,13 @@ pub struct Refinement {
     pub size: f64,
 }
 
-/// Polygon through `points`, either way round, with edges of about `size`. Side `side1` goes from
-/// the first point to the second, `side2` on to the third, the last one back; each is walked with
-/// the body on its left.
+/// Polygon through `points`, in either orientation, with edges of about `size`. Side `side1` joins
+/// the first two points, `side2` the second and third, and the last one closes it. Each is
+/// traversed with the body on its left.
 ///
 /// # Errors
 /// If there are fewer than 3 points, sides meet elsewhere than at their ends, or a number is out of
-/// its range.
+/// range.
 ///
 /// ```
 /// use carom_solid::{Element, generate};
@@ -78,12 +78,12 @@ fn twice_the_area(points: &[[f64; 2]]) -> f64 {
     points.windows(2).map(|w| cross(minus(w[0], o), minus(w[1], o))).sum()
 }
 
-/// Points inside a side, from its start to its end.
+/// Interior points of a side, from its start to its end.
 fn cut(a: [f64; 2], b: [f64; 2], length: &dyn Fn(&[f64; 2]) -> f64) -> Vec<[f64; 2]> {
     let whole = (b[0] - a[0]).hypot(b[1] - a[1]);
     let at = |t: f64| [lerp(a[0], b[0], t), lerp(a[1], b[1], t)];
     // ∫ ds/h up to the ends of steps no longer than a quarter of the edge at their start (h is
-    // Lipschitz: it cannot hide within one).
+    // Lipschitz: no step can miss it).
     let (mut places, mut edges) = (vec![0.0], vec![0.0]);
     let (mut t, mut sum) = (0.0, 0.0);
     while t < 1.0 {
@@ -102,11 +102,11 @@ fn cut(a: [f64; 2], b: [f64; 2], length: &dyn Fn(&[f64; 2]) -> f64) -> Vec<[f64;
     (1..count as usize).map(|k| at(place(k))).collect()
 }
 
-/// Whether points are the corners of a simple polygon: finite, and its sides meet at their ends
-/// only.
+/// Checks that points are the corners of a simple polygon: finite, and sides meet only at their
+/// ends.
 ///
 /// # Errors
-/// The first point or pair of sides, counted from 1, that is none.
+/// The first invalid point or pair of sides, counted from 1.
 pub fn outline(points: &[[f64; 2]]) -> Result<(), MeshError> {
     let n = points.len();
     if n < 3 {
@@ -116,7 +116,7 @@ pub fn outline(points: &[[f64; 2]]) -> Result<(), MeshError> {
     let extent = points.iter().flatten().fold(0.0_f64, |m, c| m.max(c.abs()));
     for (k, point) in points.iter().enumerate() {
         let [a, b] = side((k + n - 1) % n);
-        // NaN is no distance.
+        // Rejects NaN as well.
         let apart = (a[0] - b[0]).hypot(a[1] - b[1]) > 1e-9 * extent;
         if !(point.iter().all(|c| c.is_finite()) && apart) {
             return Err(MeshError::Point { point: k + 1 });
@@ -126,7 +126,7 @@ pub fn outline(points: &[[f64; 2]]) -> Result<(), MeshError> {
         for j in i + 1..n {
             let (s, t) = (side(i), side(j));
             let meet = if j == i + 1 || (i == 0 && j == n - 1) {
-                // Neighbours share a point; the free ends must not lie on the other side.
+                // Neighbours share a point; their free ends must not lie on the other side.
                 let [a, b, c] = if j == i + 1 { [s[0], s[1], t[1]] } else { [t[0], t[1], s[1]] };
                 distance(a, [b, c]).min(distance(c, [a, b]))
             } else if crosses(s, t) {
@@ -156,7 +156,7 @@ fn crosses(s: [[f64; 2]; 2], t: [[f64; 2]; 2]) -> bool {
         let side = |p| cross(minus(s[1], s[0]), minus(p, s[0]));
         side(t[0]) * side(t[1]) > 0.0
     };
-    // Parallel sides are told by their ends.
+    // Parallel sides are checked by their ends.
     cross(minus(s[1], s[0]), minus(t[1], t[0])) != 0.0 && !apart(s, t) && !apart(t, s)
 }
 

@@ -1,17 +1,17 @@
 //! Rectangle of nx × ny rectangles, each cut into two triangles.
 //!
-//! Diagonals alternate like a chessboard, beginning at the lower left corner: with even nx and ny
-//! the mesh is its own mirror image, and no cell has two edges on the boundary.
+//! Diagonals alternate as on a chessboard, starting at the lower left corner: with even nx and ny
+//! the mesh is symmetric, and no cell has two edges on the boundary.
 
 use super::elevate::{Side, Skeleton, elevate};
 use super::{MeshError, check, lerp};
 use crate::mesh::{Element, Mesh};
 
 /// Rectangle from `min` to `max`, `cells` along x and y; sides `bottom`, `right`, `top`, `left`,
-/// each walked counter-clockwise.
+/// each traversed counter-clockwise.
 ///
 /// # Errors
-/// If an extent is not positive, there are no cells, or the element is no triangle.
+/// If an extent is not positive, there are no cells, or the element is not a triangle.
 pub fn rectangle(
     element: Element,
     min: [f64; 2],

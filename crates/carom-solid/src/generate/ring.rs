@@ -1,10 +1,9 @@
-//! Ring between two concentric circles, of circles whose nodes are equally spaced.
+//! Ring between two concentric circles, of circles with equally spaced nodes.
 //!
-//! Edges are h = min(size, width, 2πr/12) long at the radius r: where the inner circle is small the
-//! cells grow outwards with it, as those of a disc do. Circles lie √3/2 h apart, which makes
-//! triangles between nodes h apart nearly equilateral; each has a multiple of four nodes, so that
-//! the ring is its own mirror image about both axes. A strip between m and n edges of a quarter is
-//! walked on both circles at once.
+//! Edges at radius r have length h = min(size, width, 2πr/12): where the inner circle is small the
+//! cells grow outwards, as those of a disc do. Circles are √3/2 h apart, so that triangles are
+//! nearly equilateral. Each has a multiple of four nodes, so that the ring is symmetric about both
+//! axes. A strip between m and n edges of a quarter is triangulated by advancing on both circles.
 
 use std::f64::consts::PI;
 
@@ -12,12 +11,12 @@ use super::MeshError;
 use super::elevate::{Circle, Side, Skeleton, elevate};
 use crate::mesh::{Element, Mesh};
 
-/// Ring with edges of about `size`, shorter where it is thinner than that or the inner circle needs
+/// Ring with edges of about `size`, shorter where the ring is thinner or the inner circle needs
 /// twelve; sides `inner` and `outer`, closed loops from their node right of the centre, `inner`
 /// clockwise, `outer` counter-clockwise.
 ///
 /// # Errors
-/// If radii and size are not 0 < inner < outer and 0 < size, or the element is no triangle.
+/// If radii and size are not 0 < inner < outer and 0 < size, or the element is not a triangle.
 ///
 /// ```
 /// use carom_solid::{Element, generate};
@@ -56,7 +55,7 @@ pub fn ring(
         let above = |j: usize| first[k] + j % (4 * n);
         let strip = strip(m, n);
         for quadrant in 0..4 {
-            // Every second quadrant is walked backwards: the mirror image of the one before.
+            // Every second quadrant is traversed backwards: it mirrors the previous one.
             let mirrored = quadrant % 2 == 1;
             let inner = |i: usize| below(if mirrored { (quadrant + 1) * m - i } else { quadrant * m + i });
             let outer = |j: usize| above(if mirrored { (quadrant + 1) * n - j } else { quadrant * n + j });
@@ -82,12 +81,12 @@ pub fn ring(
     Ok(elevate(skeleton, element))
 }
 
-/// Length of edges at a radius.
+/// Edge length at a radius.
 fn edge(inner: f64, outer: f64, size: f64, radius: f64) -> f64 {
     size.min(outer - inner).min(PI * radius / 6.0)
 }
 
-/// Radii from the inner to the outer, each with the edges of a quarter.
+/// Radii from the inner to the outer, each with its edges per quarter.
 fn circles(inner: f64, outer: f64, size: f64) -> Vec<(f64, usize)> {
     let mut radii = vec![inner];
     let mut radius = inner;
@@ -95,7 +94,7 @@ fn circles(inner: f64, outer: f64, size: f64) -> Vec<(f64, usize)> {
         radius += 0.75_f64.sqrt() * edge(inner, outer, size, radius);
         radii.push(radius);
     }
-    // The last circle is the outer one: the widths are stretched or squeezed alike.
+    // The last circle is the outer one: the widths are scaled uniformly.
     if radii.len() > 2 && radius - outer > outer - radii[radii.len() - 2] {
         radii.pop();
     }
@@ -108,8 +107,8 @@ fn circles(inner: f64, outer: f64, size: f64) -> Vec<(f64, usize)> {
     radii.into_iter().enumerate().map(at).collect()
 }
 
-/// Triangles between m edges of the inner and n of the outer quarter: from nodes i and j one step
-/// further on the circle that lags behind; `true`: on the inner one.
+/// Triangles between m edges of the inner and n of the outer quarter: each advances by one edge
+/// from nodes i and j, on the circle that lags behind; `true`: on the inner one.
 fn strip(m: usize, n: usize) -> Vec<(usize, usize, bool)> {
     let (mut i, mut j) = (0, 0);
     let mut triangles = Vec::with_capacity(m + n);
@@ -121,8 +120,8 @@ fn strip(m: usize, n: usize) -> Vec<(usize, usize, bool)> {
     triangles
 }
 
-/// The i-th of 4q equally spaced points of the unit circle from (1, 0) counter-clockwise; the
-/// quadrants mirror each other, bit for bit.
+/// The i-th of 4q equally spaced points of the unit circle counter-clockwise from (1, 0); the
+/// quadrants mirror each other bitwise.
 fn on_circle(q: usize, i: usize) -> [f64; 2] {
     let (quadrant, i) = (i / q, i % q);
     let at = |i: usize| {

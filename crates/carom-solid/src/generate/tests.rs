@@ -1,5 +1,5 @@
 //! Every generator at every order: counts, quality, boundary on the true curve, outward normals, no
-//! node twice or unused.
+//! duplicate or unused node.
 
 use std::collections::HashSet;
 
@@ -44,8 +44,7 @@ fn all_nodes_used_and_none_twice(mesh: &Mesh) {
     }
 }
 
-/// Each facet follows the one before, its nodes go from start to end, and its cell lies on its
-/// left.
+/// Facets are consecutive, their nodes run from start to end, and their cells lie on the left.
 fn walked_with_the_body_on_the_left(mesh: &Mesh, side: &str) {
     let nodes = places(mesh);
     let facets = &mesh.sides[side];
@@ -151,8 +150,7 @@ fn discs() {
                 let turned = angle(center, places(&mesh)[pair[0]], places(&mesh)[pair[1]]);
                 assert!((turned - 360.0 / nodes.len() as f64).abs() < 1e-11);
             }
-            // The half's arc goes from the bottom to the top, its axis back down, exactly on the
-            // axis.
+            // The half's arc runs from bottom to top, its axis back down, exactly on the axis.
             let (arc, axis) = (half.side_nodes("arc").unwrap(), half.side_nodes("axis").unwrap());
             assert_eq!([arc[0], axis[0]].map(|n| places(&half)[n]), [[0.25, 0.5], [0.25, 1.5]]);
             assert_eq!((arc[0], axis[0]), (axis[axis.len() - 1], arc[arc.len() - 1]));
@@ -175,8 +173,8 @@ fn the_half_disc_is_half_the_disc() {
     }
 }
 
-/// The inner node of a curved T10 carries 4/9 of the arc's rise: the map's third derivatives vanish
-/// with the third power of the size.
+/// The inner node of a curved T10 carries 4/9 of the arc's rise: the map's third derivatives are of
+/// third order in the size.
 #[test]
 fn curved_cells_have_smooth_maps() {
     let roughness = |size: f64| {
@@ -218,7 +216,7 @@ fn counts_saturate() {
     assert!(half_disc_nodes(Element::T10, 1.0, 1e-9) > 1_000_000_000_000);
 }
 
-/// Smallest over largest Jacobian of a curved cell: 1 were it straight, ≤ 0 were it folded.
+/// Smallest over largest Jacobian of a curved cell: 1 if straight, ≤ 0 if folded.
 #[test]
 fn curved_cells_are_nowhere_near_folding() {
     fn least<const N: usize, S: Shape<2, N>>(mesh: &Mesh) -> f64 {

@@ -1,5 +1,5 @@
-//! A physical curve on the x axis as a body of dimension 1; its sides are the physical points at
-//! its ends.
+//! A physical curve on the x axis as a body of dimension 1, with the physical points at its ends as
+//! sides.
 
 use std::collections::BTreeMap;
 
@@ -16,39 +16,40 @@ impl MshFile {
     /// # Errors
     /// As [`body`](Self::body), and if a node joins more than two cells.
     pub fn bar(&self, curve: &str) -> Result<Mesh, MshError> {
-        let mut part = Group::<1>::of(self, curve)?;
-        match part.element {
-            Element::L2 => orient::<1, 2, Line2>(&mut part, [1, 0])?,
-            Element::L3 => orient::<1, 3, Line3>(&mut part, [1, 0, 2])?,
-            _ => orient::<1, 4, Line4>(&mut part, [1, 0, 3, 2])?,
+        let mut group = Group::<1>::of(self, curve)?;
+        match group.element {
+            Element::L2 => orient::<1, 2, Line2>(&mut group, [1, 0])?,
+            Element::L3 => orient::<1, 3, Line3>(&mut group, [1, 0, 2])?,
+            _ => orient::<1, 4, Line4>(&mut group, [1, 0, 3, 2])?,
         }
-        let mut cells_at = vec![Vec::new(); part.used.len()];
-        for (cell, nodes) in part.cells.chunks_exact(part.element.nodes()).enumerate() {
+        let mut cells_at = vec![Vec::new(); group.used.len()];
+        for (cell, nodes) in group.cells.chunks_exact(group.element.nodes()).enumerate() {
             for &n in nodes {
                 cells_at[n].push(cell);
             }
         }
         if let Some(n) = cells_at.iter().position(|cells| cells.len() > 2) {
-            let node = part.node(n);
+            let node = group.node(n);
             let fault = Fault::Branching { name: curve.to_owned(), node: node.tag, cells: cells_at[n].len() };
             return Err(self.at(&node, fault));
         }
         let mut sides: BTreeMap<String, Vec<Facet>> = BTreeMap::new();
         for name in self.names(0) {
             for point in self.blocks(0, name).flat_map(|b| &b.nodes) {
-                let Ok(node) = part.used.binary_search(point) else { continue };
-                // The nodes inside a cell belong to one cell as well.
+                let Ok(node) = group.used.binary_search(point) else { continue };
+                // Interior nodes belong to one cell as well.
                 let [cell] = cells_at[node][..] else { continue };
                 let facet = Facet { cell, nodes: vec![node] };
                 let side = sides.entry(name.to_owned()).or_default();
-                if part.cells[cell * part.element.nodes()..][..2].contains(&node) && !side.contains(&facet) {
+                if group.cells[cell * group.element.nodes()..][..2].contains(&node) && !side.contains(&facet)
+                {
                     side.push(facet);
                 }
             }
         }
         sides.retain(|_, facets| !facets.is_empty());
         let (element, nodes, cells) =
-            (part.element, std::mem::take(&mut part.positions), std::mem::take(&mut part.cells));
-        Ok(Mesh { element, nodes: nodes.into(), cells, sides, repairs: part.finish() })
+            (group.element, std::mem::take(&mut group.positions), std::mem::take(&mut group.cells));
+        Ok(Mesh { element, nodes: nodes.into(), cells, sides, repairs: group.finish() })
     }
 }

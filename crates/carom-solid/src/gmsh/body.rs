@@ -1,6 +1,6 @@
-//! A physical surface as a body: its boundary, and the named curves on it.
+//! A physical surface as a body, with the named curves on its boundary as sides.
 //!
-//! An edge of one cell alone belongs to the boundary; its cell, counter-clockwise, walks it with
+//! An edge of only one cell belongs to the boundary; its counter-clockwise cell traverses it with
 //! the body on the left.
 
 use std::collections::{BTreeMap, HashMap};
@@ -17,20 +17,20 @@ impl MshFile {
     /// boundary.
     ///
     /// # Errors
-    /// With line or byte: a name that is not there, cells that are no triangles of one order 1 to
-    /// 3, folded cells, coincident nodes, edges of more than two cells, nodes off the plane.
+    /// With line or byte: an unknown name, cells other than triangles of one order 1 to 3, folded
+    /// cells, coincident nodes, edges of more than two cells, nodes off the plane.
     pub fn body(&self, surface: &str) -> Result<Mesh, MshError> {
-        let mut part = Group::<2>::of(self, surface)?;
-        match part.element {
-            Element::T3 => orient::<2, 3, Tri3>(&mut part, [0, 2, 1])?,
-            Element::T6 => orient::<2, 6, Tri6>(&mut part, [0, 2, 1, 5, 4, 3])?,
-            _ => orient::<2, 10, Tri10>(&mut part, [0, 2, 1, 8, 7, 6, 5, 4, 3, 9])?,
+        let mut group = Group::<2>::of(self, surface)?;
+        match group.element {
+            Element::T3 => orient::<2, 3, Tri3>(&mut group, [0, 2, 1])?,
+            Element::T6 => orient::<2, 6, Tri6>(&mut group, [0, 2, 1, 5, 4, 3])?,
+            _ => orient::<2, 10, Tri10>(&mut group, [0, 2, 1, 8, 7, 6, 5, 4, 3, 9])?,
         }
-        let boundary = boundary(&part)?;
-        let sides = part.sides(&boundary)?;
+        let boundary = boundary(&group)?;
+        let sides = group.sides(&boundary)?;
         let (element, nodes, cells) =
-            (part.element, std::mem::take(&mut part.positions), std::mem::take(&mut part.cells));
-        Ok(Mesh { element, nodes: nodes.into(), cells, sides, repairs: part.finish() })
+            (group.element, std::mem::take(&mut group.positions), std::mem::take(&mut group.cells));
+        Ok(Mesh { element, nodes: nodes.into(), cells, sides, repairs: group.finish() })
     }
 }
 
@@ -45,18 +45,18 @@ fn reversed(edge: &[usize]) -> Vec<usize> {
     [edge[1], edge[0]].into_iter().chain(edge[2..].iter().rev().copied()).collect()
 }
 
-/// Edges of one cell alone, by start and end.
-fn boundary(part: &Group<2>) -> Result<HashMap<(usize, usize), Facet>, MshError> {
-    let (n, degree) = (part.element.nodes(), part.element.degree());
-    let mut edges: HashMap<(usize, usize), Facet> = HashMap::with_capacity(part.cells.len() / n * 3);
-    for (cell, nodes) in part.cells.chunks_exact(n).enumerate() {
+/// Edges of only one cell, by start and end.
+fn boundary(group: &Group<2>) -> Result<HashMap<(usize, usize), Facet>, MshError> {
+    let (n, degree) = (group.element.nodes(), group.element.degree());
+    let mut edges: HashMap<(usize, usize), Facet> = HashMap::with_capacity(group.cells.len() / n * 3);
+    for (cell, nodes) in group.cells.chunks_exact(n).enumerate() {
         for side in 0..3 {
             let facet = Facet { cell, nodes: edge(nodes, degree, side) };
             if let Some(other) = edges.insert((facet.nodes[0], facet.nodes[1]), facet) {
-                let [start, end] = [other.nodes[0], other.nodes[1]].map(|n| part.node(n).tag);
-                let (a, b) = (part.rows[other.cell].tag, part.rows[cell].tag);
-                let fault = Fault::Overlap { name: part.name.to_owned(), a, b, start, end };
-                return Err(part.file.at(&part.rows[cell], fault));
+                let [start, end] = [other.nodes[0], other.nodes[1]].map(|n| group.node(n).tag);
+                let (a, b) = (group.rows[other.cell].tag, group.rows[cell].tag);
+                let fault = Fault::Overlap { name: group.name.to_owned(), a, b, start, end };
+                return Err(group.file.at(&group.rows[cell], fault));
             }
         }
     }
@@ -67,12 +67,12 @@ fn boundary(part: &Group<2>) -> Result<HashMap<(usize, usize), Facet>, MshError>
             continue;
         };
         if facet.nodes != reversed(&other.nodes) {
-            // The map has no order: name the cells in that of the file.
-            let [a, b] = [facet.cell.min(other.cell), facet.cell.max(other.cell)].map(|c| part.rows[c]);
-            let [start, end] = [start.min(end), start.max(end)].map(|n| part.node(n).tag);
+            // The map is unordered: name the cells in the order of the file.
+            let [a, b] = [facet.cell.min(other.cell), facet.cell.max(other.cell)].map(|c| group.rows[c]);
+            let [start, end] = [start.min(end), start.max(end)].map(|n| group.node(n).tag);
             let (a, at) = (format!("cell {}", a.tag), b);
             let fault = Fault::EdgeNodes { a, b: format!("cell {}", b.tag), start, end };
-            return Err(part.file.at(&at, fault));
+            return Err(group.file.at(&at, fault));
         }
     }
     Ok(alone)
@@ -90,7 +90,7 @@ impl Group<'_, 2> {
             let mut facets = Vec::new();
             for block in self.file.blocks(1, name) {
                 for (row, line) in block.cells() {
-                    // A curve that leaves the body is not one of its edges.
+                    // A curve that leaves the body is not an edge of it.
                     let Some(line) = line.iter().map(|n| own.get(n).copied()).collect::<Option<Vec<_>>>()
                     else {
                         continue;
@@ -115,7 +115,7 @@ impl Group<'_, 2> {
     }
 }
 
-/// Each facet once, in chains end to start; chains and closed loops begin in the order of the file.
+/// Each facet once, in chains from end to start; chains and closed loops keep the file's order.
 fn walked(facets: Vec<Facet>) -> Vec<Facet> {
     let mut next: HashMap<usize, Vec<usize>> = HashMap::new();
     let mut ends = std::collections::HashSet::new();

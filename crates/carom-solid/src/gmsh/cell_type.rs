@@ -1,8 +1,8 @@
-//! Gmsh's numbers of cell types.
+//! Gmsh's numbering of cell types.
 
 use crate::mesh::Element;
 
-/// Shape and number of nodes by Gmsh's number of the type.
+/// Shape and number of nodes by Gmsh's type number.
 const TYPES: &[(i64, &str, usize)] = &[
     (1, "line", 2),
     (2, "triangle", 3),
@@ -41,7 +41,7 @@ const TYPES: &[(i64, &str, usize)] = &[
     (93, "hexahedron", 125),
 ];
 
-/// A type of cell.
+/// A cell type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CellType {
     pub(super) number: i64,
@@ -55,7 +55,7 @@ impl CellType {
         Some(Self { number, name, nodes })
     }
 
-    /// The element that bodies can be made of.
+    /// The element, if bodies can consist of it.
     pub(super) fn element(self) -> Option<Element> {
         use Element::{L2, L3, L4, T3, T6, T10};
         [L2, L3, L4, T3, T6, T10].into_iter().find(|e| number(*e) == self.number)

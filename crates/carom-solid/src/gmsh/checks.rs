@@ -1,6 +1,6 @@
 //! Orientation and folding of cells. The Jacobian J(ξ) = det ∂X/∂ξ of a cell of degree k is a
-//! polynomial of degree at most 2(k − 1); it is looked at on a lattice of ten steps, edges and
-//! corners included, where folds begin.
+//! polynomial of degree at most 2(k − 1). It is evaluated on a lattice of ten steps, including
+//! edges and corners, where folds begin.
 
 use carom_algebra::Vector;
 
@@ -9,17 +9,17 @@ use super::group::Group;
 use crate::reference::{gradient, interpolate};
 use crate::shape::{Domain, Shape};
 
-/// Turns cells that run backwards (`mirror`: the nodes of a cell in the other direction); a folded
-/// one is an error.
+/// Reverses clockwise cells (`mirror`: the nodes of a cell in the other direction); a folded one is
+/// an error.
 pub(super) fn orient<const D: usize, const N: usize, S: Shape<D, N>>(
-    part: &mut Group<D>,
+    group: &mut Group<D>,
     mirror: [usize; N],
 ) -> Result<(), MshError> {
     let points = if S::DEGREE == 1 { vec![S::Domain::CENTRE] } else { lattice() };
     let slopes: Vec<_> = points.iter().map(S::gradients).collect();
     let mut turned = 0;
-    for (cell, row) in part.cells.as_chunks_mut::<N>().0.iter_mut().zip(&part.rows) {
-        let x: [Vector<D>; N] = cell.map(|n| Vector(part.positions[n]));
+    for (cell, row) in group.cells.as_chunks_mut::<N>().0.iter_mut().zip(&group.rows) {
+        let x: [Vector<D>; N] = cell.map(|n| Vector(group.positions[n]));
         let jacobians: Vec<f64> = slopes.iter().map(|g| gradient(&x, g).det()).collect();
         let sign: f64 = if jacobians.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
         let least =
@@ -29,8 +29,8 @@ pub(super) fn orient<const D: usize, const N: usize, S: Shape<D, N>>(
         let size: f64 = (0..D).map(|_| (x[1] - x[0]).norm().max((x[D] - x[0]).norm())).product();
         if jacobian <= 1e-12 * size {
             let at = interpolate(&S::values(&points[least]), &x).0.to_vec();
-            let fault = Fault::Folded { name: part.name.to_owned(), cell: row.tag, jacobian, at };
-            return Err(part.file.at(row, fault));
+            let fault = Fault::Folded { name: group.name.to_owned(), cell: row.tag, jacobian, at };
+            return Err(group.file.at(row, fault));
         }
         if sign < 0.0 {
             turned += 1;
@@ -39,8 +39,8 @@ pub(super) fn orient<const D: usize, const N: usize, S: Shape<D, N>>(
     }
     if turned > 0 {
         let direction = if D == 1 { "against the x axis" } else { "clockwise" };
-        let all = part.rows.len();
-        part.repairs.push(format!("{turned} of {all} cells were {direction}; their nodes were reordered"));
+        let all = group.rows.len();
+        group.repairs.push(format!("{turned} of {all} cells were {direction}; their nodes were reordered"));
     }
     Ok(())
 }

@@ -1,13 +1,13 @@
-//! What can be wrong with a mesh file: where, what, why, and what to try.
+//! Errors of mesh files: where, what, why, and what to try.
 
 use std::fmt;
 
-/// Place in a file.
+/// Position in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// Line from 1 of a text.
+    /// Line of a text, from 1.
     Line(usize),
-    /// Byte from 0 of a binary file.
+    /// Byte of a binary file, from 0.
     Byte(usize),
     /// The file as a whole.
     File,
@@ -23,7 +23,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why no mesh came out of a file: [`Display`](fmt::Display) says where and what.
+/// Why a file gave no mesh; [`Display`](fmt::Display) says where and what.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{place}{fault}")]
 pub struct MshError {

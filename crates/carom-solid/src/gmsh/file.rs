@@ -1,5 +1,5 @@
-//! A .msh file in memory: its nodes, its cells by type and group, its named groups, and where each
-//! of them was written.
+//! A .msh file in memory: its nodes, its cells by type and group, its named groups, and the
+//! position of each in the file.
 
 use super::cell_type::CellType;
 use super::error::{Fault, MshError, Place};
@@ -21,7 +21,7 @@ pub(super) struct Group {
     pub(super) name: String,
 }
 
-/// Tag of a node or cell, and the line or byte it was read at.
+/// Tag of a node or cell, and its line or byte in the file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     pub(super) tag: i64,
@@ -43,7 +43,7 @@ pub(super) struct Block {
     pub(super) kind: CellType,
     pub(super) groups: Vec<i64>,
     pub(super) rows: Vec<Row>,
-    /// Places in the list of nodes, cell after cell.
+    /// Indices into the list of nodes, cell after cell.
     pub(super) nodes: Vec<usize>,
 }
 
@@ -54,7 +54,7 @@ impl Block {
 }
 
 impl MshFile {
-    /// Names of the physical groups of a dimension: 2 surfaces, 1 curves, 0 points. Each once.
+    /// Names of the physical groups of a dimension: 2 surfaces, 1 curves, 0 points; no duplicates.
     pub fn names(&self, dimension: usize) -> Vec<&str> {
         let mut names = Vec::new();
         for group in self.groups.iter().filter(|g| g.dimension == dimension as i64) {
@@ -81,7 +81,7 @@ impl MshFile {
     }
 }
 
-/// Where a cell was written.
+/// Position of a cell in the file.
 pub(super) fn place(text: bool, row: &Row) -> Place {
     if text { Place::Line(row.place) } else { Place::Byte(row.place) }
 }

@@ -1,16 +1,16 @@
-//! The cells of a named group as a mesh of their own: one element, only the nodes they use, in the
-//! order of the file.
+//! The cells of a named group as a separate mesh: one element, only the nodes in use, in the order
+//! of the file.
 
 use super::error::{Fault, MshError};
 use super::file::{MshFile, Row};
 use crate::mesh::Element;
 
-/// Cells of a group, before they are checked. Node numbers are the part's own.
+/// Cells of a group before they are checked. Node numbers are local to the group.
 pub(super) struct Group<'a, const D: usize> {
     pub(super) file: &'a MshFile,
     pub(super) name: &'a str,
     pub(super) element: Element,
-    /// Places in the file's list of nodes, ascending.
+    /// Indices into the file's list of nodes, ascending.
     pub(super) used: Vec<usize>,
     pub(super) positions: Vec<[f64; D]>,
     pub(super) rows: Vec<Row>,
@@ -46,7 +46,7 @@ impl<'a, const D: usize> Group<'a, D> {
         let none = || MshError::whole(Fault::NoCells { what, name: name.to_owned() });
         let element = element.ok_or_else(none)?;
 
-        // Numbered in the order of the file, so that what is written is read back the same.
+        // Numbered in the order of the file, so that writing and reading preserves it.
         let mut number = vec![usize::MAX; file.nodes.len()];
         for &n in &cells {
             number[n] = 0;
@@ -59,15 +59,14 @@ impl<'a, const D: usize> Group<'a, D> {
             *n = number[*n];
         }
 
-        let mut part =
+        let mut group =
             Self { file, name, element, used, positions: Vec::new(), rows, cells, repairs: Vec::new() };
-        part.flatten()?;
-        part.apart()?;
-        Ok(part)
+        group.flatten()?;
+        group.apart()?;
+        Ok(group)
     }
 
-    /// Drops the coordinates that are the same for all nodes: z, and on a line y, which must be
-    /// zero there.
+    /// Drops the coordinates equal for all nodes: z, and on a line y, which must be zero.
     fn flatten(&mut self) -> Result<(), MshError> {
         let x = |i: usize| &self.file.nodes[self.used[i]].1;
         let size = (0..self.used.len()).flat_map(|i| x(i).iter().map(|c| c.abs())).fold(0.0, f64::max);
@@ -88,13 +87,12 @@ impl<'a, const D: usize> Group<'a, D> {
         Ok(())
     }
 
-    /// Two nodes at one place would hold no cells together.
+    /// Coincident nodes would not connect their cells.
     fn apart(&self) -> Result<(), MshError> {
         let near = 1e-9 * crate::Positions::from(self.positions.clone()).diameter();
         let mut order: Vec<usize> = (0..self.positions.len()).collect();
         order.sort_unstable_by(|&a, &b| self.positions[a][0].total_cmp(&self.positions[b][0]));
-        // Columns of equal x hold many nodes: the second coordinate is compared by sorting each
-        // column.
+        // Many nodes may share x: the second coordinate is compared by sorting each such column.
         let mut start = 0;
         for i in 1..=order.len() {
             if i < order.len() && self.positions[order[i]][0] - self.positions[order[i - 1]][0] <= near {
@@ -115,12 +113,12 @@ impl<'a, const D: usize> Group<'a, D> {
         Ok(())
     }
 
-    /// A node as it was read.
+    /// The row of a node in the file.
     pub(super) fn node(&self, node: usize) -> Row {
         self.file.nodes[self.used[node]].0
     }
 
-    /// Says what was dropped.
+    /// Returns the repairs, including what was dropped.
     pub(super) fn finish(mut self) -> Vec<String> {
         let elsewhere: usize = self.file.unused();
         if elsewhere > 0 {
@@ -131,7 +129,7 @@ impl<'a, const D: usize> Group<'a, D> {
 }
 
 impl MshFile {
-    /// Nodes that no line, triangle or other cell uses.
+    /// Counts the nodes that no line, triangle or other cell uses.
     fn unused(&self) -> usize {
         let mut used = vec![false; self.nodes.len()];
         self.blocks.iter().filter(|b| b.kind.nodes > 1).flat_map(|b| &b.nodes).for_each(|&n| used[n] = true);

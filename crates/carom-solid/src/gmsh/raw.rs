@@ -1,12 +1,12 @@
-//! What both versions of the format write, as it is read: positions of nodes, and cells whose nodes
-//! are still tags.
+//! Raw data common to both versions of the format: positions of nodes, and cells whose nodes are
+//! still tags.
 
 use super::cell_type::CellType;
 use super::error::{Fault, MshError};
 use super::file::Row;
 use super::source::Source;
 
-/// Cells of one type on one entity (4.1) or in one group (2.2), node tags row after row.
+/// Cells of one type on one entity (4.1) or in one group (2.2), node tags row by row.
 pub(super) struct RawBlock {
     pub(super) kind: CellType,
     pub(super) dimension: i64,

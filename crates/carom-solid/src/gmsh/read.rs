@@ -8,8 +8,8 @@ use super::raw::RawBlock;
 use super::source::{Encoding, Source};
 use super::{version_2, version_4};
 
-/// Sections read so far. Cells name nodes by tag and, in 4.1, groups through entities, until all is
-/// there.
+/// Sections read so far. Cells refer to nodes by tag and, in 4.1, to groups through entities, until
+/// everything is read.
 #[derive(Default)]
 pub(super) struct Sections {
     pub(super) groups: Option<Vec<Group>>,
@@ -22,7 +22,7 @@ pub(super) struct Sections {
 /// Reads a .msh file of version 4.1 or 2.2, text or binary of either byte order.
 ///
 /// # Errors
-/// With line or byte: whatever does not follow the format.
+/// With line or byte: any violation of the format.
 pub fn read(bytes: &[u8]) -> Result<MshFile, MshError> {
     let mut source = Source::new(bytes);
     if !matches!(source.next_line(), Ok(Some((_, "$MeshFormat")))) {
@@ -102,7 +102,7 @@ fn end(source: &mut Source, wanted: &str, section: &'static str) -> Result<(), M
     if found == wanted {
         return Ok(());
     }
-    // Cut within its own last word.
+    // The file ends within its last word.
     if source.left() == 0 && wanted.starts_with(found) {
         return Err(source.error(Fault::Truncated(section)));
     }
@@ -135,7 +135,7 @@ fn physical_names(source: &mut Source) -> Result<Vec<Group>, MshError> {
     })
 }
 
-/// Tags become places in lists.
+/// Replaces tags by indices.
 fn resolved(sections: Sections, text: bool) -> Result<MshFile, MshError> {
     let missing = |name| MshError::whole(Fault::NoSection(name));
     let raw_nodes = sections.nodes.ok_or_else(|| missing("Nodes"))?;

@@ -1,9 +1,9 @@
 //! Bytes of a file as numbers: text by lines, or binary in either byte order. Counts are checked
-//! against the bytes left before anything is allocated for them.
+//! against the remaining bytes before anything is allocated.
 
 use super::error::{Fault, MshError, Place};
 
-/// How numbers are written.
+/// Encoding of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Text,
@@ -44,29 +44,27 @@ impl<'a> Source<'a> {
         self.at = to;
     }
 
-    /// The next line, without blanks at its ends, if there is one before the file ends; blank lines
-    /// are skipped.
+    /// The next line, trimmed, if there is one before the file ends; blank lines are skipped.
     pub(super) fn next_line(&mut self) -> Result<Option<(Place, &'a str)>> {
         let blank = self.bytes[self.at..].iter().take_while(|b| b.is_ascii_whitespace()).count();
         self.advance(self.at + blank);
         if self.left() == 0 {
             return Ok(None);
         }
-        let (rest, place) = (&self.bytes[self.at..], self.place());
-        let end = rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
-        let text = std::str::from_utf8(rest[..end].trim_ascii())
-            .map_err(|_| self.unexpected("text", &rest[..end]))?;
+        let (remaining, place) = (&self.bytes[self.at..], self.place());
+        let end = remaining.iter().position(|b| *b == b'\n').unwrap_or(remaining.len());
+        let text = std::str::from_utf8(remaining[..end].trim_ascii())
+            .map_err(|_| self.unexpected("text", &remaining[..end]))?;
         self.advance((self.at + end + 1).min(self.bytes.len()));
         Ok(Some((place, text)))
     }
 
-    /// The next line; there must be one.
+    /// The next line, which must exist.
     pub(super) fn line(&mut self, within: &'static str) -> Result<(Place, &'a str)> {
         self.next_line()?.ok_or_else(|| self.error(Fault::Truncated(within)))
     }
 
-    /// Goes to the line after `end`, which ends a section that is not read; binary data may come
-    /// before it.
+    /// Skips to the line after `end`, which ends an unread section; binary data may precede it.
     pub(super) fn skip_past(&mut self, end: &str, within: &'static str) -> Result<()> {
         let found = self.bytes[self.at..].windows(end.len()).position(|w| w == end.as_bytes());
         let Some(found) = found else { return Err(self.error(Fault::Truncated(within))) };
@@ -84,10 +82,11 @@ impl<'a> Source<'a> {
         while let Some(b' ' | b'\t' | b'\r') = self.bytes.get(self.at) {
             self.at += 1;
         }
-        let rest = &self.bytes[self.at..];
-        let word = &rest[..rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len())];
-        // A word that touches the end of the file may have lost digits.
-        if word.len() == rest.len() {
+        let remaining = &self.bytes[self.at..];
+        let word =
+            &remaining[..remaining.iter().position(u8::is_ascii_whitespace).unwrap_or(remaining.len())];
+        // A word at the end of the file may have lost digits.
+        if word.len() == remaining.len() {
             return Err(self.error(Fault::Truncated(what)));
         }
         if word.is_empty() {
@@ -137,14 +136,14 @@ impl<'a> Source<'a> {
         Ok(if big { f64::from_be_bytes(raw) } else { f64::from_le_bytes(raw) })
     }
 
-    /// A count of things that take at least `bytes` each in a binary file, and two characters in a
+    /// A count of items that take at least `bytes` each in a binary file, and two characters in a
     /// text.
     pub(super) fn count(&mut self, what: &'static str, bytes: usize) -> Result<usize> {
         let count = self.size(what)?;
         self.room(what, count, bytes)
     }
 
-    /// A count as it was read, if the file has room for that many.
+    /// Checks that the file is large enough for a count.
     pub(super) fn room(&self, what: &'static str, count: i64, bytes: usize) -> Result<usize> {
         let each = if self.encoding == Encoding::Text { 2 } else { bytes };
         let fits =
@@ -152,14 +151,14 @@ impl<'a> Source<'a> {
         fits.ok_or_else(|| self.error(Fault::Count { what, count: count.max(0) as u64, left: self.left() }))
     }
 
-    /// The end of a line of a text; nothing in a binary file.
+    /// The end of a line in a text; nothing in a binary file.
     pub(super) fn end_row(&mut self) -> Result<()> {
         if self.encoding != Encoding::Text {
             return Ok(());
         }
-        let rest = &self.bytes[self.at..];
-        let end = rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
-        let more = rest[..end].trim_ascii();
+        let remaining = &self.bytes[self.at..];
+        let end = remaining.iter().position(|b| *b == b'\n').unwrap_or(remaining.len());
+        let more = remaining[..end].trim_ascii();
         if !more.is_empty() {
             let fault = Fault::LongLine(String::from_utf8_lossy(more).chars().take(40).collect());
             return Err(self.error(fault));
@@ -169,7 +168,7 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// Reads in text what even binary files write as text.
+    /// Reads as text what even binary files store as text.
     pub(super) fn as_text<T>(&mut self, read: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
         let encoding = std::mem::replace(&mut self.encoding, Encoding::Text);
         let value = read(self);

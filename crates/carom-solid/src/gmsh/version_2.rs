@@ -31,7 +31,7 @@ pub(super) fn nodes(source: &mut Source) -> Result<Vec<(Row, [f64; 3])>, MshErro
     Ok(nodes)
 }
 
-/// Cells; neighbours in the file of one type and group make a block.
+/// Cells; consecutive ones of the same type and group form a block.
 pub(super) fn elements(source: &mut Source) -> Result<Vec<RawBlock>, MshError> {
     const WITHIN: &str = "$Elements";
     let total = count(source, "cells", 8)?;
@@ -78,7 +78,7 @@ fn tags(source: &mut Source) -> Result<usize, MshError> {
     source.room("tags of a cell", tags, 4)
 }
 
-/// Tags and nodes of a cell; the first tag is the physical group, the others do not matter here.
+/// Tags and nodes of a cell; the first tag is the physical group, the others are ignored.
 fn cell(
     source: &mut Source,
     row: Row,

@@ -1,4 +1,4 @@
-//! Sections of version 4.1: entities own physical groups, nodes and cells come in blocks by entity.
+//! Sections of version 4.1: entities own physical groups; nodes and cells are grouped by entity.
 
 use std::collections::HashMap;
 
@@ -24,7 +24,7 @@ pub(super) fn entities(source: &mut Source) -> Result<HashMap<(i64, i64), Vec<i6
                 source.double(WITHIN)?;
             }
             let physical = source.count("physical groups", 4)?;
-            // A negative group is one of reversed orientation.
+            // A negative group has reversed orientation.
             let of: Vec<i64> =
                 (0..physical).map(|_| source.int(WITHIN).map(i64::abs)).collect::<Result<_, _>>()?;
             if dimension > 0 {

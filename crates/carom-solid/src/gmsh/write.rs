@@ -1,6 +1,6 @@
-//! Bodies as a .msh file, version 4.1, text: what [`read`](super::read()) and
-//! [`body`](super::MshFile::body) give back is the same, bit for bit, and Gmsh opens it. Each body
-//! is a surface, each of its sides a curve; sides of one name on several bodies are one physical
+//! Writes bodies as a .msh file, version 4.1, text. [`read`](super::read()) and
+//! [`body`](super::MshFile::body) recover them bitwise, and Gmsh opens the file. Each body is a
+//! surface, each of its sides a curve; sides of the same name on several bodies are one physical
 //! curve.
 
 use std::collections::BTreeSet;
@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use super::cell_type::number;
 use crate::mesh::{Element, Facet, Mesh};
 
-/// Bodies with their names as a .msh file. A `"` in a name becomes `'`.
+/// Named bodies as a .msh file. A `"` in a name becomes `'`.
 ///
 /// ```
 /// use carom_solid::{Element, generate, gmsh};
@@ -101,7 +101,7 @@ pub fn write_msh41(bodies: &[(&str, &Mesh)]) -> String {
     out
 }
 
-/// The line that is an edge of a triangle.
+/// The line element on the edge of a triangle.
 fn edge(element: Element) -> Element {
     match element.degree() {
         1 => Element::L2,
@@ -110,7 +110,7 @@ fn edge(element: Element) -> Element {
     }
 }
 
-/// Lower and upper corner of the box around places, z = 0.
+/// Lower and upper corner of the box around points, z = 0.
 fn corners<'a>(places: impl Iterator<Item = &'a [f64]>) -> String {
     let start = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
     let [a, b, c, d] =

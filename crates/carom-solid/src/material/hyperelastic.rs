@@ -1,4 +1,4 @@
-//! What a hyperelastic law answers at a point of a body, and the one thing it refuses.
+//! The interface of a hyperelastic law, and its only error.
 
 use carom_algebra::{Mat, Vector};
 
@@ -10,14 +10,14 @@ use crate::points::{LANES, Moduli, get, set};
 #[error("J = {0:.3e} is not positive")]
 pub struct NotPositive(pub f64);
 
-/// A hyperelastic law. What several answers need is computed once by [`Material::at`]. `at`,
-/// `energy`, `stress` and `tangent` are `#[inline(always)]`: they are compiled into the loop over
-/// quadrature points, for wide registers.
+/// A hyperelastic law. [`Material::at`] computes common terms once. `at`, `energy`, `stress` and
+/// `tangent` are `#[inline(always)]`: they are compiled into the loop over quadrature points, for
+/// wide registers.
 pub trait Material<const D: usize>: Send + Sync + 'static {
-    /// Degree of Ψ as a polynomial in F that is to be integrated exactly; 0 if it is none.
+    /// Degree of Ψ as a polynomial in F to be integrated exactly; 0 if it is not a polynomial.
     const ENERGY_DEGREE: usize;
 
-    /// Whether Ψ depends on FᵀF alone; else it is quadratic in H.
+    /// Whether Ψ depends on FᵀF alone; otherwise it is quadratic in H.
     const OBJECTIVE: bool = true;
 
     /// Kinematics at a point.
@@ -56,7 +56,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
         dp
     }
 
-    /// ∂P/∂F : dF at the first `count` of four points side by side: `h`, `dh` and the result are
+    /// ∂P/∂F : dF at the first `count` of four points, in lanes: `h`, `dh` and the result are
     /// `[i][j][point]`.
     #[inline(always)]
     fn changes(
@@ -68,10 +68,10 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
         changes_one_by_one(self, h, dh, count)
     }
 
-    /// Cauchy stress within the space of the body.
+    /// Cauchy stress within the dimensions of the body.
     fn cauchy(&self, point: &Self::Point) -> Mat<D>;
 
-    /// Cauchy normal stress in the directions the body does not extend in.
+    /// Cauchy normal stress in the directions in which the body does not extend.
     fn lateral(&self, point: &Self::Point) -> f64;
 
     /// Determinant J of the three-dimensional deformation gradient, positive or not.
@@ -80,7 +80,7 @@ pub trait Material<const D: usize>: Send + Sync + 'static {
     }
 }
 
-/// [`Material::changes`] by [`Material::change`], for a law or a dimension that has no better way.
+/// [`Material::changes`] by [`Material::change`], for a law or dimension without a faster one.
 #[inline(always)]
 pub(super) fn changes_one_by_one<const D: usize>(
     law: &(impl Material<D> + ?Sized),

@@ -1,4 +1,4 @@
-//! Functions of F = I + H that keep the digits of a small H: J − 1 = tr H + … + det H, cof F − I, x
+//! Functions of F = I + H without cancellation for small H: J − 1 = tr H + … + det H, cof F − I, x
 //! − ln(1 + x).
 
 use carom_algebra::Mat;
@@ -38,7 +38,7 @@ pub(crate) fn ln_1p(x: f64) -> [f64; 2] {
     [2.0 * s + r, x * s - r]
 }
 
-/// ln(1 + x) of four numbers at once.
+/// ln(1 + x) of four numbers.
 #[inline(always)]
 pub(crate) fn ln_1p_lanes(x: &[f64; 4]) -> [f64; 4] {
     if x.iter().any(|x| x.abs() > 0.1) {
@@ -76,9 +76,9 @@ mod tests {
     #[test]
     fn logarithm_keeps_its_digits() {
         for x in [0.0999_f64, -0.0999, 0.03, 1e-5] {
-            let [ln, rest] = ln_1p(x);
+            let [ln, excess] = ln_1p(x);
             assert!((ln / x.ln_1p() - 1.0).abs() < 4e-16, "{x}");
-            assert!((rest / (x - x.ln_1p()) - 1.0).abs() < 1e-15 / x.abs(), "{x}");
+            assert!((excess / (x - x.ln_1p()) - 1.0).abs() < 1e-15 / x.abs(), "{x}");
         }
         let x = 1e-9;
         assert!((ln_1p(x)[1] / (0.5 * x * x * (1.0 - 2.0 * x / 3.0)) - 1.0).abs() < 1e-15);

@@ -1,6 +1,6 @@
-//! The laws a body can be made of, for a choice at run time.
+//! The available laws, chosen at run time.
 
-/// Choice of a law with Lamé's constants.
+/// A law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub enum Law {

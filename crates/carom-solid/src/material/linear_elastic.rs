@@ -2,8 +2,8 @@
 //!
 //!   P = σ = Λ tr ε I + 2μ ε,   K(a, b) = μ (a·b) I + Λ a⊗b + μ b⊗a.
 //!
-//! Reference and current configuration are one: σ is both Piola–Kirchhoff and Cauchy stress, large
-//! rotations strain the body, and no H is refused.
+//! Reference and current configuration coincide: σ is both Piola–Kirchhoff and Cauchy stress, large
+//! rotations strain the body, and every H is valid.
 
 use carom_algebra::{Mat, Vector};
 

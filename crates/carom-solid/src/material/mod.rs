@@ -1,13 +1,13 @@
 //! Hyperelastic laws Ψ(H), H = F − I, with first Piola–Kirchhoff stress P = ∂Ψ/∂F and tangent
 //! ∂P/∂F.
 //!
-//! A law is written once for every dimension `D`: in the `3 − D` directions a body does not extend
-//! in there is no strain (H is padded with zeros). `D = 2` is plane strain, or wrapped in
-//! [`PlaneStress`] plane stress; `D = 1` is uniaxial *strain*, so that a linear-elastic bar has the
-//! modulus Λ + 2μ, which is Young's modulus when Poisson's ratio is 0 (Λ = 0, μ = E/2).
+//! A law is written once for every dimension `D`: there is no strain in the `3 − D` directions in
+//! which a body does not extend (H is padded with zeros). `D = 2` is plane strain or, wrapped in
+//! [`PlaneStress`], plane stress. `D = 1` is uniaxial *strain*: a linear-elastic bar has the
+//! modulus Λ + 2μ, which is Young's modulus if Poisson's ratio is 0 (Λ = 0, μ = E/2).
 //!
-//! Laws take H rather than F, and no formula subtracts nearly equal numbers when H is small: a
-//! motion of 1e-9 keeps its digits.
+//! Laws take H rather than F, and no formula subtracts nearly equal numbers for small H:
+//! displacements of 1e-9 keep their accuracy.
 
 mod hyperelastic;
 mod kinematics;

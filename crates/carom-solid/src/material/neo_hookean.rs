@@ -4,7 +4,7 @@
 //!   P = μ(F − F⁻ᵀ) + Λ ln J F⁻ᵀ,   K(a, b) = μ (a·b) I + (μ − Λ ln J) b̃⊗ã + Λ ã⊗b̃,   ã = F⁻ᵀa.
 //!
 //! Without cancellation, with d = J − 1 and C = cof F − I: F⁻ᵀ = (I + C)/J, F − F⁻ᵀ = (H − C + d
-//! F)/J, tr E − ln J = (tr H − d) + H:H/2 + (d − ln(1 + d)), and tr H − d holds only terms of
+//! F)/J, tr E − ln J = (tr H − d) + H:H/2 + (d − ln(1 + d)), and tr H − d contains only terms of
 //! second and third order.
 
 use carom_algebra::{Mat, Vector};
@@ -60,7 +60,7 @@ impl<const D: usize> Material<D> for NeoHookean {
 
     #[inline(always)]
     fn energy(&self, p: &Point<D>) -> f64 {
-        // tr H − d without subtracting: only what d has beyond its trace.
+        // tr H − d without cancellation: the terms of d beyond the trace.
         let higher = match D {
             1 => 0.0,
             2 => p.h.det(),
@@ -83,8 +83,8 @@ impl<const D: usize> Material<D> for NeoHookean {
             + a_tilde.outer(&b_tilde) * self.lambda
     }
 
-    /// ∂P/∂F : dF = μ dF + Λ (F⁻ᵀ:dF) F⁻ᵀ + (μ − Λ ln J) F⁻ᵀ dFᵀ F⁻ᵀ, in the plane for all points
-    /// at once.
+    /// ∂P/∂F : dF = μ dF + Λ (F⁻ᵀ:dF) F⁻ᵀ + (μ − Λ ln J) F⁻ᵀ dFᵀ F⁻ᵀ; vectorised over the points in
+    /// the plane.
     #[inline(always)]
     fn changes(
         &self,
@@ -113,7 +113,7 @@ impl<const D: usize> Material<D> for NeoHookean {
             let d = [[dh[0][0][l], dh[0][1][l]], [dh[1][0][l], dh[1][1][l]]];
             let trace =
                 self.lambda * (g[0][0] * d[0][0] + g[0][1] * d[0][1] + g[1][0] * d[1][0] + g[1][1] * d[1][1]);
-            let rest = self.mu - self.lambda * logarithm[l];
+            let coefficient = self.mu - self.lambda * logarithm[l];
             // dFᵀ F⁻ᵀ.
             let m = [
                 [d[0][0] * g[0][0] + d[1][0] * g[1][0], d[0][0] * g[0][1] + d[1][0] * g[1][1]],
@@ -122,7 +122,7 @@ impl<const D: usize> Material<D> for NeoHookean {
             for i in 0..2 {
                 for j in 0..2 {
                     let turned = g[i][0] * m[0][j] + g[i][1] * m[1][j];
-                    changes[i][j][l] = self.mu * d[i][j] + trace * g[i][j] + rest * turned;
+                    changes[i][j][l] = self.mu * d[i][j] + trace * g[i][j] + coefficient * turned;
                 }
             }
         }

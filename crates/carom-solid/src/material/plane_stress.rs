@@ -1,24 +1,23 @@
-//! Plane stress: the stretch across the plane is what makes the stress across it vanish, at each
-//! point for itself,
+//! Plane stress: the out-of-plane stretch makes the out-of-plane stress vanish, pointwise,
 //!
 //!   P₃₃(F, F₃₃) = 0,   Aᵢⱼ = Cᵢⱼ − Cᵢ₃ C₃ⱼ / C₃₃,
 //!
 //! (static condensation of the three-dimensional law; Klinkel, Govindjee, Engng. Comput. 19 (2002)
-//! 341–354). Ψ is that of the law at the solved stretch, so that P = ∂Ψ/∂F: what the stretch adds
-//! to the derivative is P₃₃ = 0. Cauchy stress is P Fᵀ/J with the J of all three directions; the
-//! force on the deformed, thinner or thicker, sheet is that of P on the undeformed one.
+//! 341–354). Ψ is that of the law at the solved stretch, so that P = ∂Ψ/∂F: the derivative with
+//! respect to the stretch is P₃₃ = 0. Cauchy stress is P Fᵀ/J with the three-dimensional J; the
+//! force on the deformed sheet of changed thickness is that of P on the undeformed one.
 
 use carom_algebra::{Mat, Vector};
 
 use super::kinematics::excess_det;
 use super::{LinearElastic, Material, NeoHookean, NotPositive, SaintVenantKirchhoff};
 
-/// A law that can be free of stress across a plane.
+/// A law that admits plane stress.
 pub trait Thickness: Material<3> {
     /// F₃₃ − 1 at which P₃₃ = 0.
     ///
     /// # Errors
-    /// If J of the plane is not positive, or no positive stretch is free of stress.
+    /// If J of the plane is not positive, or there is no positive stress-free stretch.
     fn excess_stretch(&self, h: &Mat<2>) -> Result<f64, NotPositive>;
 }
 
@@ -33,7 +32,7 @@ impl<L: Thickness> Material<2> for PlaneStress<L> {
     const OBJECTIVE: bool = <L as Material<3>>::OBJECTIVE;
     type Point = <L as Material<3>>::Point;
 
-    // Not compiled into every loop: what a call costs is little beside the thickness it finds.
+    // Not inlined: a call costs little compared with the solution for the thickness.
     #[inline(never)]
     fn at(&self, h: &Mat<2>) -> Result<Self::Point, NotPositive> {
         let across = self.0.excess_stretch(h)?;
@@ -94,7 +93,7 @@ impl Thickness for SaintVenantKirchhoff {
         let twice_trace = 2.0 * h.trace() + h.double_dot(h);
         let twice = -self.lambda * twice_trace / (self.lambda + 2.0 * self.mu);
         if twice > -1.0 {
-            // √(1 + x) − 1 without subtracting.
+            // √(1 + x) − 1 without cancellation.
             Ok(twice / (1.0 + (1.0 + twice).sqrt()))
         } else {
             Err(NotPositive(0.0))
@@ -104,8 +103,8 @@ impl Thickness for SaintVenantKirchhoff {
 
 impl Thickness for NeoHookean {
     /// With s = ln F₃₃: μ(e²ˢ − 1) + Λ(ln J₂ + s) = 0 by Newton's method. The left side is convex
-    /// in s; for Λ ≥ 0 it rises everywhere, and the iterates come down to its one root from the
-    /// second on. Λ < 0 has none where the plane is pressed together too far.
+    /// in s. For Λ ≥ 0 it increases everywhere, and from the second on the iterates descend to its
+    /// only root. For Λ < 0 there is none if the plane is compressed too far.
     #[inline(always)]
     fn excess_stretch(&self, h: &Mat<2>) -> Result<f64, NotPositive> {
         let excess = excess_det(h);

@@ -3,7 +3,7 @@
 //!
 //!   S = Λ tr E I + 2μE,   P = F S,   K(a, b) = (a·S b) I + Λ Fa⊗Fb + μ [Fb⊗Fa + (a·b) F Fᵀ].
 //!
-//! The law itself is defined for J ≤ 0; such a point is refused all the same.
+//! The law itself is defined for J ≤ 0, but such a point is an error all the same.
 
 use carom_algebra::{Mat, Vector};
 

@@ -1,5 +1,5 @@
 //! Every law in every dimension: energy → stress → tangent by differences, objectivity, the
-//! undeformed state, small motions, J ≤ 0.
+//! undeformed state, small displacements, J ≤ 0.
 
 use carom_algebra::{Mat, Vector};
 use proptest::prelude::*;
@@ -36,7 +36,7 @@ fn distance<const D: usize>(a: &Mat<D>, b: &Mat<D>) -> f64 {
     e.double_dot(&e).sqrt()
 }
 
-/// Slope of a function of one number by sixth-order central differences.
+/// Derivative of a scalar function by sixth-order central differences.
 fn slope(h: f64, f: impl Fn(f64) -> f64) -> f64 {
     let d = |m: f64| f(m * h) - f(-m * h);
     (45.0 * d(1.0) - 9.0 * d(2.0) + d(3.0)) / (60.0 * h)
@@ -91,8 +91,8 @@ fn objectivity<const D: usize, L: Material<D>>(law: &L, h: &Mat<D>, q: &Mat<D>) 
     assert!((law.lateral(&at(&turned)) - law.lateral(&at(h))).abs() < 1e-13);
 }
 
-/// The same motion padded to three dimensions gives the same energy and the Cauchy stress with its
-/// lateral component.
+/// The same deformation padded to three dimensions gives the same energy and the same Cauchy stress
+/// with its lateral component.
 fn padded<const D: usize, L: Material<D> + Material<3>>(law: &L, h: &Mat<D>) {
     let wide =
         Mat(std::array::from_fn(|i| std::array::from_fn(|j| if i < D && j < D { h.0[i][j] } else { 0.0 })));
@@ -162,7 +162,7 @@ proptest! {
 
     #[test]
     fn small_motions_keep_their_digits(entries in prop::collection::vec(-1.0..1.0, 9)) {
-        // To first order every law is Hooke's; at 1e-9 the rest is 1e-9 of it.
+        // To first order every law is Hooke's; at 1e-9 the relative remainder is 1e-9.
         let h = matrix::<3>(&entries) * 1e-9;
         let (hooke, energy_hooke) = (stress(&linear_elastic(), &h), energy(&linear_elastic(), &h));
         let size = hooke.double_dot(&hooke).sqrt() + MU * h.double_dot(&h).sqrt();
@@ -213,7 +213,7 @@ fn a_linear_bar_without_lateral_contraction_has_young_s_modulus() {
     assert_eq!(stress(&law, &Mat([[1e-3]])).0[0][0], 0.9);
 }
 
-/// Uniaxial stretch by hand: P = μ(F − 1/F) + Λ ln F / F.
+/// Uniaxial stretch in closed form: P = μ(F − 1/F) + Λ ln F / F.
 #[test]
 fn neo_hookean_stretch_matches_the_scalar_formula() {
     let f = 1.3_f64;

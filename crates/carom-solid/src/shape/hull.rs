@@ -1,7 +1,7 @@
-//! Control points whose convex hull holds a curved line or cell: its map X(ξ) = Σ φᵃ Xᵃ in
+//! Control points whose convex hull contains a curved line or cell: its map X(ξ) = Σ φᵃ Xᵃ in
 //! Bernstein polynomials, which are ≥ 0 and sum to 1.
 //!
-//! The control point of k corners, some of them the same, is the polar form of the map at them
+//! The control point of k corners, possibly repeated, is the polar form of the map at them
 //! (Ramshaw, Comput. Aided Geom. Design 6 (1989)):
 //!
 //! ```text
@@ -20,12 +20,12 @@ use crate::bounds::Bounds;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
     nodes: usize,
-    /// A row for each control point.
+    /// A row per control point.
     weights: Vec<f64>,
 }
 
 impl Hull {
-    /// Of a simplex of shape `S`; its corners come first among its nodes.
+    /// The hull of a simplex of shape `S`, whose corners are its first nodes.
     #[must_use]
     pub fn of<const R: usize, const N: usize, S: Shape<R, N>>() -> Self {
         let weights =
@@ -33,7 +33,7 @@ impl Hull {
         Self { nodes: N, weights }
     }
 
-    /// Of a line of 1 to 4 nodes on −`reach` ≤ ξ ≤ `reach`: beyond 1 it is extrapolated.
+    /// The hull of a line of 1 to 4 nodes on −`reach` ≤ ξ ≤ `reach`, extrapolated beyond 1.
     ///
     /// # Panics
     /// For any other number of nodes.
@@ -52,8 +52,8 @@ impl Hull {
         Self { nodes, weights: control(nodes - 1, &ends, nodes, values) }
     }
 
-    /// Box around the control points, and so around the whole line or cell, from the positions of
-    /// its nodes: to round-off, which the caller adds.
+    /// Box around the control points, and hence around the whole line or cell, from the positions
+    /// of its nodes. The caller adds a margin for round-off.
     #[must_use]
     pub fn bounds<'a, P: AsRef<[f64]> + ?Sized + 'a>(&self, position: impl Fn(usize) -> &'a P) -> Bounds {
         let mut bounds = Bounds::EMPTY;
@@ -138,7 +138,7 @@ mod tests {
         assert!(bounds.grown(1e-13).contains(&[at(0), at(1), at(2)]));
     }
 
-    /// The box holds the cell, and is no larger than that of the nodes where the cell is straight.
+    /// The box contains the cell, and is no larger than that of the nodes if the cell is straight.
     fn check<const R: usize, const N: usize, S: Shape<R, N>>(nodes: &[[f64; 3]]) {
         let hull = Hull::of::<R, N, S>();
         let bounds = hull.bounds(|a| &nodes[a]);

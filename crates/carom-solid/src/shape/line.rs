@@ -9,7 +9,7 @@ use carom_algebra::Vector;
 use super::{Domain, Shape};
 use crate::quadrature::{self, Rule};
 
-/// Shape functions of a line and their first and second derivatives; entries past its nodes are
+/// Shape functions of a line and their first and second derivatives; entries beyond its nodes are
 /// zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineShape {

@@ -1,8 +1,7 @@
 //! Shape functions φᵃ(ξ) of the reference cells: Lagrange polynomials, φᵃ(ξᵇ) = δᵃᵇ, Σφᵃ = 1.
 //!
 //! Node order is Gmsh's and VTK's: corners, then the nodes of each edge in its direction, then the
-//! interior. One short file per reference domain; every shape passes the same test at the foot of
-//! this file.
+//! interior. One file per reference domain; the test at the end of this file covers every shape.
 
 mod hull;
 mod line;
@@ -32,7 +31,7 @@ pub trait Domain<const R: usize>: Send + Sync + 'static {
 
 /// Shape functions of a reference cell with `R` reference coordinates and `N` nodes.
 pub trait Shape<const R: usize, const N: usize>: Send + Sync + 'static {
-    /// The domain they live on.
+    /// Their domain.
     type Domain: Domain<R>;
 
     /// Polynomial degree.

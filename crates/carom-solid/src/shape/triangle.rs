@@ -154,7 +154,7 @@ impl Shape<2, 10> for Tri10 {
     }
 }
 
-/// The nearer and the farther corner of an edge's node.
+/// The nearer and the farther corner of an edge node.
 fn edge_node(a: usize) -> (usize, usize) {
     let [i, j] = EDGES[(a - 3) / 2];
     if a % 2 == 1 { (i, j) } else { (j, i) }

@@ -1,4 +1,4 @@
-//! What a solid gives as a body.
+//! The [`Body`] interface of a solid.
 
 use carom_algebra::{Mat, Vector, wide};
 

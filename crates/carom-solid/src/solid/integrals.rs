@@ -1,4 +1,4 @@
-//! Sums over the quadrature points of a cell: forces, tangents, and changes of forces.
+//! Sums over the quadrature points of a cell: forces, tangents, and differentials of forces.
 
 use carom_algebra::{Mat, Vector};
 
@@ -10,7 +10,7 @@ use crate::points::{Blocks, LANES, Mats, Moduli, get, set, set_moduli, sum};
 use crate::shape::Shape;
 
 impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N, S, L> {
-    /// Forces and, if asked for, the tangent of a cell from `at(h)` for the gradients H of several
+    /// Forces and, if requested, the tangent of a cell from `at(h)` for the gradients H of several
     /// displacement fields at a point: energy, P and the moduli.
     #[inline(always)]
     fn integrate<const M: usize>(
@@ -64,7 +64,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
         Ok(energy)
     }
 
-    /// The same from the law at one position.
+    /// `integrate` with the law in one configuration.
     #[inline(always)]
     pub(super) fn integrate_at(
         &self,
@@ -87,7 +87,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
         )
     }
 
-    /// The same from the discrete gradient between two positions, forces alone.
+    /// `integrate` with the discrete gradient between two configurations, forces only.
     #[inline(always)]
     pub(super) fn integrate_between(
         &self,
@@ -108,8 +108,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
         )
     }
 
-    /// Forces of the changes of stress `at(h, dh, count)` at points side by side, made of the
-    /// gradients of fields and of a change of the last.
+    /// Forces of the stress increments `at(h, dh, count)` in lanes, from the gradients of fields
+    /// and of an increment of the last.
     #[inline(always)]
     pub(super) fn differentiate<const M: usize>(
         &self,
@@ -153,7 +153,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
     }
 }
 
-/// Both halves of a symmetric matrix from the blocks a ≤ b.
+/// Both triangles of a symmetric matrix from the blocks a ≤ b.
 #[inline(always)]
 fn spread<const D: usize, const N: usize>(blocks: &Blocks<D, N>, tangent: &mut [f64]) {
     for b in 0..N {

@@ -1,4 +1,4 @@
-//! One tetrahedron: nothing beneath a body knows that there are only two dimensions today.
+//! One tetrahedron: nothing beneath a body assumes two dimensions.
 
 use std::collections::BTreeMap;
 

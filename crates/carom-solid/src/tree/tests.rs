@@ -1,10 +1,10 @@
-//! Against all boxes one by one.
+//! Compared with an exhaustive search.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// Boxes in 1, 2 or 3 dimensions, a third of them points, some twice.
+/// Boxes in 1, 2 or 3 dimensions, a third of them points, some duplicated.
 fn boxes(dimension: usize) -> impl Strategy<Value = Vec<Bounds>> {
     let corner = prop::collection::vec(-4i32..=4, dimension);
     let one = (corner.clone(), corner, 0..3).prop_map(|(a, b, kind)| {
@@ -58,7 +58,7 @@ proptest! {
         }
         let mut tree = Tree::new(boxes.len(), |k| boxes[k]);
         check(&tree, &boxes, &queries);
-        // And back again.
+        // Restored.
         tree.update(|k| first[k]);
         check(&tree, &first, &queries);
         tree.update(|k| boxes[k]);
@@ -77,7 +77,7 @@ fn equal_boxes_one_box_and_none() {
     }
 }
 
-/// Boxes of the edges of a regular polygon turned by an angle and stretched.
+/// Boxes of the edges of a regular polygon rotated by an angle and stretched.
 fn polygon(count: usize, turned: f64, stretched: f64) -> impl Fn(usize) -> Bounds {
     let at = move |k: usize| {
         let (sin, cos) = (turned + std::f64::consts::TAU * k as f64 / count as f64).sin_cos();
@@ -87,8 +87,8 @@ fn polygon(count: usize, turned: f64, stretched: f64) -> impl Fn(usize) -> Bound
 }
 
 impl Tree {
-    /// How many boxes a query compares with.
-    fn looked_at(&self, query: &Bounds) -> usize {
+    /// Number of boxes that a query is compared with.
+    fn visited(&self, query: &Bounds) -> usize {
         let (mut k, mut count) = (0, 0);
         while let Some(node) = self.nodes.get(k) {
             count += 1;
@@ -103,10 +103,10 @@ fn a_query_costs_a_logarithm() {
     let mean = |count: usize| {
         let facet = polygon(count, 0.1, 1.0);
         let tree = Tree::new(count, &facet);
-        (0..count).map(|k| tree.looked_at(&facet(k))).sum::<usize>() as f64 / count as f64
+        (0..count).map(|k| tree.visited(&facet(k))).sum::<usize>() as f64 / count as f64
     };
     let means = [1_000, 10_000, 100_000].map(mean);
-    // Two boxes a level, and a little for neighbours: a decade has 3.3 levels.
+    // Two boxes per level, and a few for neighbours: a decade has 3.3 levels.
     assert!(means[0] < 3.0 * 10.0, "{means:?}");
     assert!(means.windows(2).all(|m| m[1] - m[0] < 3.0 * 3.4), "{means:?}");
 }
@@ -115,15 +115,15 @@ fn a_query_costs_a_logarithm() {
 fn a_tree_that_has_become_poor_is_built_anew() {
     let count = 512;
     let mut tree = Tree::new(count, polygon(count, 0.0, 1.0));
-    // A size is no quality, and a body that turns keeps what is near together.
+    // Uniform scaling and rotation do not degrade a tree.
     assert!(!tree.update(polygon(count, 0.0, 7.0)));
     assert!(!tree.update(polygon(count, 1.0, 1.0)));
-    // Each facet next to strangers.
+    // Neighbouring facets are far apart.
     let facet = polygon(count, 0.0, 1.0);
     let shuffled = |k: usize| facet(k * 201 % count);
     assert!(tree.update(shuffled));
     assert!(!tree.update(shuffled));
     let fresh = Tree::new(count, shuffled);
     let query = shuffled(100);
-    assert_eq!(tree.looked_at(&query), fresh.looked_at(&query));
+    assert_eq!(tree.visited(&query), fresh.visited(&query));
 }

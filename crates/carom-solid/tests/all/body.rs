@@ -1,5 +1,5 @@
-//! Bodies as the rest of Carom uses them: rigid motion, derivatives, affine patch test, masses,
-//! stress, places.
+//! Bodies through their interface: rigid motion, derivatives, affine patch test, masses, stress,
+//! location of points.
 
 use carom_solid::{
     Body, Bounds, Cover, Element, Law, Mesh, SolidError, body, cell_lumped_mass, generate, line_shape,
@@ -80,7 +80,7 @@ fn force_and_tangent_are_derivatives_and_the_tangent_is_symmetric() {
             [x[0] + 0.1 * x[1] * x[1] - 0.05 * x[0] * x[1], 0.9 * x[1] + 0.07 * x[0].sin()]
         });
         let (mut force, mut only, mut tangent) = (vec![0.0; n], vec![0.0; n], vec![0.0; n * n]);
-        // The last cell of the disc is a curved one.
+        // The last cell of the disc is curved.
         let cell = body.mesh().cell_count() - 1;
         let nodes = body.mesh().cell(cell).to_vec();
         let energy = body.cell_tangent(cell, &y, &mut force, &mut tangent).unwrap();
@@ -133,14 +133,14 @@ fn affine_patch() {
         for (node, f) in f.iter().enumerate().filter(|(node, _)| !boundary.contains(node)) {
             assert!(f[0].hypot(f[1]) < 1e-12, "{element:?} {law:?}: node {node} is pulled by {f:?}");
         }
-        // Forces and (for the objective laws) moments of all nodes balance.
+        // Forces and (for objective laws) moments of all nodes balance.
         for i in 0..2 {
             assert!(f.iter().map(|f| f[i]).sum::<f64>().abs() < 1e-11);
         }
     }
 }
 
-/// Pulling on an edge: consistent forces of a uniform stress are 1/2 1/2, 1/6 1/6 4/6 and 1/8 1/8
+/// Tension on an edge: consistent forces of a uniform stress are 1/2 1/2, 1/6 1/6 4/6 and 1/8 1/8
 /// 3/8 3/8 of the edge's share.
 #[test]
 fn uniform_stress_gives_the_consistent_edge_forces() {
@@ -186,8 +186,8 @@ fn masses_and_volumes_add_up() {
     }
 }
 
-/// Two rings: the polygon misses 4.5 % of the disc's area, the curved cells converge to it with
-/// their order.
+/// Two rings: the polygon misses 4.5 % of the disc's area; curved cells converge to it with their
+/// order.
 #[test]
 fn curved_discs_have_their_area() {
     let area = |element, size: f64| {
@@ -202,7 +202,7 @@ fn curved_discs_have_their_area() {
         (sum / std::f64::consts::PI - 1.0).abs()
     };
     assert!(area(Element::T6, 0.5) < 2e-4 && area(Element::T10, 0.5) < 3e-5);
-    // A polynomial arc of degree k is right to order k + 1, its area one order better for even k,
+    // A polynomial arc of degree k is of order k + 1, and its area of one order more for even k,
     // where the error is odd along the arc.
     for (element, order) in [(Element::T3, 2.0), (Element::T6, 4.0), (Element::T10, 4.0)] {
         let measured = (area(element, 0.5) / area(element, 0.25)).log2();
@@ -223,7 +223,7 @@ fn lateral_stress_of_plane_strain_follows_from_three_dimensions() {
         let y = moved(&*body, |x| [1.2 * x[0], x[1]]);
         let state = body.point(0, &[0.3, 0.3], &y).unwrap();
         assert!((state.cauchy[2][2] - expected(1.2, 0.2)).abs() < 1e-14);
-        // Stretched along x only, y and z are alike.
+        // Stretched along x only, y and z are equivalent.
         assert!((state.cauchy[1][1] - state.cauchy[2][2]).abs() < 1e-14);
         assert_eq!((state.cauchy[0][2], state.cauchy[1][2]), (0.0, 0.0));
     }
@@ -254,7 +254,7 @@ fn places_are_found_in_straight_and_curved_cells() {
                 [at(0), at(1)]
             };
             for cell in 0..mesh.cell_count() {
-                // Also on the curved edge, and just inside it.
+                // Also on the curved edge and just inside.
                 for xi in [[0.2, 0.3], [0.5, 0.5], [0.499, 0.5], [0.0, 0.4]] {
                     let x = interpolated(cell, &xi);
                     let found = body.locate(&x);
@@ -304,7 +304,7 @@ fn bars_stretch_like_bars() {
     }
 }
 
-/// Smaller than any round-off of positions would allow if H were formed from F.
+/// Below the round-off of positions if H were formed from F.
 #[test]
 fn small_motions_keep_their_digits() {
     for law in [LAWS[0], LAWS[1]] {
@@ -339,7 +339,7 @@ fn bad_bodies_are_refused_with_cell_and_place() {
     assert!(matches!(error(wrong, 1.0, 1.0), SolidError::Dimension { dimension: 2, .. }));
 }
 
-/// By ray casting: a point lies in a polygon if a ray from it crosses its boundary an odd number of
+/// Ray casting: a point lies in a polygon if a ray from it crosses its boundary an odd number of
 /// times.
 #[test]
 fn a_cover_is_what_its_boundary_encloses() {
@@ -371,7 +371,7 @@ fn a_cover_is_what_its_boundary_encloses() {
                 inside += usize::from(odd);
                 let cells = (0..mesh.cell_count()).any(|cell| body.invert(cell, &y, &[p, q]).is_some());
                 assert_eq!(cover.contains(&[p, q]), cells, "the boxes have left out a cell");
-                // Too near to the polygon to be told from the curve.
+                // Too near to the polygon to be distinguished from the curve.
                 let near = boundary.iter().any(|[a, _]| (a[0] - p).hypot(a[1] - q) < 0.02 * bounds.size());
                 assert!(near || cover.contains(&[p, q]) == odd, "{element:?} at {p}, {q}");
             }

@@ -36,8 +36,7 @@ fn area(mesh: &Mesh) -> f64 {
     (0..mesh.cell_count()).map(volumes).sum()
 }
 
-/// Places of the nodes of every cell, and of every side in its order: what does not depend on
-/// numbering.
+/// Positions of the nodes of every cell, and of every side in order, independent of numbering.
 fn geometry(mesh: &Mesh) -> (Vec<Vec<[f64; 2]>>, Vec<(String, Vec<[f64; 2]>)>) {
     let nodes = mesh.nodes.of_dimension();
     let mut cells: Vec<Vec<_>> =
@@ -56,7 +55,7 @@ fn versions_and_encodings_give_the_same_bodies() {
     for order in 1..=3 {
         for surface in ["cylinder", "prism"] {
             let bodies: Vec<_> = variants(order).map(|v| fixture(&v).body(surface).unwrap()).collect();
-            // Binary files hold every bit, texts of Gmsh 16 digits.
+            // Binary files store every bit, texts of Gmsh 16 digits.
             assert_eq!(geometry(&bodies[0]), geometry(&bodies[2]));
             let (cells, sides) = geometry(&bodies[0]);
             for body in &bodies {
@@ -80,8 +79,8 @@ fn areas_and_arcs_are_exact() {
             let file = fixture(&variant);
             let (disc, prism) = (file.body("cylinder").unwrap(), file.body("prism").unwrap());
             assert!((area(&prism) - 0.5).abs() < 1e-13, "{}", area(&prism));
-            // An arc of angle 2φ between nodes: the chord's error is R²(φ − sin φ cos φ) a facet, φ
-            // = π/2/n; curved ones far less.
+            // An arc of angle 2φ between nodes: the chord's error is R²(φ − sin φ cos φ) per facet,
+            // φ = π/2/n; that of curved facets is far smaller.
             let miss = PI / 8.0 - area(&disc);
             let arcs = disc.sides["arc"].len() as f64;
             let half = PI / 2.0 / arcs;
@@ -99,7 +98,7 @@ fn areas_and_arcs_are_exact() {
     }
 }
 
-/// Facets follow each other with the body on the left; names belong to the bodies they touch.
+/// Facets are consecutive with the body on the left; names apply to the bodies they touch.
 #[test]
 fn sides_are_walked_with_the_body_on_the_left() {
     for order in 1..=3 {
@@ -137,8 +136,8 @@ fn sides_are_walked_with_the_body_on_the_left() {
     }
 }
 
-/// Everything saved, with the centre of the arcs and parameters of the nodes: the same body, and
-/// the lost node is told.
+/// Everything saved, including the centre of the arcs and parameters of the nodes: the same body,
+/// and the dropped node is reported.
 #[test]
 fn parameters_are_read_past() {
     for name in ["parametric_41_ascii.msh", "parametric_41_binary.msh"] {
@@ -170,7 +169,7 @@ fn bars() {
     }
 }
 
-/// Two triangles on the unit square in a binary file of either byte order, written here by the
+/// Two triangles on the unit square in a binary file of either byte order, written according to the
 /// format's description.
 fn square(version: f64, big_endian: bool) -> Vec<u8> {
     let int = |n: i32| if big_endian { n.to_be_bytes() } else { n.to_le_bytes() }.to_vec();

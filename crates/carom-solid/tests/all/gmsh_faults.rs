@@ -1,4 +1,4 @@
-//! Damaged and wrong mesh files: an error that says where and what, or a stated repair; never a
+//! Damaged and invalid mesh files give an error with place and cause, or a reported repair; never a
 //! panic, never a wrong mesh.
 
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ fn fixtures() -> Vec<(String, Vec<u8>)> {
     all
 }
 
-/// Whatever can be asked of a file.
+/// Calls everything on a file.
 fn everything(bytes: &[u8]) {
     let Ok(file) = gmsh::read(bytes) else { return };
     for name in file.names(2) {
@@ -159,8 +159,8 @@ fn planes_and_clockwise_cells_are_put_right() {
     assert_eq!(turned.cell(1), [2, 3, 0]);
 }
 
-/// Mirrored meshes of every order: all cells clockwise, and the same body after the repair as the
-/// mesh mirrored by hand.
+/// Mirrored meshes of every order: all cells are clockwise, and the repaired body equals the mesh
+/// mirrored by hand.
 #[test]
 fn clockwise_cells_of_every_order() {
     for element in [Element::T3, Element::T6, Element::T10] {
@@ -184,7 +184,7 @@ fn clockwise_cells_of_every_order() {
     }
 }
 
-/// An edge node pulled through the cell folds it; one moved along its edge too far as well.
+/// An edge node moved across the cell folds it; one moved too far along its edge does as well.
 #[test]
 fn folded_cells_are_found() {
     for (element, pulled) in
@@ -200,7 +200,7 @@ fn folded_cells_are_found() {
     }
 }
 
-/// Neighbours of order 2 with different nodes on their edge gape.
+/// Neighbours of order 2 with different nodes on their common edge leave a gap.
 #[test]
 fn edges_share_their_nodes() {
     let mut mesh = generate::rectangle(Element::T6, [0.0, 0.0], [1.0, 1.0], [1, 1]).unwrap();
@@ -215,7 +215,7 @@ fn edges_share_their_nodes() {
     assert!(matches!(error.fault, Fault::EdgeNodes { .. }), "{error}");
 }
 
-/// What is written is read back the same, bit for bit.
+/// Writing and reading back is bitwise exact.
 #[test]
 fn round_trip() {
     for element in [Element::T3, Element::T6, Element::T10] {
@@ -233,7 +233,7 @@ fn round_trip() {
     }
 }
 
-/// Bodies that come from Gmsh, written and read: the same again.
+/// Bodies from Gmsh are unchanged by writing and reading.
 #[test]
 fn round_trip_of_gmsh() {
     for (name, bytes) in fixtures().into_iter().filter(|(name, _)| name.starts_with("impact")) {

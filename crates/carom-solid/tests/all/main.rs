@@ -1,4 +1,4 @@
-//! Bodies and meshes from outside: one program, so that it is linked once.
+//! Bodies and meshes through their interface, in one binary, so that it is linked once.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,5 +1,5 @@
-//! What a motion that is given needs of a body: the divergence of its stress, errors at its points,
-//! and which nodes lie on the boundary.
+//! What a prescribed motion needs of a body: the divergence of its stress, errors at its points,
+//! and the nodes on the boundary.
 
 use carom_solid::{Body, Element, Law, Mesh, body, generate, plane_stress_body};
 
@@ -15,8 +15,8 @@ fn gradient([x, y]: [f64; 2]) -> [[f64; 2]; 2] {
 /// Its second derivatives ∂²yₖ/∂Xᴶ∂Xᴸ, k first.
 const SECOND: [f64; 8] = [0.2, 0.05, 0.05, 0.0, -0.16, 0.0, 0.0, 0.06];
 
-/// P = J σ F⁻ᵀ from what a probe sees of a cell in this motion, at reference coordinates; the law
-/// of small strains knows one stress alone.
+/// P = J σ F⁻ᵀ from the stress at reference coordinates of a cell in this motion; the small-strain
+/// law has only one stress.
 fn nominal(body: &dyn Body, law: Law, y: &[f64], xi: [f64; 2], place: [f64; 2]) -> [[f64; 2]; 2] {
     let state = body.point(0, &xi, y).unwrap();
     if matches!(law, Law::LinearElastic { .. }) {
@@ -58,8 +58,8 @@ fn the_divergence_of_the_stress_by_differences() {
                         + xi[1] * (corners[2][i] - corners[0][i])
                 })
             };
-            // The cell's edges run along the axes or diagonally: differences in ξ, turned into
-            // differences in X.
+            // The cell's edges run along the axes or diagonally: differences in ξ are transformed
+            // to X.
             let xi = [0.3, 0.4];
             let step = 1e-5;
             let at = |axis: usize, sign: f64| {
@@ -91,7 +91,7 @@ fn the_divergence_of_the_stress_by_differences() {
     assert_eq!(rubber.stress_divergence(&[-2.0, 0.0, 0.0, 0.0], &SECOND, &mut [0.0; 2]), Err(-1.0));
 }
 
-/// A quadratic motion of T6 has no error at any point, and the points fill the volume.
+/// T6 represents a quadratic motion exactly at all points, and the points fill the volume.
 #[test]
 fn moved_points_have_their_places() {
     let mesh = generate::rectangle(Element::T6, [0.0, 0.0], [2.0, 1.0], [3, 2]).unwrap();

@@ -44,7 +44,7 @@ fn force_and_tangent_are_derivatives() {
     }
 }
 
-/// Solves A x = b, A symmetric positive definite, by Cholesky's method.
+/// Solves A x = b, A symmetric positive definite, by Cholesky factorisation.
 fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
     let n = b.len();
     for j in 0..n {
@@ -67,7 +67,7 @@ fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
     b
 }
 
-/// Deflection of Cook's membrane at (48, 52): clamped at x = 0, a uniform shear of 1 in all at x =
+/// Deflection of Cook's membrane at (48, 52): clamped at x = 0, a uniform shear of total 1 at x =
 /// 48, E = 1, ν = 1/3, thickness 1.
 fn cook(element: Element, size: f64) -> f64 {
     let corners = [[0.0, 0.0], [48.0, 44.0], [48.0, 60.0], [0.0, 44.0]];
@@ -111,8 +111,8 @@ fn cook(element: Element, size: f64) -> f64 {
     mesh.cell(*cell).iter().zip(&shape).map(|(&node, s)| s * u[2 * unknown[node] + 1]).sum()
 }
 
-/// The problem of R. D. Cook (J. Struct. Div. ASCE 100 (1974) 1851–1863); 23.96 is the value of
-/// refined meshes in general use.
+/// The problem of R. D. Cook (J. Struct. Div. ASCE 100 (1974) 1851–1863); 23.96 is the commonly
+/// used value of refined meshes.
 #[test]
 fn cooks_membrane() {
     for (element, size, tolerance) in

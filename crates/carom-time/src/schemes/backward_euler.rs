@@ -14,7 +14,7 @@ pub(super) const KIND: KindInfo = KindInfo {
     summary: "All forces at the end; first order, ρ∞ = 0.",
     reference: "Hairer, Wanner 1996",
     sets: &[&[]],
-    // A step adds g Δt²/2 to the fall.
+    // Free fall exceeds the exact one by g Δt²/2 per step.
     members: &[Member::new(&[], 1, 0.0).falling(|n| 0.5 * n)],
     build: Build::Stages(|_| Ok(Box::new(BackwardEuler))),
 };

@@ -7,9 +7,9 @@
 //! γ = 2/(2 + √(2 + 2ρ∞)),   q₁ = (ρ∞ + 1)/(2γ(ρ∞ − 1) + 4),   q₀ = (γ − 1) q₁ + ½,   q₂ = ½ − γ q₁
 //! ```
 //!
-//! with M a₁ + f₁ = 0 and M a₂ + f₂ = 0: two solves a step, contact imposed at both ends with its
-//! own multiplier. γ is (2 − √(2 + 2ρ∞))/(1 − ρ∞) without the 0/0 at ρ∞ = 1. At ρ∞ = 0 it is
-//! TR-BDF2 (Bank and others 1985) with γ = 2 − √2, which makes both stage matrices equal. Order 2.
+//! with M a₁ + f₁ = 0 and M a₂ + f₂ = 0: two solves per step, contact imposed at both ends with
+//! separate multipliers. γ is (2 − √(2 + 2ρ∞))/(1 − ρ∞) without the 0/0 at ρ∞ = 1. At ρ∞ = 0 it is
+//! TR-BDF2 (Bank and others 1985) with γ = 2 − √2 and equal stage matrices. Order 2.
 use crate::error::SchemeError;
 use crate::kind::{Build, KindInfo, Member};
 use crate::parameter::RHO_INF;
@@ -29,7 +29,7 @@ pub(super) const KIND: KindInfo = KindInfo {
     build: Build::Stages(|p| Ok(Box::new(Bathe::new(p[0])?))),
 };
 
-/// The composite rule for one ρ∞.
+/// The composite rule for a given ρ∞.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bathe {
     /// End of the first stage.
@@ -39,7 +39,7 @@ pub struct Bathe {
 }
 
 impl Bathe {
-    /// By its spectral radius at infinity, in [0, 1].
+    /// From its spectral radius at infinity, in [0, 1].
     ///
     /// ```
     /// let bathe = carom_time::schemes::bathe::Bathe::new(0.0)?;

@@ -5,9 +5,9 @@
 //! a_{s+1} = (3 v_{s+1} − 4 v_s + v_{s−1}) / (2Δt),                         M a_{s+1} + f_{s+1} = 0
 //! ```
 //!
-//! Order 2, ρ∞ = 0 (Gear 1971). Where there is no step before of the same size, backward Euler
-//! takes its place. The mean force of a step follows from M (v_{s+1} − v_s) = ⅓ M (v_s − v_{s−1}) +
-//! ⅔ Δt M a_{s+1}.
+//! Order 2, ρ∞ = 0 (Gear 1971). Without a previous step of the same size it falls back on backward
+//! Euler. The mean force of a step follows from M (v_{s+1} − v_s) = ⅓ M (v_s − v_{s−1}) + ⅔ Δt M
+//! a_{s+1}.
 use super::backward_euler::BackwardEuler;
 use crate::kind::{Build, KindInfo, Member};
 use crate::stage::{Kernel, Memory, Stage};
@@ -17,7 +17,7 @@ pub(super) const KIND: KindInfo = KindInfo {
     summary: "Two-step backward differentiation; second order, ρ∞ = 0.",
     reference: "Gear 1971",
     sets: &[&[]],
-    // It begins with a step of backward Euler: ¾ g Δt² in all.
+    // It starts with a step of backward Euler: ¾ g Δt² in total.
     members: &[Member::new(&[], 2, 0.0).falling(|n| 0.75 * (1.0 - 3f64.powf(-n)))],
     build: Build::Stages(|_| Ok(Box::new(Bdf2))),
 };

@@ -1,5 +1,5 @@
-//! Central differences with a lumped mass; the contact force of a step keeps the positions at its
-//! end out of contact (Carpenter, Taylor, Katona 1991):
+//! Central differences with a lumped mass; the contact force of a step prevents penetration at its
+//! end (Carpenter, Taylor, Katona 1991):
 //!
 //! ```text
 //! M(y_{n+1} − 2y_n + y_{n−1}) = Δt² (f_n + Gᵀλ_n),   g(y_{n+1}) ≥ 0

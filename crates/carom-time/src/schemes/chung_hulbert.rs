@@ -1,5 +1,5 @@
-//! Chung and Hulbert 1993: inertia and other forces averaged, with the least damping of low
-//! frequencies for its ρ∞. Order 2:
+//! Chung and Hulbert 1993: inertia and other forces averaged, with the least low-frequency damping
+//! for its ρ∞. Order 2:
 //!
 //! ```text
 //! α_m = (2ρ∞ − 1)/(ρ∞ + 1),   α_f = ρ∞/(ρ∞ + 1),                                                 (16)

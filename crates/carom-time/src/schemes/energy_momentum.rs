@@ -5,9 +5,9 @@
 //! M (v_{s+1} − v_s)/Δt + f(y_s, y_{s+1}) = f_ext,      y_{s+1} − y_s = Δt (v_s + v_{s+1})/2,      f·(y_{s+1} − y_s) = U_{s+1} − U_s
 //! ```
 //!
-//! Energy, momentum and moment of momentum of free motion are kept exactly, for any hyperelastic
-//! law and any rotation. Order 2, ρ∞ = 1. The acceleration it carries is the mean one of the step,
-//! (v_{s+1} − v_s)/Δt. A contact force acts at the end of the step.
+//! Energy, linear and angular momentum of free motion are conserved exactly for any hyperelastic
+//! law and rotation. Order 2, ρ∞ = 1. The carried acceleration is the mean of the step, (v_{s+1} −
+//! v_s)/Δt. A contact force acts at the end of the step.
 use crate::kind::{Build, KindInfo, Member};
 use crate::stage::{Internal, Kernel, Memory, Stage};
 

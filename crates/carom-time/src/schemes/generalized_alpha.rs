@@ -1,4 +1,4 @@
-//! Four raw parameters of eq. (15), index s + 1 − α: an α is the share of the old term (Chung and
+//! Four raw parameters of eq. (15), index s + 1 − α: an α is the weight of the old term (Chung and
 //! Hulbert 1993). Order 2 for γ = ½ − α_m + α_f.
 use std::ops::Bound::{Excluded, Unbounded};
 
@@ -29,8 +29,8 @@ pub(super) const KIND: KindInfo = KindInfo {
 };
 
 impl Scheme {
-    /// Four raw parameters. Refused: what is not finite, β ≤ 0 (no implicit step), γ ≤ 0, α_m ≥ 1
-    /// or α_f ≥ 1 (no new inertia or no new force, or one of the wrong sign).
+    /// Four raw parameters. Invalid: non-finite values, β ≤ 0 (no implicit step), γ ≤ 0, α_m ≥ 1 or
+    /// α_f ≥ 1 (no new inertia or no new force, or one of the wrong sign).
     pub fn generalized_alpha(alpha_m: f64, alpha_f: f64, beta: f64, gamma: f64) -> Result<Self, SchemeError> {
         let scheme = Self { alpha_m, alpha_f, beta, gamma, forces: ForceRule::AverageForces };
         scheme.checked()

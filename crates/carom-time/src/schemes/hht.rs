@@ -1,4 +1,4 @@
-//! Hilber, Hughes and Taylor 1977: the forces averaged. Their α is −α_f; here α = α_f ≥ 0,
+//! Hilber, Hughes and Taylor 1977: averaged forces. Their α is −α_f; here α = α_f ≥ 0,
 //!
 //! ```text
 //! γ = ½ + α,   β = (1 + α)²/4,   ρ∞ = (1 − α)/(1 + α) up to α = 1/3, α/(1 − α) above
@@ -33,7 +33,7 @@ pub(super) const KIND: KindInfo = KindInfo {
 
 impl Scheme {
     /// Hilber, Hughes and Taylor 1977 by α = α_f ≥ 0 (their α is −α_f): γ = ½ + α, β = (1 + α)²/4.
-    /// Above 1/3 ρ∞ rises again: used as given, [`Scheme::remarks`] says so.
+    /// Above 1/3 ρ∞ increases again: it is used as given; [`Scheme::remarks`] reports it.
     ///
     /// ```
     /// let hht = carom_time::Scheme::hht(0.25)?;

@@ -1,9 +1,9 @@
 //! The table of schemes. A scheme is a file of this folder and its name in the list below: formula,
-//! parameters, members with what is published of them.
+//! parameters, members with their published properties.
 
 use crate::kind::KindInfo;
 
-/// Declares the files and, in the order of `explain` and the schema, the table.
+/// Declares the files and the table, in the order of `explain` and the schema.
 macro_rules! schemes {
     ($($file:ident),+ $(,)?) => {
         $(pub mod $file;)+

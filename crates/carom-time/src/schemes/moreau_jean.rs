@@ -23,7 +23,7 @@ pub(super) const KIND: KindInfo = KindInfo {
         meaning: "Share of the new velocity and force: ½ is of order 2, 1 damps most.",
         example: "0.5",
     }]],
-    // A step adds (θ − ½) g Δt² to the fall.
+    // Free fall exceeds the exact one by (θ − ½) g Δt² per step.
     members: &[
         Member::new(&[("theta", 0.5)], 2, 1.0),
         Member::new(&[("theta", 0.625)], 1, 0.6).falling(|n| 0.125 * n).hidden(),
@@ -32,18 +32,18 @@ pub(super) const KIND: KindInfo = KindInfo {
     build: Build::Impulse(|p| Ok(Box::new(MoreauJean::new(p[0])?))),
 };
 
-/// The θ-method for one θ.
+/// The θ-method for a given θ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MoreauJean {
-    /// Share of the new velocity and force.
+    /// Weight of the new velocity and force.
     pub theta: f64,
 }
 
 impl MoreauJean {
-    /// By θ, in [½, 1].
+    /// From θ, in [½, 1].
     ///
     /// # Errors
-    /// Other values.
+    /// For other values.
     pub fn new(theta: f64) -> Result<Self, SchemeError> {
         if (0.5..=1.0).contains(&theta) {
             return Ok(Self { theta });

@@ -1,4 +1,4 @@
-//! Newmark 1959: eq. (15) with α_m = α_f = 0. γ = ½ is of order 2; damping costs an order:
+//! Newmark 1959: eq. (15) with α_m = α_f = 0. Order 2 for γ = ½; damping costs an order:
 //!
 //! ```text
 //! γ = (3 − ρ∞)/(2(1 + ρ∞)),   β = (γ + ½)²/4

@@ -1,12 +1,12 @@
-//! A step of eq. (13)–(15) without contact, by Chung and Hulbert's parameters, and a jump w of
-//! velocity, M w = GᵀP (Chen, Acary, Virlez, Brüls 2013):
+//! A step of eq. (13)–(15) without contact, with Chung and Hulbert's parameters, and a velocity
+//! jump w, M w = GᵀP (Chen, Acary, Virlez, Brüls 2013):
 //!
 //! ```text
 //! v_{n+1} += w,   y_{n+1} += Δt w/2
 //! ```
 //!
-//! Eliminating w and a_{n+1} leaves P in the balance and in both maps. Order 2 between impacts, any
-//! ρ∞.
+//! After elimination of w and a_{n+1}, P remains in the balance and in both maps. Order 2 between
+//! impacts, any ρ∞.
 use crate::kind::{Build, KindInfo, Member};
 use crate::nonsmooth::{Impulse, ImpulseShares};
 use crate::parameter::RHO_INF;
@@ -44,7 +44,7 @@ impl Impulse for NonsmoothAlpha {
 
     fn shares(&self, dt: f64) -> ImpulseShares {
         let Scheme { alpha_m, beta, gamma, .. } = self.0;
-        // d holds Δt w/2 of the jump: what the maps make of it is taken back.
+        // d includes Δt w/2 of the jump: its effect on the maps is subtracted.
         let acceleration = 0.5 / (beta * dt);
         ImpulseShares {
             force: (1.0 - alpha_m) * acceleration,

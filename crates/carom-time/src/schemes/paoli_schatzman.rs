@@ -1,12 +1,12 @@
-//! Paoli and Schatzman 2002: central differences whose contact force keeps a mean of positions out
-//! of contact,
+//! Paoli and Schatzman 2002: central differences whose contact force prevents penetration at a mean
+//! of positions,
 //!
 //! ```text
 //! M(y_{n+1} − 2y_n + y_{n−1}) = Δt² (f_n + Gᵀλ_n),   g((y_{n+1} + e y_{n−1})/(1 + e)) ≥ 0
 //! ```
 //!
-//! Order 2 and stable up to Ω = 2 between impacts, as [`super::central_difference`], which it is
-//! for e = 0.
+//! Order 2 and stable up to Ω = 2 between impacts, as [`super::central_difference`], to which it
+//! reduces for e = 0.
 use super::central_difference::LUMPED;
 use crate::explicit::Explicit;
 use crate::kind::{Build, KindInfo, Member};

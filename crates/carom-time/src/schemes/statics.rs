@@ -4,7 +4,7 @@
 use crate::kind::{Build, KindInfo};
 use crate::stage::{Kernel, Memory, Stage};
 
-/// The name it goes by in a case file.
+/// Its name in a case file.
 pub const STATIC: &str = "static";
 
 pub(super) const KIND: KindInfo = KindInfo {
@@ -12,12 +12,12 @@ pub(super) const KIND: KindInfo = KindInfo {
     summary: "Equilibrium at every step, without inertia: t is the load parameter.",
     reference: "",
     sets: &[&[]],
-    // Nothing to integrate, nothing to claim.
+    // Nothing is integrated, so there is nothing to claim.
     members: &[],
     build: Build::Stages(|_| Ok(Box::new(Static))),
 };
 
-/// Load steps: the kernel whose mass has no weight. Velocities and accelerations are zero.
+/// Load steps: a kernel without inertia. Velocities and accelerations are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Static;
 

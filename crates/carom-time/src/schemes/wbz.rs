@@ -1,4 +1,4 @@
-//! Wood, Bossak and Zienkiewicz 1980: the inertia forces averaged. Order 2, any ρ∞:
+//! Wood, Bossak and Zienkiewicz 1980: averaged inertia forces. Order 2, any ρ∞:
 //!
 //! ```text
 //! α_m = (ρ∞ − 1)/(ρ∞ + 1) ≤ 0,   γ = ½ − α_m,   β = (1 − α_m)²/4

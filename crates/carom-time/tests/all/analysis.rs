@@ -73,8 +73,8 @@ fn spectral_radius_at_infinity_is_the_asked_one() {
     for r in [0.0, 0.1, 0.5, 0.6, 0.8, 0.9, 0.99, 1.0] {
         for scheme in [ch(r), Scheme::wbz(r).unwrap(), Scheme::newmark_damped(r).unwrap()] {
             assert!((scheme.spectral_radius_at_infinity() - r).abs() < 1e-10, "{scheme:?}");
-            // The limit is approached like Ω⁻² at best and like Ω^(-2/3) at the triple root of
-            // Chung and Hulbert.
+            // The limit is approached as Ω⁻² at best and as Ω^(-2/3) at the triple root of Chung
+            // and Hulbert.
             assert!(
                 (scheme.spectral_radius(1e6) - r).abs() < 1e-3,
                 "{scheme:?}: {}",
@@ -85,7 +85,7 @@ fn spectral_radius_at_infinity_is_the_asked_one() {
             assert!((hht_of(r).spectral_radius_at_infinity() - r).abs() < 1e-10);
         }
     }
-    // Beyond 1/3 the root of the averaged force takes over: α/(1 − α).
+    // Above 1/3 the root of the averaged force dominates: α/(1 − α).
     assert!((Scheme::hht(0.4).unwrap().spectral_radius_at_infinity() - 2.0 / 3.0).abs() < 1e-14);
     assert_eq!(Scheme::hu().spectral_radius_at_infinity(), 0.0);
 }
@@ -173,7 +173,7 @@ fn a_held_dof_rings_as_theory_says() {
         }
         motion
     };
-    // Trapezoidal: v flips for ever, a grows by 4 v₀/Δt per step. Hu: clean after two steps.
+    // Trapezoidal: v alternates for ever, a grows by 4 v₀/Δt per step. Hu: settled after two steps.
     for steps in 1..=10 {
         let [_, v, a] = after(&Scheme::newmark(0.25, 0.5).unwrap(), steps);
         let sign = if steps % 2 == 0 { 1.0 } else { -1.0 };
@@ -186,13 +186,13 @@ fn a_held_dof_rings_as_theory_says() {
     assert!(v.abs() < 1e-15 && a.abs() < 1e-12, "{v} {a}");
 }
 
-/// A mass that touches a wall at v₀: the contact force of eq. (15), λ = −(Σ other terms)/w.contact,
-/// by the kernel itself.
+/// A mass that hits a wall at v₀: the contact force of eq. (15), λ = −(Σ other terms)/w.contact,
+/// from the kernel itself.
 #[test]
 fn the_ringing_told_is_the_kernel_s() {
     let (dt, v0) = (1e-3, 2.0);
     let free = Oscillator { mass: 1.0, stiffness: 0.0, force: 0.0 };
-    let told = |r: f64| explain(&ch(r)).constrained.steps.unwrap();
+    let ringing = |r: f64| explain(&ch(r)).constrained.steps.unwrap();
     for r in [0.1, 0.3, 0.6, 0.8] {
         let (mut motion, mut force, mut stage, mut last) = (free.start(0.0, v0), 0.0, Stage::default(), 0);
         for n in 1..500 {
@@ -204,14 +204,14 @@ fn the_ringing_told_is_the_kernel_s() {
             }
             motion = next;
         }
-        assert_eq!(told(r), last + 1, "ρ∞ = {r}");
+        assert_eq!(ringing(r), last + 1, "ρ∞ = {r}");
     }
     // theory.md §2, fact 2: a few steps at 0.1, 15 to 25 at 0.6.
-    assert!(told(0.1) <= 6 && (15..=25).contains(&told(0.6)));
+    assert!(ringing(0.1) <= 6 && (15..=25).contains(&ringing(0.6)));
     assert_eq!(explain(&Scheme::hu()).constrained.steps, Some(2));
 }
 
-/// Errors of v and u against cos ωt over one period, halving the step.
+/// Errors of v and u against cos ωt over one period, under bisection of the step.
 #[test]
 fn the_measured_order_is_the_algebraic_one() {
     let oscillator = Oscillator { mass: 1.0, stiffness: 1.0, force: 0.0 };
@@ -237,7 +237,7 @@ fn the_measured_order_is_the_algebraic_one() {
     assert_eq!(Scheme::generalized_alpha(0.6, 0.5, 0.25, 0.4).unwrap().order(), 0);
 }
 
-/// The criterion against a sweep of Ω, over schemes on both sides of every condition.
+/// The criterion against a sweep of Ω, for schemes on both sides of every condition.
 #[test]
 fn a_stability_agrees_with_a_sweep() {
     let values = [-0.3, 0.0, 0.2, 0.45, 0.55];

@@ -1,8 +1,8 @@
-//! What is the same in the tests of every kernel.
+//! Helpers of the tests of all kernels.
 
 use carom_time::{ForceRule, Integrator, KINDS, Kernel, Member, Nonsmooth, Oscillator, Stage};
 
-/// Members with their kernels; of the α family under both rules.
+/// Members with their kernels; those of the α family under both rules.
 pub(crate) fn all() -> Vec<(&'static Member, String, Box<dyn Kernel>)> {
     let mut all = Vec::new();
     for kind in KINDS {

@@ -49,7 +49,7 @@ fn the_ledger_s_identity_holds() {
             let (du, da) = (next[0] - motion[0], next[2] - motion[2]);
             let mean = o.stiffness * ((1.0 - alpha_f) * next[0] + alpha_f * motion[0]);
             let strain = 0.5 * o.stiffness * (next[0] * next[0] - motion[0] * motion[0]);
-            // Oscillator::energy holds the potential of the force: its change is ΔE − Δu·f.
+            // Oscillator::energy includes the potential of the force: its change is ΔE − Δu·f.
             let dissipation = o.energy(motion) - o.energy(next);
             let right = (du * mean - strain) - (gamma + alpha_m - 1.0) * du * o.mass * da
                 + dt * dt * (beta - 0.5 * gamma) * da * o.mass * (motion[2] + gamma * da);
@@ -73,7 +73,7 @@ fn the_trapezoidal_rule_keeps_the_energy_of_linear_motion() {
 }
 
 /// A spring pendulum in the plane, force −k(|y| − 1) y/|y|: averaged states at ρ∞ = 1 are the
-/// midpoint rule, which keeps the moment of momentum exactly; averaged forces do not.
+/// midpoint rule, which conserves angular momentum exactly; averaged forces do not.
 #[test]
 fn the_midpoint_rule_keeps_the_moment_of_momentum() {
     let drift = |scheme: Scheme| {
@@ -89,7 +89,7 @@ fn the_midpoint_rule_keeps_the_moment_of_momentum() {
             scheme.stage_into(0, 0.05, &Memory { states: &[(&y, &v, &a)], before: None }, &mut stage);
             let (w, b, slope) = (stage.weights, stage.before, stage.acceleration.slope);
             let mut d = [0.0; 2];
-            // w.mass a(d) + b.mass a_s = w.internal f + b.internal f_s by fixed-point iteration on
+            // w.mass a(d) + b.mass a_s = w.internal f + b.internal f_s by fixed-point iteration for
             // d.
             for _ in 0..100 {
                 let mixed = [0, 1].map(|i| y[i] + (1.0 - stage.average) * d[i]);

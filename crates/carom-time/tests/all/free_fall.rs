@@ -1,6 +1,6 @@
-//! Free fall is a polynomial of degree two in time, which most kernels reproduce: what remains is
-//! round-off. The others err by what their members say. A wrong factor on inertia, a shifted weight
-//! or a careless increment shows here first.
+//! Free fall is a quadratic in time, which most kernels reproduce to round-off. The errors of the
+//! others are stated by their members. A wrong factor of inertia, a shifted weight or a careless
+//! increment shows here first.
 
 use carom_time::{ForceRule, Kernel, Oscillator, Scheme};
 
@@ -22,8 +22,8 @@ fn free_fall_errs_by_what_the_rules_say_over_thousands_of_steps() {
                 let t = n as f64 * dt;
                 let right = [1.5 + 0.3 * t + 0.5 * G * t * t + falls(n as f64) * G * dt * dt, 0.3 + G * t];
                 let (dy, dv) = ((y - right[0]).abs(), (v - right[1]).abs());
-                // Relative to the length of the path and to the speed, every stage a rounding; over
-                // the first 400 steps absolutely besides.
+                // Relative to the path and to the speed, with one rounding per stage; over the
+                // first 400 steps also absolute.
                 let (path, stages) = (1.5 + 0.5 * G.abs() * t * t, kernel.stages() as f64);
                 let most = if n <= 400 { [2e-12, 1e-11] } else { [f64::INFINITY; 2] };
                 assert!(dy < (1e-12 * path * stages).min(most[0]), "{name}, Δt {dt}, step {n}: {dy:e}");

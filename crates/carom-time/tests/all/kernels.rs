@@ -1,5 +1,5 @@
-//! Every member of every kind that is a list of stages, impulse schemes between impacts among them:
-//! order and ρ∞ against what the table says is published. Then tabulated damping and rational
+//! Every member of every kind that is a list of stages, including impulse schemes between impacts:
+//! order and ρ∞ against the published values of the table. Then tabulated damping and rational
 //! functions of the published rules.
 
 use std::f64::consts::TAU;
@@ -27,7 +27,7 @@ fn every_kind_has_members_and_names_nothing_twice() {
     }
 }
 
-/// Noh and Bathe 2019, theory: ρ∞ = 0 damps 8.7e-4 and lengthens 1.6 % at ten steps a period.
+/// Noh and Bathe 2019, theory: ρ∞ = 0 damps 8.7e-4 and elongates 1.6 % at ten steps per period.
 #[test]
 fn the_composite_rule_damps_as_tabulated() {
     let at = map::principal(&Bathe::new(0.0).unwrap(), TAU / 10.0).unwrap();
@@ -39,22 +39,24 @@ fn the_composite_rule_damps_as_tabulated() {
 fn order_and_rho_inf_are_the_published_ones() {
     for (member, name, kernel) in all() {
         assert_eq!(map::order(&*kernel), member.order, "{name}");
-        // The limit is approached like Ω^(-2/3) at a triple root.
+        // The limit is approached as Ω^(-2/3) at a triple root.
         let far = map::spectral_radius(&*kernel, 1e6);
         assert!((far - member.rho_inf).abs() < 2e-3, "{name}: {far}");
     }
 }
 
-/// What `explain` says, in closed form or by the map of a constrained dof: a double root is known
-/// to half of the digits.
+/// The output of `explain`, in closed form or by the map of a constrained dof: a double root is
+/// resolved to half of the digits.
 #[test]
 fn what_is_explained_is_what_is_published() {
     for (kind, member) in KINDS.iter().flat_map(|kind| kind.members.iter().map(move |member| (kind, member)))
     {
         let (order, rho_inf) =
             match kind.named(member).integrator(ForceRule::AverageForces).unwrap().explain() {
-                Explained::Stages(told) => (told.order, told.rho_inf),
-                Explained::Nonsmooth(told) => (told.order, told.rho_inf.unwrap_or(f64::INFINITY)),
+                Explained::Stages(explanation) => (explanation.order, explanation.rho_inf),
+                Explained::Nonsmooth(explanation) => {
+                    (explanation.order, explanation.rho_inf.unwrap_or(f64::INFINITY))
+                }
             };
         assert_eq!(order, member.order, "{}", kind.named(member));
         let same = rho_inf == member.rho_inf || (rho_inf - member.rho_inf).abs() < 1e-7;
@@ -62,8 +64,8 @@ fn what_is_explained_is_what_is_published() {
     }
 }
 
-/// Errors of u and v against cos ωt over one period, halving the step: nothing of the kernel but
-/// its steps.
+/// Errors of u and v against cos ωt over one period, under bisection of the step: this uses only
+/// steps of the kernel.
 #[test]
 fn the_measured_order_is_the_published_one() {
     let oscillator = Oscillator { mass: 1.0, stiffness: 1.0, force: 0.0 };
@@ -128,7 +130,7 @@ fn principal_roots_are_the_textbook_stability_functions() {
     }
 }
 
-/// The numeric map of a member of the α family is its closed matrix.
+/// The numeric map of a member of the α family equals its closed-form matrix.
 #[test]
 fn the_numeric_map_is_the_closed_one_where_there_is_one() {
     for scheme in [Scheme::chung_hulbert(0.3).unwrap(), Scheme::hu(), Scheme::hht(0.2).unwrap()] {

@@ -1,4 +1,4 @@
-//! Schemes from outside: one program, so that it is linked once.
+//! Schemes through their interface, in one binary, so that it is linked once.
 
 #![allow(clippy::unwrap_used)]
 

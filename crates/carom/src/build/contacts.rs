@@ -1,4 +1,4 @@
-//! The contacts of a model: kinematics by what the case names, interface by law and enforcement. A
+//! The contacts of a model: kinematics from the named sides, interface from law and enforcement. A
 //! new contact method is one line here.
 
 use carom_case::{
@@ -93,12 +93,12 @@ pub(super) fn contacts(
             secondary_facets: secondary.facets,
             secondary_shape: secondary.shape,
             surface,
-            // Other schemes take the contact force at the ends of their stages: there is nothing to
-            // average.
+            // Other schemes evaluate the contact force at the ends of their stages: nothing is
+            // averaged.
             at_the_end: averages && spec.force == ForceTime::End,
-            // A predictor that respects the contact, a spring, load steps, and nodes without mass
-            // that follow the other side leave nothing to project: projected, a massive side would
-            // be given the velocity of the light one.
+            // No projection is needed with a predictor that respects the contact, with a spring, in
+            // load steps, and for massless nodes that follow the other side: it would give the
+            // massive side the velocity of the light one.
             projects: projects && spec.persistency == Persistency::Project,
             within: spec.active_set == ActiveSetRule::Within,
             restitution: spec.restitution,
@@ -119,7 +119,7 @@ pub(super) fn contacts(
     contacts
 }
 
-/// Mean over the directions of a node's diagonal of the tangent in the reference position.
+/// Mean over the directions of a node's diagonal of the tangent in the reference configuration.
 fn node_stiffness(parts: &[BodyInstance], node: usize) -> f64 {
     let Some(part) = parts.iter().find(|part| part.nodes().contains(&node)) else { return 0.0 };
     let mesh = part.body.mesh();
@@ -127,7 +127,7 @@ fn node_stiffness(parts: &[BodyInstance], node: usize) -> f64 {
     let (mut force, mut tangent, mut sum) = (vec![0.0; n], vec![0.0; n * n], 0.0);
     for cell in 0..mesh.cell_count() {
         let Some(place) = mesh.cell(cell).iter().position(|&m| m + part.first_node == node) else { continue };
-        // The reference position is never inverted.
+        // The reference configuration is never inverted.
         if part.body.cell_tangent(cell, mesh.nodes.flat(), &mut force, &mut tangent).is_ok() {
             sum += (place * d..(place + 1) * d).map(|i| tangent[i * n + i]).sum::<f64>() / d as f64;
         }
@@ -135,16 +135,16 @@ fn node_stiffness(parts: &[BodyInstance], node: usize) -> f64 {
     sum
 }
 
-/// Initial overlaps deeper than round-off: a problem per contact with the deepest place.
+/// Initial overlaps deeper than round-off: a problem per contact with the deepest point.
 ///
-/// Closing an overlap in one step throws the bodies apart, so it is refused.
+/// Closing an overlap in one step would throw the bodies apart, so it is an error.
 pub fn overlaps(model: &Model) -> Vec<Problem> {
     let x = &model.initial_position;
     let at = |node: usize| &x[node * model.dimension..(node + 1) * model.dimension];
     let mut problems = Vec::new();
     for (k, contact) in model.contacts.iter().enumerate() {
         let mut deepest: Option<(f64, usize)> = None;
-        // Behind a side is not yet inside its body: a plate has a lower side too.
+        // A node behind a side need not be inside its body: a plate also has a lower side.
         let primary = contact.primary_part.filter(|_| model.dimension > 1).map(|p| &model.parts[p]);
         let cover = primary.map(|part| Cover::new(&*part.body, part.of(x)));
         for (place, &node) in contact.kinematics.secondary().iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The loads of a model; names and formulas have been checked when the case was read.
+//! The loads of a model; names and formulas were checked when the case was read.
 
 use carom_case::{Case, FormulaSpec, LoadKind, LoadSpec, Problem, load_variables};
 use carom_formula::Formula;

@@ -1,5 +1,5 @@
-//! From a resolved case to a model. Whatever the case names and the meshes lack is a [`Problem`]
-//! with the key it stands under.
+//! Builds a model from a resolved case. Names that the meshes lack are reported as a [`Problem`]
+//! with their key.
 
 mod contacts;
 mod loads;
@@ -21,8 +21,8 @@ pub use contacts::overlaps;
 /// Builds the model of a case.
 ///
 /// # Errors
-/// All problems found: missing sides, probes outside their body, meshes that cannot be made,
-/// contacts that cannot be solved.
+/// All problems found: missing sides, probes outside their body, invalid meshes, contacts that
+/// cannot be solved.
 pub fn build(case: &Case) -> Result<Model, Vec<Problem>> {
     let d = case.dimension;
     let parts = parts(case)?;
@@ -38,7 +38,7 @@ pub fn build(case: &Case) -> Result<Model, Vec<Problem>> {
             None => initial_position.extend(places),
         }
         nodal(part, k, "velocity", &spec.velocity, &mut initial_velocity, &mut problems);
-        // Where a formula has no value the rest is told too: every dof needs a number.
+        // Without a value the other problems are reported too: every dof needs a number.
         initial_position.resize(reference.len(), 0.0);
         initial_velocity.resize(reference.len(), 0.0);
     }
@@ -46,7 +46,7 @@ pub fn build(case: &Case) -> Result<Model, Vec<Problem>> {
     let mut fixed = vec![false; dofs];
     let mut supports = Vec::new();
     for (k, spec) in case.supports.iter().enumerate() {
-        let mut held = Vec::new();
+        let mut constrained = Vec::new();
         for (j, name) in spec.on.iter().enumerate() {
             match side(&parts, name, &format!("support[{k}].on[{j}]")) {
                 Ok(side) => {
@@ -54,17 +54,17 @@ pub fn build(case: &Case) -> Result<Model, Vec<Problem>> {
                     for dof in spec.fix.iter().flat_map(|i| dofs(*i)) {
                         fixed[dof] = true;
                         initial_velocity[dof] = 0.0;
-                        held.push(dof);
+                        constrained.push(dof);
                     }
-                    held.extend(spec.moves.iter().flat_map(|(i, _)| dofs(*i)));
+                    constrained.extend(spec.moves.iter().flat_map(|(i, _)| dofs(*i)));
                 }
                 Err(problem) => problems.push(problem),
             }
         }
-        held.sort_unstable();
-        held.dedup();
+        constrained.sort_unstable();
+        constrained.dedup();
         if let Some(name) = &spec.name {
-            supports.push(Support { name: name.clone(), dofs: held });
+            supports.push(Support { name: name.clone(), dofs: constrained });
         }
     }
 
@@ -72,7 +72,7 @@ pub fn build(case: &Case) -> Result<Model, Vec<Problem>> {
     motions.dofs().for_each(|dof| fixed[dof] = true);
     let loads = loads::loads(case, &parts, &mut problems);
 
-    // Of redistributed masses the nodes of contacts are made light afterwards.
+    // For redistributed masses the contact nodes are made massless afterwards.
     let lumped: Vec<bool> = case.bodies.iter().map(|b| b.mass == MassKind::Lumped).collect();
     let mut mass = Mass::assemble(d, &parts, &lumped);
     problems.extend(redistributions(case, &parts, &reference, &mut mass));
@@ -118,7 +118,7 @@ pub fn build(case: &Case) -> Result<Model, Vec<Problem>> {
     }
 }
 
-/// What the formulas of a body's `key`, in X and Y, give at its nodes.
+/// Values of the formulas of a body's `key`, in X and Y, at its nodes.
 fn nodal(
     part: &BodyInstance,
     body: usize,
@@ -202,13 +202,13 @@ fn gravity(case: &Case, parts: &[BodyInstance], mass: &Mass, dofs: usize) -> Vec
     force
 }
 
-/// Takes the mass off the nodes of contacts, in the bodies that ask for it.
+/// Redistributes the mass of contact nodes in the bodies that request it.
 fn redistributions(case: &Case, parts: &[BodyInstance], reference: &[f64], mass: &mut Mass) -> Vec<Problem> {
     let mut light = vec![false; mass.nodes()];
     for contact in &case.contacts {
         let primary = if let PrimarySpec::Side(name) = &contact.primary { Some(name) } else { None };
         for name in std::iter::once(&contact.secondary).chain(primary) {
-            // Names that are wrong are reported where contacts are made.
+            // Wrong names are reported by `contacts`.
             side(parts, name, "").into_iter().flat_map(|side| side.nodes).for_each(|node| light[node] = true);
         }
     }
@@ -263,7 +263,7 @@ fn probes(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Problem>) -> V
     probes
 }
 
-/// What a quantity's name in the case stands for.
+/// The quantity of a name in the case.
 pub(crate) fn quantity(name: carom_case::Quantity) -> Quantity {
     use carom_case::Quantity as Name;
     match name {

@@ -1,4 +1,4 @@
-//! Supports that move: which dofs follow which formula.
+//! Moving supports: which dofs follow which formula.
 
 use std::collections::BTreeMap;
 
@@ -10,14 +10,14 @@ use super::side::side;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Formulas with their names in messages, and which of them each moved dof follows.
+/// Formulas with their labels, and the formula of each prescribed dof.
 #[derive(Default)]
 struct Moves {
     formulas: Vec<(String, Formula)>,
     by_dof: BTreeMap<usize, usize>,
 }
 
-/// The motions of a case, by dof ascending. A dof that is fixed, or moved by two different
+/// The motions of a case, ascending by dof. A dof that is fixed, or prescribed by two different
 /// formulas, is a problem.
 pub(super) fn motions(
     case: &Case,
@@ -61,14 +61,14 @@ pub(super) fn motions(
 }
 
 impl Moves {
-    /// Lets a dof follow a formula; what else it does, where that is not the same.
+    /// Assigns a formula to a dof; returns a conflicting assignment.
     fn conflict(&mut self, dof: usize, formula: usize, fixed: &[bool]) -> Option<String> {
         let text = |formula: usize| self.formulas[formula].1.text();
         let other = self.by_dof.insert(dof, formula).map(text).filter(|other| *other != text(formula));
         if fixed[dof] { Some("fixed".to_owned()) } else { other.map(|text| format!("moved as {text}")) }
     }
 
-    /// All nodes of the boundary, moved by y − X.
+    /// Prescribes y − X at all boundary nodes.
     fn manufactured(
         &mut self,
         y: &[FormulaSpec],

@@ -1,18 +1,17 @@
-//! What a model has no answer to, whatever its numbers: bodies without mass under rules that need
-//! it, bodies that nothing holds.
+//! Models without a solution: massless bodies under rules that need mass, and unconstrained bodies.
 
 use carom_case::{Case, ContactLaw, ForceTime, PrimarySpec, Problem};
 use carom_mechanics::model::{BodyInstance, Contact, Mode};
 
-/// Bodies that supports leave free to move and that no contact can hold: without inertia they have
-/// no equilibrium.
+/// Bodies with rigid modes that neither supports nor contacts can constrain: without inertia they
+/// have no equilibrium.
 pub(super) fn unconstrained(parts: &[BodyInstance], free: &[Mode], contacts: &[Contact]) -> Vec<Problem> {
     let mut problems: Vec<Problem> = Vec::new();
     for (place, part) in parts.iter().enumerate() {
-        let touches = |c: &Contact| {
+        let involves = |c: &Contact| {
             c.primary_part == Some(place) || c.kinematics.secondary().iter().any(|n| part.nodes().contains(n))
         };
-        if let Some(mode) = free.iter().find(|m| m.part == place).filter(|_| !contacts.iter().any(touches)) {
+        if let Some(mode) = free.iter().find(|m| m.part == place).filter(|_| !contacts.iter().any(involves)) {
             problems.push(Problem::new(
                 format!("body[{place}]"),
                 format!("body \"{}\" is free to {}: it has no equilibrium", part.name, mode.motion()),
@@ -24,8 +23,8 @@ pub(super) fn unconstrained(parts: &[BodyInstance], free: &[Mode], contacts: &[C
     problems
 }
 
-/// A body without mass balances at s + 1 alone; rules that act inside the step have no meaning for
-/// it.
+/// The balance of a massless body holds at s + 1 alone; rules that act within the step do not apply
+/// to it.
 pub(super) fn massless(case: &Case, parts: &[BodyInstance], massless: &[bool]) -> Vec<Problem> {
     let mut problems = Vec::new();
     let light = |part: &BodyInstance| part.nodes().any(|node| massless[node * case.dimension]);
@@ -43,7 +42,7 @@ pub(super) fn massless(case: &Case, parts: &[BodyInstance], massless: &[bool]) -
         let help = "a scheme that is not midpoint, such as bathe, or a small density";
         problems.push(Problem::new("time.scheme.kind", what("kind = \"energy-momentum\""), why, help));
     }
-    let touches = |name: &str| {
+    let involves = |name: &str| {
         name.split_once('.').is_some_and(|(body, _)| parts.iter().any(|p| light(p) && p.name == body))
     };
     for (k, contact) in case.contacts.iter().enumerate() {
@@ -52,8 +51,8 @@ pub(super) fn massless(case: &Case, parts: &[BodyInstance], massless: &[bool]) -
             let help = "law = \"position\", which needs no cure where contact nodes have no mass";
             problems.push(Problem::new(format!("contact[{k}].law"), what("law = \"predictor\""), why, help));
         }
-        let primary = matches!(&contact.primary, PrimarySpec::Side(name) if touches(name));
-        if contact.force == ForceTime::End && (primary || touches(&contact.secondary)) {
+        let primary = matches!(&contact.primary, PrimarySpec::Side(name) if involves(name));
+        if contact.force == ForceTime::End && (primary || involves(&contact.secondary)) {
             let why = "the share of the contact force on a massless side is that of its internal forces";
             let help = "force = \"alpha_f\", or a small density";
             problems.push(Problem::new(format!("contact[{k}].force"), what("force = \"end\""), why, help));

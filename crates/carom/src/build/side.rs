@@ -1,4 +1,4 @@
-//! The sides a case names, `body.side`, in the node numbers of the whole model.
+//! The sides named in a case, `body.side`, in the node numbers of the whole model.
 
 use carom_case::Problem;
 use carom_mechanics::model::BodyInstance;
@@ -13,7 +13,7 @@ pub(super) struct Side {
     pub(super) shape: FacetShape,
 }
 
-/// The side of a name; what is missing is a problem with the key at `path`.
+/// The side of a name; a missing one is a problem with the key `path`.
 pub(super) fn side(parts: &[BodyInstance], name: &str, path: &str) -> Result<Side, Problem> {
     let missing =
         |why: String, help: String| Problem::new(path, format!("there is no side \"{name}\""), why, help);

@@ -1,5 +1,5 @@
-//! Columns of `history.csv` (design.md §1.4): one list that gives names, units and values, so that
-//! they cannot drift apart.
+//! Columns of `history.csv` (design.md §1.4): a single list of names, units and values keeps them
+//! consistent.
 
 use carom_case::Case;
 use carom_contact::Rows;
@@ -136,8 +136,8 @@ fn quantity_column(quantity: Quantity, label: &Labels) -> (String, String, Strin
     }
 }
 
-/// Shares of a body's nodes in its centre of mass; of its volume where it has no mass. They add up
-/// to one.
+/// Weights of a body's nodes in its centre of mass, or of volume if it is massless. They sum to
+/// one.
 pub(super) fn center_weights(model: &Model) -> Vec<f64> {
     let mut weights = vec![0.0; model.mass.nodes()];
     for part in &model.parts {
@@ -225,14 +225,14 @@ fn penetration(model: &Model, state: &State) -> f64 {
     let mut rows = Rows::new(model.dimension);
     for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
         for pair in pairs {
-            // A pair without a closest point is far away.
+            // A pair without a closest point is remote.
             let _ = contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows);
         }
     }
     rows.iter().map(|row| -row.gap).fold(0.0, f64::max)
 }
 
-/// What supports do to the bodies at held dofs: M a + f_int + Gᵀλ − f_ext there.
+/// Reaction forces on the bodies at constrained dofs: M a + f_int + Gᵀλ − f_ext.
 fn reactions(model: &Model, state: &State) -> Vec<f64> {
     let mut force = vec![0.0; model.dofs()];
     model.mass.multiply_into(&state.a, &mut force);

@@ -46,7 +46,7 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     }
 }
 
-/// The cell of a viewer that an element is.
+/// The viewer's cell type of an element.
 fn cell(element: Element) -> Cell {
     match element {
         Element::L2 | Element::L3 | Element::L4 => Cell::Curve,
@@ -54,8 +54,8 @@ fn cell(element: Element) -> Cell {
     }
 }
 
-/// Cauchy stress XX YY ZZ XY YZ XZ at the nodes, mean over the cells of a node that have one there;
-/// NaN where none has (J ≤ 0).
+/// Cauchy stress XX YY ZZ XY YZ XZ at the nodes, mean over the cells of a node where it exists; NaN
+/// if it exists in none (J ≤ 0).
 fn nodal_stress(model: &Model, state: &State) -> Vec<f64> {
     let nodes = model.mass.nodes();
     let (mut sum, mut count) = (vec![[0.0; 6]; nodes], vec![0.0_f64; nodes]);
@@ -90,14 +90,14 @@ fn pressures(case: &Case, model: &Model, state: &State) -> Vec<f64> {
     pressure
 }
 
-/// ∫φᴺ ds over the current secondary side, times the thickness: the area a multiplier acts on. One
+/// ∫φᴺ ds over the current secondary side, times the thickness: the area of each multiplier. One
 /// entry per secondary node.
 pub(super) fn consistent_weights(contact: &Contact, state: &State, thickness: f64) -> Vec<f64> {
     let secondary = contact.kinematics.secondary();
     let place: HashMap<usize, usize> = secondary.iter().enumerate().map(|(k, &n)| (n, k)).collect();
     let mut weights = vec![0.0; secondary.len()];
     let (shape, d) = (contact.secondary_shape, contact.secondary_shape.dimension());
-    // Exact for |y'| constant and φ of degree 3.
+    // Exact for constant |y'| and φ of degree 3.
     let rule = shape.rule(5);
     for facet in &contact.secondary_facets {
         for &(xi, w) in &rule {
@@ -118,7 +118,7 @@ pub(super) fn consistent_weights(contact: &Contact, state: &State, thickness: f6
     weights
 }
 
-/// Gap of a pair in a state and the unit normal ∂g/∂y of its secondary node; NaN where it has none.
+/// Gap of a pair in a state and the unit normal ∂g/∂y of its secondary node; NaN if undefined.
 pub(super) fn gap_of(contact: &Contact, pair: &Pair, state: &State) -> (f64, [f64; 3]) {
     let mut rows = Rows::new(contact.secondary_shape.dimension());
     match contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows) {
@@ -127,7 +127,7 @@ pub(super) fn gap_of(contact: &Contact, pair: &Pair, state: &State) -> (f64, [f6
     }
 }
 
-/// Chains of point numbers of every named side, in the order in which the boundary is walked.
+/// Chains of point numbers of every named side, in the order of traversal.
 pub(super) fn sides(model: &Model) -> BTreeMap<String, Vec<Vec<usize>>> {
     let mut named = BTreeMap::new();
     for part in &model.parts {

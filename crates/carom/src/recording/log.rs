@@ -6,7 +6,7 @@ use carom_mechanics::LogEvent;
 use carom_mechanics::model::Model;
 use carom_record::Event;
 
-/// What was mended in meshes that were read from files.
+/// Repairs of meshes that were read from files.
 pub(super) fn repairs(case: &Case) -> Vec<Event> {
     let of_body = |body: &BodySpec| match &body.mesh {
         MeshSpec::File { repairs, .. } => repairs.clone(),

@@ -1,5 +1,5 @@
-//! A simulation written down as it goes: the run directory of design.md §1.4. Nothing here changes
-//! a bit of the result.
+//! Records a simulation while it runs: the run directory of design.md §1.4. Recording never changes
+//! the result.
 
 mod columns;
 mod fields;

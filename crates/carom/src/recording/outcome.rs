@@ -1,4 +1,4 @@
-//! What a run is asked for, what it tells after each step, and how it ends.
+//! Options of a run, its progress after each step, and its outcome.
 
 use std::path::PathBuf;
 
@@ -6,19 +6,19 @@ use carom_case::Problem;
 use carom_mechanics::Stopped;
 use carom_record::RecordError;
 
-/// How to run.
+/// Options of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Threads; results do not depend on them.
     pub threads: usize,
 }
 
-/// Where a simulation is, after an accepted step.
+/// Progress of a simulation after an accepted step.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
     /// Step just finished.
     pub step: u64,
-    /// Steps in all.
+    /// Total number of steps.
     pub steps: u64,
     /// Time.
     pub time: f64,
@@ -38,7 +38,7 @@ pub struct Progress {
     pub energy_drift: f64,
     /// Wall seconds of this process.
     pub wall: f64,
-    /// Wall seconds left, extrapolated.
+    /// Estimated wall seconds remaining.
     pub left: f64,
 }
 
@@ -49,14 +49,14 @@ pub enum End {
     Finished,
     /// By the user; resumable.
     Interrupted,
-    /// The simulation could not go on; its last good state is kept.
+    /// The simulation cannot continue; its last accepted state is kept.
     Stopped(Stopped),
 }
 
 /// A run that ended.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Where its record is.
+    /// Directory of its record.
     pub directory: PathBuf,
     /// How it ended.
     pub end: End,
@@ -66,23 +66,23 @@ pub struct Outcome {
     pub time: f64,
     /// Wall seconds of this process.
     pub wall: f64,
-    /// Said once, e.g. that a damaged checkpoint was passed over.
+    /// Remarks, e.g. that a damaged checkpoint was skipped.
     pub remarks: Vec<String>,
 }
 
 /// Why there is no (complete) run.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// The case is wrong in a way only its model shows. Nothing was written.
+    /// A problem of the case that only its model reveals. Nothing was written.
     #[error("{}", .0.iter().map(|p| p.what.as_str()).collect::<Vec<_>>().join("; "))]
     Case(Vec<Problem>),
     /// The run directory could not be written or read.
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// The run directory holds something this version cannot go on from.
+    /// The run directory contains data from which this version cannot resume.
     #[error("{what}")]
     Incompatible {
-        /// What does not fit.
+        /// The incompatibility.
         what: String,
     },
 }

@@ -1,4 +1,4 @@
-//! `run` and `resume`: a simulation driven to its end, its records, checkpoints and manifest.
+//! `run` and `resume`: run a simulation to its end, with records, checkpoints and manifest.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,7 +16,7 @@ use super::outcome::{End, Options, Outcome, Progress, RunError};
 use super::verdicts::judge;
 use crate::setup::{resumed, simulation};
 
-/// What every step needs besides the simulation.
+/// Data of a step besides the simulation.
 struct Session<'a> {
     case: &'a Case,
     simulation: Simulation,
@@ -24,7 +24,7 @@ struct Session<'a> {
     manifest: Manifest,
     weights: Vec<f64>,
     field_steps: Vec<u64>,
-    /// Whether each probe had the stresses it records after the last step.
+    /// Whether each probe had its recorded stresses after the last step.
     stressed: Vec<bool>,
     began: Instant,
     first_step: u64,
@@ -35,10 +35,10 @@ struct Session<'a> {
     values: Vec<f64>,
 }
 
-/// Runs a case into a directory that does not exist yet.
+/// Runs a case into a directory that must not exist yet.
 ///
 /// # Errors
-/// The case's problems (nothing is written), or what the machine refused.
+/// The case's problems (nothing is written), or an input/output error.
 pub fn run(
     case: &Case,
     source: Source,
@@ -60,10 +60,10 @@ pub fn run(
     session.go(observe, stop, Vec::new())
 }
 
-/// Goes on with a run that was stopped or killed; a finished one is returned as it is.
+/// Resumes a run that was stopped or killed; a finished one is returned as it is.
 ///
 /// # Errors
-/// As [`run`], and where the record does not fit this version.
+/// As [`run`], and if the record does not fit this version.
 pub fn resume(
     directory: &Path,
     options: Options,
@@ -81,7 +81,7 @@ pub fn resume(
         })?;
     let case = &case;
     if manifest.status == Status::Finished {
-        // A kill may have come between the last row and the verdicts.
+        // The process may have been killed between the last row and the verdicts.
         if manifest.expectations.is_empty() {
             judge(directory, &case.expects, manifest)?;
         }
@@ -148,7 +148,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// What was mended in meshes that were read, warnings, row and fields of the initial state.
+    /// Mesh repairs, warnings, row and fields of the initial state.
     fn write_start(&mut self) -> Result<(), RunError> {
         for event in repairs(self.case) {
             self.writer.log(&event)?;
@@ -187,7 +187,7 @@ impl<'a> Session<'a> {
                 end = End::Stopped(stopped);
                 break;
             }
-            self.look_for_stress()?;
+            self.log_lost_stress()?;
             let began = Instant::now();
             self.record(&report)?;
             self.output += began.elapsed().as_secs_f64();
@@ -196,9 +196,9 @@ impl<'a> Session<'a> {
         self.close(end, remarks)
     }
 
-    /// Logs where a probe's stress ceases to exist: a function of the states before and after the
-    /// step, so that a resumed run logs alike.
-    fn look_for_stress(&mut self) -> Result<(), RunError> {
+    /// Logs where a probe's stress ceases to exist. This depends on the states before and after the
+    /// step only, so that a resumed run logs the same.
+    fn log_lost_stress(&mut self) -> Result<(), RunError> {
         let now = stressed(&self.simulation);
         let Simulation { model, state, .. } = &self.simulation;
         let ceased = self.stressed.iter().zip(&now).map(|(before, now)| *before && !now);
@@ -214,7 +214,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Everything a grid step leaves in the record.
+    /// Writes the record of a grid step.
     fn record(&mut self, report: &GridReport) -> Result<(), RunError> {
         let output = &self.case.output;
         let (step, last) = (self.simulation.state.step, self.simulation.finished());
@@ -301,7 +301,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Last checkpoint and manifest.
+    /// Writes the last checkpoint and manifest.
     fn close(mut self, end: End, remarks: Vec<String>) -> Result<Outcome, RunError> {
         let state = &self.simulation.state;
         self.writer.checkpoint(state.step, &bytes(state)?)?;
@@ -350,8 +350,8 @@ fn bytes(state: &State) -> Result<Vec<u8>, RunError> {
         .map_err(|e| RunError::Incompatible { what: format!("the state cannot be encoded: {e}") })
 }
 
-/// Processor time: of this thread alone, since other runs may share the process; of all where steps
-/// are computed on several.
+/// Processor time: of this thread alone, since other runs may share the process; of the whole
+/// process if steps use several threads.
 enum Busy {
     Thread(ThreadTime),
     Process(ProcessTime),

@@ -1,9 +1,9 @@
-//! Unit labels of derived quantities, from the case's labels of length, time and mass. Nothing is
-//! converted.
+//! Unit labels of derived quantities, from the case's labels of length, time and mass. No values
+//! are converted.
 
 use carom_case::Case;
 
-/// Labels of every kind of column.
+/// Labels of all kinds of columns.
 #[derive(Clone, Debug)]
 pub(super) struct Labels {
     pub(super) time: String,
@@ -19,7 +19,7 @@ pub(super) struct Labels {
 }
 
 impl Labels {
-    /// SI names where the case is in metres, seconds and kilograms.
+    /// SI names if the case is in metres, seconds and kilograms.
     pub(super) fn of(case: &Case) -> Self {
         let (l, t, m) = (&case.units.length, &case.units.time, &case.units.mass);
         let si = (l.as_str(), t.as_str(), m.as_str()) == ("m", "s", "kg");

@@ -1,4 +1,4 @@
-//! A record held against the expectations of its case.
+//! Comparison of a record with the expectations of its case.
 
 use std::path::Path;
 
@@ -7,8 +7,8 @@ use carom_record::{Manifest, Run, Status};
 
 use super::outcome::RunError;
 
-/// Holds the record against the case's expectations and writes the verdicts into the manifest. A
-/// run that stopped is judged only if one of them asks whether it did.
+/// Compares the record with the case's expectations and writes the verdicts into the manifest. A
+/// stopped run is judged only if one of them concerns stopping.
 pub(super) fn judge(
     directory: &Path,
     expects: &[ExpectSpec],

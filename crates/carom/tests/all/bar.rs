@@ -1,6 +1,6 @@
-//! A bar on a rigid wall: the published side-by-side table of schemes (Doyen, Ern, Piperno 2011;
-//! recomputed from the formulas alone), to its digits.
-//! (a) one impact at v₀ = −10; (b) bouncing under gravity for three periods.
+//! A bar on a rigid wall: the published comparison of schemes (Doyen, Ern, Piperno 2011; recomputed
+//! from the formulas alone), to its digits. (a) one impact at v₀ = −10; (b) bouncing under gravity
+//! for three periods.
 
 use carom::GridReport;
 
@@ -30,8 +30,8 @@ fn figures(sets: &[String]) -> [f64; 5] {
     [peak, (squares / f64::from(samples)).sqrt(), sim.state.ledger.total() / start, velocity / 10.0, depth]
 }
 
-/// The bouncing bar: error of the end's position in the third period over the drop height, and the
-/// energy left at the end, as a share of 500.
+/// The bouncing bar: error of the end's position in the third period relative to the drop height,
+/// and the energy at the end relative to 500.
 fn bounce(sets: &[String]) -> [f64; 2] {
     let sets = [&["body.bar.gravity=[-10.0]".into(), "body.bar.velocity=[0.0]".into()], sets].concat();
     let mut sim = simulation(BAR, &sets);
@@ -49,7 +49,7 @@ fn bounce(sets: &[String]) -> [f64; 2] {
 }
 
 /// Exact position of the bouncing bar's lower end within a period of 16/3: fall, contact, flight
-/// with the wave in it; the second half is the first reversed.
+/// with the wave; the second half is the first reversed.
 fn exact_bounce(t: f64) -> f64 {
     let (fall, transit) = (1.0, 1.0 / 3.0);
     let t = if t > 8.0 * transit { 16.0 * transit - t } else { t };
@@ -76,8 +76,8 @@ fn the_exact_bounce_has_the_printed_values() {
     }
 }
 
-/// (a) and (b) of the table for schemes with a contact law of their own. Largest penetration of
-///     (a): of the position law 0, else to its digits.
+/// (a) and (b) of the table for schemes with their own contact law. The largest penetration of (a)
+/// is 0 for the position law, otherwise as printed.
 #[test]
 fn explicit_and_impulse_schemes_reproduce_the_table() {
     let implicit = |scheme: &str, end: &str| vec![format!("time.scheme={scheme}"), format!("time.end={end}")];
@@ -90,8 +90,8 @@ fn explicit_and_impulse_schemes_reproduce_the_table() {
     let cd = "{ kind = \"central-difference\" }";
     let ps = "{ kind = \"paoli-schatzman\" }";
     let elastic = vec!["contact.wall.restitution=1.0".to_owned()];
-    // Printed figures of (a) and one unit of their last digits; sets for (a) and for (b); printed
-    // figures of (b) and their units.
+    // Printed figures of (a) and one unit of their last digits; settings for (a) and for (b);
+    // printed figures of (b) and their units.
     let rows = [
         (
             "Moreau θ=1",
@@ -161,8 +161,8 @@ fn explicit_and_impulse_schemes_reproduce_the_table() {
     }
 }
 
-/// Paoli and Schatzman with e = 1: energy alternates from step to step between the two figures of
-/// the table.
+/// Paoli and Schatzman with e = 1: the energy alternates from step to step between the two figures
+/// of the table.
 #[test]
 fn energy_alternates_where_positions_are_reflected() {
     let sets = |end: &str| {
@@ -181,7 +181,7 @@ fn energy_alternates_where_positions_are_reflected() {
     }
 }
 
-/// Figures of (a) but for the penetration.
+/// Figures of (a) without the penetration.
 fn single(sets: &[String]) -> [f64; 4] {
     let [peak, rms, energy, velocity, _] = figures(sets);
     [peak, rms, energy, velocity]
@@ -192,8 +192,7 @@ fn bouncing(sets: &[String]) -> [f64; 2] {
     bounce(&[sets, &["time.end=16.0".to_owned()]].concat())
 }
 
-/// One row: what sets it apart from the case, printed figures of (a) and of (b), each with one unit
-/// of its last digit.
+/// One row: its settings, printed figures of (a) and of (b), each with one unit of its last digit.
 struct Row(&'static [&'static str], [(f64, f64); 4], [(f64, f64); 2]);
 
 fn check(rows: &[Row]) {
@@ -250,8 +249,8 @@ fn the_composite_rule_reproduces_the_table() {
     ]);
 }
 
-/// Kane's elasticity at the middle of the step and contact force at its end, with the predictor
-/// projected.
+/// Kane's elasticity at the midpoint of the step and contact force at its end, with projection of
+/// the predictor.
 #[test]
 fn contact_stabilised_newmark_reproduces_the_table() {
     const LAW: &str = "contact.wall.law=\"predictor\"";
@@ -295,8 +294,8 @@ fn redistributed_mass_reproduces_the_table() {
         [(1.33, 0.01), (0.005, 0.001), (1.0003, 1e-4), (0.990, 0.001)],
         [(0.11, 0.01), (0.997, 0.001)],
     )]);
-    // Total, centre and second moment kept by the least change of all nodes: of (a) the peak and
-    // the energy are published, of (b) both, the energies as those of the nearest nodes within
+    // Total, centre and second moment preserved by the least change of all nodes: published are the
+    // peak and energy of (a), and both figures of (b); the energies equal those of `nearest` within
     // .002.
     check(&[Row(
         &[TRAPEZOIDAL, "body.bar.mass=\"redistributed\""],

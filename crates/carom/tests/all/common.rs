@@ -1,10 +1,10 @@
-//! What the tests share: cases from text and settings, runs to the end, sums over bodies.
+//! Common helpers: cases from text and settings, runs to the end, sums over bodies.
 
 use carom::case::{Case, Document, read};
 use carom::{GridReport, Simulation};
 use carom_time::{KINDS, KindInfo, Member};
 
-/// Two discs that meet off centre, in contact within the run.
+/// Two discs that collide off centre, in contact within the run.
 pub(crate) const DISCS: &str = r#"
 title = "Two discs, off centre"
 dimension = 2
@@ -38,15 +38,15 @@ step = 1e-3
 scheme = { kind = "hu" }
 "#;
 
-/// A case from its text, some of its keys set to other values.
+/// A case from its text, with some of its keys changed.
 pub(crate) fn case<S: AsRef<str>>(text: &str, sets: &[S]) -> Case {
     let sets: Vec<String> = sets.iter().map(|set| set.as_ref().to_owned()).collect();
     let document = Document::parse("case.toml", text, &sets).unwrap_or_else(|e| panic!("{e}"));
     read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)))
 }
 
-/// The members of every kind with a contact law of its own, or of every other: as a case asks for
-/// it, with what is published of it.
+/// The members of every kind with its own contact law, or of all others: name as in a case, and
+/// published properties.
 pub(crate) fn schemes(nonsmooth: bool) -> impl Iterator<Item = (String, &'static Member)> {
     let kinds = KINDS.iter().filter(move |kind| kind.is_nonsmooth() == nonsmooth);
     kinds.flat_map(|kind: &KindInfo| {
@@ -71,7 +71,7 @@ pub(crate) fn finish(mut sim: Simulation) -> Simulation {
     sim
 }
 
-/// Momentum and moment of momentum of the velocities `v` where the nodes are.
+/// Linear and angular momentum of the velocities `v` at the current positions.
 pub(crate) fn momenta(sim: &Simulation, v: &[f64]) -> [f64; 3] {
     let mut p = vec![0.0; v.len()];
     sim.model.mass.multiply_into(v, &mut p);

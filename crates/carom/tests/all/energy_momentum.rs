@@ -1,5 +1,5 @@
-//! Free flight of a soft body that spins, strains and rings: what the discrete gradient keeps to
-//! round-off, and what other schemes do not.
+//! Free flight of a spinning, straining and vibrating soft body: quantities that the discrete
+//! gradient conserves to round-off, and other schemes do not.
 
 use carom::{GridReport, Simulation};
 
@@ -28,7 +28,7 @@ energy_guard = false
 
 fn flight(sets: &[&str]) -> Simulation {
     let mut sim = simulation(FLIGHT, sets);
-    // Spin about the centre, and a pull along x that stretches by tens of per cent.
+    // Rotation about the centre, and a stretch along x of tens of per cent.
     for node in sim.model.parts[0].nodes() {
         let [x, y] = [sim.model.reference[2 * node] - 1.0, sim.model.reference[2 * node + 1] - 0.25];
         (sim.state.v[2 * node], sim.state.v[2 * node + 1]) = (1.0 + 4.0 * x - 3.0 * y, 0.5 + 3.0 * x);
@@ -59,8 +59,8 @@ fn drift(sets: &[&str]) -> (f64, [f64; 3], f64, f64) {
 
 #[test]
 fn energy_and_momenta_of_a_free_flight_are_kept_to_round_off() {
-    // What is left of the residual does work: exact as far as Newton's method goes.
-    for (law, tolerance, kept) in [
+    // The remaining residual does work: exact to the tolerance of Newton's method.
+    for (law, tolerance, bound) in [
         ("neo-hookean", "1e-9", 1e-9),
         ("neo-hookean", "1e-12", 2e-12),
         ("saint-venant-kirchhoff", "1e-12", 2e-12),
@@ -68,11 +68,11 @@ fn energy_and_momenta_of_a_free_flight_are_kept_to_round_off() {
         let sets = [format!("material.rubber.law=\"{law}\""), format!("newton.tolerance={tolerance}")];
         let (energy, momenta, least, newton) = drift(&sets.each_ref().map(String::as_str));
         assert!(newton < 10.0, "{law}: {newton} iterations a step");
-        assert!(energy < kept, "{law}: {energy:e}");
-        assert!(momenta.iter().all(|lost| *lost < kept), "{law}: {momenta:?}");
+        assert!(energy < bound, "{law}: {energy:e}");
+        assert!(momenta.iter().all(|lost| *lost < bound), "{law}: {momenta:?}");
         assert!(least < 0.9);
     }
-    // Averaged states at ρ∞ = 1 are the plain midpoint rule: momenta, but not energy.
+    // Averaged states at ρ∞ = 1 are the plain midpoint rule: it conserves momenta, but not energy.
     let (energy, momenta, ..) =
         drift(&[r#"time.scheme={ kind = "chung-hulbert", rho_inf = 1.0, forces = "average-state" }"#]);
     assert!(energy > 1e-4 && momenta.iter().all(|lost| *lost < 1e-8), "{energy:e} {momenta:?}");

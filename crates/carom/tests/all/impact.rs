@@ -1,4 +1,4 @@
-//! The impact of cases/impact, step by step: what must hold to round-off in every one of them.
+//! The impact of cases/impact, step by step: identities that hold to round-off in every step.
 
 use carom::case::Case;
 use carom::{GridReport, Simulation, State};
@@ -9,7 +9,7 @@ use super::common::{DISCS, case, dot, momenta, schemes, simulation, sums};
 const IMPACT: &str = include_str!("../../../../cases/impact/impact.toml");
 const COARSE: [&str; 2] = ["body.cylinder.mesh.size=0.25", "body.prism.mesh.cells=[4,2]"];
 
-/// Gaps of the pairs where the bodies are, taken anew.
+/// Gaps of the pairs at the current positions, recomputed.
 fn gaps(sim: &Simulation) -> Rows {
     let mut rows = Rows::new(2);
     for mut pair in sim.state.pairs[0].iter().copied() {
@@ -18,7 +18,7 @@ fn gaps(sim: &Simulation) -> Rows {
     rows
 }
 
-/// The force of the pressing pairs on all dofs, from those gaps.
+/// The force of the active pairs on all dofs, from those gaps.
 fn contact_force(sim: &Simulation) -> Vec<f64> {
     let mut force = vec![0.0; sim.model.dofs()];
     for (pair, row) in sim.state.pairs[0].iter().zip(gaps(sim).iter()).filter(|(pair, _)| pair.active) {
@@ -27,8 +27,7 @@ fn contact_force(sim: &Simulation) -> Vec<f64> {
     force
 }
 
-/// Krenk's identity for the α family (design.md §5): what the dissipation of a step must be, from
-/// its two states.
+/// Krenk's identity for the α family (design.md §5): the dissipation of a step from its two states.
 fn predicted_dissipation(sim: &Simulation, before: &State, scheme: &carom_time::Scheme) -> f64 {
     let (dt, now) = (sim.dt, &sim.state);
     let n = now.y.len();
@@ -56,7 +55,7 @@ fn ledger_balance_and_gaps_hold_in_every_step_of_the_impact() {
     ledger_balance_and_gaps_hold(&case(IMPACT, &[""; 0]), 500);
 }
 
-/// The same with loads of every kind that change with time and follow the sides.
+/// The same with all kinds of time-dependent and follower loads.
 #[test]
 fn ledger_balance_and_gaps_hold_under_loads() {
     let loads = r#"load=[
@@ -96,25 +95,25 @@ fn ledger_balance_and_gaps_hold(case: &Case, least: usize) {
     assert!(worst_ledger < 1e-12, "{worst_ledger:e}");
 }
 
-/// What the next step takes its share of is the force of the pairs the state has, gaps and normals
-/// taken anew.
+/// The contact force for the next step is that of the state's pairs, with gaps and normals
+/// recomputed.
 #[test]
 fn the_contact_force_of_every_state_is_that_of_its_pairs() {
     let mut sim = simulation(include_str!("../../../../cases/impact/whole.toml"), &[""; 0]);
-    let mut touched = 0;
+    let mut contacts = 0;
     while sim.state.time < 0.36 {
         sim.advance(&mut GridReport::default()).unwrap();
-        touched += sim.state.pairs[0].iter().filter(|pair| pair.active).count();
+        contacts += sim.state.pairs[0].iter().filter(|pair| pair.active).count();
         let force = contact_force(&sim);
         let largest = force.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
         let apart = force.iter().zip(&sim.state.f_contact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(apart < 1e-12 * (1.0 + largest), "step {}: {apart:e}", sim.state.step);
     }
-    assert!(touched > 100);
+    assert!(contacts > 100);
 }
 
-/// A body that falls, y = X − g t²/2 to 1e-12, or too far by what is published of the scheme:
-/// catches every factor on the inertia (the paper prints a ½).
+/// A falling body, y = X − g t²/2 to 1e-12, or with the published deviation of the scheme: detects
+/// any factor of inertia (the paper prints a ½).
 #[test]
 fn free_fall_is_that_of_the_scheme() {
     const AVERAGES: &str = r#"{ kind = "chung-hulbert", rho_inf = 0.9, forces = "average-state" }"#;
@@ -140,8 +139,8 @@ fn free_fall_is_that_of_the_scheme() {
     }
 }
 
-/// No force of a rigid plane, no dissipation, no gravity: momentum about any point and energy of a
-/// free disc are kept by what keeps them.
+/// Without a rigid plane, dissipation and gravity, momentum about any point and energy of a free
+/// disc are conserved by conserving schemes.
 #[test]
 fn total_momentum_of_two_free_bodies_is_kept_through_contact() {
     let sets = [
@@ -162,8 +161,8 @@ fn total_momentum_of_two_free_bodies_is_kept_through_contact() {
     assert!(active >= 3);
 }
 
-/// Steps so long that Newton's iterations run out where the pairs have just changed: a step is
-/// given up with a reason, and bisected.
+/// Steps so long that Newton's iterations run out just after a change of pairs: the step is
+/// rejected with a reason and bisected.
 #[test]
 fn giving_up_after_a_change_of_pairs_is_told() {
     let scheme = r#"time.scheme={ kind = "energy-momentum" }"#;

@@ -1,11 +1,11 @@
-//! Kernels through the real stepper: their maps, their orders, their booked impulse, their memory.
+//! Kernels in the real stepper: their maps, orders, recorded impulse and memory.
 
 use carom::{GridReport, Means, Previous, State};
 use carom_time::map;
 
 use super::common::{case, finish, schemes, simulation};
 
-/// A spring of one cell, its left end held.
+/// A spring of one cell, its left end fixed.
 const SPRING: &str = r#"
 dimension = 1
 [[material]]
@@ -30,8 +30,8 @@ scheme = { kind = "hu" }
 energy_guard = false
 "#;
 
-/// One dof through the solver is the amplification matrix the analysis is made of: every entry, so
-/// every invariant.
+/// One dof in the solver reproduces every entry of the analysis' amplification matrix, hence every
+/// invariant.
 #[test]
 fn one_dof_is_amplified_as_the_analysis_says() {
     let (dt, mass, stiffness) = (0.125, 2.0, 50.0_f64);
@@ -63,7 +63,7 @@ fn one_dof_is_amplified_as_the_analysis_says() {
     }
 }
 
-/// A neo-Hookean bar that rings by tens of per cent: order by halving the step twice.
+/// A neo-Hookean bar vibrating by tens of per cent: order by two bisections of the step.
 #[test]
 fn the_observed_order_on_a_nonlinear_oscillation_is_the_claimed_one() {
     for (scheme, member) in schemes(false) {
@@ -81,7 +81,7 @@ fn the_observed_order_on_a_nonlinear_oscillation_is_the_claimed_one() {
             }
             finish(sim).state
         };
-        // Backward Euler reaches its asymptote late.
+        // Backward Euler reaches its asymptotic range late.
         let step = if member.order == 1 { 1.25e-4 } else { 2e-3 };
         let [coarse, middle, fine] = [step, 0.5 * step, 0.25 * step].map(end);
         let away = |a: &State, b: &State| {
@@ -94,8 +94,8 @@ fn the_observed_order_on_a_nonlinear_oscillation_is_the_claimed_one() {
 
 const BAR: &str = include_str!("../../../../cases/bar/single.toml");
 
-/// The impulse booked is the momentum the wall gave: the quadrature is the velocity update's own,
-/// stage by stage.
+/// The recorded impulse is the momentum from the wall: the quadrature is that of the velocity
+/// update, stage by stage.
 #[test]
 fn the_booked_impulse_is_the_change_of_momentum() {
     for sets in [
@@ -124,8 +124,8 @@ fn the_booked_impulse_is_the_change_of_momentum() {
     }
 }
 
-/// With a conserving penalty nothing is lost and the ledger says so; the predictor's loss is booked
-/// as the contact's.
+/// A conserving penalty loses nothing according to the ledger; the predictor's loss is recorded as
+/// contact work.
 #[test]
 fn what_contact_laws_cost_is_booked_as_contact_work() {
     const CONSERVING: &str = r#"time.scheme={ kind = "energy-momentum" }"#;
@@ -135,8 +135,8 @@ fn what_contact_laws_cost_is_booked_as_contact_work() {
     assert!(predictor.contact_work < -1.0 && predictor.dissipation().abs() < 1e-7, "{predictor:?}");
 }
 
-/// A checkpoint taken in the middle of contact holds what a two-step scheme and a conserving
-/// penalty carry.
+/// A checkpoint during contact contains the memory of a two-step scheme and of a conserving
+/// penalty.
 #[test]
 fn a_checkpoint_holds_the_memory_of_schemes_and_springs() {
     for sets in [

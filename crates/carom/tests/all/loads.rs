@@ -4,7 +4,7 @@ use carom::{GridReport, Simulation};
 
 use super::common::{self, finish};
 
-/// A bar of length 1, E = ρ = A = 1, held at the left; the rest is given.
+/// A bar of length 1, E = ρ = A = 1, fixed at the left, plus the given text.
 pub(crate) fn bar(rest: &str) -> Simulation {
     simulation(&format!(
         r#"
@@ -43,8 +43,8 @@ pub(crate) fn time(end: f64, step: f64, scheme: &str) -> String {
 }
 
 /// D'Alembert: under a sudden end force F the tip moves at cF/(EA) until the wave returns at 2L/c,
-/// then as fast back. The work of a constant force is F times the way, and the trapezoidal rule
-/// keeps the energy.
+/// then back at the same speed. The work of a constant force is F times the displacement, and the
+/// trapezoidal rule conserves the energy.
 #[test]
 fn a_bar_under_a_sudden_end_force_carries_the_exact_wave() {
     let load = "[[load]]\non = [\"bar.right\"]\ntraction = [0.001]\n";
@@ -95,8 +95,8 @@ fn an_oscillator_under_a_harmonic_force_is_of_second_order() {
 }
 
 /// One consistent element whose left end moves as u = A(1 − cos ωt): (ρ/3) ü₂ + u₂ = u₁ − (ρ/6) ü₁,
-/// with the solution A + C cos ωt − (A + C) cos ω₀t, C = −A (1 + ω²/6)/(1 − ω²/3), ω₀² = 3. The
-/// support's velocity and acceleration are the formula's.
+/// with the solution A + C cos ωt − (A + C) cos ω₀t, C = −A (1 + ω²/6)/(1 − ω²/3), ω₀² = 3.
+/// Velocity and acceleration of the support are the formula's.
 #[test]
 fn a_moved_end_drives_its_neighbour_with_its_inertia() {
     let (a, omega, natural) = (0.01, 4.0_f64, 3.0_f64.sqrt());
@@ -120,21 +120,21 @@ fn a_moved_end_drives_its_neighbour_with_its_inertia() {
         };
         let (coarse, fine) = (run(5e-3), run(2.5e-3));
         assert!(fine.0 < 1e-6 && (coarse.0 / fine.0).log2() > 1.9, "{scheme}: {coarse:?} {fine:?}");
-        // The work of the support is the energy it brings in, with the order of the average F̄:
-        // second in the middle of the step.
+        // The work of the support equals the energy input, with the order of the average F̄: second
+        // at the midpoint of the step.
         let order = if scheme.contains("1.0") { 1.9 } else { 0.9 };
         assert!((coarse.1 / fine.1).log2() > order, "{scheme}: {coarse:?} {fine:?}");
     }
 }
 
-/// The two-step rule carries the means of the step before: loads and the support's force, over all
-/// steps, are the momentum.
+/// The two-step rule carries the means of the previous step: the impulse of loads and support over
+/// all steps equals the momentum.
 #[test]
 fn means_over_two_steps_are_the_change_of_momentum() {
-    let rest = "[[support]]\non = [\"bar.left\"]\nmove = { x = \"0.1*(1 - cos(4*t))\" }\n\
+    let tables = "[[support]]\non = [\"bar.left\"]\nmove = { x = \"0.1*(1 - cos(4*t))\" }\n\
                 [[load]]\non = [\"bar.right\"]\ntraction = [\"0.02*sin(7*t)\"]\n";
     let dt = 0.01;
-    let mut sim = bar(&[&body(5, "consistent"), rest, &time(1.0, dt, r#"{ kind = "bdf2" }"#)].concat());
+    let mut sim = bar(&[&body(5, "consistent"), tables, &time(1.0, dt, r#"{ kind = "bdf2" }"#)].concat());
     let momentum = |sim: &Simulation, v: &[f64]| {
         let mut p = vec![0.0; v.len()];
         sim.model.mass.multiply_into(v, &mut p);
@@ -145,7 +145,7 @@ fn means_over_two_steps_are_the_change_of_momentum() {
         sim.advance(&mut GridReport::default()).unwrap();
         let means = &sim.state.previous.as_ref().unwrap().means;
         let given = dt * means.loads.iter().chain(&means.supports).sum::<f64>();
-        // What the support's velocity changes beyond its mean acceleration is its impulse too.
+        // The support's velocity change beyond its mean acceleration is part of its impulse.
         let mut change: Vec<f64> = sim.state.v.iter().zip(&before).map(|(v, old)| v - old).collect();
         let smooth = momentum(&sim, &change);
         change.fill(0.0);
@@ -155,12 +155,12 @@ fn means_over_two_steps_are_the_change_of_momentum() {
     }
 }
 
-/// With the discrete gradient all that loads and a sudden force bring is in the energies, step by
-/// step.
+/// With the discrete gradient the work of loads, even sudden ones, equals the change of energy in
+/// each step.
 #[test]
 fn the_conserving_scheme_balances_loads_that_change() {
     let load = "[[load]]\non = [\"bar.right\"]\ntraction = [\"0.2*sin(9*t)\"]\n";
-    // On a linear bar the midpoint rule without contact is the same.
+    // On a linear bar without contact the midpoint rule is the same.
     for scheme in [r#"{ kind = "energy-momentum" }"#, r#"{ kind = "moreau-jean", theta = 0.5 }"#] {
         let mut sim = bar(&[&body(7, "consistent"), HELD, load, &time(2.0, 0.02, scheme)].concat());
         while !sim.finished() {
@@ -171,7 +171,7 @@ fn the_conserving_scheme_balances_loads_that_change() {
     }
 }
 
-/// A support that starts with a jerk brings in energy, never takes the run down: nothing is created
+/// A support that starts abruptly supplies energy and does not stop the run: no energy is created
 /// where its velocity jumps.
 #[test]
 fn a_velocity_that_jumps_takes_its_impulse_from_the_support() {
@@ -186,8 +186,8 @@ fn a_velocity_that_jumps_takes_its_impulse_from_the_support() {
     assert!((sim.state.y[0] - 0.03).abs() < 1e-16 && sim.state.v[0] == 0.0);
 }
 
-/// A block under every load at once: the reactions are the applied forces, in the deformed place
-/// their moments too (neo-Hookean, pressure follows).
+/// A block under all loads at once: the reactions balance the applied forces, and in the deformed
+/// configuration their moments too (neo-Hookean, follower pressure).
 #[test]
 fn reactions_are_the_applied_loads() {
     let text = r#"
@@ -241,14 +241,14 @@ tolerance = 1e-13
             moment += x * r[1] - y * r[0];
         }
     }
-    // Reactions miss the loads by Newton's residual: here its tolerance is that of the claim.
+    // Reactions differ from the loads by Newton's residual: here its tolerance is the bound.
     assert!(
         (reaction[0] + load[0]).abs() + (reaction[1] + load[1]).abs() < 1e-12 * size,
         "{reaction:?} {load:?}"
     );
     assert!((moment + load_moment).abs() < 1e-12 * size);
     // Dead loads by hand: 3 × 2 × ½ on the top and 0.3 × ∫X = 0.3 × 2 × ½ in the volume; the
-    // pressure's part follows the sides.
+    // pressure follows the sides.
     let mut dead = carom::model::LoadsAt::default();
     let mut force = vec![0.0; model.dofs()];
     model.loads_into(1.0, &model.reference, &mut dead, &mut force).unwrap();
@@ -256,10 +256,10 @@ tolerance = 1e-13
     assert!((total[0] - 3.3).abs() < 1e-13 && (total[1] + 2.0 + 0.5).abs() < 1e-13, "{total:?}");
 }
 
-/// Under a load that changes, the averaged force of a scheme with α_f ≠ ½ does another work than
-/// the load, by (½ − α_f) Σ Δy·ΔF, though nothing is created. Newmark's ¼, ½ keeps K + U − Σ ½(F₀ +
-/// F₁)Δy of a linear body to round-off, whatever Δt. The guard stops none of them, from the first
-/// step on.
+/// Under a varying load, the averaged force of a scheme with α_f ≠ ½ does other work than the load,
+/// by (½ − α_f) Σ Δy·ΔF, although no energy is created. Newmark's ¼, ½ conserves K + U − Σ ½(F₀ +
+/// F₁)Δy of a linear body to round-off for any Δt. The guard stops none of them, not even in the
+/// first step.
 #[test]
 fn a_changing_load_creates_nothing() {
     for (load, step) in [("0.1*cos(5*t)", 0.02), ("0.1*sin(3*t)^4", 0.01)] {

@@ -1,5 +1,4 @@
-//! The stepper through whole runs: one program, so that what the tests share is written, and
-//! linked, once.
+//! The stepper in whole runs, in one binary, so that common helpers are written and linked once.
 
 #![allow(clippy::unwrap_used)]
 

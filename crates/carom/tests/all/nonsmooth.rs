@@ -1,5 +1,5 @@
-//! Explicit and impulse steppers in the plane: what must hold to round-off, their order, and the
-//! impact of cases/impact.
+//! Explicit and impulse steppers in the plane: identities that hold to round-off, their order, and
+//! the impact of cases/impact.
 
 use carom::stability::{SAFETY, stable_step};
 use carom::{GridReport, State};
@@ -58,7 +58,7 @@ energy_guard = false
 "#;
 
 /// Observed order on smooth motion with large strain, against Chung and Hulbert with ρ∞ = 1 at a
-/// step 32 times finer than the finest here.
+/// step 32 times smaller than the finest here.
 #[test]
 fn orders_on_smooth_nonlinear_motion_are_those_claimed() {
     let end = |scheme: &str, step: f64| {
@@ -92,8 +92,8 @@ fn orders_on_smooth_nonlinear_motion_are_those_claimed() {
     }
 }
 
-/// Momentum is kept through contact by every scheme. Explicit: the moment of v_{n+½} too, since
-/// every force at t_n balances at y_n; and the ledger's dissipation is what its doc says.
+/// Every scheme conserves momentum through contact. Explicit schemes also conserve the moment of
+/// v_{n+½}, since every force at t_n balances at y_n; the ledger's dissipation is as documented.
 #[test]
 fn two_discs_keep_their_momentum() {
     for (scheme, member) in schemes(true) {
@@ -152,8 +152,8 @@ fn two_discs_keep_their_momentum() {
     }
 }
 
-/// From bytes of the state in the middle of contact, and with another number of threads: the same
-/// bits.
+/// Resumed from the serialised state during contact, and with another number of threads: bitwise
+/// equal.
 #[test]
 fn resuming_in_contact_and_threads_change_no_bit() {
     for (scheme, _) in schemes(true) {
@@ -183,8 +183,8 @@ fn resuming_in_contact_and_threads_change_no_bit() {
     }
 }
 
-/// ½(Gv⁻ + Gv⁺)·P, the work of contact, is what e takes: nothing with e = 1 where every contact
-/// reflects.
+/// ½(Gv⁻ + Gv⁺)·P, the work of contact, is the energy loss due to e: none with e = 1 if every
+/// contact reflects.
 #[test]
 fn restitution_one_keeps_the_energy_of_moreau_and_jean() {
     let left = |e: &str| {
@@ -201,8 +201,8 @@ fn restitution_one_keeps_the_energy_of_moreau_and_jean() {
     assert!((elastic.0 - 1.0).abs() < 0.01);
 }
 
-/// The stable step of a uniform bar of lumped linear elements is dx/c; of a mesh it lies between
-/// the bound by cells and the first blow-up.
+/// The stable step of a uniform bar of lumped linear elements is dx/c; that of a mesh lies between
+/// the bound by cells and the onset of instability.
 #[test]
 fn the_stable_step_is_where_central_differences_blow_up() {
     let coarse = case(
@@ -220,9 +220,9 @@ fn the_stable_step_is_where_central_differences_blow_up() {
     assert!(refused[0].what.contains(&format!("{:.4e}", SAFETY * stable.power)), "{refused:?}");
 }
 
-/// The impact of the paper, explicit: indentation and end of contact are those of two unrelated
-/// codes. The step is 0.69 of the initial 2/ω_max; the cylinder stiffens in compression, and from
-/// about 0.8 of it energy grows until the guard stops the run.
+/// The explicit impact of the paper: indentation and end of contact agree with two unrelated codes.
+/// The step is 0.69 of the initial 2/ω_max; the cylinder stiffens in compression, and from about
+/// 0.8 of it energy grows until the guard stops the run.
 #[test]
 fn the_impact_by_central_differences() {
     let lumped = [

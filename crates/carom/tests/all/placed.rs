@@ -1,5 +1,5 @@
-//! A case that is turned and moved as a whole gives the turned and moved motion: shapes, contact,
-//! gravity and all. So does a body whose initial positions are a rigid motion of its mesh.
+//! A case rotated and translated as a whole gives the rotated and translated motion: shapes,
+//! contact and gravity. So does a body whose initial positions are a rigid motion of its mesh.
 
 use super::common::{case, finish, simulation};
 
@@ -92,11 +92,11 @@ fn bodies_must_not_overlap_where_they_start() {
         problems(&["body.tube.position=[\"X\", \"1.04 - Y\"]"]),
         ["body[0].position: the initial position turns a cell inside out"]
     );
-    // No value at a node of a side that is held.
+    // No value at a node of a constrained side.
     assert_eq!(
         problems(&["body.anvil.velocity=[\"1/(X + 1)\", \"0\"]"]),
         ["body[1].velocity: the initial velocity has no value"]
     );
-    // Nor do they where the primary has room.
+    // No overlap with the primary out of the way.
     assert!(problems(&[LOWER, "body.anvil.position=[\"X\", \"1.1*(Y + 0.5) - 0.6\"]"]).is_empty());
 }

@@ -1,4 +1,4 @@
-//! Probes at places where cells are badly bent.
+//! Probes at points where cells are strongly distorted.
 
 use carom::Simulation;
 use carom::model::Probe;
@@ -16,8 +16,8 @@ probe = [
 ]
 "#;
 
-/// An edge's middle node four fifths along it: dx/dξ is 4·0.8 − 3 > 0 at its start, 1 − 4·0.2 =
-/// −0.2 < 0 backwards from its end, and positive at every quadrature point.
+/// An edge's middle node moved to four fifths of it: dx/dξ is 4·0.8 − 3 > 0 at its start, 1 − 4·0.2
+/// = −0.2 < 0 backwards from its end, and positive at every quadrature point.
 #[test]
 fn a_corner_turned_over_has_j_but_no_stress() {
     let Simulation { model, mut state, .. } = simulation(SQUARE, &[""; 0]);

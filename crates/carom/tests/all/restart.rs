@@ -1,12 +1,12 @@
-//! Runs taken up in the middle, and runs that begin where another ended.
+//! Resumed runs, and runs that start where another ended.
 
 use carom::GridReport;
 
 use super::common::{case as case_of, finish, simulation};
 use super::loads::time;
 
-/// A run taken up from its state in the middle ends with the same bits, loads, motions and bisected
-/// steps included.
+/// A run resumed from a state in the middle ends bitwise equal, including loads, motions and
+/// bisected steps.
 #[test]
 fn a_resumed_run_with_loads_and_motions_ends_with_the_same_bits() {
     let text = r#"
@@ -46,21 +46,21 @@ energy_guard = false
             case.time.scheme.forces = carom_time::ForceRule::AverageState;
         }
         let mut whole = carom::simulation(&case, 1).unwrap();
-        let mut kept = None;
+        let mut checkpoint = None;
         while !whole.finished() {
             if whole.state.step == 23 {
-                kept = Some(postcard::to_stdvec(&whole.state).unwrap());
+                checkpoint = Some(postcard::to_stdvec(&whole.state).unwrap());
             }
             whole.advance(&mut GridReport::default()).unwrap();
         }
-        let state = postcard::from_bytes(&kept.unwrap()).unwrap();
+        let state = postcard::from_bytes(&checkpoint.unwrap()).unwrap();
         let resumed = finish(carom::resumed(&case, 2, state).unwrap());
         assert_eq!(resumed.state, whole.state);
     }
 }
 
-/// A block pressed by a moved support springs back from where the press left it: [initial] takes
-/// positions and the contact over.
+/// A block compressed by a moving support springs back from the compressed state: [initial]
+/// restores positions and contact.
 #[test]
 fn a_run_begins_where_another_ended() {
     let folder = tempfile::tempdir().unwrap();
@@ -105,27 +105,27 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
     let again = |motion: &str| {
         text(&time(0.1, 1e-3, r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#), &initial, motion)
     };
-    let mut held = simulation(&again("-0.1"), &[""; 0]);
-    assert_eq!(held.state.y, pressed.state.y);
+    let mut started = simulation(&again("-0.1"), &[""; 0]);
+    assert_eq!(started.state.y, pressed.state.y);
     let force = pressed.state.contact_forces[0][1];
     assert!(
-        (held.state.contact_forces[0][1] - force).abs() < 1e-8 * force,
+        (started.state.contact_forces[0][1] - force).abs() < 1e-8 * force,
         "{:?} {force}",
-        held.state.contact_forces
+        started.state.contact_forces
     );
     // It is in equilibrium: nothing moves.
     for _ in 0..20 {
-        held.advance(&mut GridReport::default()).unwrap();
+        started.advance(&mut GridReport::default()).unwrap();
     }
-    let moved = held.state.y.iter().zip(&pressed.state.y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let moved = started.state.y.iter().zip(&pressed.state.y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(moved < 1e-9, "{moved:e}");
-    // A support that does not begin there, and another mesh, are refused.
-    for (text, told) in [
+    // A support that does not start there, and another mesh, are errors.
+    for (text, expected) in [
         (again("0"), "a support would jump at the start"),
         (again("-0.1").replace("cells = [3, 3]", "cells = [3, 4]"), "body \"block\" has another mesh in"),
         (again("-0.1").replace("/preload", "/nowhere"), "cannot be started from"),
     ] {
         let problems = carom::simulation(&case_of(&text, &[""; 0]), 1).err().unwrap();
-        assert!(problems[0].what.contains(told), "{problems:?}");
+        assert!(problems[0].what.contains(expected), "{problems:?}");
     }
 }

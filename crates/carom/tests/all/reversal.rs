@@ -1,5 +1,5 @@
-//! The trapezoidal rule is symmetric in time: from a later state with the velocities turned round
-//! it runs back to where it came from.
+//! The trapezoidal rule is symmetric in time: from a later state with reversed velocities it
+//! returns to the initial state.
 
 use carom::GridReport;
 
@@ -33,7 +33,7 @@ energy_guard = false                # velocities are set by hand
 #[test]
 fn the_trapezoidal_rule_runs_back() {
     let mut there = simulation(BLOCK, &[""; 0]);
-    // A stretch and a bend of size one: strains of tens of per cent.
+    // Stretch and bending of order one: strains of tens of per cent.
     let mut begin = there.state.clone();
     for (x, v) in begin.y.as_chunks::<2>().0.iter().zip(begin.v.as_chunks_mut::<2>().0) {
         *v = [3.0 * x[0] * x[1], 1.0 - 2.0 * x[0] * x[0]];

@@ -1,20 +1,20 @@
-//! Load steps without inertia: exact equilibria, stable and not, and bodies that nothing holds.
+//! Load steps without inertia: exact equilibria, stable and unstable, and unconstrained bodies.
 
 use carom::GridReport;
 
 use super::common::{case as case_of, finish, simulation};
 use super::loads::{HELD, bar, body, time};
 
-/// The end of a massless bar follows at once: u(x) = x u(t), force E A u(t).
+/// The end of a massless bar follows instantly: u(x) = x u(t), force E A u(t).
 #[test]
 fn without_mass_a_moved_bar_is_in_equilibrium_at_every_time() {
     let support = "[[support]]\nname = \"pull\"\non = [\"bar.right\"]\nmove = { x = \"0.1*t^2\" }\n";
-    let rest =
+    let tables =
         [&body(5, "consistent"), HELD, support, &time(1.0, 0.05, r#"{ kind = "newmark", rho_inf = 1.0 }"#)];
     for scheme in [r#"{ kind = "newmark", rho_inf = 1.0 }"#, r#"{ kind = "static" }"#] {
-        let mut sim = bar(&rest.concat().replace(rest[3], &time(1.0, 0.05, scheme)));
+        let mut sim = bar(&tables.concat().replace(tables[3], &time(1.0, 0.05, scheme)));
         if !scheme.contains("static") {
-            sim = simulation(&format!("{MASSLESS}{}", rest.concat()), &[""; 0]);
+            sim = simulation(&format!("{MASSLESS}{}", tables.concat()), &[""; 0]);
         }
         while !sim.finished() {
             sim.advance(&mut GridReport::default()).unwrap();
@@ -25,8 +25,8 @@ fn without_mass_a_moved_bar_is_in_equilibrium_at_every_time() {
             assert!((sim.state.f_internal[0] + u).abs() < 1e-13);
             assert!((sim.state.ledger.strain - 0.5 * u * u).abs() < 1e-13);
         }
-        // Trapezoids of the work are exact where force and way grow together; the massless balance
-        // at the step's end takes the end's force.
+        // The trapezoidal rule is exact where force and displacement are proportional; the massless
+        // balance at the step's end uses the end's force.
         if scheme.contains("static") {
             assert!(sim.state.ledger.dissipation().abs() < 1e-14, "{:e}", sim.state.ledger.dissipation());
             assert!(
@@ -46,7 +46,7 @@ young = 1.0
 poisson = 0.0
 "#;
 
-/// u(x) = ρg (L x − x²/2)/E, exact at the nodes of linear elements; as a body force and as gravity.
+/// u(x) = ρg (L x − x²/2)/E, exact at the nodes of linear elements; as body force and as gravity.
 #[test]
 fn a_bar_hangs_under_its_own_weight() {
     let time = time(1.0, 0.25, r#"{ kind = "static" }"#);
@@ -63,14 +63,14 @@ fn a_bar_hangs_under_its_own_weight() {
                 < 1e-12 * 0.02
         );
     }
-    // A load that grows with its displacement does the work that becomes strain energy; trapezoids
-    // sum it exactly.
+    // The work of a load proportional to its displacement becomes strain energy; the trapezoidal
+    // rule is exact.
     let ledger = &sim.state.ledger;
     assert!((ledger.external_work - ledger.strain).abs() < 1e-15, "{ledger:?}");
 }
 
-/// A body that nothing holds is named; one that contact may hold is let, and named once contact
-/// does not.
+/// An unconstrained body is reported by name; one that contact can constrain is accepted, and
+/// reported if contact does not.
 #[test]
 fn a_body_held_by_nothing_is_said_by_name() {
     let text = |support: &str, at: f64| {
@@ -103,17 +103,17 @@ scheme = {{ kind = "static" }}
     };
     let axis = "[[support]]\non = [\"disc.axis\"]\nfix = [\"x\"]\n";
     let case = case_of(&text("", 0.5), &[""; 0]);
-    // Without its contact nothing could ever hold it: the case is wrong.
+    // Without its contact nothing can constrain it: the case is invalid.
     let mut alone = case.clone();
     alone.contacts.clear();
     let problems = carom::simulation(&alone, 1).err().unwrap();
     assert!(problems[0].what.starts_with("body \"disc\" is free to"), "{problems:?}");
-    // With a gap it falls: said by name, with what to try.
+    // With a gap it falls: reported by name, with a suggestion.
     let stopped =
         simulation(&text(axis, 0.6), &[""; 0]).advance(&mut GridReport::default()).unwrap_err().to_string();
     assert!(stopped.contains("body \"disc\" is free to move along y"), "{stopped}");
     assert!(stopped.contains("`move`"), "{stopped}");
-    // Touching, it rests on the floor with its weight.
+    // In contact, it rests on the floor with its weight.
     let sim = finish(simulation(&text(axis, 0.5), &[""; 0]));
     let weight: f64 = sim.model.gravity.iter().skip(1).step_by(2).sum();
     assert!(
@@ -123,9 +123,9 @@ scheme = {{ kind = "static" }}
     );
 }
 
-/// A strut compressed by a fifth, far beyond the loads at which it buckles: the straight
-/// equilibrium is unstable in several directions and the tangent indefinite, but exact: P₂₂ of
-/// homogeneous plane strain with P₁₁ = 0, neo-Hookean Ψ = Λ/2 ln²J + μ/2 (I₁ − 3) − μ ln J.
+/// A strut compressed by a fifth, far beyond its buckling loads: the straight equilibrium is
+/// unstable in several directions and the tangent indefinite, but exact: P₂₂ of homogeneous plane
+/// strain with P₁₁ = 0, neo-Hookean Ψ = Λ/2 ln²J + μ/2 (I₁ − 3) − μ ln J.
 #[test]
 fn a_straight_strut_stays_in_its_unstable_equilibrium() {
     let text = r#"

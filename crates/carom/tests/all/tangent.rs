@@ -1,5 +1,5 @@
-//! The kept tangent, as it is by default and without what makes it fast, and the full one lead to
-//! the same history.
+//! Frozen tangents, with and without their accelerations, and the full tangent give the same
+//! history.
 
 use carom::{GridReport, Simulation, State};
 
@@ -29,15 +29,15 @@ fn kept_and_full_tangents_with_and_without_mixing_lead_to_the_same_history() {
     let largest = wanted.iter().map(|f| f[1].abs()).fold(0.0, f64::max);
     assert!(largest > 1.0);
     for other in ["newton.mixing=4", "newton.mixing=0"] {
-        let (kept, forces) = history(other);
+        let (frozen, forces) = history(other);
         let force = apart(forces.as_flattened(), wanted.as_flattened()) / largest;
-        let place = apart(&kept.y, &full.y);
+        let place = apart(&frozen.y, &full.y);
         assert!(force < 1e-6 && place < 1e-8, "{other}: force {force:e}, place {place:e}");
-        assert_eq!(kept.step, full.step);
+        assert_eq!(frozen.step, full.step);
     }
 }
 
-/// A case with factors that are large enough for single precision.
+/// A case with factors large enough for single precision.
 fn large(set: &str) -> Simulation {
     let sim = simulation(include_str!("../../../../cases/perf/disc-19k.toml"), &[set]);
     assert!(sim.model.free.len() > 10_000);
@@ -53,22 +53,22 @@ fn forces(sim: &mut Simulation, steps: usize) -> Vec<[f64; 3]> {
     (0..steps).map(|_| advance()).collect()
 }
 
-/// Half of the digits of a large factor cost no digit of the motion, the first steps of contact
-/// included; and what goes on from a state makes the same factor again.
+/// Single precision of a large factor does not affect the accuracy of the motion, including the
+/// first steps of contact; a resumed run recomputes the same factor.
 #[test]
 fn factors_of_single_precision_lead_to_the_same_history_and_are_made_again() {
     let mut sim = large("newton.tangent=frozen");
     let mut single = forces(&mut sim, 14);
     let mut resumed = large("newton.tangent=frozen");
     resumed.state = sim.state.clone();
-    let rest = forces(&mut sim, 6);
-    assert_eq!(forces(&mut resumed, 6), rest);
+    let last = forces(&mut sim, 6);
+    assert_eq!(forces(&mut resumed, 6), last);
     assert_eq!(resumed.state, sim.state);
-    single.extend(rest);
+    single.extend(last);
     let double = forces(&mut large("newton.tangent=frozen-double"), 20);
     let largest = double.iter().map(|f| f[1].abs()).fold(0.0, f64::max);
     assert!(largest > 1.0, "{largest}");
-    // Not the same bits: one of the two is of single precision.
+    // Not bitwise equal: one of the two is of single precision.
     let apart = apart(single.as_flattened(), double.as_flattened());
     assert!(apart > 0.0 && apart < 1e-8 * largest, "{apart:e} of {largest}");
 }

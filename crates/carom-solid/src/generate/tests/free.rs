@@ -1,4 +1,4 @@
-//! Rings and polygons: areas, angles, sides, graded sizes, refusals.
+//! Rings and polygons: areas, angles, sides, graded sizes, invalid input.
 
 use super::*;
 
@@ -79,8 +79,8 @@ fn enclosed(mesh: &Mesh, side: &str) -> f64 {
     0.5 * twice
 }
 
-/// Chords enclose an area that converges with h², T6 and T10 sides with h⁴ (Simpson's and the 3/8
-/// rule integrate the arc's rise). The ring's own area is the difference, to round-off; its errors
+/// The area within chords converges with h², within T6 and T10 sides with h⁴ (Simpson's and the 3/8
+/// rule integrate the arc's rise). The ring's area is their difference, to round-off; its errors
 /// would nearly cancel.
 #[test]
 fn ring_areas_converge() {
@@ -139,7 +139,7 @@ fn polygons() {
         (&NOTCHED[..], 0.2, 28.0),
         (&STAR[..], 0.3, 30.0),
         (&THIN[..], 0.5, 26.0),
-        // The outline's own angle, 8.83°, stays.
+        // The outline's own angle, 8.83°, remains.
         (&COOK[..3], 400.0, 8.8),
         (&COOK[..3], 3.0, 8.6),
         (&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], 0.05, 30.0),

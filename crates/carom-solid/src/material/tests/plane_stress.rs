@@ -1,13 +1,13 @@
-//! Laws in plane stress: derivatives, objectivity, no stress across, uniaxial tension in closed
-//! form.
+//! Laws in plane stress: derivatives, objectivity, zero out-of-plane stress, uniaxial tension in
+//! closed form.
 
 use super::*;
 
 const YOUNG: f64 = MU * (3.0 * LAMBDA + 2.0 * MU) / (LAMBDA + MU);
 const POISSON: f64 = LAMBDA / (2.0 * (LAMBDA + MU));
 
-/// The law's point has no stress across, and the Cauchy stress is that of the three-dimensional law
-/// with the stretch it found.
+/// The out-of-plane stress is zero, and the Cauchy stress is that of the three-dimensional law at
+/// the solved stretch.
 fn free_across<L: Thickness + Copy>(law: &L, h: &Mat<2>) {
     let across = law.excess_stretch(h).unwrap();
     let [[a, b], [c, d]] = h.0;
@@ -69,7 +69,7 @@ fn extreme_stretches_have_a_thickness() {
             let f33 = 1.0 + law.excess_stretch(&h).unwrap();
             let terms = [MU * (f33 * f33 - 1.0), lambda * excess_det(&h).ln_1p(), lambda * f33.ln()];
             let size = terms.iter().map(|t| t.abs()).sum::<f64>().max(f64::MIN_POSITIVE);
-            // The excess over 1 keeps a small thickness to ε/f₃₃ only.
+            // The excess over 1 resolves a small thickness only to ε/f₃₃.
             let rounding = f64::EPSILON * (lambda + MU) / f33;
             assert!(terms.iter().sum::<f64>().abs() < 1e-12 * size + rounding, "{lambda} {stretch}: {f33}");
         }
@@ -87,7 +87,7 @@ fn answers<L: Material<2>>(law: L) -> impl Fn(&Mat<2>) -> (Mat<2>, Mat<2>) {
     }
 }
 
-/// A strip pulled along x alone: lateral stretch x₂ = x₃ in closed form, P₁₁ and σ₁₁ = P₁₁/(x₂x₃).
+/// A strip under tension along x: lateral stretch x₂ = x₃ in closed form, P₁₁ and σ₁₁ = P₁₁/(x₂x₃).
 #[test]
 fn uniaxial_tension() {
     let check = |law: &dyn Fn(&Mat<2>) -> (Mat<2>, Mat<2>), along: f64, lateral: f64, p11: f64, area: f64| {
