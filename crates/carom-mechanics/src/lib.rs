@@ -37,7 +37,7 @@ pub use ledger::secondary_force;
 pub use rejected::Rejected;
 pub use renewal::{FrozenTangent, Point};
 pub use settings::{Settings, Tangent};
-pub use simulation::{Grid, GridReport, LogEvent, Simulation, Stopped};
+pub use simulation::{Grid, GridReport, LogEvent, OtherModel, Simulation, Stopped};
 pub use start::Before;
 pub use state::{Bisection, HalfStepVelocity, Ledger, Means, Previous, State};
 pub use stepper::{Accepted, Explicit, Implicit, Impulsive, StepReport, Stepper};

@@ -47,6 +47,16 @@ pub enum Stopped {
     },
 }
 
+/// A state that cannot be continued from.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the state has {got} degrees of freedom and belongs to another model; this one has {wanted}")]
+pub struct OtherModel {
+    /// Degrees of freedom of the model.
+    pub wanted: usize,
+    /// Degrees of freedom of the state.
+    pub got: usize,
+}
+
 /// An event for the log.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LogEvent {
@@ -117,14 +127,11 @@ pub struct Grid {
 
 /// A model with its state.
 pub struct Simulation {
-    /// The constant data.
-    pub model: Model,
-    /// The state at the last grid time.
-    pub state: State,
-    /// Grid step Δt.
-    pub dt: f64,
-    /// Grid steps to the end.
-    pub steps: u64,
+    model: Model,
+    /// At the last grid time.
+    state: State,
+    dt: f64,
+    steps: u64,
     stepper: Box<dyn Stepper>,
     work: Workspace,
     guard: Option<f64>,
@@ -158,10 +165,44 @@ impl Simulation {
         Self { model, state, dt, steps, stepper, work, guard }
     }
 
-    /// Resumes from a state of an earlier run of the same case.
-    #[must_use]
-    pub fn resumed(self, state: State) -> Self {
-        Self { state, ..self }
+    /// The constant data.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The state at the last grid time.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The state at the last grid time, kept alone.
+    pub fn into_state(self) -> State {
+        self.state
+    }
+
+    /// Grid step Δt.
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// Grid steps to the end.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Continues from another state of the same model: what follows is bitwise what followed it
+    /// then.
+    ///
+    /// # Errors
+    /// If the state is of another model.
+    pub fn restore(&mut self, state: State) -> Result<(), OtherModel> {
+        let sizes = |state: &State| (state.y.len(), state.v.len(), state.a.len(), state.pairs.len());
+        let [wanted, got] = [sizes(&self.state), sizes(&state)];
+        if wanted != got {
+            return Err(OtherModel { wanted: wanted.0, got: got.0 });
+        }
+        self.state = state;
+        Ok(())
     }
 
     /// Whether the end time is reached.
@@ -186,6 +227,16 @@ impl Simulation {
     /// If a cell is inverted.
     pub fn assemble(&mut self) -> Result<(), Rejected> {
         self.work.system.assemble(&self.model, &self.state.y)
+    }
+
+    /// Advances to the next grid time and reports what happened.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn step(&mut self) -> Result<GridReport, Stopped> {
+        let mut report = GridReport::default();
+        self.advance(&mut report)?;
+        Ok(report)
     }
 
     /// Advances to the next grid time.

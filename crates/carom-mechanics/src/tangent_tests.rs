@@ -112,10 +112,10 @@ fn the_whole_tangent_with_contact_is_the_derivative_of_the_residual() {
     let averaged = Scheme::hht(0.2).unwrap().with_forces(ForceRule::AverageState);
     for scheme in [Scheme::chung_hulbert(0.6).unwrap(), averaged] {
         let mut sim = simulation(strike(), scheme, 2e-3);
-        while sim.state.time < 0.1 {
+        while sim.state().time < 0.1 {
             sim.advance(&mut GridReport::default()).unwrap();
         }
-        let equations = equations(&sim.model, &sim.state, &scheme, sim.dt, sim.state.time + sim.dt);
+        let equations = equations(&sim.model(), &sim.state(), &scheme, sim.dt(), sim.state().time + sim.dt());
         let mut tangent = Tangent::new(&equations, 1e-3);
         assert!(tangent.rows.len() > 3);
         let (u, w) = (tangent.direction(0.1), tangent.direction(0.7));
@@ -156,7 +156,7 @@ fn the_tangent_under_pressure_is_the_derivative_of_the_residual() {
     {
         let sim = simulation(pressed(on, pressure), scheme, 0.1);
         // Without inertia and with soft springs the pressure dominates the tangent.
-        let equations = equations(&sim.model, &sim.state, &scheme, 1e3, 0.1);
+        let equations = equations(&sim.model(), &sim.state(), &scheme, 1e3, 0.1);
         let mut tangent = Tangent::new(&equations, 1e-2);
         let (u, w) = (tangent.direction(0.1), tangent.direction(0.7));
         let (ku, kw) = (tangent.product(&u), tangent.product(&w));
@@ -172,9 +172,9 @@ fn the_tangent_under_pressure_is_the_derivative_of_the_residual() {
 #[test]
 fn the_product_of_a_discrete_gradient_is_the_derivative_of_its_force() {
     let sim = simulation(pressed("top", "3"), Scheme::chung_hulbert(0.5).unwrap(), 0.1);
-    let model = &sim.model;
+    let model = &sim.model();
     let at = |size: f64, seed: f64| -> Vec<f64> {
-        sim.state.y.iter().enumerate().map(|(i, y)| y + size * wave(i, seed)).collect()
+        sim.state().y.iter().enumerate().map(|(i, y)| y + size * wave(i, seed)).collect()
     };
     let (before, y, u) =
         (at(0.02, 0.3), at(0.03, 0.9), (0..model.dofs()).map(|i| wave(i, 0.1)).collect::<Vec<_>>());

@@ -85,11 +85,11 @@ pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
 }
 
 fn of_case(case: &Case) -> Option<Frequencies> {
-    frequencies(&simulation(case, 1).ok()?.model)
+    frequencies(&simulation(case, 1).ok()?.model())
 }
 
 fn spring_of(case: &Case) -> Option<f64> {
-    spring(&simulation(case, 1).ok()?.model)
+    spring(&simulation(case, 1).ok()?.model())
 }
 
 fn put(directory: &Path, name: &str, lines: &[String]) -> Result<(), RecordError> {

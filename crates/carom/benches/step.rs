@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use carom::case::{Case, Document, read};
-use carom::{GridReport, Simulation};
+use carom::{GridReport, Simulation, State};
 use carom_algebra::{Condensed, Elimination, Pattern, Precision};
 use carom_contact::{Pair, Pairing, Rows};
 use divan::{Bencher, counter::ItemsCount};
@@ -52,10 +52,15 @@ fn at_start(job: Job) -> Simulation {
     carom::simulation(&case_of(text), 1).expect("valid")
 }
 
+fn restored(mut simulation: Simulation, state: State) -> Simulation {
+    simulation.restore(state).expect("a state of the same model");
+    simulation
+}
+
 /// The job with about a dozen nodes (2k) or forty (19k) in contact.
 fn in_contact(job: Job) -> Simulation {
     let mut sim = at_start(job);
-    while sim.state.step < 60 {
+    while sim.state().step < 60 {
         sim.advance(&mut GridReport::default()).expect("the job runs");
     }
     sim
@@ -64,21 +69,21 @@ fn in_contact(job: Job) -> Simulation {
 #[divan::bench(args = JOBS)]
 fn forces_of_all_cells(bencher: Bencher, job: Job) {
     let sim = in_contact(job);
-    let mut force = vec![0.0; sim.model.dofs()];
-    let cells: usize = sim.model.parts.iter().map(|p| p.body.mesh().cell_count()).sum();
+    let mut force = vec![0.0; sim.model().dofs()];
+    let cells: usize = sim.model().parts.iter().map(|p| p.body.mesh().cell_count()).sum();
     let bencher = bencher.counter(ItemsCount::new(cells));
-    bencher.bench_local(|| sim.model.internal_force(black_box(&sim.state.y), &mut force).is_ok());
+    bencher.bench_local(|| sim.model().internal_force(black_box(&sim.state().y), &mut force).is_ok());
 }
 
 #[divan::bench(args = JOBS)]
 fn tangents_of_all_cells(bencher: Bencher, job: Job) {
     let sim = in_contact(job);
     let (mut force, mut tangent) = ([0.0; 20], [0.0; 400]);
-    let cells: usize = sim.model.parts.iter().map(|p| p.body.mesh().cell_count()).sum();
+    let cells: usize = sim.model().parts.iter().map(|p| p.body.mesh().cell_count()).sum();
     let bencher = bencher.counter(ItemsCount::new(cells));
     bencher.bench_local(|| {
-        for part in &sim.model.parts {
-            let y = part.of(&sim.state.y);
+        for part in &sim.model().parts {
+            let y = part.of(&sim.state().y);
             for cell in 0..part.body.mesh().cell_count() {
                 black_box(part.body.cell_tangent(cell, y, &mut force, &mut tangent).is_ok());
             }
@@ -95,29 +100,29 @@ fn assembly(bencher: Bencher, job: Job) {
 #[divan::bench(args = JOBS)]
 fn mass_times_vector(bencher: Bencher, job: Job) {
     let sim = in_contact(job);
-    let mut out = vec![0.0; sim.model.dofs()];
-    bencher.bench_local(|| sim.model.mass.multiply_into(black_box(&sim.state.v), &mut out));
+    let mut out = vec![0.0; sim.model().dofs()];
+    bencher.bench_local(|| sim.model().mass.multiply_into(black_box(&sim.state().v), &mut out));
 }
 
 #[divan::bench(args = JOBS)]
 fn detection(bencher: Bencher, job: Job) {
     let sim = in_contact(job);
-    let y = &sim.state.y;
+    let y = &sim.state().y;
     bencher.bench_local(|| {
-        let mut pairing = Pairing::new(sim.state.pairs[0].clone());
-        sim.model.contacts[0].kinematics.search(y, black_box(y), &mut pairing, &mut Vec::new())
+        let mut pairing = Pairing::new(sim.state().pairs[0].clone());
+        sim.model().contacts[0].kinematics.search(y, black_box(y), &mut pairing, &mut Vec::new())
     });
 }
 
 #[divan::bench(args = JOBS)]
 fn gaps(bencher: Bencher, job: Job) {
     let sim = in_contact(job);
-    let y = &sim.state.y;
-    let kinematics = &sim.model.contacts[0].kinematics;
+    let y = &sim.state().y;
+    let kinematics = &sim.model().contacts[0].kinematics;
     let (mut rows, mut curvature) = (Rows::new(2), vec![0.0; (2 * kinematics.stencil()).pow(2)]);
-    bencher.counter(ItemsCount::new(sim.state.pairs[0].len())).bench_local(|| {
+    bencher.counter(ItemsCount::new(sim.state().pairs[0].len())).bench_local(|| {
         rows.clear();
-        for mut pair in sim.state.pairs[0].iter().copied() {
+        for mut pair in sim.state().pairs[0].iter().copied() {
             black_box(kinematics.measure(&mut pair, black_box(y), &mut rows).is_ok());
             kinematics.curvature_into(&pair, black_box(y), &mut curvature);
         }
@@ -127,7 +132,7 @@ fn gaps(bencher: Bencher, job: Job) {
 /// The consistent mass on the pattern of the tangent, positive definite; the nodes on which pairs
 /// act are eliminated last.
 fn mass_matrix(sim: &Simulation) -> (Pattern, Vec<f64>, Vec<usize>, Vec<usize>) {
-    let mass = &sim.model.mass;
+    let mass = &sim.model().mass;
     let entries = (0..mass.nodes()).flat_map(|a| mass.row(a).map(move |(b, value)| (a, b, value)));
     let entries: Vec<_> = entries
         .flat_map(|(a, b, v)| {
@@ -136,16 +141,16 @@ fn mass_matrix(sim: &Simulation) -> (Pattern, Vec<f64>, Vec<usize>, Vec<usize>) 
         })
         .filter(|(i, j, _)| i >= j)
         .collect();
-    let pattern = Pattern::from_entries(sim.model.dofs(), entries.iter().map(|&(i, j, _)| (i, j)));
+    let pattern = Pattern::from_entries(sim.model().dofs(), entries.iter().map(|&(i, j, _)| (i, j)));
     let mut values = vec![0.0; pattern.len()];
     for (i, j, value) in entries {
         values[pattern.slot(i, j).expect("just made")] += value;
     }
-    let groups = (0..sim.model.dofs()).map(|dof| dof / 2).collect();
-    let kinematics = &sim.model.contacts[0].kinematics;
+    let groups = (0..sim.model().dofs()).map(|dof| dof / 2).collect();
+    let kinematics = &sim.model().contacts[0].kinematics;
     let nodes_of =
         |pair: &Pair| [&[kinematics.secondary()[pair.node]], kinematics.facet_nodes(pair.facet)].concat();
-    let contact_nodes: BTreeSet<usize> = sim.state.pairs[0].iter().flat_map(nodes_of).collect();
+    let contact_nodes: BTreeSet<usize> = sim.state().pairs[0].iter().flat_map(nodes_of).collect();
     let last = contact_nodes.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
     (pattern, values, groups, last)
 }
@@ -187,8 +192,8 @@ fn solve(bencher: Bencher, job: Job) {
 
 #[divan::bench(args = JOBS, sample_count = 5, sample_size = 1)]
 fn ten_steps(bencher: Bencher, job: Job) {
-    let state = in_contact(job).state;
-    bencher.with_inputs(|| at_start(job).resumed(state.clone())).bench_local_values(|mut sim| {
+    let state = in_contact(job).into_state();
+    bencher.with_inputs(|| restored(at_start(job), state.clone())).bench_local_values(|mut sim| {
         for _ in 0..10 {
             black_box(sim.advance(&mut GridReport::default()).is_ok());
         }

@@ -30,9 +30,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut touching = 0.0;
         while !run.finished() {
             run.advance(&mut carom::GridReport::default())?;
-            touching += if run.state.contact_forces[0][0] > 0.0 { run.dt } else { 0.0 };
+            touching += if run.state().contact_forces[0][0] > 0.0 { run.dt() } else { 0.0 };
         }
-        let (impulse, mass) = (run.state.ledger.impulse[0], 10.0);
+        let (impulse, mass) = (run.state().ledger.impulse[0], 10.0);
         let rebound = impulse / mass - speed;
         println!("{speed:5}  {:17.4}  {touching:8.3}  {rebound:7.3}", impulse / (2.0 * mass * speed));
     }

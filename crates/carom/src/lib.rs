@@ -12,7 +12,7 @@ pub use build::{build, overlaps};
 pub use carom_case as case;
 pub use carom_mechanics::{
     Accepted, Before, Bisection, Explicit, FrozenTangent, Grid, GridReport, HalfStepVelocity, Implicit,
-    Impulsive, Ledger, LogEvent, Means, Point, Previous, Rejected, Settings, Simulation, State, StepReport,
-    Stepper, Stopped, Tangent, Timings, Workspace, frequencies, model, stability,
+    Impulsive, Ledger, LogEvent, Means, OtherModel, Point, Previous, Rejected, Settings, Simulation, State,
+    StepReport, Stepper, Stopped, Tangent, Timings, Workspace, frequencies, model, stability,
 };
 pub use setup::{resumed, simulation, too_long};

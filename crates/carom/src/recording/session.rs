@@ -51,10 +51,10 @@ pub fn run(
     let resolved = serde_json::to_value(case).map_err(|e| RunError::Incompatible { what: e.to_string() })?;
     let version = env!("CARGO_PKG_VERSION");
     let mut manifest =
-        Manifest::new(version, resolved, source, columns(case, &simulation.model), options.threads);
-    manifest.sides = sides(&simulation.model);
+        Manifest::new(version, resolved, source, columns(case, &simulation.model()), options.threads);
+    manifest.sides = sides(&simulation.model());
     manifest.warnings = case.warnings();
-    let writer = RunWriter::create(directory, &manifest, &bytes(&simulation.state)?)?;
+    let writer = RunWriter::create(directory, &manifest, &bytes(&simulation.state())?)?;
     let mut session = Session::new(case, simulation, writer, manifest);
     session.write_start()?;
     session.go(observe, stop, Vec::new())
@@ -104,9 +104,9 @@ pub fn resume(
     })?;
     let dofs = state.y.len();
     let simulation = resumed(case, options.threads, state).map_err(RunError::Case)?;
-    if dofs != simulation.model.dofs() {
+    if dofs != simulation.model().dofs() {
         return Err(RunError::Incompatible {
-            what: format!("the checkpoint has {dofs} dofs, the case {}", simulation.model.dofs()),
+            what: format!("the checkpoint has {dofs} dofs, the case {}", simulation.model().dofs()),
         });
     }
     let mut manifest = reopened.manifest;
@@ -126,10 +126,10 @@ pub fn resume(
 impl<'a> Session<'a> {
     fn new(case: &'a Case, simulation: Simulation, mut writer: RunWriter, manifest: Manifest) -> Self {
         writer.field_format(case.output.format);
-        let at = |time: &f64| (time / simulation.dt).round() as u64;
+        let at = |time: &f64| (time / simulation.dt()).round() as u64;
         let field_steps = case.output.at_times.iter().map(at).collect();
-        let weights = center_weights(&simulation.model);
-        let first_step = simulation.state.step;
+        let weights = center_weights(&simulation.model());
+        let first_step = simulation.state().step;
         let stressed = stressed(&simulation);
         let began = Instant::now();
         Self {
@@ -176,13 +176,13 @@ impl<'a> Session<'a> {
             let busy = Busy::now(self.manifest.threads);
             let advanced = self.simulation.advance(&mut report);
             self.cpu += busy.seconds();
-            let step = self.simulation.state.step + u64::from(advanced.is_err());
+            let step = self.simulation.state().step + u64::from(advanced.is_err());
             for event in &report.events {
-                self.writer.log(&entry(&self.simulation.model, step, event))?;
+                self.writer.log(&entry(&self.simulation.model(), step, event))?;
             }
             self.count(&report);
             if let Err(stopped) = advanced {
-                let event = Event::new(step, self.simulation.state.time, "stopped", stopped.to_string());
+                let event = Event::new(step, self.simulation.state().time, "stopped", stopped.to_string());
                 self.writer.log(&event)?;
                 end = End::Stopped(stopped);
                 break;
@@ -200,7 +200,7 @@ impl<'a> Session<'a> {
     /// step only, so that a resumed run logs the same.
     fn log_lost_stress(&mut self) -> Result<(), RunError> {
         let now = stressed(&self.simulation);
-        let Simulation { model, state, .. } = &self.simulation;
+        let (model, state) = (self.simulation.model(), self.simulation.state());
         let ceased = self.stressed.iter().zip(&now).map(|(before, now)| *before && !now);
         for (probe, _) in model.probes.iter().zip(ceased).filter(|(_, ceased)| *ceased) {
             let message = format!(
@@ -217,7 +217,7 @@ impl<'a> Session<'a> {
     /// Writes the record of a grid step.
     fn record(&mut self, report: &GridReport) -> Result<(), RunError> {
         let output = &self.case.output;
-        let (step, last) = (self.simulation.state.step, self.simulation.finished());
+        let (step, last) = (self.simulation.state().step, self.simulation.finished());
         if step % output.history_every as u64 == 0 || last {
             self.write_row(report)?;
         }
@@ -226,14 +226,14 @@ impl<'a> Session<'a> {
             self.write_fields()?;
         }
         if step % output.checkpoint_every as u64 == 0 && !last {
-            self.writer.checkpoint(step, &bytes(&self.simulation.state)?)?;
+            self.writer.checkpoint(step, &bytes(&self.simulation.state())?)?;
         }
         Ok(())
     }
 
     fn write_row(&mut self, report: &GridReport) -> Result<(), RunError> {
-        let Simulation { model, state, dt, .. } = &self.simulation;
-        row(model, state, *dt, report, &self.weights, &mut self.values);
+        let (model, state, dt) = (self.simulation.model(), self.simulation.state(), self.simulation.dt());
+        row(model, state, dt, report, &self.weights, &mut self.values);
         self.writer.history(&self.values)?;
         for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
             if pairs.iter().all(|p| !p.active) {
@@ -264,7 +264,7 @@ impl<'a> Session<'a> {
 
     fn write_fields(&mut self) -> Result<(), RunError> {
         if self.case.output.fields_every > 0 || !self.field_steps.is_empty() {
-            let Simulation { model, state, .. } = &self.simulation;
+            let (model, state) = (self.simulation.model(), self.simulation.state());
             self.writer.fields(state.step, state.time, &field_set(self.case, model, state))?;
         }
         Ok(())
@@ -281,15 +281,15 @@ impl<'a> Session<'a> {
     }
 
     fn progress(&self, report: &GridReport) -> Progress {
-        let Simulation { state, dt, steps, .. } = &self.simulation;
+        let (state, steps) = (self.simulation.state(), self.simulation.steps());
         let wall = self.began.elapsed().as_secs_f64();
         let done = (state.step - self.first_step).max(1);
         let ledger = &state.ledger;
         Progress {
             step: state.step,
-            steps: *steps,
+            steps,
             time: state.time,
-            dt: *dt,
+            dt: self.simulation.dt(),
             newton: report.newton,
             active: state.pairs.iter().flatten().filter(|p| p.active).count(),
             rejected: report.rejected,
@@ -303,7 +303,7 @@ impl<'a> Session<'a> {
 
     /// Writes the last checkpoint and manifest.
     fn close(mut self, end: End, remarks: Vec<String>) -> Result<Outcome, RunError> {
-        let state = &self.simulation.state;
+        let state = &self.simulation.state();
         self.writer.checkpoint(state.step, &bytes(state)?)?;
         let wall = self.began.elapsed().as_secs_f64();
         let manifest = &mut self.manifest;
@@ -341,7 +341,7 @@ impl<'a> Session<'a> {
 }
 
 fn stressed(simulation: &Simulation) -> Vec<bool> {
-    let Simulation { model, state, .. } = simulation;
+    let (model, state) = (simulation.model(), simulation.state());
     model.probes.iter().map(|probe| probe.has_stress(&model.parts, &state.y)).collect()
 }
 

@@ -12,22 +12,22 @@ const BAR: &str = include_str!("../../../../cases/bar/single.toml");
 /// penetration.
 fn figures(sets: &[String]) -> [f64; 5] {
     let mut sim = simulation(BAR, sets);
-    let start = sim.state.ledger.total();
+    let start = sim.state().ledger.total();
     let (mut peak, mut squares, mut samples, mut depth) = (0.0_f64, 0.0, 0, 0.0_f64);
     while !sim.finished() {
         sim.advance(&mut GridReport::default()).unwrap();
-        let p = sim.state.contact_forces[0][0] / 300.0;
+        let p = sim.state().contact_forces[0][0] / 300.0;
         peak = peak.max(p);
-        depth = depth.max(-sim.state.y[0]);
-        if sim.state.time > 0.52 + 1e-9 && sim.state.time < 1.147 - 1e-9 {
+        depth = depth.max(-sim.state().y[0]);
+        if sim.state().time > 0.52 + 1e-9 && sim.state().time < 1.147 - 1e-9 {
             squares += (p - 1.0) * (p - 1.0);
             samples += 1;
         }
     }
-    let mut momentum = vec![0.0; sim.state.v.len()];
-    sim.model.mass.multiply_into(&sim.state.v, &mut momentum);
+    let mut momentum = vec![0.0; sim.state().v.len()];
+    sim.model().mass.multiply_into(&sim.state().v, &mut momentum);
     let velocity = momentum.iter().sum::<f64>() / 10.0;
-    [peak, (squares / f64::from(samples)).sqrt(), sim.state.ledger.total() / start, velocity / 10.0, depth]
+    [peak, (squares / f64::from(samples)).sqrt(), sim.state().ledger.total() / start, velocity / 10.0, depth]
 }
 
 /// The bouncing bar: error of the end's position in the third period relative to the drop height,
@@ -39,13 +39,13 @@ fn bounce(sets: &[String]) -> [f64; 2] {
     let (mut squares, mut samples) = (0.0, 0);
     while !sim.finished() {
         sim.advance(&mut GridReport::default()).unwrap();
-        if sim.state.time > 2.0 * period - 1e-9 {
-            let error = sim.state.y[0] - exact_bounce(sim.state.time % period);
+        if sim.state().time > 2.0 * period - 1e-9 {
+            let error = sim.state().y[0] - exact_bounce(sim.state().time % period);
             squares += error * error;
             samples += 1;
         }
     }
-    [(squares / f64::from(samples)).sqrt() / 5.0, (sim.state.ledger.total() + 500.0) / 500.0]
+    [(squares / f64::from(samples)).sqrt() / 5.0, (sim.state().ledger.total() + 500.0) / 500.0]
 }
 
 /// Exact position of the bouncing bar's lower end within a period of 16/3: fall, contact, flight

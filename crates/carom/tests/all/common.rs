@@ -1,7 +1,7 @@
 //! Common helpers: cases from text and settings, runs to the end, sums over bodies.
 
 use carom::case::{Case, Document, read};
-use carom::{GridReport, Simulation};
+use carom::{GridReport, Simulation, State};
 use carom_time::{KINDS, KindInfo, Member};
 
 /// Two discs that collide off centre, in contact within the run.
@@ -45,6 +45,19 @@ pub(crate) fn case<S: AsRef<str>>(text: &str, sets: &[S]) -> Case {
     read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)))
 }
 
+/// Changes the state of a simulation.
+pub(crate) fn change(simulation: &mut Simulation, how: impl FnOnce(&mut State)) {
+    let mut state = simulation.state().clone();
+    how(&mut state);
+    simulation.restore(state).unwrap();
+}
+
+/// A simulation at another state of its model.
+pub(crate) fn restored(mut simulation: Simulation, state: State) -> Simulation {
+    simulation.restore(state).unwrap();
+    simulation
+}
+
 /// The members of every kind with its own contact law, or of all others: name as in a case, and
 /// published properties.
 pub(crate) fn schemes(nonsmooth: bool) -> impl Iterator<Item = (String, &'static Member)> {
@@ -74,8 +87,8 @@ pub(crate) fn finish(mut sim: Simulation) -> Simulation {
 /// Linear and angular momentum of the velocities `v` at the current positions.
 pub(crate) fn momenta(sim: &Simulation, v: &[f64]) -> [f64; 3] {
     let mut p = vec![0.0; v.len()];
-    sim.model.mass.multiply_into(v, &mut p);
-    sums(&p, &sim.state.y)
+    sim.model().mass.multiply_into(v, &mut p);
+    sums(&p, &sim.state().y)
 }
 
 /// Sums of vectors at the nodes `y` and of their moments.

@@ -3,7 +3,7 @@
 
 use carom::{GridReport, Simulation};
 
-use super::common::{momenta, simulation};
+use super::common::{change, momenta, simulation};
 
 const FLIGHT: &str = r#"
 title = "flight"
@@ -29,32 +29,38 @@ energy_guard = false
 fn flight(sets: &[&str]) -> Simulation {
     let mut sim = simulation(FLIGHT, sets);
     // Rotation about the centre, and a stretch along x of tens of per cent.
-    for node in sim.model.parts[0].nodes() {
-        let [x, y] = [sim.model.reference[2 * node] - 1.0, sim.model.reference[2 * node + 1] - 0.25];
-        (sim.state.v[2 * node], sim.state.v[2 * node + 1]) = (1.0 + 4.0 * x - 3.0 * y, 0.5 + 3.0 * x);
+    let mut v = sim.state().v.clone();
+    for (v, place) in v.chunks_mut(2).zip(sim.model().reference.chunks(2)) {
+        let [x, y] = [place[0] - 1.0, place[1] - 0.25];
+        v.copy_from_slice(&[1.0 + 4.0 * x - 3.0 * y, 0.5 + 3.0 * x]);
     }
-    sim.state.ledger.kinetic = sim.model.kinetic(&sim.state.v);
-    sim.state.ledger.total_at_start = sim.state.ledger.total();
+    let kinetic = sim.model().kinetic(&v);
+    change(&mut sim, |state| {
+        state.v = v;
+        state.ledger.kinetic = kinetic;
+        state.ledger.total_at_start = state.ledger.total();
+    });
     sim
 }
 
 /// Largest relative change of the energy and of each momentum, least J, mean Newton iterations.
 fn drift(sets: &[&str]) -> (f64, [f64; 3], f64, f64) {
     let mut sim = flight(sets);
-    let (start, energy) = (momenta(&sim, &sim.state.v), sim.state.ledger.total());
+    let (start, energy) = (momenta(&sim, &sim.state().v), sim.state().ledger.total());
     let (mut worst, mut lost, mut least, mut newton) = (0.0_f64, [0.0_f64; 3], 1.0_f64, 0);
     while !sim.finished() {
         let mut report = GridReport::default();
         sim.advance(&mut report).unwrap();
         assert_eq!(report.rejected, 0);
         newton += report.newton;
-        worst = worst.max((sim.state.ledger.total() / energy - 1.0).abs());
-        for (lost, (now, start)) in lost.iter_mut().zip(momenta(&sim, &sim.state.v).into_iter().zip(start)) {
+        worst = worst.max((sim.state().ledger.total() / energy - 1.0).abs());
+        for (lost, (now, start)) in lost.iter_mut().zip(momenta(&sim, &sim.state().v).into_iter().zip(start))
+        {
             *lost = lost.max((now / start - 1.0).abs());
         }
-        least = least.min(sim.model.min_det_f(&sim.state.y));
+        least = least.min(sim.model().min_det_f(&sim.state().y));
     }
-    (worst, lost, least, f64::from(newton) / sim.steps as f64)
+    (worst, lost, least, f64::from(newton) / sim.steps() as f64)
 }
 
 #[test]

@@ -12,16 +12,16 @@ const COARSE: [&str; 2] = ["body.cylinder.mesh.size=0.25", "body.prism.mesh.cell
 /// Gaps of the pairs at the current positions, recomputed.
 fn gaps(sim: &Simulation) -> Rows {
     let mut rows = Rows::new(2);
-    for mut pair in sim.state.pairs[0].iter().copied() {
-        sim.model.contacts[0].kinematics.measure(&mut pair, &sim.state.y, &mut rows).unwrap();
+    for mut pair in sim.state().pairs[0].iter().copied() {
+        sim.model().contacts[0].kinematics.measure(&mut pair, &sim.state().y, &mut rows).unwrap();
     }
     rows
 }
 
 /// The force of the active pairs on all dofs, from those gaps.
 fn contact_force(sim: &Simulation) -> Vec<f64> {
-    let mut force = vec![0.0; sim.model.dofs()];
-    for (pair, row) in sim.state.pairs[0].iter().zip(gaps(sim).iter()).filter(|(pair, _)| pair.active) {
+    let mut force = vec![0.0; sim.model().dofs()];
+    for (pair, row) in sim.state().pairs[0].iter().zip(gaps(sim).iter()).filter(|(pair, _)| pair.active) {
         row.add_to(pair.lambda, &mut force);
     }
     force
@@ -29,7 +29,7 @@ fn contact_force(sim: &Simulation) -> Vec<f64> {
 
 /// Krenk's identity for the α family (design.md §5): the dissipation of a step from its two states.
 fn predicted_dissipation(sim: &Simulation, before: &State, scheme: &carom_time::Scheme) -> f64 {
-    let (dt, now) = (sim.dt, &sim.state);
+    let (dt, now) = (sim.dt(), &sim.state());
     let n = now.y.len();
     let moved: Vec<f64> = (0..n).map(|i| now.y[i] - before.y[i]).collect();
     // The algorithmic acceleration before any projection.
@@ -41,7 +41,7 @@ fn predicted_dissipation(sim: &Simulation, before: &State, scheme: &carom_time::
         .map(|i| (1.0 - scheme.alpha_f) * now.f_internal[i] + scheme.alpha_f * before.f_internal[i])
         .collect();
     let mut m_change = vec![0.0; n];
-    sim.model.mass.multiply_into(&change, &mut m_change);
+    sim.model().mass.multiply_into(&change, &mut m_change);
     let late: Vec<f64> = (0..n).map(|i| before.a[i] + scheme.gamma * change[i]).collect();
     let b = scheme.beta - 0.5 * scheme.gamma;
     dot(&moved, &mean)
@@ -75,21 +75,21 @@ fn ledger_balance_and_gaps_hold(case: &Case, least: usize) {
     let mut sim = carom::simulation(case, 1).unwrap();
     let (mut worst_ledger, mut touched) = (0.0_f64, 0);
     while !sim.finished() {
-        let before = sim.state.clone();
+        let before = sim.state().clone();
         let mut report = GridReport::default();
         sim.advance(&mut report).unwrap();
         assert_eq!(report.rejected, 0);
-        let booked = sim.state.ledger.dissipation() - before.ledger.dissipation();
+        let booked = sim.state().ledger.dissipation() - before.ledger.dissipation();
         let error = (booked - predicted_dissipation(&sim, &before, &scheme)).abs();
-        worst_ledger = worst_ledger.max(error / sim.state.ledger.largest);
+        worst_ledger = worst_ledger.max(error / sim.state().ledger.largest);
 
         let rows = gaps(&sim);
-        assert!(rows.iter().all(|row| row.gap > -2e-12), "step {}: {rows:?}", sim.state.step);
-        let pressing = || sim.state.pairs[0].iter().filter(|pair| pair.active);
+        assert!(rows.iter().all(|row| row.gap > -2e-12), "step {}: {rows:?}", sim.state().step);
+        let pressing = || sim.state().pairs[0].iter().filter(|pair| pair.active);
         touched += pressing().count();
         let size: f64 = pressing().map(|pair| pair.lambda.abs()).sum();
-        let lost: f64 = sums(&contact_force(&sim), &sim.state.y).iter().map(|sum| sum.abs()).sum();
-        assert!(lost <= 1e-12 * size, "step {}: {lost:e} of {size:e}", sim.state.step);
+        let lost: f64 = sums(&contact_force(&sim), &sim.state().y).iter().map(|sum| sum.abs()).sum();
+        assert!(lost <= 1e-12 * size, "step {}: {lost:e} of {size:e}", sim.state().step);
     }
     assert!(touched > least, "{touched}");
     assert!(worst_ledger < 1e-12, "{worst_ledger:e}");
@@ -101,13 +101,13 @@ fn ledger_balance_and_gaps_hold(case: &Case, least: usize) {
 fn the_contact_force_of_every_state_is_that_of_its_pairs() {
     let mut sim = simulation(include_str!("../../../../cases/impact/whole.toml"), &[""; 0]);
     let mut contacts = 0;
-    while sim.state.time < 0.36 {
+    while sim.state().time < 0.36 {
         sim.advance(&mut GridReport::default()).unwrap();
-        contacts += sim.state.pairs[0].iter().filter(|pair| pair.active).count();
+        contacts += sim.state().pairs[0].iter().filter(|pair| pair.active).count();
         let force = contact_force(&sim);
         let largest = force.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
-        let apart = force.iter().zip(&sim.state.f_contact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(apart < 1e-12 * (1.0 + largest), "step {}: {apart:e}", sim.state.step);
+        let apart = force.iter().zip(&sim.state().f_contact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(apart < 1e-12 * (1.0 + largest), "step {}: {apart:e}", sim.state().step);
     }
     assert!(contacts > 100);
 }
@@ -127,13 +127,13 @@ fn free_fall_is_that_of_the_scheme() {
             while !sim.finished() {
                 sim.advance(&mut GridReport::default()).unwrap();
             }
-            let late = falls(sim.state.step as f64) * sim.dt * sim.dt;
-            let fallen = 9.81 * (0.5 * sim.state.time * sim.state.time + late);
-            for node in sim.model.parts[0].nodes() {
+            let late = falls(sim.state().step as f64) * sim.dt() * sim.dt();
+            let fallen = 9.81 * (0.5 * sim.state().time * sim.state().time + late);
+            for node in sim.model().parts[0].nodes() {
                 let [x, y] = [2 * node, 2 * node + 1];
-                let error = (sim.state.y[y] - (sim.model.reference[y] - fallen)).abs();
+                let error = (sim.state().y[y] - (sim.model().reference[y] - fallen)).abs();
                 assert!(error < 1e-12, "{scheme}: {error:e}");
-                assert!((sim.state.y[x] - sim.model.reference[x]).abs() < 1e-12);
+                assert!((sim.state().y[x] - sim.model().reference[x]).abs() < 1e-12);
             }
         }
     }
@@ -154,9 +154,9 @@ fn total_momentum_of_two_free_bodies_is_kept_through_contact() {
     let mut active = 0;
     while !sim.finished() {
         sim.advance(&mut GridReport::default()).unwrap();
-        active = active.max(sim.state.pairs[0].iter().filter(|p| p.active).count());
-        let total = momenta(&sim, &sim.state.v);
-        assert!(total[0].abs() + total[1].abs() < 1e-11, "step {}: {total:?}", sim.state.step);
+        active = active.max(sim.state().pairs[0].iter().filter(|p| p.active).count());
+        let total = momenta(&sim, &sim.state().v);
+        assert!(total[0].abs() + total[1].abs() < 1e-11, "step {}: {total:?}", sim.state().step);
     }
     assert!(active >= 3);
 }
@@ -170,7 +170,7 @@ fn giving_up_after_a_change_of_pairs_is_told() {
     let paper = include_str!("../../../../cases/paper/impact.toml");
     let mut sim = simulation(paper, &[scheme, "contact.strike.law=\"predictor\"", &step]);
     let mut rejected = 0;
-    while sim.state.time < 0.36 {
+    while sim.state().time < 0.36 {
         let mut report = GridReport::default();
         sim.advance(&mut report).unwrap();
         rejected += report.rejected;

@@ -3,7 +3,7 @@
 use carom::{GridReport, Means, Previous, State};
 use carom_time::map;
 
-use super::common::{case, finish, schemes, simulation};
+use super::common::{case, change, finish, restored, schemes, simulation};
 
 /// A spring of one cell, its left end fixed.
 const SPRING: &str = r#"
@@ -45,16 +45,18 @@ fn one_dof_is_amplified_as_the_analysis_says() {
             let mut unit = [0.0; 5];
             unit[column] = 1e-3;
             let [u, v, a, d, w] = unit;
-            (sim.state.y[1], sim.state.v[1], sim.state.a[1]) = (1.0 + u, v / dt, a / (dt * dt));
-            sim.state.f_internal = vec![-stiffness * u, stiffness * u];
-            sim.state.previous = Some(Previous {
-                dt,
-                increment: vec![0.0, d],
-                velocity: vec![0.0, w / dt],
-                means: Means::new(2),
+            change(&mut sim, |state| {
+                (state.y[1], state.v[1], state.a[1]) = (1.0 + u, v / dt, a / (dt * dt));
+                state.f_internal = vec![-stiffness * u, stiffness * u];
+                state.previous = Some(Previous {
+                    dt,
+                    increment: vec![0.0, d],
+                    velocity: vec![0.0, w / dt],
+                    means: Means::new(2),
+                });
             });
             sim.advance(&mut GridReport::default()).unwrap();
-            let now = [sim.state.y[1] - 1.0, dt * sim.state.v[1], dt * dt * sim.state.a[1]];
+            let now = [sim.state().y[1] - 1.0, dt * sim.state().v[1], dt * dt * sim.state().a[1]];
             for row in 0..3 {
                 let error = now[row] / 1e-3 - want[row][column];
                 assert!(error.abs() < 1e-10, "{scheme} ({row}, {column}): {error:e}");
@@ -76,10 +78,8 @@ fn the_observed_order_on_a_nonlinear_oscillation_is_the_claimed_one() {
                 "newton.tolerance=1e-12".into(),
             ];
             let mut sim = simulation(SPRING, &sets.each_ref().map(String::as_str));
-            for node in 0..4 {
-                sim.state.v[node] = 1.5 * node as f64 / 3.0;
-            }
-            finish(sim).state
+            change(&mut sim, |state| (0..4).for_each(|node| state.v[node] = 1.5 * node as f64 / 3.0));
+            finish(sim).into_state()
         };
         // Backward Euler reaches its asymptotic range late.
         let step = if member.order == 1 { 1.25e-4 } else { 2e-3 };
@@ -110,11 +110,11 @@ fn the_booked_impulse_is_the_change_of_momentum() {
         let sim = simulation(BAR, &sets);
         let momentum = |state: &State| {
             let mut p = vec![0.0; state.v.len()];
-            sim.model.mass.multiply_into(&state.v, &mut p);
+            sim.model().mass.multiply_into(&state.v, &mut p);
             p.iter().sum::<f64>()
         };
-        let start = momentum(&sim.state);
-        let end = finish(simulation(BAR, &sets)).state;
+        let start = momentum(&sim.state());
+        let end = finish(simulation(BAR, &sets)).into_state();
         let error = momentum(&end) - start - end.ledger.impulse[0];
         assert!(
             end.ledger.impulse[0] > 150.0 && error.abs() < 1e-7,
@@ -129,9 +129,11 @@ fn the_booked_impulse_is_the_change_of_momentum() {
 #[test]
 fn what_contact_laws_cost_is_booked_as_contact_work() {
     const CONSERVING: &str = r#"time.scheme={ kind = "energy-momentum" }"#;
-    let penalty = finish(simulation(BAR, &[CONSERVING, "contact.wall.enforcement=\"penalty\""])).state.ledger;
+    let penalty =
+        finish(simulation(BAR, &[CONSERVING, "contact.wall.enforcement=\"penalty\""])).into_state().ledger;
     assert!(penalty.contact_work.abs() < 1e-7 && penalty.dissipation().abs() < 1e-7, "{penalty:?}");
-    let predictor = finish(simulation(BAR, &[CONSERVING, "contact.wall.law=\"predictor\""])).state.ledger;
+    let predictor =
+        finish(simulation(BAR, &[CONSERVING, "contact.wall.law=\"predictor\""])).into_state().ledger;
     assert!(predictor.contact_work < -1.0 && predictor.dissipation().abs() < 1e-7, "{predictor:?}");
 }
 
@@ -148,10 +150,11 @@ fn a_checkpoint_holds_the_memory_of_schemes_and_springs() {
         for _ in 0..190 {
             sim.advance(&mut GridReport::default()).unwrap();
         }
-        assert!(sim.state.pairs[0].iter().any(|p| p.active));
-        let bytes = postcard::to_stdvec(&sim.state).unwrap();
-        let straight = finish(sim).state;
-        let resumed = finish(simulation(BAR, &sets).resumed(postcard::from_bytes(&bytes).unwrap())).state;
+        assert!(sim.state().pairs[0].iter().any(|p| p.active));
+        let bytes = postcard::to_stdvec(&sim.state()).unwrap();
+        let straight = finish(sim).into_state();
+        let resumed =
+            finish(restored(simulation(BAR, &sets), postcard::from_bytes(&bytes).unwrap())).into_state();
         assert_eq!(straight, resumed, "{sets:?}");
     }
 }

@@ -5,7 +5,7 @@ use carom::stability::{SAFETY, stable_step};
 use carom::{GridReport, State};
 use carom_time::{Integrator, Nonsmooth};
 
-use super::common::{DISCS, case, dot, finish, momenta, on_threads, schemes, simulation};
+use super::common::{DISCS, case, dot, finish, momenta, on_threads, restored, schemes, simulation};
 
 const IMPACT: &str = include_str!("../../../../cases/impact/impact.toml");
 const COARSE: [&str; 4] = [
@@ -21,12 +21,12 @@ fn free_fall_is_that_of_the_scheme() {
         let scheme = format!("time.scheme={scheme}");
         let sim =
             finish(simulation(IMPACT, &[&COARSE[..], &[&scheme, "time.end=0.3", "time.step=3e-4"]].concat()));
-        let late = (member.falls)(sim.state.step as f64) * sim.dt * sim.dt;
-        let fallen = 9.81 * (0.5 * sim.state.time * sim.state.time + late);
-        for node in sim.model.parts[0].nodes() {
-            let error = (sim.state.y[2 * node + 1] - (sim.model.reference[2 * node + 1] - fallen)).abs();
+        let late = (member.falls)(sim.state().step as f64) * sim.dt() * sim.dt();
+        let fallen = 9.81 * (0.5 * sim.state().time * sim.state().time + late);
+        for node in sim.model().parts[0].nodes() {
+            let error = (sim.state().y[2 * node + 1] - (sim.model().reference[2 * node + 1] - fallen)).abs();
             assert!(error < 1e-12, "{scheme}: {error:e}");
-            assert!((sim.state.v[2 * node + 1] + 9.81 * sim.state.time).abs() < 1e-11, "{scheme}");
+            assert!((sim.state().v[2 * node + 1] + 9.81 * sim.state().time).abs() < 1e-11, "{scheme}");
         }
     }
 }
@@ -64,13 +64,14 @@ fn orders_on_smooth_nonlinear_motion_are_those_claimed() {
     let end = |scheme: &str, step: f64| {
         let (scheme, step) = (format!("time.scheme={scheme}"), format!("time.step={step:e}"));
         let sim = finish(simulation(BLOCK, &[&scheme, &step]));
-        (sim.state.y, sim.state.v)
+        let state = sim.into_state();
+        (state.y, state.v)
     };
     let exact = end("{ kind = \"chung-hulbert\", rho_inf = 1.0 }", 1e-3 / 128.0);
     let moved = exact
         .0
         .iter()
-        .zip(&simulation(BLOCK, &[""; 0]).state.y)
+        .zip(&simulation(BLOCK, &[""; 0]).state().y)
         .map(|(a, b)| (a - b).abs())
         .fold(0.0, f64::max);
     assert!(moved > 0.15, "{moved}");
@@ -99,12 +100,12 @@ fn two_discs_keep_their_momentum() {
     for (scheme, member) in schemes(true) {
         let mut sim = simulation(DISCS, &[&format!("time.scheme={scheme}")]);
         let explicit = member.rho_inf.is_infinite();
-        let size = 1.5 * sim.model.parts.iter().map(|p| p.total_mass).sum::<f64>();
+        let size = 1.5 * sim.model().parts.iter().map(|p| p.total_mass).sum::<f64>();
         let (mut active, mut spin) = (0, None);
         while !sim.finished() {
-            let before = sim.state.clone();
+            let before = sim.state().clone();
             sim.advance(&mut GridReport::default()).unwrap();
-            let state = &sim.state;
+            let state = &sim.state();
             active = active.max(state.pairs[0].iter().filter(|p| p.active).count());
             let total = momenta(&sim, &state.v);
             assert!(
@@ -121,7 +122,7 @@ fn two_discs_keep_their_momentum() {
                 );
                 let squares = |s: &State| {
                     let mut force = vec![0.0; s.a.len()];
-                    sim.model.mass.multiply_into(&s.a, &mut force);
+                    sim.model().mass.multiply_into(&s.a, &mut force);
                     dot(&s.a, &force)
                 };
                 let moved: Vec<f64> = state.y.iter().zip(&before.y).map(|(a, b)| a - b).collect();
@@ -129,7 +130,7 @@ fn two_discs_keep_their_momentum() {
                     state.f_internal.iter().zip(&before.f_internal).map(|(a, b)| 0.5 * (a + b)).collect();
                 let expected = dot(&moved, &mean)
                     - (state.ledger.strain - before.ledger.strain)
-                    - 0.125 * sim.dt * sim.dt * (squares(state) - squares(&before));
+                    - 0.125 * sim.dt() * sim.dt() * (squares(state) - squares(&before));
                 let booked = state.ledger.dissipation() - before.ledger.dissipation();
                 assert!(
                     (booked - expected).abs() < 1e-12 * state.ledger.largest,
@@ -138,15 +139,15 @@ fn two_discs_keep_their_momentum() {
             }
             assert!(state.ledger.created() < 0.02 * state.ledger.largest, "{scheme} {:?}", state.ledger);
         }
-        let impulse = sim.state.ledger.impulse;
-        let left: f64 = sim.model.parts[0]
+        let impulse = sim.state().ledger.impulse;
+        let left: f64 = sim.model().parts[0]
             .nodes()
-            .map(|n| sim.model.mass.row(n).map(|(_, m)| m).sum::<f64>() * sim.state.v[2 * n])
+            .map(|n| sim.model().mass.row(n).map(|(_, m)| m).sum::<f64>() * sim.state().v[2 * n])
             .sum();
-        let gained = left - 1.5 * sim.model.parts[0].total_mass;
+        let gained = left - 1.5 * sim.model().parts[0].total_mass;
         assert!((impulse[0] - gained).abs() < 1e-12 * size, "{scheme}: impulse {impulse:?}, gained {gained}");
         assert!(
-            active >= 3 && left < -0.5 * 1.5 * sim.model.parts[0].total_mass,
+            active >= 3 && left < -0.5 * 1.5 * sim.model().parts[0].total_mass,
             "{scheme}: {active} {left}"
         );
     }
@@ -172,14 +173,14 @@ fn resuming_in_contact_and_threads_change_no_bit() {
         let mut bytes = Vec::new();
         while !whole.finished() {
             whole.advance(&mut GridReport::default()).unwrap();
-            if bytes.is_empty() && whole.state.pairs[0].iter().filter(|p| p.active).count() >= 2 {
-                bytes = postcard::to_stdvec(&whole.state).unwrap();
+            if bytes.is_empty() && whole.state().pairs[0].iter().filter(|p| p.active).count() >= 2 {
+                bytes = postcard::to_stdvec(&whole.state()).unwrap();
             }
         }
         let state: State = postcard::from_bytes(&bytes).unwrap();
-        assert!(state.step < whole.state.step);
-        let resumed = finish(on_threads(DISCS, &sets, 2).resumed(state));
-        assert!(resumed.state == whole.state, "{scheme}");
+        assert!(state.step < whole.state().step);
+        let resumed = finish(restored(on_threads(DISCS, &sets, 2), state));
+        assert!(resumed.state() == whole.state(), "{scheme}");
     }
 }
 
@@ -193,7 +194,7 @@ fn restitution_one_keeps_the_energy_of_moreau_and_jean() {
             &format!("contact.strike.restitution={e}"),
         ];
         let sim = finish(simulation(DISCS, &sets));
-        let ledger = &sim.state.ledger;
+        let ledger = &sim.state().ledger;
         (ledger.total() / ledger.total_at_start, ledger.contact_work / ledger.total_at_start)
     };
     let (inelastic, elastic) = (left("0.0"), left("1.0"));
@@ -210,7 +211,7 @@ fn the_stable_step_is_where_central_differences_blow_up() {
         &[&COARSE[..], &["time.scheme={ kind = \"central-difference\" }", "time.step=3e-4"]].concat(),
     );
     let sim = carom::simulation(&coarse, 1).unwrap();
-    let stable = stable_step(&sim.model).unwrap();
+    let stable = stable_step(&sim.model()).unwrap();
     assert!(stable.cell <= stable.power && stable.power < 3.0 * stable.cell, "{stable:?}");
     let step = format!("time.step={:e}", 0.75 / (0.75 / (0.99 * stable.power)).floor());
     let long =
@@ -231,17 +232,19 @@ fn the_impact_by_central_differences() {
         "time.scheme={ kind = \"central-difference\" }",
     ];
     let mut sim = simulation(IMPACT, &[&lumped[..], &["time.step=4e-4"]].concat());
-    let top = (0..sim.model.dofs() / 2)
-        .find(|&n| sim.model.reference[2 * n] == 0.0 && (sim.model.reference[2 * n + 1] - 1.5).abs() < 1e-12)
+    let top = (0..sim.model().dofs() / 2)
+        .find(|&n| {
+            sim.model().reference[2 * n] == 0.0 && (sim.model().reference[2 * n + 1] - 1.5).abs() < 1e-12
+        })
         .unwrap();
     let (mut lowest, mut end, mut created) = (0.0_f64, 0.0, 0.0_f64);
     while !sim.finished() {
         sim.advance(&mut GridReport::default()).unwrap();
-        lowest = lowest.min(sim.state.y[2 * top + 1] - 1.5);
-        if sim.state.pairs[0].iter().any(|p| p.active) {
-            end = sim.state.time;
+        lowest = lowest.min(sim.state().y[2 * top + 1] - 1.5);
+        if sim.state().pairs[0].iter().any(|p| p.active) {
+            end = sim.state().time;
         }
-        created = created.max(sim.state.ledger.created() / sim.state.ledger.largest);
+        created = created.max(sim.state().ledger.created() / sim.state().ledger.largest);
     }
     assert!((lowest + 0.783).abs() < 0.004, "{lowest}");
     assert!((end - 0.555).abs() < 0.003, "{end}");

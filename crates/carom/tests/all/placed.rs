@@ -34,8 +34,8 @@ primary = "anvil.side3"
 
 fn run(sets: &[String]) -> (Vec<[f64; 2]>, usize) {
     let sim = finish(simulation(DROP, sets));
-    let active = sim.state.pairs.iter().flatten().filter(|p| p.active).count();
-    (sim.state.y.as_chunks::<2>().0.to_vec(), active)
+    let active = sim.state().pairs.iter().flatten().filter(|p| p.active).count();
+    (sim.state().y.as_chunks::<2>().0.to_vec(), active)
 }
 
 #[test]

@@ -20,7 +20,8 @@ probe = [
 /// = −0.2 < 0 backwards from its end, and positive at every quadrature point.
 #[test]
 fn a_corner_turned_over_has_j_but_no_stress() {
-    let Simulation { model, mut state, .. } = simulation(SQUARE, &[""; 0]);
+    let sim = simulation(SQUARE, &[""; 0]);
+    let (model, mut state) = (sim.model(), sim.state().clone());
     let [corner, shared] = &model.probes[..] else { panic!() };
     assert!(corner.has_stress(&model.parts, &state.y));
     let middle = model.reference.as_chunks::<2>().0.iter().position(|x| *x == [0.5, 0.0]).unwrap();

@@ -48,14 +48,14 @@ energy_guard = false
         let mut whole = carom::simulation(&case, 1).unwrap();
         let mut checkpoint = None;
         while !whole.finished() {
-            if whole.state.step == 23 {
-                checkpoint = Some(postcard::to_stdvec(&whole.state).unwrap());
+            if whole.state().step == 23 {
+                checkpoint = Some(postcard::to_stdvec(&whole.state()).unwrap());
             }
             whole.advance(&mut GridReport::default()).unwrap();
         }
         let state = postcard::from_bytes(&checkpoint.unwrap()).unwrap();
         let resumed = finish(carom::resumed(&case, 2, state).unwrap());
-        assert_eq!(resumed.state, whole.state);
+        assert_eq!(resumed.state(), whole.state());
     }
 }
 
@@ -106,18 +106,19 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
         text(&time(0.1, 1e-3, r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#), &initial, motion)
     };
     let mut started = simulation(&again("-0.1"), &[""; 0]);
-    assert_eq!(started.state.y, pressed.state.y);
-    let force = pressed.state.contact_forces[0][1];
+    assert_eq!(started.state().y, pressed.state().y);
+    let force = pressed.state().contact_forces[0][1];
     assert!(
-        (started.state.contact_forces[0][1] - force).abs() < 1e-8 * force,
+        (started.state().contact_forces[0][1] - force).abs() < 1e-8 * force,
         "{:?} {force}",
-        started.state.contact_forces
+        started.state().contact_forces
     );
     // It is in equilibrium: nothing moves.
     for _ in 0..20 {
         started.advance(&mut GridReport::default()).unwrap();
     }
-    let moved = started.state.y.iter().zip(&pressed.state.y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let moved =
+        started.state().y.iter().zip(&pressed.state().y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(moved < 1e-9, "{moved:e}");
     // A support that does not start there, and another mesh, are errors.
     for (text, expected) in [

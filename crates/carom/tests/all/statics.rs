@@ -18,19 +18,20 @@ fn without_mass_a_moved_bar_is_in_equilibrium_at_every_time() {
         }
         while !sim.finished() {
             sim.advance(&mut GridReport::default()).unwrap();
-            let u = 0.1 * sim.state.time * sim.state.time;
-            for (y, x) in sim.state.y.iter().zip(&sim.model.reference) {
+            let u = 0.1 * sim.state().time * sim.state().time;
+            for (y, x) in sim.state().y.iter().zip(&sim.model().reference) {
                 assert!((y - x - x * u).abs() < 1e-14, "{scheme}");
             }
-            assert!((sim.state.f_internal[0] + u).abs() < 1e-13);
-            assert!((sim.state.ledger.strain - 0.5 * u * u).abs() < 1e-13);
+            assert!((sim.state().f_internal[0] + u).abs() < 1e-13);
+            assert!((sim.state().ledger.strain - 0.5 * u * u).abs() < 1e-13);
         }
         // The trapezoidal rule is exact where force and displacement are proportional; the massless
         // balance at the step's end uses the end's force.
         if scheme.contains("static") {
-            assert!(sim.state.ledger.dissipation().abs() < 1e-14, "{:e}", sim.state.ledger.dissipation());
+            assert!(sim.state().ledger.dissipation().abs() < 1e-14, "{:e}", sim.state().ledger.dissipation());
             assert!(
-                sim.state.v.iter().chain(&sim.state.a).all(|x| *x == 0.0) && sim.state.ledger.kinetic == 0.0
+                sim.state().v.iter().chain(&sim.state().a).all(|x| *x == 0.0)
+                    && sim.state().ledger.kinetic == 0.0
             );
         }
     }
@@ -55,17 +56,17 @@ fn a_bar_hangs_under_its_own_weight() {
     let gravity = body(8, "consistent") + "gravity = [0.02]\n";
     let other = finish(bar(&[&gravity, HELD, &time].concat()));
     for sim in [&sim, &other] {
-        for (y, x) in sim.state.y.iter().zip(&sim.model.reference) {
+        for (y, x) in sim.state().y.iter().zip(&sim.model().reference) {
             assert!((y - x - 0.02 * (x - 0.5 * x * x)).abs() < 1e-14);
         }
         assert!(
-            (sim.state.f_internal[0] - sim.model.gravity[0] - sim.state.f_external[0] + 0.02).abs()
+            (sim.state().f_internal[0] - sim.model().gravity[0] - sim.state().f_external[0] + 0.02).abs()
                 < 1e-12 * 0.02
         );
     }
     // The work of a load proportional to its displacement becomes strain energy; the trapezoidal
     // rule is exact.
-    let ledger = &sim.state.ledger;
+    let ledger = &sim.state().ledger;
     assert!((ledger.external_work - ledger.strain).abs() < 1e-15, "{ledger:?}");
 }
 
@@ -115,11 +116,11 @@ scheme = {{ kind = "static" }}
     assert!(stopped.contains("`move`"), "{stopped}");
     // In contact, it rests on the floor with its weight.
     let sim = finish(simulation(&text(axis, 0.5), &[""; 0]));
-    let weight: f64 = sim.model.gravity.iter().skip(1).step_by(2).sum();
+    let weight: f64 = sim.model().gravity.iter().skip(1).step_by(2).sum();
     assert!(
-        (sim.state.contact_forces[0][1] + weight).abs() < 1e-9 * weight.abs(),
+        (sim.state().contact_forces[0][1] + weight).abs() < 1e-9 * weight.abs(),
         "{:?} {weight}",
-        sim.state.contact_forces
+        sim.state().contact_forces
     );
 }
 
@@ -164,10 +165,10 @@ scheme = { kind = "static" }
     }
     let force = (10.0 * (0.8 - 1.0 / 0.8) + 20.0 * (low * 0.8).ln() / 0.8).abs();
     let sim = finish(simulation(text, &[""; 0]));
-    let top = sim.model.reference.as_chunks::<2>().0.iter().zip(sim.state.f_internal.as_chunks::<2>().0);
+    let top = sim.model().reference.as_chunks::<2>().0.iter().zip(sim.state().f_internal.as_chunks::<2>().0);
     let pushed: f64 = top.filter(|(x, _)| x[1] == 12.0).map(|(_, f)| f[1]).sum();
     assert!((pushed + force).abs() < 1e-9 * force, "{pushed} {force}");
-    for (y, x) in sim.state.y.as_chunks::<2>().0.iter().zip(sim.model.reference.as_chunks::<2>().0) {
+    for (y, x) in sim.state().y.as_chunks::<2>().0.iter().zip(sim.model().reference.as_chunks::<2>().0) {
         assert!((y[0] - low * x[0]).abs() < 1e-9 && (y[1] - 0.8 * x[1]).abs() < 1e-9, "{x:?} {y:?}");
     }
 }
