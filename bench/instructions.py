@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Instructions per call of the benchmarks of some crates, counted by valgrind's callgrind: the same on a loaded machine as on an idle one.
+"""Instructions per call of the benchmarks of some crates, counted by valgrind's callgrind.
 
     bench/instructions.py [--only NAME] CRATE…      e.g. carom-solid carom-contact carom-algebra carom
 
-Each benchmark runs twice under callgrind, with one call and with eleven; a tenth of the difference is what a call costs, set-up and harness left out.
-Valgrind runs AVX2 but no AVX-512, so that kernels are those of an ordinary machine. Needs valgrind (Debian: apt-get install valgrind).
+The count does not depend on the load of the machine. Each benchmark runs twice under callgrind,
+with one call and with eleven. A tenth of the difference is the cost of a call, without set-up and
+harness. Valgrind supports AVX2 but not AVX-512, so the kernels are those of an ordinary machine.
+Needs valgrind (Debian: apt-get install valgrind).
 """
 
 import argparse
@@ -27,7 +29,7 @@ def binaries(crates):
 
 
 def benchmarks(binary):
-    """Paths of the benchmarks, as divan lists them to nextest."""
+    """Paths of the benchmarks, as divan lists them for nextest."""
     listed = subprocess.run([binary, "--list", "--format", "terse"], check=True, capture_output=True, text=True, env={**os.environ, "NEXTEST": "1"}).stdout
     return [line.removesuffix(": benchmark") for line in listed.splitlines() if line.endswith(": benchmark")]
 
@@ -46,7 +48,7 @@ def count(binary, name, calls):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--only", default="", help="benchmarks whose name contains this")
+    parser.add_argument("--only", default="", help="only benchmarks whose name contains this")
     parser.add_argument("crate", nargs="+")
     options = parser.parse_args()
     for binary in binaries(options.crate):
@@ -55,7 +57,7 @@ def main():
                 try:
                     told = f"{(count(binary, name, 1 + MORE) - count(binary, name, 1)) / MORE:14,.0f}"
                 except RuntimeError as error:
-                    # An older valgrind does not know every instruction of AVX.
+                    # An older valgrind does not support every AVX instruction.
                     told = f"not counted: {error}"
                 print(f"{name:60} {told}", flush=True)
 

@@ -1,15 +1,20 @@
 #!/usr/bin/env python3
-"""The bar on a rigid wall by the alpha family, from the formulas alone: what `cases/bar/` is held against.
+"""Reference values for `cases/bar/`: the bar on a rigid wall by the alpha family.
 
-Single impact (no gravity) and bouncing with gravity of a bar of 100 linear cells (L = 10, E = 900, rho = 1, h0 = 5), one constraint. The step is solved
-open; where the lower end is then below the wall, it is solved again with the end on the wall. Nothing here is shared with Carom: dense matrices of numpy.
+Single impact (no gravity) and bouncing under gravity of a bar of 100 linear cells (L = 10, E = 900,
+rho = 1, h0 = 5) with one constraint. Each step is first solved without contact. If the lower end is
+then below the wall, the step is solved again with the end on the wall. The script uses only the
+published formulas and dense numpy matrices; it shares no code with Carom.
 
-    python3 scripts/bar_table.py            prints one line per scheme, mass, level of the contact force and persistency
+    python3 scripts/bar_table.py
+
+prints one line per scheme, mass, time level of the contact force and persistency.
 """
 import itertools
 import numpy as np
 
-# Touching falls on a grid time, where round-off would decide: the bar starts a little higher and touches just after it.
+# With H0 = 5 the bar would touch exactly at a grid time, where round-off decides. It starts
+# slightly higher and touches just after that time.
 L, E, RHO, N, H0 = 10.0, 900.0, 1.0, 100, 5.0 + 1e-9
 DX, C0 = L / N, 30.0
 
@@ -46,7 +51,10 @@ def matrices(lumped):
 
 
 def run(scheme, lumped, level, project, gravity, end, v0=0.0):
-    """Times, contact force at t_{s+1}, height of the lower end, energy above the bar standing undeformed on the wall, velocity of the centre."""
+    """Times, contact force at t_{s+1}, height of the lower end, energy, velocity of the centre.
+
+    The energy is zero for the undeformed bar standing on the wall.
+    """
     am, af, gamma, beta = SCHEMES[scheme]
     k, m = matrices(lumped)
     ones = np.ones(N + 1)
@@ -72,7 +80,7 @@ def run(scheme, lumped, level, project, gravity, end, v0=0.0):
             d = -open_inverse @ known
             new = 0.0
             if H0 + u[0] + d[0] < 0.0:
-                # d0 = -(H0 + u0): one multiplier more
+                # d0 = -(H0 + u0): one additional multiplier
                 response = open_inverse @ e0
                 p = (-(H0 + u[0]) - d[0]) / response[0]
                 d = d + p * response

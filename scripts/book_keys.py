@@ -1,7 +1,10 @@
-"""Pages of the book on the keys of the case file: one for each table, with every key's meaning, values and default from `carom schema`, and under each
-key the lines of a case of the repository that uses it, which `carom run` or `carom study` runs.
+"""Pages of the book on the keys of the case file.
 
-    pages(schema, root, into) -> keys without a case that uses them
+There is one page for each table, with the meaning, values and default of every key from `carom
+schema`. Below each key are the lines of a shipped case that uses it; `carom run` or `carom study`
+runs that case.
+
+    pages(schema, root, into) -> keys that no case uses
 """
 
 import json
@@ -11,7 +14,7 @@ import tomllib
 
 
 def pages(schema, root, into):
-    """Writes INTO/NAME.md for each table of the top level, and INTO/index.md, which names them."""
+    """Writes INTO/NAME.md for each top-level table, and INTO/index.md, which lists them."""
     cases = [Case(root, path) for path in [*sorted(root.glob("cases/*/*.toml")), *sorted(root.glob("docs/book/examples/*.toml"))]]
     tables = []
     collect("", schema, tables)
@@ -40,11 +43,11 @@ def pages(schema, root, into):
 
 
 def section(path, name, key, required, example, again):
-    """One key: what it means, what it takes, and lines that run."""
+    """One key: meaning, values, and lines of a case that runs."""
     meaning, unit, paper = described(key)
-    default = "needed" if required else toml(key["default"]) if "default" in key else "may be left out"
+    default = "required" if required else toml(key["default"]) if "default" in key else "optional"
     if "const" in key:
-        default = "says which table this is"
+        default = "selects this table"
     facts = [f"Values: {values(key)}", f"Default: {default}" if "default" in key else default.capitalize()]
     facts += [f"With `preset = \"paper\"`: `{paper}`"] if paper else []
     facts += [f"Unit: {unit}"] if unit else []
@@ -52,12 +55,12 @@ def section(path, name, key, required, example, again):
     text = f"{level} `{name}`\n\n{meaning}\n\n" + " · ".join(facts) + "\n\n"
     if example:
         lines, case = example
-        text += f"In the lines above, of `{case.name}`.\n\n" if again else f"```toml\n{lines}\n```\n\n`carom {case.command} {case.name}`\n\n"
+        text += f"See the lines above, from `{case.name}`.\n\n" if again else f"```toml\n{lines}\n```\n\n`carom {case.command} {case.name}`\n\n"
     return text
 
 
 class Case:
-    """A file of the repository, in blocks that begin with the header of a table."""
+    """A file of the repository, split into blocks that begin with the header of a table."""
 
     def __init__(self, root, path):
         self.name = path.relative_to(root)
@@ -68,7 +71,7 @@ class Case:
         self.blocks = [without_tail(text[a:b]) for a, b in zip(starts, starts[1:])]
 
     def uses(self, path, kind, name):
-        """The lines that use a key, none if there are none."""
+        """The lines that use a key, or None."""
         parts = [*filter(None, path.split(".")), name]
         for block in self.blocks:
             header = re.match(r"\[+([\w.]+)\]+", block)
@@ -77,7 +80,7 @@ class Case:
                 if line := arm_sets(block, parts, kind):
                     return line
             elif header == (parts[0] if path else ""):
-                # The first line of a file's own block is a comment on the case.
+                # At the top level only the line with the key is used; the first line is a comment.
                 own = block if path else "\n".join(line for line in block.splitlines() if re.match(rf"{name}\s*=", line))
                 if not path and not own:
                     continue
@@ -91,7 +94,7 @@ class Case:
 
 
 def arm_sets(block, parts, kind):
-    """Of an arm, its line that sets a key: "body.NAME.key" = … or { key = … } of what it sets."""
+    """The line of an arm that sets a key: "body.NAME.key" = … or { key = … }."""
     for line in block.splitlines():
         for place in range(len(parts), 0, -1):
             named = r"\.(?:[^.\"]+\.)?".join(map(re.escape, parts[:place]))
@@ -105,7 +108,7 @@ def has(text, key):
 
 
 def without_tail(block):
-    """A block without the blank lines and comments that lead to the next one."""
+    """A block without trailing blank lines and comments, which belong to the next block."""
     lines = block.splitlines()
     while lines and (not lines[-1].strip() or lines[-1].startswith("#")):
         lines.pop()
@@ -118,7 +121,7 @@ def shortest(cases, path, kind, name):
 
 
 def collect(path, spec, tables):
-    """Every table of the schema, in the order of the file: (path of keys, schema, heading)."""
+    """Appends every table of the schema in the order of the file: (path of keys, schema, heading)."""
     last = path.rsplit(".", 1)[-1]
     kinds = [key for key in spec.get("properties", {}).items() if "const" in key[1]]
     if not path:
@@ -140,7 +143,7 @@ def collect(path, spec, tables):
 
 
 def described(key):
-    """Meaning, unit, and the default of the paper's preset, from one description."""
+    """Meaning, unit, and default of the preset `paper`, extracted from a description."""
     text = key.get("description", "")
     paper = re.search(r" With preset = \"paper\": (.*)\.$", text)
     text = text[: paper.start()] if paper else text
@@ -150,7 +153,7 @@ def described(key):
 
 
 def values(key):
-    """The values a key takes, in words."""
+    """The values of a key, in words."""
     if "const" in key:
         return "this one"
     for several in ("oneOf", "anyOf"):
@@ -177,7 +180,7 @@ def values(key):
 
 
 def toml(value):
-    """A value as TOML, in code marks."""
+    """A value as TOML, formatted as code."""
 
     def plain(value):
         if isinstance(value, bool):

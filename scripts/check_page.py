@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Opens pages in headless Chromium, plays and drags their animation, and fails on any console message, missing part or outside request.
+"""Checks report pages in headless Chromium.
 
     python3 scripts/check_page.py runs/impact/report.html [more pages] [--screenshots DIR]
 
-Needs `chromium` (apt-get install chromium) and nothing else. With --screenshots, writes NAME.png of the page as it opens, NAME-playing.png
-after it was played and NAME.pdf of the print for every page, NAME being its folder.
+Opens each page, plays its animation and drags its slider. Fails on any console message, missing
+part or external request. Needs only `chromium` (apt-get install chromium). With --screenshots, it
+writes for every page NAME.png (as opened), NAME-playing.png (after the animation was played) and
+NAME.pdf (printed), where NAME is the name of its folder.
 """
 
 import argparse
@@ -23,7 +25,10 @@ OUTSIDE = re.compile(r"""(?:src|href)\s*=\s*["']?(?:https?:)?//|url\((?!#)|@impo
 
 
 class Browser:
-    """Chromium spoken to through a pair of pipes: the DevTools protocol, messages ended by a zero byte."""
+    """Chromium, controlled by the DevTools protocol over a pair of pipes.
+
+    Messages end with a zero byte.
+    """
 
     def __init__(self, profile):
         program = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -37,7 +42,7 @@ class Browser:
         ]
         if hasattr(os, "geteuid") and os.geteuid() == 0:
             command.append("--no-sandbox")
-        # It reads from 3 and writes to 4.
+        # Chromium reads from descriptor 3 and writes to 4.
         shell = ["sh", "-c", f'exec "$@" 3<&{theirs} 4>&{ours}', "sh", *command]
         quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
         self.process = subprocess.Popen(shell, pass_fds=(theirs, ours), **quiet)
@@ -46,7 +51,7 @@ class Browser:
         self.number, self.buffer, self.session, self.said = 0, b"", None, []
 
     def __call__(self, method, **parameters):
-        """Result of a command."""
+        """Sends a command and returns its result."""
         self.number += 1
         message = {"id": self.number, "method": method, "params": parameters}
         if self.session and not method.startswith(("Target", "Browser")):
@@ -60,11 +65,11 @@ class Browser:
                 return answer["result"]
 
     def next(self):
-        """The next message; what a page says or throws is kept."""
+        """The next message; console messages and exceptions are collected."""
         while b"\0" not in self.buffer:
             part = os.read(self.of, 1 << 20)
             if not part:
-                sys.exit("check_page.py: the browser has gone")
+                sys.exit("check_page.py: the browser has exited")
             self.buffer += part
         line, self.buffer = self.buffer.split(b"\0", 1)
         message = json.loads(line)
@@ -87,7 +92,7 @@ class Browser:
         return answer["result"].get("value")
 
     def until(self, expression, seconds=20):
-        """Whether an expression becomes true in time."""
+        """Whether an expression becomes true within the given time."""
         end = time.monotonic() + seconds
         while not (true := self.value(expression)) and time.monotonic() < end:
             time.sleep(0.05)
@@ -114,7 +119,7 @@ class Browser:
         self.process.wait(timeout=20)
 
 
-# What the animation shows: its caption, a sum over its picture, and where the cursors stand.
+# The state of the animation: its caption, a checksum of its picture, and the cursor positions.
 SHOWN = """JSON.stringify((root => [
     root.querySelector("output").textContent,
     (c => {
@@ -129,12 +134,12 @@ FORWARD = "document.querySelector('#animation button').textContent"
 
 
 def animation(browser):
-    """What is wrong with the animation when it is played, dragged and pointed at."""
+    """Plays the animation, drags its slider and clicks a history; returns the errors found."""
     wrong = []
     if browser.value("document.getElementById('animation').hidden"):
-        return ["the animation's script did not run to its end"]
+        return ["the script of the animation did not finish"]
     if not browser.value("!!document.querySelector('path.cursor')"):
-        return ["no time history has the animation's cursor"]
+        return ["no time history shows the cursor of the animation"]
 
     def shown():
         return json.loads(browser.value(SHOWN))
@@ -148,11 +153,11 @@ def animation(browser):
     browser.click("#animation button")
     started = browser.value(TIME)
     if browser.value(FORWARD) == "▶" or not browser.until(f"{TIME} > {started}"):
-        wrong.append("play does not play")
+        wrong.append("the play button does not start the animation")
     browser.click("#animation button")
-    differs(at_first, played := shown(), "play")
+    differs(at_first, played := shown(), "playing")
     if browser.value(FORWARD) != "▶" or shown() != played:
-        wrong.append("pause does not pause")
+        wrong.append("the pause button does not stop the animation")
 
     x, y, width, height = browser.place("#animation input")
     thumb = browser.value("document.querySelector('#animation input').value")
@@ -165,23 +170,23 @@ def animation(browser):
     differs(played, dragged := shown(), "dragging the slider")
     reached = float(browser.value("document.querySelector('#animation input').value"))
     if abs(reached - target) > 0.1:
-        wrong.append(f"the slider dragged to {target} stands at {reached}")
+        wrong.append(f"the slider was dragged to {target} but is at {reached}")
 
     browser.value("document.querySelector('g.time').ownerSVGElement.id = 'history'")
     browser.click("#history", 0.5)
-    differs(dragged, shown(), "a click into a time history")
+    differs(dragged, shown(), "a click on a time history")
     return wrong
 
 
 def check(browser, page, screenshots):
-    """What is wrong with a page, as sentences."""
+    """The errors of a page, as sentences."""
     browser.open(page)
     text = page.read_text(encoding="utf-8")
     wrong = []
     if not browser.value("document.querySelector('h1')?.textContent"):
-        wrong.append("the page has no heading: it was not shown")
+        wrong.append("the page has no heading: it was not rendered")
     if outside := OUTSIDE.search(text):
-        wrong.append(f"a request to the outside: {outside.group()}")
+        wrong.append(f"an external request: {outside.group()}")
     to = None
     if screenshots:
         screenshots.mkdir(parents=True, exist_ok=True)

@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
-"""Holds `carom schema` against the cases and studies of the repository with a validator from outside: it is a JSON Schema, accepts every one of them, and refuses
-every key that is misspelt. That the reader refuses the same is tested by `cargo test`.
+"""Checks `carom schema` against the cases and studies of the repository.
 
     scripts/check_schema.py target/release/carom        needs jsonschema (pip install jsonschema)
+
+An independent validator must confirm that the output is a JSON Schema, that it accepts every case
+and study, and that it rejects every misspelt key. `cargo test` checks that the reader does the
+same.
 """
 
 import copy
@@ -24,11 +27,11 @@ def validator(program, *options):
 
 
 def places(value, path=()):
-    """The path of every key; of tables in a list, those of the first that has it."""
+    """The path of every key; in a list of tables, only its first occurrence."""
     if isinstance(value, dict):
         for key, inner in value.items():
             yield (*path, key)
-            # Names of a manufactured solution are the body's.
+            # The keys of `exact` are names of columns, not keys of the schema.
             if key != "exact":
                 yield from places(inner, (*path, key))
     elif isinstance(value, list):
@@ -59,9 +62,9 @@ def main(program):
         assert not told, f"{path}: {told}"
         files += 1
         for place in places(document):
-            assert not kind.is_valid(misspelt(document, place)), f"{path}: the schema lets {place} pass misspelt"
+            assert not kind.is_valid(misspelt(document, place)), f"{path}: the schema accepts a misspelt {place}"
             keys += 1
-    print(f"{files} files fit the schema, {keys} misspelt keys do not")
+    print(f"the schema accepts {files} files and rejects {keys} misspelt keys")
     assert files > 50 and keys > 1000
 
 

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""VTK opens the fields of real runs: arrays and their units, times equal to n·Δt, the same values as the record's tables.
+"""Reads the fields of real runs with VTK.
 
     python scripts/check_vtk.py CAROM RUN        (needs: pip install vtk h5py)
 
-CAROM is the binary, RUN the directory of a finished run with VTU fields. Its case is run once more with `output.format = "vtkhdf"` and
-killed on the way; what is there then must open, and after `carom resume` all must equal RUN's fields.
+CAROM is the binary, RUN the directory of a finished run with VTU fields. Checked are arrays and
+their units, times equal to n·Δt, and values equal to those of the record's tables. The case is then
+run again with `output.format = "vtkhdf"` and killed before it ends. The file must be readable at
+that point, and after `carom resume` it must contain the same fields as RUN.
 """
 
 import csv
@@ -31,7 +33,7 @@ def values(grid):
 
 
 def vtu(run, step_size):
-    """Times, grids; checks names, units and times of a run with VTU fields."""
+    """Times and grids of a run with VTU fields; checks names, units and times."""
     times, grids = [], []
     for entry in xml.parse(run / "fields.pvd").iter("DataSet"):
         file = entry.get("file")
@@ -50,7 +52,7 @@ def vtu(run, step_size):
 
 
 def vtkhdf(run, step_size):
-    """The same of a run with its fields in one file, however far it has come."""
+    """The same for a run with its fields in one file, finished or not."""
     path = run / "fields.vtkhdf"
     reader = vtk.vtkHDFReader()
     reader.SetFileName(str(path))
@@ -72,7 +74,7 @@ def vtkhdf(run, step_size):
 
 
 def against_tables(run, times, grids):
-    """Pressures are where contact.csv has nodes, and of the same values."""
+    """Contact pressures must be at the nodes listed in contact.csv, with the same values."""
     pressures = {}
     for row in csv.DictReader((run / "contact.csv").open()):
         pressures.setdefault(float(row["time"]), {})[int(row["node"])] = float(row["pressure"])
@@ -88,10 +90,10 @@ def against_tables(run, times, grids):
 
 
 def killed_and_resumed(carom, case, step_size, place):
-    """The case's fields in one file, written by a run that is killed on its way."""
+    """Runs the case with its fields in one file, kills the run, checks the file, and resumes."""
     run = place / "run"
     command = [carom, "run", case, "--set", "output.format=vtkhdf", "--no-report", "--out", run]
-    # The debug and the release binary differ by ten in speed: wait for steps, not for seconds.
+    # The debug binary is ten times slower than the release binary, so wait for steps, not seconds.
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     file = run / "fields.vtkhdf"
     while process.poll() is None and not (file.exists() and (run / "contact.csv").stat().st_size > 1000):
@@ -122,7 +124,7 @@ def main():
         for name in ("history.csv", "contact.csv"):
             assert (run / name).read_bytes() == (finished / name).read_bytes(), f"{name} differs"
         size = (run / "fields.vtkhdf").stat().st_size
-    print(f"{finished}: {len(times)} instants, {touched} in contact; one file of {size / 1e6:.2f} MB, open after a kill at {seen}")
+    print(f"{finished}: {len(times)} instants, {touched} in contact; one file of {size / 1e6:.2f} MB, readable after a kill at {seen}")
 
 
 if __name__ == "__main__":

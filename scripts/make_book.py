@@ -1,20 +1,25 @@
 #!/usr/bin/env python3
-"""Makes the book: what Carom itself prints goes to docs/book/src/generated/, then mdbook builds target/book/.
+"""Builds the book from its pages and from the output of Carom.
 
     scripts/make_book.py [--carom target/release/carom] [--fast] [--verify DIR]
 
-keys/          a page for each table of the case file, from `carom schema`; for each key lines of a shipped case that uses it
+The output of Carom goes to docs/book/src/generated/; then mdbook builds target/book/.
+
+keys/          a page for each table of the case file, from `carom schema`; for each key, lines of a
+               shipped case that uses it
 commands.md    `carom COMMAND --help`
-explain/       `carom explain`, of each scheme the pages show
-first-run.*    what `carom run cases/impact/impact.toml` prints and draws
+explain/       `carom explain` for each scheme shown in the pages
+first-run.*    output and figure of `carom run cases/impact/impact.toml`
 columns.md     columns of its history.csv, from its manifest
 metrics.md     the table of metrics, from crates/carom-record/src/metrics/table.rs
-activation.md, peak.md          docs/book/studies/, run
-spins.md, refine.md            tables of cases/free/spins.toml and cases/impact/refine-*.toml
-FAMILY.md, FAMILY.svg           `carom verify --report --out DIR --markdown DIR`, and a figure of one of its runs; with --verify DIR, what it left there
+activation.md, peak.md     results of docs/book/studies/
+spins.md, refine.md        tables of cases/free/spins.toml and cases/impact/refine-*.toml
+FAMILY.md, FAMILY.svg      `carom verify --report --out DIR --markdown DIR`, and a figure of one of
+                           its runs; with --verify DIR, the existing content of DIR
 
-Every case of docs/book/examples/ is run too. What could not be made, links that lead nowhere, keys that no case uses: told at the end, exit code 1. Needs
-Python 3.11 and a built carom; without mdbook in the path the generated files are all that is made.
+Every case of docs/book/examples/ is run as well. Missing output, broken links and keys that no case
+uses are listed at the end; the exit code is then 1. Needs Python 3.11 and a built carom. Without
+mdbook in the path, only the generated files are written.
 """
 
 import argparse
@@ -38,7 +43,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 BOOK = ROOT / "docs/book"
 GENERATED = BOOK / "src/generated"
 
-# Family: the case whose figure stands in its chapter, and the figure.
+# Family: the case whose figure is shown in its chapter, and the figure.
 FIGURES = {
     "bar": ("single", "force"),
     "free": ("spin", "energy"),
@@ -67,12 +72,12 @@ problems = []
 def main():
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--carom", type=pathlib.Path, default=ROOT / "target/release/carom", help="the program")
-    options.add_argument("--fast", action="store_true", help="leave out what `carom verify --fast` leaves out")
-    options.add_argument("--verify", type=pathlib.Path, help="what an earlier `carom verify --report --out DIR --markdown DIR` left")
+    options.add_argument("--fast", action="store_true", help="omit what `carom verify --fast` omits")
+    options.add_argument("--verify", type=pathlib.Path, help="output of an earlier `carom verify --report --out DIR --markdown DIR`")
     given = options.parse_args()
     carom = given.carom.resolve()
     if not carom.is_file():
-        sys.exit(f"{carom} is not there: build it with `cargo build --release`, or name it with --carom")
+        sys.exit(f"{carom} does not exist: build it with `cargo build --release`, or name it with --carom")
 
     shutil.rmtree(GENERATED, ignore_errors=True)
     (GENERATED / "explain").mkdir(parents=True)
@@ -93,7 +98,7 @@ def main():
 
 
 def run(carom, *arguments, accept=(0,)):
-    """Standard output of a command of carom; none, and a problem, if it failed."""
+    """Standard output of a carom command; if it fails, None, and a problem is recorded."""
     done = subprocess.run([carom, *map(str, arguments)], cwd=ROOT, capture_output=True, text=True, check=False)
     if done.returncode in accept:
         return done.stdout
@@ -107,14 +112,14 @@ def write(name, text):
 
 
 def table(head, rows):
-    """A table in Markdown; cells are Markdown already."""
+    """A table in Markdown; the cells are Markdown."""
     cell = lambda text: str(text).replace("|", "\\|").replace("\n", " ")
     lines = [head, ["---"] * len(head), *rows]
     return "".join(f"| {' | '.join(map(cell, line))} |\n" for line in lines) + "\n"
 
 
 def number(text):
-    """Five digits, as the summaries of carom print them."""
+    """A number with five digits, as in the summaries of carom."""
     try:
         return f"{float(text):.5g}".replace("e-0", "e-")
     except ValueError:
@@ -135,13 +140,16 @@ def commands(carom):
 
 
 def explanations(carom):
-    """Pages ask for generated/explain/NAME.txt; NAME is the arguments of `carom explain`, joined with +."""
+    """Writes generated/explain/NAME.txt for every page that includes it.
+
+    NAME consists of the arguments of `carom explain`, joined with +.
+    """
     pages = "".join(page.read_text(encoding="utf-8") for page in (BOOK / "src").rglob("*.md"))
     for name in sorted(set(re.findall(r"{{#include [./]*generated/explain/([^}\s]+)\.txt}}", pages))):
         arguments = [] if name == "all" else name.split("+")
         said = run(carom, "explain", *arguments)
         if said is not None:
-            # The book is about Carom: what other codes do stays with the command.
+            # The section on other codes is printed by the command only.
             write(f"explain/{name}.txt", said.split("\nelsewhere\n")[0].strip() + "\n")
 
 
@@ -152,10 +160,10 @@ def keys(carom):
     listed = set(re.findall(r"generated/keys/(\w+)\.md", (BOOK / "src/SUMMARY.md").read_text(encoding="utf-8")))
     made = {page.stem for page in (GENERATED / "keys").glob("*.md")} - {"index"}
     if listed != made:
-        problems.append(f"in SUMMARY.md the pages on keys {', '.join(sorted(listed ^ made))}: list what the schema has")
+        problems.append(f"pages on keys in SUMMARY.md, which must list those of the schema: {', '.join(sorted(listed ^ made))}")
 
 
-# Runs of the book's own
+# Runs for the book
 
 
 def first_run(carom, place):
@@ -171,7 +179,7 @@ def first_run(carom, place):
 
 
 def metrics():
-    """The table of metrics is in the code."""
+    """Writes the table of metrics, which is defined in the code."""
     command = ["cargo", "run", "--quiet", "-p", "carom-record", "--example", "metrics"]
     write("metrics.md", subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout)
 
@@ -187,7 +195,10 @@ def studies(carom, place):
 
 
 def examples(carom, place):
-    """Runs every case of docs/book/examples/, in the order of their names: one may begin where an earlier one ended."""
+    """Runs every case of docs/book/examples/ in alphabetical order.
+
+    A case may start from the end of an earlier one.
+    """
     for case in sorted(BOOK.glob("examples/*.toml")):
         content = tomllib.loads(case.read_text(encoding="utf-8"))
         study = "case" in content
@@ -208,7 +219,7 @@ def verified(carom, given, place):
     if out is None:
         out = place / "verify"
         fast = ["--fast"] if given.fast else []
-        # Missed expectations and stopped runs are rows of the tables.
+        # Missed expectations and stopped runs are rows of the tables, not errors.
         run(carom, "verify", *fast, "--report", "--out", out, "--markdown", out, accept=(0, 1, 3))
     for family, (case, figure) in FIGURES.items():
         if (out / f"{family}.md").is_file():
@@ -220,12 +231,12 @@ def verified(carom, given, place):
         else:
             problems.append(f"figures/{figure}.svg of a run of the family {family}")
     spins = [[r["arm"], *(number(r[c]) for c in ("steps", "energy", "moment"))] for r in ends(out / "free/spins")]
-    write("spins.md", table(["", "Steps done", "Energy at the end / at the start", "Moment of momentum, likewise"], spins))
+    write("spins.md", table(["", "Steps done", "Energy at the end / at the start", "Angular momentum, likewise"], spins))
     write("refine.md", "".join(refinement(out / f"impact/{name}/study.csv", title) for name, title in REFINEMENTS.items()))
 
 
 def ends(study):
-    """Of each arm of a study of free bodies: steps done, and what is left of energy and moment of momentum."""
+    """Steps done and the remaining energy and angular momentum for each arm of a study."""
     if not (study / "study.csv").is_file():
         problems.append(f"{study.name} of {study.parent.name}")
         return
@@ -238,7 +249,7 @@ def ends(study):
 
 
 def refinement(path, title):
-    """A table of a study that halves a step three times."""
+    """A table of a study that halves a step or cell size three times."""
     if not path.is_file():
         problems.append(f"{path.name} of {path.parent.name}")
         return f"{title}: not run.\n\n"
@@ -254,7 +265,7 @@ def refinement(path, title):
 
 
 def verdict(values):
-    """Order and limit of values at halved steps, as carom_record::order tells them."""
+    """Order and limit of values at halved steps, computed as in carom_record::order."""
     orders = []
     for a, b, c in zip(values, values[1:], values[2:]):
         quotient = (a - b) / (b - c) if b != c else 0.0
@@ -266,7 +277,7 @@ def verdict(values):
 
 
 def figure_of(out, family, case, figure):
-    """OUT/FAMILY/CASE/figures/FIGURE.svg, or that of the family's first case that has one."""
+    """OUT/FAMILY/CASE/figures/FIGURE.svg, or that of the first case of the family that has one."""
     found = sorted((out / family).glob(f"**/figures/{figure}.svg"))
     named = [path for path in found if path.parent.parent.name == case]
     return next(iter(named + found), None)
@@ -277,7 +288,7 @@ def figure_of(out, family, case, figure):
 
 def build():
     if shutil.which("mdbook") is None:
-        print("no mdbook in the path (cargo install mdbook --locked): only docs/book/src/generated/ was made")
+        print("no mdbook in the path (cargo install mdbook --locked): only docs/book/src/generated/ was written")
         return
     done = subprocess.run(["mdbook", "build", BOOK], capture_output=True, text=True, check=False)
     if done.returncode != 0:

@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
-"""Makes the .msh files that tests read and the mesh of cases/gmsh, with Gmsh itself.
+"""Generates the .msh files of the tests and the mesh of cases/gmsh with Gmsh.
 
-    pip install gmsh==4.15.2        (its wheel needs libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1)
+    pip install gmsh==4.15.2
     python3 scripts/make_gmsh_fixtures.py
 
-The half-model of the impact: a half-disc `cylinder` (radius 0.5, centre (0, 1)) above a prism (1 x 0.5) whose top is y = 0. The curve
-`axis` touches both bodies. Cells of order 3 go through Gmsh's high-order optimisation.
+The gmsh wheel needs libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1.
+
+The geometry is the half model of the impact: a half-disc `cylinder` (radius 0.5, centre (0, 1))
+above a prism (1 x 0.5) whose top is y = 0. The curve `axis` belongs to both bodies. Cells of order
+3 are optimised with Gmsh's high-order optimisation.
 """
 
 from pathlib import Path
@@ -76,7 +79,7 @@ def main():
             for binary, encoding in ((False, "ascii"), (True, "binary")):
                 write(TESTS / f"impact_order{order}_{label}_{encoding}.msh", version, binary)
 
-    # Everything saved, with parameters on curves and surfaces: what Carom must read past.
+    # All entities saved, with parameters on curves and surfaces, which Carom must ignore.
     impact(0.3, 0.4)
     mesh(2)
     gmsh.option.setNumber("Mesh.SaveAll", 1)

@@ -1,11 +1,16 @@
 #!/usr/bin/env python3
-"""Makes the meshes of cases/static with Gmsh: cylinders.msh of the Hertz problems, and ring.msh.
+"""Generates the meshes of cases/static with Gmsh: cylinders.msh (Hertz problems) and ring.msh.
 
-    pip install gmsh==4.15.2        (its wheel needs libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1)
+    pip install gmsh==4.15.2
     python3 scripts/make_static_meshes.py
 
-A quarter of a cylinder of radius 1 that touches y = 0 at the origin, finer there, and its mirror image below: node for node, so that the nodes of two
-equal cylinders match. Surfaces `upper` and `lower`; curves `arc`, `axis` (x = 0) and `cut` (|y| = 1). And the quarter x, y > 0 of a ring of radii 1 and 2, of third order: surface `ring`; curves
+The gmsh wheel needs libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1.
+
+cylinders.msh: a quarter of a cylinder of radius 1 that touches y = 0 at the origin, refined there,
+and its mirror image below, node for node, so that the nodes of two equal cylinders match. Surfaces
+`upper` and `lower`; curves `arc`, `axis` (x = 0) and `cut` (|y| = 1).
+
+ring.msh: the quarter x, y > 0 of a ring of radii 1 and 2, of third order. Surface `ring`; curves
 `inner`, `outer`, `bottom` (y = 0) and `left` (x = 0).
 """
 
@@ -18,7 +23,7 @@ FINE, RADIUS, COARSE = 0.005, 0.075, 0.2
 
 
 def quarter():
-    """Nodes, and cells by the name of their group, of second order."""
+    """Nodes, and second-order cells by the name of their group."""
     geo, field = gmsh.model.geo, gmsh.model.mesh.field
     low, right, center = (geo.addPoint(x, y, 0) for x, y in ((0, 0), (1, 1), (0, 1)))
     curves = {"arc": geo.addCircleArc(low, center, right), "cut": geo.addLine(right, center), "axis": geo.addLine(center, low)}
@@ -64,14 +69,14 @@ def cylinders(nodes, groups):
     places, cells = [], []
     for part, (surface, sign) in enumerate((("upper", 1), ("lower", -1))):
         shift = part * len(nodes)
-        # 0.0 without its sign.
+        # Adding 0.0 removes the sign of -0.0.
         places += [(x, sign * y + 0.0) for x, y in nodes.values()]
         for name, lines in groups.items():
             group = ["arc", "axis", "cut", "upper", "lower"].index(surface if name == "body" else name) + 1
             for cell in lines:
                 cell = [number[tag] + shift for tag in cell]
                 if sign < 0:
-                    # Turned over by the mirror: the other way round.
+                    # The reflection reverses the orientation, so reverse the order of the nodes.
                     order = [0, 2, 1, 5, 4, 3] if len(cell) == 6 else [1, 0, 2]
                     cell = [cell[i] for i in order]
                 cells.append([9 if len(cell) == 6 else 8, 2, group, group, *cell])

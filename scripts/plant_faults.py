@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
-"""Plants faults into Carom one by one and asks `carom verify` to find each: a suite that cannot fail proves nothing.
+"""Plants faults into Carom one by one and checks that `carom verify` detects each of them.
 
-    scripts/plant_faults.py [WORD…] [--markdown FILE]    all faults, or those whose names contain a word; exit code 1 if one survives
-    scripts/plant_faults.py --check                      whether each fault still fits the source, without building anything
+    scripts/plant_faults.py [WORD…] [--markdown FILE]
+        all faults, or those whose names contain a word; exit code 1 if one is not detected
+    scripts/plant_faults.py --check
+        whether each fault still fits the source, without building anything
 
-A fault of scripts/faults.json is one string of one file replaced by another, and must stand there once. The tree is a copy of the last
-commit in target/faults, with a target directory of its own: each fault costs the crates above it and, found by a short case, seconds.
-`--fast --fail-fast` decides; a fault that survives that meets the whole suite.
+A fault of scripts/faults.json replaces one string of one file by another; the string must occur
+exactly once. The faults are planted in target/faults, in a copy of the last commit with its own
+target directory. Each fault costs the compilation of the crates above it and, if a short case
+detects it, a few seconds. First `--fast --fail-fast` is run; a fault that it does not detect is
+tested with the whole suite.
 """
 
 import argparse
@@ -25,14 +29,14 @@ PLACE = ROOT / "target/faults"
 TREE = PLACE / "tree"
 FAULTS = json.loads((ROOT / "scripts/faults.json").read_text(encoding="utf-8"))
 
-# A fault may also keep a run from ending.
+# Seconds. A fault may also prevent a run from ending.
 PATIENCE = 1800
 
 
 def main():
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("words", nargs="*", metavar="WORD", help="only faults whose names contain one of these")
-    options.add_argument("--check", action="store_true", help="only whether every fault fits the source")
+    options.add_argument("--check", action="store_true", help="only check whether every fault fits the source")
     options.add_argument("--markdown", type=pathlib.Path, metavar="FILE", help="write the table here too")
     given = options.parse_args()
     if unfit := [f"{fault['name']}: {why}" for fault in FAULTS if (why := misfit(ROOT, fault))]:
@@ -44,7 +48,7 @@ def main():
     if error := build():
         sys.exit(f"the tree does not build:\n{error}")
     if missed := verified("--fast"):
-        sys.exit(f"without any fault the suite finds: {missed}")
+        sys.exit(f"the suite fails without any fault: {missed}")
     print("no fault: the suite passes", flush=True)
     rows, survived = [], []
     for fault in FAULTS:
@@ -64,16 +68,19 @@ def main():
 
 
 def misfit(tree, fault):
-    """Why a fault cannot be planted; none if it can."""
+    """Why a fault cannot be planted; None if it can."""
     path = tree / fault["file"]
     if not path.is_file():
         return f"there is no {fault['file']}"
     count = path.read_text(encoding="utf-8").count(fault["old"])
-    return None if count == 1 else f"{fault['old']!r} stands {count} times in {fault['file']}, not once"
+    return None if count == 1 else f"{fault['old']!r} occurs {count} times in {fault['file']}, not once"
 
 
 def copy():
-    """The last commit in TREE. Files that are the same stay untouched, so that only what differs is built."""
+    """Copies the last commit to TREE.
+
+    Unchanged files are not written again, so that only what differs is rebuilt.
+    """
     archive = subprocess.run(["git", "archive", "HEAD"], cwd=ROOT, check=True, capture_output=True).stdout
     with tarfile.open(fileobj=io.BytesIO(archive)) as files:
         wanted = {TREE / member.name: files.extractfile(member).read() for member in files if member.isfile()}
@@ -87,7 +94,7 @@ def copy():
 
 
 def build():
-    """What the compiler says, if it fails."""
+    """The error output of the compiler, or None."""
     environment = {**os.environ, "CARGO_TARGET_DIR": str(PLACE / "target"), "CARGO_INCREMENTAL": "1"}
     command = ["cargo", "build", "--quiet", "--package", "carom-cli"]
     done = subprocess.run(command, cwd=TREE, env=environment, capture_output=True, text=True, check=False)
@@ -95,14 +102,14 @@ def build():
 
 
 def verified(*which):
-    """What the suite finds: the first miss, how the program ended otherwise, none if all is met."""
+    """The first missed expectation or another failure of the suite; None if it passes."""
     out = PLACE / "verify"
     shutil.rmtree(out, ignore_errors=True)
     command = [PLACE / "target/debug/carom", "verify", "cases", *which, "--fail-fast", "--out", out]
     try:
         done = subprocess.run(command, cwd=TREE, capture_output=True, text=True, timeout=PATIENCE, check=False)
     except subprocess.TimeoutExpired:
-        return f"no end within {PATIENCE} s"
+        return f"not finished within {PATIENCE} s"
     if done.returncode == 0:
         return None
     if done.returncode in (1, 3):
@@ -116,7 +123,7 @@ def verified(*which):
                     got = row["why"] if row["got"] is None else f"{row['got']:.{digits}g}"
                     of = f" of \"{row['arm']}\"" if row["arm"] else ""
                     return f"{name}: {row['what']}{of}, expected {row['expected']}, got {got}"
-    said = (done.stderr.strip().splitlines() or ["nothing said"])[0]
+    said = (done.stderr.strip().splitlines() or ["no message"])[0]
     return f"exit code {done.returncode}: {shortened(said)}"
 
 
@@ -125,7 +132,7 @@ def shortened(text):
 
 
 def planted(fault):
-    """What the suite finds with a fault in the tree, which is mended again."""
+    """The result of the suite with a fault in the tree; the tree is restored afterwards."""
     path = TREE / fault["file"]
     text = path.read_text(encoding="utf-8")
     path.write_text(text.replace(fault["old"], fault["new"]), encoding="utf-8")

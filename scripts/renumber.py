@@ -1,18 +1,21 @@
 #!/usr/bin/env python3
-"""The same mesh under other numbers: nodes and cells of a .msh file shuffled, each triangle begun at another corner, every third one clockwise.
+"""Renumbers a .msh file.
 
     carom mesh CASE.toml --out MESH.msh; scripts/renumber.py MESH.msh OTHER.msh
 
-Reads what `carom mesh` writes (4.1, text). cases/invariance/renumbered.msh is of cases/invariance/strike.toml with element T10 for both bodies.
+Nodes and cells are shuffled, each triangle starts at another corner, and every third one is
+clockwise. Reads the files written by `carom mesh` (4.1, text). cases/invariance/renumbered.msh was
+made from cases/invariance/strike.toml with element T10 for both bodies.
 """
 
 import random
 import sys
 
-# Nodes of a cell of Gmsh's types 2, 9, 21 (triangles of order 1 to 3): begun at the next corner, and walked the other way.
+# Node order of Gmsh's types 2, 9, 21 (triangles of order 1 to 3): starting at the next corner, and
+# with reversed orientation.
 NEXT = {2: [1, 2, 0], 9: [1, 2, 0, 4, 5, 3], 21: [1, 2, 0, 5, 6, 7, 8, 3, 4, 9]}
 TURNED = {2: [0, 2, 1], 9: [0, 2, 1, 5, 4, 3], 21: [0, 2, 1, 8, 7, 6, 5, 4, 3, 9]}
-# Lines, types 1, 8, 26.
+# Reversed lines, types 1, 8, 26.
 REVERSED = {1: [1, 0], 8: [1, 0, 2], 26: [1, 0, 3, 2]}
 
 

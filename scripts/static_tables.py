@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Exact answers that cases/static/ is held against, from scipy alone.
+"""Exact reference values for cases/static/, computed with scipy, independently of Carom.
 
     python3 scripts/static_tables.py
 
-Homogeneous states of the compressible neo-Hookean law P = mu (F - F^-T) + Lambda ln J F^-T, the elastica with an end force by elliptic integrals, Lame's
-ring, and the inflation of a thick neo-Hookean ring: the equation dP_R/dR + (P_R - P_T)/R = 0 for r(R), solved as a boundary value problem.
+Homogeneous states of the compressible neo-Hookean law P = mu (F - F^-T) + Lambda ln J F^-T; the
+elastica with an end force by elliptic integrals; Lame's ring; and the inflation of a thick
+neo-Hookean ring: the equation dP_R/dR + (P_R - P_T)/R = 0 for r(R), solved as a boundary value
+problem.
 """
 import numpy as np
 from scipy.integrate import solve_bvp
@@ -15,7 +17,7 @@ LAMBDA, MU = 200.0, 100.0
 
 
 def nominal(stretches):
-    """Principal nominal stresses of three principal stretches."""
+    """Principal nominal stresses for three principal stretches."""
     log = LAMBDA * np.log(np.prod(stretches))
     return [MU * (s - 1 / s) + log / s for s in stretches]
 
@@ -33,7 +35,7 @@ def homogeneous():
 
 
 def elastica():
-    """Deflection and shortening over the length of a cantilever with a dead end force, A = P L^2/(E I)."""
+    """Deflection/L and shortening/L of a cantilever with a dead end force, A = P L^2/(E I)."""
     for load in (1, 2, 5, 10):
         def angles(sine):
             m = (1 + sine) / 2

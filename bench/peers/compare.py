@@ -1,13 +1,18 @@
 #!/usr/bin/env python3
-"""The performance job with Carom and its peers, in turn on one core: ratios in one run, physics side by side.
+"""Compares the speed and results of Carom, GetFEM and Kratos on the performance job.
 
     bench/peers/compare.py [--rounds N] [--steps N] [--rings 4 12] [--carom PATH] [--install]
 
-GetFEM comes from Debian (python3-getfem), Kratos from PyPI, into a virtual environment below target/; --install gets both. Carom is target/release/carom.
+The codes run in turn on one core. GetFEM comes from Debian (python3-getfem); Kratos comes from PyPI
+and is installed in a virtual environment below target/. --install installs both. Carom is
+target/release/carom.
 
-Processor seconds of the process per step. What comes before the first step (reading, meshing, analysis, imports) is left out for all: the peers read their
-clock there, and a run of Carom of one step is taken off a run of all. The ratio is Carom's to the peer's in the same round, the median over the rounds.
-Forces and velocities are computed by one formula, from the disc's velocity after every step. With fewer than 400 steps the last velocity is no rebound.
+The time is the processor time of the process per step. Everything before the first step (reading,
+meshing, analysis, imports) is excluded for all codes: the peers read their clock before the first
+step, and for Carom the time of a run of one step is subtracted. The ratio is that of Carom's speed
+to the peer's in the same round; the median over the rounds is printed. Forces and velocities are
+computed by one formula from the velocity of the disc after every step. With fewer than 400 steps
+the last velocity is not the rebound velocity.
 """
 
 import argparse
@@ -71,7 +76,8 @@ def peer(python, script, rings, steps):
     return json.loads(done.stdout.strip().splitlines()[-1])
 
 
-# Quadratic triangles have the nodes of cubic ones with half again as many rings, linear ones with three times as many.
+# Quadratic triangles need 1.5 times as many rings as cubic ones for the same nodes, linear ones 3
+# times as many.
 RUNS = {
     "Carom": carom,
     "GetFEM": lambda _, rings, steps: peer(DEBIAN, "getfem_job.py", rings * 3 // 2, steps),

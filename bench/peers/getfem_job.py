@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
-"""Disc on block with GetFEM: quadratic triangles, ray-traced augmented Lagrangian contact, damped Newmark.
+"""Disc on block with GetFEM.
 
-    getfem_job.py RINGS STEPS      e.g. 6 for the nodes of cases/perf/disc-2k.toml, 18 for those of disc-19k.toml
+    getfem_job.py RINGS STEPS
+
+With 6 rings the nodes are those of cases/perf/disc-2k.toml, with 18 those of disc-19k.toml.
+Quadratic triangles, ray-traced augmented Lagrangian contact, damped Newmark.
 
 Prints one JSON object, see job.py.
 """
@@ -19,7 +22,7 @@ gf.util_trace_level(0)
 
 
 def disc(rings):
-    """Quadratic triangles of the disc: corners and midside nodes, those of the arc on the circle."""
+    """Quadratic triangles: corners and midside nodes; nodes of the arc lie on the circle."""
     for cell in job.disc(rings):
         corners = [np.array(job.point(rings, *c)) for c in cell]
 

@@ -1,4 +1,5 @@
-"""What the jobs of all peers share: data of cases/perf/disc-*.toml, corners of their triangles, the clock, and what is printed."""
+"""Shared by the jobs of all peers: data of cases/perf/disc-*.toml, corners of the triangles, timing
+and output."""
 
 import json
 import math
@@ -10,13 +11,16 @@ WINDOW = 15e-3
 
 
 def point(rings, k, s):
-    """Ring k of the disc, s in units of its 6k edges; a ring is a circle."""
+    """A point on ring k of the disc, s in units of its 6k edges; a ring is a circle."""
     angle = 2 * math.pi * s / (6 * k) if k else 0.0
     return (RADIUS * k / rings * math.sin(angle), GAP + RADIUS - RADIUS * k / rings * math.cos(angle))
 
 
 def disc(rings):
-    """Triangles of concentric rings, as Carom's, counterclockwise: corners as (ring, place on it), the last place meeting the first."""
+    """Triangles of concentric rings, as in Carom, counterclockwise.
+
+    A corner is (ring, position on it); the last position of a ring coincides with the first.
+    """
     for k in range(1, rings + 1):
         for sixth in range(6):
             for j in range(k):
@@ -39,19 +43,25 @@ def place(across, down, i, j):
 
 
 def usage():
-    """CPU seconds and memory in KiB of this process so far."""
+    """CPU seconds and peak memory in KiB of this process so far."""
     used = resource.getrusage(resource.RUSAGE_SELF)
     return used.ru_utime + used.ru_stime, used.ru_maxrss
 
 
 def peak_mean_force(mass, velocity):
-    """Largest mean over 15 ms of the vertical force on the disc; velocity at the start and after every step."""
+    """Largest mean over 15 ms of the vertical force on the disc.
+
+    `velocity` contains the velocity at the start and after every step.
+    """
     window = round(WINDOW / DT)
     return max((mass * (velocity[n + window] - velocity[n]) / (window * DT) for n in range(len(velocity) - window)), default=None)
 
 
 def tell(code, dofs, begin, iterations, mass, velocity):
-    """Prints one JSON object. begin: usage() before the first step; mass and velocities of the disc as in peak_mean_force."""
+    """Prints one JSON object.
+
+    `begin` is usage() before the first step; `mass` and `velocity` are those of peak_mean_force.
+    """
     (start, _), (end, memory) = begin, usage()
     steps = len(velocity) - 1
     print(json.dumps({

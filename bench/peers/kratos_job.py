@@ -1,9 +1,13 @@
 #!/usr/bin/env python3
-"""Disc on block with Kratos: linear triangles, mortar augmented Lagrangian contact, Bossak −0.3, Eigen's sparse LU.
+"""Disc on block with Kratos.
 
-    kratos_job.py RINGS STEPS      e.g. 12 for the nodes of cases/perf/disc-2k.toml, 36 for those of disc-19k.toml
+    kratos_job.py RINGS STEPS
 
-Prints one JSON object, see job.py. Every solver option is Kratos' default or what its own tests of dynamic mortar contact use.
+With 12 rings the nodes are those of cases/perf/disc-2k.toml, with 36 those of disc-19k.toml. Linear
+triangles, mortar augmented Lagrangian contact, Bossak −0.3, Eigen's sparse LU.
+
+Prints one JSON object, see job.py. Every solver option is Kratos' default or is taken from its own
+tests of dynamic mortar contact.
 """
 
 import sys
@@ -47,7 +51,8 @@ PARAMETERS = f"""{{
 
 
 def build(part):
-    """Nodes, elements and the lines that may touch; returns the nodes of the disc with their share of its area."""
+    """Builds nodes, elements and contact lines; returns the nodes of the disc with their share of
+    its area."""
     material = part.CreateNewProperties(1)
     lam, mu = job.LAMBDA, job.MU
     material[Kratos.YOUNG_MODULUS] = mu * (3 * lam + 2 * mu) / (lam + mu)

@@ -1,9 +1,9 @@
-// A half cylinder above a prism: gmsh -2 -order 3 mesh.geo -o mesh.msh
+// A half cylinder above a prism. To generate the mesh: gmsh -2 -order 3 mesh.geo -o mesh.msh
 SetFactory("Built-in");
 Mesh.MshFileVersion = 4.1;
 Mesh.HighOrderOptimize = 1;
 r = 0.5;
-h = 0.2;        // length of a cell's edge
+h = 0.2;        // edge length of a cell
 
 Point(1) = {0, 0.5, 0, h};
 Point(2) = {r, 1, 0, h};
@@ -26,7 +26,7 @@ Line(7) = {8, 5};
 Curve Loop(2) = {4, 5, 6, 7};
 Plane Surface(2) = {2};
 
-// Names are what a case refers to.
+// A case refers to bodies and sides by these names.
 Physical Surface("cylinder") = {1};
 Physical Surface("prism") = {2};
 Physical Curve("arc") = {1, 2};

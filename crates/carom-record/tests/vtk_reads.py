@@ -1,4 +1,6 @@
-"""VTK itself reads our fields, VTU and VTKHDF: cell types, points, the cubic between the nodes, units, body names, times.
+"""Reads Carom's fields, VTU and VTKHDF, with VTK.
+
+Checked are cell types, points, a cubic function between the nodes, units, body names and times.
 
     cargo run -p carom-record --example lagrange_fields -- FOLDER
     python crates/carom-record/tests/vtk_reads.py FOLDER        (needs: pip install vtk h5py)
@@ -19,7 +21,10 @@ def cubic(x, y):
 
 
 def between_nodes(grid, array, factor):
-    """Largest relative error inside cells of order 3, which reproduce a cubic by VTK's own shape functions."""
+    """Largest relative error inside cells of order 3.
+
+    VTK's own shape functions reproduce a cubic there.
+    """
     worst = 0.0
     for cell in [i for i in range(grid.GetNumberOfCells()) if grid.GetCell(i).GetNumberOfPoints() in (10, 4)]:
         shape, flat = grid.GetCell(cell), grid.GetCellType(cell) == 69
