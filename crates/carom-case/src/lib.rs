@@ -34,7 +34,7 @@ pub use columns::history_columns;
 pub use document::Document;
 pub use expect::{Asked, read_expects};
 pub use load::load_variables;
-pub use problem::{CaseError, Diagnostic, Problem};
+pub use problem::{CaseError, Diagnostic, Problem, Problems};
 pub use read::{read, read_scheme};
 pub use schema::{changes, expectation, schema};
 pub use spec::{

@@ -50,6 +50,35 @@ impl Problem {
     }
 }
 
+/// Everything wrong with a case. [`Document::diagnose_all`](crate::Document::diagnose_all) finds
+/// the lines.
+#[derive(Clone, Debug, Default, PartialEq, Eq, thiserror::Error)]
+#[error("{}", one_by_one(.0))]
+pub struct Problems(Vec<Problem>);
+
+impl From<Vec<Problem>> for Problems {
+    fn from(problems: Vec<Problem>) -> Self {
+        Self(problems)
+    }
+}
+
+impl std::ops::Deref for Problems {
+    type Target = [Problem];
+
+    fn deref(&self) -> &[Problem] {
+        &self.0
+    }
+}
+
+fn one_by_one(problems: &[Problem]) -> String {
+    let one = |p: &Problem| {
+        let parts = [("", &p.path), ("", &p.what), ("why: ", &p.why), ("try: ", &p.help)];
+        let parts = parts.iter().filter(|(_, text)| !text.is_empty());
+        parts.map(|(label, text)| format!("{label}{text}")).collect::<Vec<_>>().join("; ")
+    };
+    problems.iter().map(one).collect::<Vec<_>>().join("\n")
+}
+
 /// A problem with its place in a source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {

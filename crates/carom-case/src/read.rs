@@ -15,7 +15,7 @@ use super::keys::{self, Kind};
 use super::load;
 use super::mesh;
 use super::place;
-use super::problem::{CaseError, Problem};
+use super::problem::{CaseError, Problem, Problems};
 use super::suggest;
 use super::tree::{Entry, Node, Table};
 use super::view::{View, word};
@@ -24,12 +24,42 @@ use super::{
     PrimarySpec, ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
 };
 
+impl Case {
+    /// Reads a case from its text, with overrides `key=value` applied in their order. Files that it
+    /// names are looked for in the working directory.
+    ///
+    /// # Errors
+    /// Everything wrong with it that can be found in one pass, with line and column.
+    pub fn from_text(text: &str, sets: &[&str]) -> Result<Self, CaseError> {
+        Self::of(&Document::parse("case", text, &owned(sets))?)
+    }
+
+    /// Reads a case from its file, with overrides `key=value` applied in their order.
+    ///
+    /// # Errors
+    /// As [`Case::from_text`], and if the file cannot be read.
+    pub fn from_file(path: impl AsRef<Path>, sets: &[&str]) -> Result<Self, CaseError> {
+        Self::of(&Document::open(path.as_ref(), &owned(sets))?)
+    }
+
+    fn of(document: &Document) -> Result<Self, CaseError> {
+        read(document).map_err(|problems| document.diagnose_all(&problems))
+    }
+}
+
+fn owned(sets: &[&str]) -> Vec<String> {
+    sets.iter().map(|&set| set.to_owned()).collect()
+}
+
 /// Reads a case; on failure all problems that can be found in one pass.
-pub fn read(document: &Document) -> Result<Case, Vec<Problem>> {
+///
+/// # Errors
+/// These problems.
+pub fn read(document: &Document) -> Result<Case, Problems> {
     if let Some(key) = document.study_key() {
         let why = "`case`, `arm` and `grid` are keys of a study: many runs of one case";
         let help = "carom study runs it, carom check reads it";
-        return Err(vec![Problem::new(key, "this is a study, not a case", why, help).at_key()]);
+        return Err(vec![Problem::new(key, "this is a study, not a case", why, help).at_key()].into());
     }
     let reader = Reader::of(document);
     let mut problems = conform::problems(document);
@@ -53,11 +83,12 @@ pub fn read(document: &Document) -> Result<Case, Vec<Problem>> {
     });
     check::problems(document, &draft, &mut problems);
     if !problems.is_empty() {
-        return Err(problems);
+        return Err(problems.into());
     }
     reader.case(document, draft, folder).ok_or_else(|| {
         let why = "its keys passed every check, but one of them could not be taken over";
         vec![Problem::new("", "the case cannot be read", why, "please report this file as a bug of Carom")]
+            .into()
     })
 }
 

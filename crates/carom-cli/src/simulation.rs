@@ -269,14 +269,14 @@ fn extremes(run: &carom_record::Run) -> Vec<Extreme> {
         .collect()
 }
 
-fn model_facts(case: &Case) -> Result<Facts, Vec<carom::case::Problem>> {
-    let model = carom::build(case)?;
+fn model_facts(case: &Case) -> Result<Facts, carom::case::Problems> {
+    let model = carom::Setup::new(case).build()?;
     let d = model.dimension;
     // Where another run ended, its contacts have kept the bodies apart.
     let overlaps = if case.initial.is_none() { carom::overlaps(&model) } else { Vec::new() };
     let problems = [overlaps, carom::too_long(case, &model)].concat();
     if !problems.is_empty() {
-        return Err(problems);
+        return Err(problems.into());
     }
     let explicit = case.time.scheme.is_explicit();
     let stable_step =

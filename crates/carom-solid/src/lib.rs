@@ -25,7 +25,7 @@ pub use body::{Body, Inverted, PointState};
 pub use bounds::Bounds;
 pub use cover::Cover;
 pub use facet::FacetShape;
-pub use factory::{body, plane_stress_body};
+pub use factory::{Constitutive, body, plane_stress_body};
 pub use loaded_side::LoadedSide;
 pub use lumping::cell_lumped_mass;
 pub use material::Law;

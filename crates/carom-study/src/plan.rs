@@ -4,8 +4,8 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 
+use carom::Setup;
 use carom::case::{Case, CaseError, Diagnostic, Document, Problem, read};
-use carom::simulation;
 use carom_record::study::design::{Design, Goal};
 use carom_record::study::{Arm, Comparison, StudyManifest, StudySource};
 use carom_record::{Machine, Source, Status, now};
@@ -264,7 +264,7 @@ fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) 
 pub(crate) fn resolved(path: &Path, sets: &[String]) -> Result<Case, CaseError> {
     let document = Document::open(path, sets)?;
     let case = read(&document).map_err(|problems| document.diagnose_all(&problems))?;
-    simulation(&case, 1).map_err(|problems| document.diagnose_all(&problems))?;
+    Setup::new(&case).start().map_err(|problems| document.diagnose_all(&problems))?;
     Ok(case)
 }
 

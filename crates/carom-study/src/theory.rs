@@ -5,9 +5,9 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use carom::Setup;
 use carom::case::{Case, Enforcement, SchemeSpec};
 use carom::frequencies::{Frequencies, frequencies, spring};
-use carom::simulation;
 use carom_record::RecordError;
 use carom_time::Integrator;
 
@@ -85,11 +85,11 @@ pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
 }
 
 fn of_case(case: &Case) -> Option<Frequencies> {
-    frequencies(&simulation(case, 1).ok()?.model())
+    frequencies(Setup::new(case).start().ok()?.model())
 }
 
 fn spring_of(case: &Case) -> Option<f64> {
-    spring(&simulation(case, 1).ok()?.model())
+    spring(Setup::new(case).start().ok()?.model())
 }
 
 fn put(directory: &Path, name: &str, lines: &[String]) -> Result<(), RecordError> {

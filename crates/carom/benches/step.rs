@@ -49,7 +49,7 @@ fn at_start(job: Job) -> Simulation {
         Job::Small => SMALL,
         Job::Large => LARGE,
     };
-    carom::simulation(&case_of(text), 1).expect("valid")
+    carom::Setup::new(&case_of(text)).start().expect("valid")
 }
 
 fn restored(mut simulation: Simulation, state: State) -> Simulation {
@@ -203,7 +203,7 @@ fn ten_steps(bencher: Bencher, job: Job) {
 #[divan::bench(sample_count = 10, sample_size = 1)]
 fn thousand_steps_of_a_bar(bencher: Bencher) {
     let case = case_of(BAR);
-    bencher.with_inputs(|| carom::simulation(&case, 1).expect("valid")).bench_local_values(|mut sim| {
+    bencher.with_inputs(|| carom::Setup::new(&case).start().expect("valid")).bench_local_values(|mut sim| {
         for _ in 0..1000 {
             black_box(sim.advance(&mut GridReport::default()).is_ok());
         }

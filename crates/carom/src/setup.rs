@@ -1,49 +1,136 @@
 //! Builds the simulation of a case: the model with a stepper, on the grid of times.
 
-use carom_case::{Case, NewtonSpec, Problem, TangentRule};
+use std::collections::BTreeMap;
+
+use carom_case::{Case, NewtonSpec, Problem, Problems, TangentRule};
 use carom_mechanics::model::Model;
 use carom_mechanics::stability::{SAFETY, stable_step};
 use carom_mechanics::{
     Before, Explicit, Grid, Implicit, Impulsive, Rejected, Settings, Simulation, State, Stepper, Tangent,
 };
-use carom_time::{Integrator, Nonsmooth};
+use carom_solid::Constitutive;
+use carom_time::{Integrator, Kernel, Nonsmooth};
 
 use crate::build::{build, overlaps};
 use crate::initial::{before, given};
 
-/// Builds the model of a case and its state at t = 0. Cells are computed by this many threads; the
-/// result does not depend on it.
+/// A case on its way to a simulation: with how many threads, and with laws and a time integrator of
+/// your own in place of the case's.
 ///
-/// # Errors
-/// All problems of the case that only its meshes reveal.
-pub fn simulation(case: &Case, threads: usize) -> Result<Simulation, Vec<Problem>> {
-    let model = build(case)?;
-    let placed = case.initial.is_some() || case.manufactured.is_some();
-    let overlaps = if placed { Vec::new() } else { overlaps(&model) };
-    let problems = [overlaps, too_long(case, &model)].concat();
-    if !problems.is_empty() {
-        return Err(problems);
-    }
-    let before: Option<Before> = match (&case.initial, &model.loads.manufactured) {
-        (Some(initial), _) => Some(before(initial, case, &model)?),
-        (None, Some(motion)) => Some(given(motion, &model)?),
-        (None, None) => None,
-    };
-    let stepper = stepper(case, &model)?;
-    let inertia = !case.time.scheme.is_static();
-    Simulation::new(model, stepper, grid(case), inertia, before, threads)
-        .map_err(|rejected| vec![no_start(case, placed, &rejected)])
+/// ```
+/// use carom::{Setup, case::Case};
+/// let case = Case::from_text(
+///     r#"
+///     title = "A bar stretched from its end"
+///     dimension = 1
+///     material = [{ name = "steel", law = "linear-elastic", density = 1, young = 900, poisson = 0 }]
+///     support = [{ on = ["bar.left"], fix = ["x"] }]
+///     load = [{ on = ["bar.right"], traction = [9] }]
+///     [[body]]
+///     name = "bar"
+///     material = "steel"
+///     element = "L2"
+///     mesh = { shape = "interval", min = 0, max = 10, cells = 20 }
+///     [time]
+///     end = 0.1
+///     step = 0.01
+///     scheme = { kind = "newmark", rho_inf = 1 }
+///     "#,
+///     &["time.scheme={ kind = \"static\" }"],
+/// )?;
+/// let mut run = Setup::new(&case).threads(2).start()?;
+/// while !run.finished() {
+///     run.step()?;
+/// }
+/// // Strain 9/900 of a length of 10.
+/// assert!((run.state().y[20] - 10.1).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Setup<'a> {
+    case: &'a Case,
+    threads: usize,
+    materials: Materials,
+    kernel: Option<Box<dyn Kernel>>,
 }
 
-/// Builds the model of a case and resumes from a state of an earlier run of it; the run of its
-/// `[initial]` is no longer needed.
-///
-/// # Errors
-/// As [`simulation`].
-pub fn resumed(case: &Case, threads: usize, state: State) -> Result<Simulation, Vec<Problem>> {
-    let model = build(case)?;
-    let stepper = stepper(case, &model)?;
-    Ok(Simulation::resume(model, stepper, grid(case), state, threads))
+/// Laws given in place of those of materials, by the material's name.
+pub(crate) type Materials = BTreeMap<String, Box<dyn Constitutive>>;
+
+impl<'a> Setup<'a> {
+    /// The case as it is, on one thread.
+    pub fn new(case: &'a Case) -> Self {
+        Self { case, threads: 1, materials: Materials::new(), kernel: None }
+    }
+
+    /// Computes with this many threads; results are bitwise identical for any number.
+    #[must_use]
+    pub fn threads(self, threads: usize) -> Self {
+        Self { threads, ..self }
+    }
+
+    /// Gives the bodies of a material another law. Density, and what `carom check` derives from
+    /// Lamé's constants, remain the case's.
+    #[must_use]
+    pub fn material(mut self, name: &str, law: impl Constitutive + 'static) -> Self {
+        self.materials.insert(name.to_owned(), Box::new(law));
+        self
+    }
+
+    /// Integrates with another implicit kernel than the case's scheme.
+    #[must_use]
+    pub fn kernel(self, kernel: impl Kernel + 'static) -> Self {
+        Self { kernel: Some(Box::new(kernel)), ..self }
+    }
+
+    /// Builds the model.
+    ///
+    /// # Errors
+    /// Everything wrong with the case that only its meshes show, and laws for materials that it
+    /// does not have.
+    pub fn build(&self) -> Result<Model, Problems> {
+        let known = |name: &String| self.case.materials.iter().any(|m| m.name == *name);
+        if let Some(name) = self.materials.keys().find(|name| !known(name)) {
+            let why = "a law was given for a material that the case does not have";
+            let help = "give it the name of one of the [[material]] tables";
+            return Err(vec![Problem::new("material", format!("no material \"{name}\""), why, help)].into());
+        }
+        Ok(build(self.case, &self.materials)?)
+    }
+
+    /// Builds the model and its state at t = 0.
+    ///
+    /// # Errors
+    /// As [`Setup::build`]; also where bodies overlap, an explicit step is longer than is stable, or
+    /// the start has no forces or accelerations.
+    pub fn start(self) -> Result<Simulation, Problems> {
+        let (case, model) = (self.case, self.build()?);
+        let placed = case.initial.is_some() || case.manufactured.is_some();
+        let overlaps = if placed { Vec::new() } else { overlaps(&model) };
+        let problems = [overlaps, too_long(case, &model)].concat();
+        if !problems.is_empty() {
+            return Err(problems.into());
+        }
+        let before: Option<Before> = match (&case.initial, &model.loads.manufactured) {
+            (Some(initial), _) => Some(before(initial, case, &model)?),
+            (None, Some(motion)) => Some(given(motion, &model)?),
+            (None, None) => None,
+        };
+        let stepper = stepper(case, &model, self.kernel)?;
+        let inertia = !case.time.scheme.is_static();
+        Simulation::new(model, stepper, grid(case), inertia, before, self.threads)
+            .map_err(|rejected| vec![no_start(case, placed, &rejected)].into())
+    }
+
+    /// Builds the model and continues from a state of an earlier run of the same case. The run that
+    /// its `[initial]` names is not needed any more.
+    ///
+    /// # Errors
+    /// As [`Setup::build`].
+    pub fn resume(self, state: State) -> Result<Simulation, Problems> {
+        let model = self.build()?;
+        let stepper = stepper(self.case, &model, self.kernel)?;
+        Ok(Simulation::resume(model, stepper, grid(self.case), state, self.threads))
+    }
 }
 
 fn grid(case: &Case) -> Grid {
@@ -73,8 +160,15 @@ fn no_start(case: &Case, placed: bool, rejected: &Rejected) -> Problem {
 }
 
 /// The stepper of a case.
-fn stepper(case: &Case, model: &Model) -> Result<Box<dyn Stepper>, Vec<Problem>> {
+fn stepper(
+    case: &Case,
+    model: &Model,
+    kernel: Option<Box<dyn Kernel>>,
+) -> Result<Box<dyn Stepper>, Vec<Problem>> {
     let settings = settings(&case.newton);
+    if let Some(kernel) = kernel {
+        return Ok(Box::new(Implicit::new(kernel, settings)));
+    }
     let integrator = case.time.scheme.integrator().map_err(|error| {
         let path = format!("time.scheme.{}", error.key());
         vec![Problem::new(

@@ -14,11 +14,43 @@ use super::{LinearElastic, Material, NeoHookean, NotPositive, SaintVenantKirchho
 
 /// A law that admits plane stress.
 pub trait Thickness: Material<3> {
-    /// F₃₃ − 1 at which P₃₃ = 0.
+    /// F₃₃ − 1 at which P₃₃ = 0: Newton's method on the law's own stress and tangent, its steps
+    /// halved where they would leave F₃₃ > 0 or make |P₃₃| larger. A law that knows a formula
+    /// replaces it.
     ///
     /// # Errors
-    /// If J of the plane is not positive, or there is no positive stress-free stretch.
-    fn excess_stretch(&self, h: &Mat<2>) -> Result<f64, NotPositive>;
+    /// If J of the plane is not positive, or no positive stress-free stretch is found.
+    fn excess_stretch(&self, h: &Mat<2>) -> Result<f64, NotPositive> {
+        let plane = 1.0 + excess_det(h);
+        if plane <= 0.0 || plane.is_nan() {
+            return Err(NotPositive(plane));
+        }
+        let [[a, b], [c, d]] = h.0;
+        let at = |across: f64| self.at(&Mat([[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, across]]));
+        let mut across = 0.0;
+        let mut point = at(across)?;
+        for _ in 0..100 {
+            let (stress, stiffness) = (self.stress(&point).0[2][2], self.tangent(&point, &E3, &E3).0[2][2]);
+            let mut step = stress / stiffness;
+            if step.abs() <= 2.0 * f64::EPSILON * (1.0 + across) {
+                return Ok(across - step);
+            }
+            if !(stiffness > 0.0 && step.is_finite()) {
+                break;
+            }
+            let mut next = at(across - step);
+            // The last digits need not make the stress smaller.
+            while step.abs() > 1e-12
+                && !next.as_ref().is_ok_and(|next| self.stress(next).0[2][2].abs() < stress.abs())
+            {
+                step *= 0.5;
+                next = at(across - step);
+            }
+            across -= step;
+            point = next?;
+        }
+        Err(NotPositive(0.0))
+    }
 }
 
 /// A three-dimensional law in plane stress.

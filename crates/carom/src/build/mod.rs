@@ -14,18 +14,19 @@ use carom_mechanics::model::{
 };
 use carom_solid::{Law, SolidError};
 
+use crate::setup::Materials;
 use side::side;
 
 pub use contacts::overlaps;
 
-/// Builds the model of a case.
+/// Builds the model of a case; `materials`: laws in place of the case's.
 ///
 /// # Errors
 /// All problems found: missing sides, probes outside their body, invalid meshes, contacts that
 /// cannot be solved.
-pub fn build(case: &Case) -> Result<Model, Vec<Problem>> {
+pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Problem>> {
     let d = case.dimension;
-    let parts = parts(case)?;
+    let parts = parts(case, materials)?;
     let mut problems = Vec::new();
     let dofs = parts.last().map_or(0, |p| p.nodes().end) * d;
     let mut reference = Vec::with_capacity(dofs);
@@ -151,7 +152,7 @@ fn nodal(
     }
 }
 
-fn parts(case: &Case) -> Result<Vec<BodyInstance>, Vec<Problem>> {
+fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Problem>> {
     let mut parts = Vec::new();
     let mut problems = Vec::new();
     let mut first_node = 0;
@@ -163,11 +164,11 @@ fn parts(case: &Case) -> Result<Vec<BodyInstance>, Vec<Problem>> {
             carom_case::Law::SaintVenantKirchhoff => Law::SaintVenantKirchhoff { lambda, mu },
             carom_case::Law::LinearElastic => Law::LinearElastic { lambda, mu },
         };
+        let of_case = law.constitutive();
+        let law = materials.get(&material.name).unwrap_or(&of_case);
         let body = |mesh: carom_solid::Mesh| match (mesh.dimension(), case.plane) {
-            (2, carom_case::Plane::Stress) => {
-                carom_solid::plane_stress_body(mesh, law, material.density, case.thickness)
-            }
-            _ => carom_solid::body(mesh, law, material.density, case.thickness),
+            (2, carom_case::Plane::Stress) => law.plane_stress_body(mesh, material.density, case.thickness),
+            _ => law.body(mesh, material.density, case.thickness),
         };
         let made =
             spec.make_mesh(case.dimension).and_then(|mesh| body(mesh).map_err(|e: SolidError| e.to_string()));

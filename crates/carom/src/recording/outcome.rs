@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use carom_case::Problem;
+use carom_case::Problems;
 use carom_mechanics::Stopped;
 use carom_record::RecordError;
 
@@ -74,8 +74,8 @@ pub struct Outcome {
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// A problem of the case that only its model reveals. Nothing was written.
-    #[error("{}", .0.iter().map(|p| p.what.as_str()).collect::<Vec<_>>().join("; "))]
-    Case(Vec<Problem>),
+    #[error(transparent)]
+    Case(Problems),
     /// The run directory could not be written or read.
     #[error(transparent)]
     Record(#[from] RecordError),

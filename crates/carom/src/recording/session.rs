@@ -14,7 +14,7 @@ use super::fields::{consistent_weights, field_set, gap_of, sides};
 use super::log::{entry, repairs};
 use super::outcome::{End, Options, Outcome, Progress, RunError};
 use super::verdicts::judge;
-use crate::setup::{resumed, simulation};
+use crate::setup::Setup;
 
 /// Data of a step besides the simulation.
 struct Session<'a> {
@@ -47,7 +47,7 @@ pub fn run(
     observe: &mut dyn FnMut(&Progress),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
-    let simulation = simulation(case, options.threads).map_err(RunError::Case)?;
+    let simulation = Setup::new(case).threads(options.threads).start().map_err(RunError::Case)?;
     let resolved = serde_json::to_value(case).map_err(|e| RunError::Incompatible { what: e.to_string() })?;
     let version = env!("CARGO_PKG_VERSION");
     let mut manifest =
@@ -103,7 +103,7 @@ pub fn resume(
         ),
     })?;
     let dofs = state.y.len();
-    let simulation = resumed(case, options.threads, state).map_err(RunError::Case)?;
+    let simulation = Setup::new(case).threads(options.threads).resume(state).map_err(RunError::Case)?;
     if dofs != simulation.model().dofs() {
         return Err(RunError::Incompatible {
             what: format!("the checkpoint has {dofs} dofs, the case {}", simulation.model().dofs()),

@@ -73,7 +73,7 @@ pub(crate) fn simulation(text: &str, sets: &[impl AsRef<str>]) -> Simulation {
 }
 
 pub(crate) fn on_threads(text: &str, sets: &[impl AsRef<str>], threads: usize) -> Simulation {
-    carom::simulation(&case(text, sets), threads).unwrap_or_else(|p| panic!("{p:?}"))
+    carom::Setup::new(&case(text, sets)).threads(threads).start().unwrap_or_else(|p| panic!("{p:?}"))
 }
 
 /// Runs to the end.

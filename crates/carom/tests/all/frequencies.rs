@@ -8,7 +8,7 @@ use super::common::case;
 const BAR: &str = include_str!("../../../../cases/bar/single.toml");
 
 fn model(sets: &[&str]) -> Model {
-    carom::build(&case(BAR, sets)).unwrap()
+    carom::Setup::new(&case(BAR, sets)).build().unwrap()
 }
 
 /// The end of a bar of linear cells with lumped mass ρAh/2, on a spring of `stiffness` times its

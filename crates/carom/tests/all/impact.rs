@@ -72,7 +72,7 @@ fn ledger_balance_and_gaps_hold_under_loads() {
 
 fn ledger_balance_and_gaps_hold(case: &Case, least: usize) {
     let scheme = case.time.scheme.integrator().unwrap().alpha().unwrap();
-    let mut sim = carom::simulation(case, 1).unwrap();
+    let mut sim = carom::Setup::new(case).start().unwrap();
     let (mut worst_ledger, mut touched) = (0.0_f64, 0);
     while !sim.finished() {
         let before = sim.state().clone();

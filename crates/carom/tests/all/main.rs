@@ -10,6 +10,7 @@ mod impact;
 mod kernels;
 mod loads;
 mod nonsmooth;
+mod own;
 mod placed;
 mod probe;
 mod restart;

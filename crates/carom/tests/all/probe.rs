@@ -1,6 +1,5 @@
 //! Probes at points where cells are strongly distorted.
 
-use carom::Simulation;
 use carom::model::Probe;
 
 use super::common::simulation;

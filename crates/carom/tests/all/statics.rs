@@ -107,7 +107,7 @@ scheme = {{ kind = "static" }}
     // Without its contact nothing can constrain it: the case is invalid.
     let mut alone = case.clone();
     alone.contacts.clear();
-    let problems = carom::simulation(&alone, 1).err().unwrap();
+    let problems = carom::Setup::new(&alone).start().err().unwrap();
     assert!(problems[0].what.starts_with("body \"disc\" is free to"), "{problems:?}");
     // With a gap it falls: reported by name, with a suggestion.
     let stopped =
