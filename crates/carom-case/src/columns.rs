@@ -68,6 +68,7 @@ pub(super) fn of(
     }
     vector(&mut columns, "contact_force");
     vector(&mut columns, "contact_impulse");
+    vector(&mut columns, "algorithmic_impulse");
     columns.extend(COUNTS.iter().map(ToString::to_string));
     for body in bodies.iter().flatten() {
         vector(&mut columns, &format!("{}.center", body.name));

@@ -30,7 +30,6 @@ pub(crate) fn add_stage(
     equations: &Equations,
     solved: &Evaluation,
     previous: Option<&Previous>,
-    dt: f64,
     means: &mut Means,
 ) {
     let Equations { model, state, stage, .. } = equations;
@@ -43,7 +42,7 @@ pub(crate) fn add_stage(
         let (now, start) = if contact.at_the_end { (1.0, 0.0) } else { (now, start) };
         let force = secondary_force(&solved.at.pairings[k].pairs, solved.rows[k].iter());
         for i in 0..3 {
-            means.impulse[i] += dt * (now * force[i] + start * state.contact_forces[k][i]);
+            means.contact_forces[k][i] += now * force[i] + start * state.contact_forces[k][i];
         }
     }
     if !model.loads.is_empty() {
@@ -122,7 +121,9 @@ fn add_previous(model: &Model, old: f64, before: &Means, means: &mut Means) {
         means.contact[i] += old * before.contact[i];
         means.loads[i] += old * before.loads[i];
     }
-    (0..3).for_each(|i| means.impulse[i] += old * before.impulse[i]);
+    for (mean, before) in means.contact_forces.iter_mut().zip(&before.contact_forces) {
+        (0..3).for_each(|i| mean[i] += old * before[i]);
+    }
 }
 
 /// Forces and accelerations of moving supports.
@@ -192,7 +193,9 @@ pub(crate) fn account(
     }
     next.ledger.open += open_work(state, next, increment);
     book_contact_forces(model, next);
-    (0..3).for_each(|i| next.ledger.impulse[i] += means.impulse[i]);
+    for (impulse, mean) in next.impulses.iter_mut().zip(&means.contact_forces) {
+        (0..3).for_each(|i| impulse[i] += dt * mean[i]);
+    }
     next.ledger.strain = strain + last.springs;
     next.ledger.potential = model.potential(&next.y);
     book_kinetic(model, next);

@@ -3,6 +3,7 @@
 //! builds models from cases.
 
 mod balance;
+mod carried;
 mod cells;
 mod constraints;
 mod contact_update;
@@ -33,6 +34,7 @@ mod testing;
 mod timings;
 mod workspace;
 
+pub use carried::Carried;
 pub use ledger::secondary_force;
 pub use rejected::Rejected;
 pub use renewal::{FrozenTangent, Point};

@@ -25,10 +25,10 @@ pub(crate) fn project(
     state: &mut State,
     activations: &[(usize, usize)],
     system: &mut System,
-) -> Result<f64, Rejected> {
+) -> Result<Option<f64>, Rejected> {
     let asks = |k: usize| model.contacts[k].projects;
     if !activations.iter().any(|&(k, _)| asks(k)) {
-        return Ok(0.0);
+        return Ok(None);
     }
     let gaps = measure_all(model, state)?;
     let mut places = independent_rows(model, pressing(state), &gaps);
@@ -43,9 +43,9 @@ pub(crate) fn project(
     for i in 0..dofs {
         state.v[i] += if model.massless[i] { 0.0 } else { change[i] };
     }
-    for (row, impulse) in rows.rows.iter().zip(&multipliers) {
+    for ((&(k, _), row), impulse) in places.iter().zip(rows.rows.iter()).zip(&multipliers) {
         let normal = row.normal();
-        (0..3).for_each(|i| state.ledger.impulse[i] -= impulse * normal[i]);
+        (0..3).for_each(|i| state.impulses[k][i] -= impulse * normal[i]);
     }
 
     let (forces, bending) = drive(model, state, &gaps, &rows);
@@ -61,7 +61,7 @@ pub(crate) fn project(
     book_kinetic(model, state);
     let jump = state.ledger.kinetic - before;
     state.ledger.contact_work += jump;
-    Ok(jump)
+    Ok(Some(jump))
 }
 
 /// Contact and pair of all active ones in a state.

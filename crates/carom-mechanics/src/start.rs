@@ -10,6 +10,7 @@
 
 use carom_contact::{Pair, Point, Rows};
 
+use crate::carried::Carried;
 use crate::constraints::{Constraints, independent_rows};
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::{LoadsAt, Model};
@@ -58,6 +59,7 @@ pub(crate) fn start(
         f_external: vec![0.0; dofs],
         f_contact: vec![0.0; dofs],
         contact_forces: vec![[0.0; 3]; contacts],
+        impulses: vec![[0.0; 3]; contacts],
         pairs,
         ..State::default()
     };
@@ -84,6 +86,7 @@ pub(crate) fn start(
     }
     averaged_contact_into(model, &mut state, &gaps);
     book_contact_forces(model, &mut state);
+    state.carried = Carried::at_start(&state.contact_forces);
     book_kinetic(model, &mut state);
     state.ledger.potential = model.potential(&state.y);
     state.ledger.total_at_start = state.ledger.total();

@@ -3,6 +3,7 @@
 use carom_contact::{Pair, Pairing};
 use serde::{Deserialize, Serialize};
 
+use crate::carried::Carried;
 use crate::renewal::FrozenTangent;
 
 /// Energies and works, design.md §5: cumulative from the start of the run.
@@ -28,8 +29,9 @@ pub struct Ledger {
     pub contact_work: f64,
     /// Largest kinetic + strain energy so far.
     pub largest: f64,
-    /// Time integral of the contact force on the secondary sides, including projections.
-    pub impulse: [f64; 3],
+    /// Part of the impulses of contact that projections and changes of the step move between
+    /// velocities and algorithmic accelerations.
+    pub algorithmic_impulse: [f64; 3],
 }
 
 impl Ledger {
@@ -73,25 +75,26 @@ pub struct Means {
     pub supports: Vec<f64>,
     /// Accelerations of moving supports; zero at other dofs.
     pub accelerations: Vec<f64>,
-    /// Impulse of the contact forces on the secondary sides.
-    pub impulse: [f64; 3],
+    /// Contact force on each secondary side.
+    pub contact_forces: Vec<[f64; 3]>,
 }
 
 impl Means {
     /// Zero means.
-    pub fn new(dofs: usize) -> Self {
+    pub fn new(dofs: usize, contacts: usize) -> Self {
         let mut means = Self::default();
-        means.clear(dofs);
+        means.clear(dofs, contacts);
         means
     }
 
     /// Resets to zero.
-    pub(crate) fn clear(&mut self, dofs: usize) {
+    pub(crate) fn clear(&mut self, dofs: usize, contacts: usize) {
         for mean in [&mut self.contact, &mut self.loads, &mut self.supports, &mut self.accelerations] {
             mean.clear();
             mean.resize(dofs, 0.0);
         }
-        self.impulse = [0.0; 3];
+        self.contact_forces.clear();
+        self.contact_forces.resize(contacts, [0.0; 3]);
     }
 }
 
@@ -125,6 +128,10 @@ pub struct State {
     pub f_contact: Vec<f64>,
     /// Force on the secondary side of each contact.
     pub contact_forces: Vec<[f64; 3]>,
+    /// Impulse of each contact on its secondary side since the start, projections included.
+    pub impulses: Vec<[f64; 3]>,
+    /// Contact's part of the algorithmic accelerations.
+    pub carried: Carried,
     /// Pairs of each contact.
     pub pairs: Vec<Vec<Pair>>,
     /// Energies and works.
@@ -140,6 +147,11 @@ pub struct State {
 }
 
 impl State {
+    /// Impulse of all contacts on their secondary sides since the start.
+    pub fn impulse(&self) -> [f64; 3] {
+        std::array::from_fn(|i| self.impulses.iter().map(|impulse| impulse[i]).sum())
+    }
+
     /// Copies another state, reusing allocated memory.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         let Self { step, time, y, v, a, f_internal, f_external, f_contact, contact_forces, pairs, .. } = self;
@@ -149,6 +161,8 @@ impl State {
             to.clone_from(from);
         }
         contact_forces.clone_from(&other.contact_forces);
+        self.impulses.clone_from(&other.impulses);
+        self.carried.copy_from(&other.carried);
         pairs.clone_from(&other.pairs);
         self.ledger = other.ledger.clone();
         self.previous.clone_from(&other.previous);

@@ -19,6 +19,10 @@ impl Kernel for Scheme {
         true
     }
 
+    fn carried(&self) -> f64 {
+        1.0 - self.gamma - self.alpha_m
+    }
+
     fn stage_into(&self, _k: usize, dt: f64, memory: &Memory, stage: &mut Stage) {
         let (_, v, a) = memory.states[0];
         stage.end = 1.0;

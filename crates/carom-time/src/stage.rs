@@ -138,6 +138,12 @@ pub trait Kernel: Send + Sync + std::fmt::Debug {
         false
     }
 
+    /// c of M (v + c Δt a), the momentum that changes by Δt times the mean forces of a step of
+    /// constant Δt: 1 − γ − α_m in the α family, zero where velocities alone carry it.
+    fn carried(&self) -> f64 {
+        0.0
+    }
+
     /// Properties or costs beyond linear analysis, one sentence each.
     fn notes(&self) -> &'static [&'static str] {
         &[]

@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             run.step()?;
             duration += if run.state().contact_forces[0][0] > 0.0 { run.dt() } else { 0.0 };
         }
-        let (impulse, mass) = (run.state().ledger.impulse[0], 10.0);
+        let (impulse, mass) = (run.state().impulse()[0], 10.0);
         let ratio = impulse / (2.0 * mass * speed);
         println!("{speed:5}  {ratio:17.4}  {duration:8.3}  {:7.3}", impulse / mass - speed);
         assert!((ratio - 1.0).abs() < 2e-3 && (duration - 2.0 / 3.0).abs() < 2e-3);

@@ -127,9 +127,10 @@ impl Explicit {
                 next.ledger.contact_work -= dt * v * 0.5 * (before + now);
             }
         }
-        for (before, now) in start.contact_forces.iter().zip(&next.contact_forces) {
+        let State { impulses, contact_forces, .. } = next;
+        for ((before, now), impulse) in start.contact_forces.iter().zip(contact_forces).zip(impulses) {
             for i in 0..3 {
-                next.ledger.impulse[i] += 0.5 * dt * (before[i] + now[i]);
+                impulse[i] += 0.5 * dt * (before[i] + now[i]);
             }
         }
         next.ledger.potential = model.potential(&next.y);
@@ -158,9 +159,9 @@ impl Explicit {
         self.book_kinetic(state);
         report.projection = state.ledger.kinetic - kinetic;
         state.ledger.contact_work += report.projection;
-        for force in &state.contact_forces {
+        for (impulse, force) in state.impulses.iter_mut().zip(&state.contact_forces) {
             for i in 0..3 {
-                state.ledger.impulse[i] += 0.5 * dt * force[i];
+                impulse[i] += 0.5 * dt * force[i];
             }
         }
         Ok(())

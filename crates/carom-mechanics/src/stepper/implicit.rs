@@ -5,6 +5,7 @@ use carom_contact::{Pairing, Rows};
 use carom_time::{Before, Kernel, Memory, Stage, Weights};
 
 use super::{Accepted, StepReport, Stepper, difference};
+use crate::carried;
 use crate::contact_update::{GAP_TOLERANCE, search};
 use crate::equations::{Equations, Iterate};
 use crate::ledger;
@@ -48,9 +49,11 @@ impl Stepper for Implicit {
     ) -> Result<Accepted, Rejected> {
         let previous = state.previous.as_ref().filter(|previous| previous.dt == dt);
         let mut next = work.copy(state);
+        let factor = self.kernel.carried();
+        carried::change_step(&mut next, factor, dt);
         let mut report = StepReport::default();
         let mut finished: Vec<Point> = Vec::new();
-        let mut means = Means::new(model.dofs());
+        let mut means = Means::new(model.dofs(), model.contacts.len());
         let mut guess = Iterate::at_start(state);
         let shift = self.predictor_shift(model, state, dt, to, work)?;
         let (mut end, mut last) = (0.0, None);
@@ -71,7 +74,7 @@ impl Stepper for Implicit {
             report.newton += effort.iterations;
             report.events.extend(effort.events);
             next.frozen = effort.frozen;
-            ledger::add_stage(&equations, &solved, previous, dt, &mut means);
+            ledger::add_stage(&equations, &solved, previous, &mut means);
             next.a.clone_from(&solved.acceleration);
             equations.stage.velocity.value_into(&solved.at.increment, &mut next.v);
             take_motions(&equations, &mut next);
@@ -109,6 +112,10 @@ impl Stepper for Implicit {
         }
         averaged_contact_into(model, &mut next, &solved.rows);
         ledger::account(&equations, &solved, &mut next, strain, dt, &means);
+        if factor != 0.0 {
+            let weights = [equations.stage.weights.mass, equations.stage.before.mass];
+            carried::advance(&mut next, &means.contact_forces, weights);
+        }
         if let Some(shift) = &shift {
             // Work on positions shifted by the predictor's contact: the forces of the step sum to M
             // (v − v_s)/Δt.
@@ -129,7 +136,11 @@ impl Stepper for Implicit {
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
         if !report.activations.is_empty() {
-            report.projection = project(model, &mut next, &report.activations, &mut work.system)?;
+            let projected = project(model, &mut next, &report.activations, &mut work.system)?;
+            if let Some(jump) = projected {
+                report.projection = jump;
+                carried::project(&mut next, factor);
+            }
         }
         next.previous = (self.kernel.two_step() && report.activations.is_empty()).then(|| Previous {
             dt,

@@ -353,7 +353,7 @@ impl Impulses {
             let normal = row.normal();
             for i in 0..3 {
                 next.contact_forces[self.rows.places[r].0][i] += impulse * normal[i] / dt;
-                next.ledger.impulse[i] += impulse * normal[i];
+                next.impulses[self.rows.places[r].0][i] += impulse * normal[i];
             }
             next.ledger.contact_work += 0.5 * impulse * (self.before[r] + row.along(&next.v));
         }

@@ -7,6 +7,8 @@ use carom_mechanics::model::{BodyInstance, Model, Quantity};
 use carom_mechanics::{GridReport, State};
 use carom_record::Column;
 
+use serde::{Deserialize, Serialize};
+
 use super::units::Labels;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -55,16 +57,29 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
             false,
         );
     }
+    for axis in axes {
+        add(
+            format!("algorithmic_impulse_{axis}"),
+            &label.momentum,
+            "part of it moved between velocities and algorithmic accelerations by projections and changes of the step",
+            false,
+        );
+    }
     for (name, what) in [
         ("active", "pairs in contact"),
-        ("activations", "nodes that came into contact in this step"),
-        ("releases", "nodes that left contact in this step"),
-        ("newton", "Newton iterations of this step"),
-        ("rejected", "rejected (bisected) steps in this step"),
+        ("activations", "nodes that came into contact since the previous row"),
+        ("releases", "nodes that left contact since the previous row"),
+        ("newton", "Newton iterations since the previous row"),
+        ("rejected", "rejected (bisected) steps since the previous row"),
     ] {
         add(name.into(), "", what, true);
     }
-    add("penetration".into(), &label.length, "depth of the deepest secondary node", false);
+    add(
+        "penetration".into(),
+        &label.length,
+        "largest depth of a secondary node since the previous row",
+        false,
+    );
     add("min_det_f".into(), "", "smallest J over all quadrature points", false);
     for part in &model.parts {
         for axis in axes {
@@ -161,14 +176,7 @@ pub(super) fn center_weights(model: &Model) -> Vec<f64> {
 }
 
 /// One row, in the order of [`columns`].
-pub(super) fn row(
-    model: &Model,
-    state: &State,
-    dt: f64,
-    report: &GridReport,
-    weights: &[f64],
-    row: &mut Vec<f64>,
-) {
+pub(super) fn row(model: &Model, state: &State, dt: f64, since: &Since, weights: &[f64], row: &mut Vec<f64>) {
     let ledger = &state.ledger;
     let d = model.dimension;
     row.clear();
@@ -184,12 +192,13 @@ pub(super) fn row(
         row.push(pairs.map(|(y, p)| y[0] * p[1] - y[1] * p[0]).sum());
     }
     row.extend((0..d).map(|i| state.contact_forces.iter().map(|f| f[i]).sum::<f64>()));
-    row.extend(&ledger.impulse[..d]);
+    row.extend(&state.impulse()[..d]);
+    row.extend(&ledger.algorithmic_impulse[..d]);
 
     let active = state.pairs.iter().flatten().filter(|p| p.active).count();
     row.push(active as f64);
-    row.extend([report.activations, report.releases, report.newton, report.rejected].map(f64::from));
-    row.push(penetration(model, state));
+    row.extend([since.activations, since.releases, since.newton, since.rejected].map(f64::from));
+    row.push(since.penetration);
     row.push(model.min_det_f(&state.y));
     for part in &model.parts {
         for field in [&state.y, &state.v] {
@@ -218,6 +227,27 @@ pub(super) fn row(
 fn mean(part: &BodyInstance, field: &[f64], weights: &[f64], i: usize) -> f64 {
     let d = part.body.mesh().dimension();
     part.nodes().map(|node| weights[node] * field[node * d + i]).sum()
+}
+
+/// What happened since the previous row: counts do not depend on how often rows are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Since {
+    newton: u32,
+    rejected: u32,
+    activations: u32,
+    releases: u32,
+    penetration: f64,
+}
+
+impl Since {
+    /// Adds a step, and the penetration at its end.
+    pub(super) fn add(&mut self, report: &GridReport, model: &Model, state: &State) {
+        self.newton += report.newton;
+        self.rejected += report.rejected;
+        self.activations += report.activations;
+        self.releases += report.releases;
+        self.penetration = self.penetration.max(penetration(model, state));
+    }
 }
 
 /// Depth of the deepest secondary node, ≥ 0.

@@ -9,7 +9,7 @@ use carom_mechanics::{GridReport, Simulation, State};
 use carom_record::{ContactRow, Event, Manifest, RunWriter, Source, Status};
 use cpu_time::{ProcessTime, ThreadTime};
 
-use super::columns::{center_weights, columns, row};
+use super::columns::{Since, center_weights, columns, row};
 use super::fields::{consistent_weights, field_set, gap_of, sides};
 use super::log::{entry, repairs};
 use super::outcome::{End, Options, Outcome, Progress, RunError};
@@ -28,6 +28,8 @@ struct Session<'a> {
     stressed: Vec<bool>,
     began: Instant,
     first_step: u64,
+    /// What happened since the previous row.
+    since: Since,
     /// Wall seconds spent on writing.
     output: f64,
     /// Processor seconds in steps.
@@ -54,7 +56,7 @@ pub fn run(
         Manifest::new(version, resolved, source, columns(case, &simulation.model()), options.threads);
     manifest.sides = sides(&simulation.model());
     manifest.warnings = case.warnings();
-    let writer = RunWriter::create(directory, &manifest, &bytes(&simulation.state())?)?;
+    let writer = RunWriter::create(directory, &manifest, &bytes(simulation.state(), Since::default())?)?;
     let mut session = Session::new(case, simulation, writer, manifest);
     session.write_start()?;
     session.go(observe, stop, Vec::new())
@@ -96,12 +98,13 @@ pub fn resume(
         });
     }
     let reopened = RunWriter::reopen(directory)?;
-    let state: State = postcard::from_bytes(&reopened.payload).map_err(|error| RunError::Incompatible {
-        what: format!(
-            "the checkpoint of {} does not fit this version of Carom: {error}",
-            directory.display()
-        ),
-    })?;
+    let (state, since): (State, Since) =
+        postcard::from_bytes(&reopened.payload).map_err(|error| RunError::Incompatible {
+            what: format!(
+                "the checkpoint of {} does not fit this version of Carom: {error}",
+                directory.display()
+            ),
+        })?;
     let dofs = state.y.len();
     let simulation = Setup::new(case).threads(options.threads).resume(state).map_err(RunError::Case)?;
     if dofs != simulation.model().dofs() {
@@ -116,6 +119,7 @@ pub fn resume(
     manifest.threads = options.threads;
     let remarks = reopened.fallback.iter().map(ToString::to_string).collect();
     let mut session = Session::new(case, simulation, reopened.writer, manifest);
+    session.since = since;
     session.writer.manifest(&session.manifest)?;
     if reopened.rows == 0 {
         session.write_start()?;
@@ -140,6 +144,7 @@ impl<'a> Session<'a> {
             weights,
             field_steps,
             stressed,
+            since: Since::default(),
             began,
             first_step,
             output: 0.0,
@@ -156,7 +161,8 @@ impl<'a> Session<'a> {
         for warning in &self.manifest.warnings {
             self.writer.log(&Event::new(0, 0.0, "warning", warning.clone()))?;
         }
-        self.write_row(&GridReport::default())?;
+        self.since.add(&GridReport::default(), self.simulation.model(), self.simulation.state());
+        self.write_row()?;
         self.write_fields()
     }
 
@@ -216,24 +222,26 @@ impl<'a> Session<'a> {
 
     /// Writes the record of a grid step.
     fn record(&mut self, report: &GridReport) -> Result<(), RunError> {
+        self.since.add(report, self.simulation.model(), self.simulation.state());
         let output = &self.case.output;
         let (step, last) = (self.simulation.state().step, self.simulation.finished());
         if step % output.history_every as u64 == 0 || last {
-            self.write_row(report)?;
+            self.write_row()?;
         }
         let every = output.fields_every as u64;
         if (every > 0 && (step % every == 0 || last)) || self.field_steps.contains(&step) {
             self.write_fields()?;
         }
         if step % output.checkpoint_every as u64 == 0 && !last {
-            self.writer.checkpoint(step, &bytes(&self.simulation.state())?)?;
+            self.writer.checkpoint(step, &bytes(self.simulation.state(), self.since)?)?;
         }
         Ok(())
     }
 
-    fn write_row(&mut self, report: &GridReport) -> Result<(), RunError> {
+    fn write_row(&mut self) -> Result<(), RunError> {
         let (model, state, dt) = (self.simulation.model(), self.simulation.state(), self.simulation.dt());
-        row(model, state, dt, report, &self.weights, &mut self.values);
+        row(model, state, dt, &self.since, &self.weights, &mut self.values);
+        self.since = Since::default();
         self.writer.history(&self.values)?;
         for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
             if pairs.iter().all(|p| !p.active) {
@@ -304,7 +312,7 @@ impl<'a> Session<'a> {
     /// Writes the last checkpoint and manifest.
     fn close(mut self, end: End, remarks: Vec<String>) -> Result<Outcome, RunError> {
         let state = &self.simulation.state();
-        self.writer.checkpoint(state.step, &bytes(state)?)?;
+        self.writer.checkpoint(state.step, &bytes(state, self.since)?)?;
         let wall = self.began.elapsed().as_secs_f64();
         let manifest = &mut self.manifest;
         (manifest.status, manifest.reason) = match &end {
@@ -345,8 +353,9 @@ fn stressed(simulation: &Simulation) -> Vec<bool> {
     model.probes.iter().map(|probe| probe.has_stress(&model.parts, &state.y)).collect()
 }
 
-fn bytes(state: &State) -> Result<Vec<u8>, RunError> {
-    postcard::to_stdvec(state)
+/// A checkpoint: the state, then what the next row will count.
+fn bytes(state: &State, since: Since) -> Result<Vec<u8>, RunError> {
+    postcard::to_stdvec(&(state, since))
         .map_err(|e| RunError::Incompatible { what: format!("the state cannot be encoded: {e}") })
 }
 

@@ -52,7 +52,7 @@ fn one_dof_is_amplified_as_the_analysis_says() {
                     dt,
                     increment: vec![0.0, d],
                     velocity: vec![0.0, w / dt],
-                    means: Means::new(2),
+                    means: Means::new(2, 0),
                 });
             });
             sim.advance(&mut GridReport::default()).unwrap();
@@ -115,11 +115,11 @@ fn the_booked_impulse_is_the_change_of_momentum() {
         };
         let start = momentum(&sim.state());
         let end = finish(simulation(BAR, &sets)).into_state();
-        let error = momentum(&end) - start - end.ledger.impulse[0];
+        let error = momentum(&end) - start - end.impulse()[0];
         assert!(
-            end.ledger.impulse[0] > 150.0 && error.abs() < 1e-7,
+            end.impulse()[0] > 150.0 && error.abs() < 1e-7,
             "{sets:?}: {error:e} of {}",
-            end.ledger.impulse[0]
+            end.impulse()[0]
         );
     }
 }

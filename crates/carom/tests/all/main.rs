@@ -9,6 +9,7 @@ mod frequencies;
 mod impact;
 mod kernels;
 mod loads;
+mod momentum;
 mod nonsmooth;
 mod own;
 mod placed;

@@ -139,7 +139,7 @@ fn two_discs_keep_their_momentum() {
             }
             assert!(state.ledger.created() < 0.02 * state.ledger.largest, "{scheme} {:?}", state.ledger);
         }
-        let impulse = sim.state().ledger.impulse;
+        let impulse = sim.state().impulse();
         let left: f64 = sim.model().parts[0]
             .nodes()
             .map(|n| sim.model().mass.row(n).map(|(_, m)| m).sum::<f64>() * sim.state().v[2 * n])

@@ -1,0 +1,81 @@
+//! Momentum in the algorithmic accelerations of the α family. Eqs. (14) and (15) summed over a free
+//! body, with p = Σ M v, q = Σ M a and F̄ the mean force of the step:
+//!
+//! ```text
+//! (1 − α_m) q_{s+1} + α_m q_s = F̄,   p_{s+1} − p_s = Δt [(1 − γ) q_s + γ q_{s+1}]
+//! (p + c Δt q)_{s+1} − (p + c Δt q)_s = Δt F̄,   c = 1 − γ − α_m
+//! ```
+//!
+//! for a constant Δt. A projection replaces q by the force at the state, and another Δt changes
+//! c Δt q: the impulse c Δ(Δt q) that no force of a step accounts for. Both equations are linear, so
+//! the part of q that is due to contact obeys the first one with the mean contact force; it is what
+//! is kept here, as a resultant on each secondary side.
+
+use serde::{Deserialize, Serialize};
+
+use crate::state::State;
+
+/// Contact's part of the algorithmic accelerations.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Carried {
+    /// Step with which it counts; 0 before the first one.
+    dt: f64,
+    /// Contact's part of Σ M a on each secondary side.
+    pub(crate) forces: Vec<[f64; 3]>,
+}
+
+impl Carried {
+    /// At the start, where accelerations satisfy the balance.
+    pub(crate) fn at_start(forces: &[[f64; 3]]) -> Self {
+        Self { dt: 0.0, forces: forces.to_vec() }
+    }
+
+    /// The last step that was taken, a bisected one too; none before the first.
+    pub fn dt(&self) -> Option<f64> {
+        (self.dt > 0.0).then_some(self.dt)
+    }
+
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.dt = other.dt;
+        self.forces.clone_from(&other.forces);
+    }
+}
+
+/// Books a change of the step to `dt`; `factor`: c.
+pub(crate) fn change_step(state: &mut State, factor: f64, dt: f64) {
+    let old = std::mem::replace(&mut state.carried.dt, dt);
+    if old == 0.0 || old == dt || factor == 0.0 {
+        return;
+    }
+    for k in 0..state.carried.forces.len() {
+        let force = state.carried.forces[k];
+        book(state, k, force.map(|f| factor * (dt - old) * f));
+    }
+}
+
+/// The first equation with the mean contact forces of a step and the weights of the inertia forces
+/// at its end and start.
+pub(crate) fn advance(state: &mut State, means: &[[f64; 3]], weights: [f64; 2]) {
+    for (force, mean) in state.carried.forces.iter_mut().zip(means) {
+        for (force, mean) in force.iter_mut().zip(mean) {
+            *force = (mean - weights[1] * *force) / weights[0];
+        }
+    }
+}
+
+/// Books a projection: accelerations satisfy the balance at the state again.
+pub(crate) fn project(state: &mut State, factor: f64) {
+    for k in 0..state.carried.forces.len() {
+        let now = state.contact_forces[k];
+        let old = std::mem::replace(&mut state.carried.forces[k], now);
+        let change = std::array::from_fn(|i| factor * state.carried.dt * (now[i] - old[i]));
+        book(state, k, change);
+    }
+}
+
+fn book(state: &mut State, contact: usize, change: [f64; 3]) {
+    for i in 0..3 {
+        state.impulses[contact][i] += change[i];
+        state.ledger.algorithmic_impulse[i] += change[i];
+    }
+}
