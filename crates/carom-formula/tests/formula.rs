@@ -36,7 +36,7 @@ fn arithmetic_is_read_as_in_print() {
         assert_eq!(value(text), expected, "{text}");
     }
     let near = |text: &str, expected: f64| {
-        assert!((value(text) - expected).abs() < 1e-15, "{text}: {}", value(text))
+        assert!((value(text) - expected).abs() < 1e-15, "{text}: {}", value(text));
     };
     near("sin(pi/6)", 0.5);
     near("cos(pi/3)", 0.5);
