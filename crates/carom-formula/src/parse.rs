@@ -1,4 +1,4 @@
-//! From text to a formula's operations, by winnow. White space may stand between any two symbols of
+//! From text to a formula's operations, with winnow. White space is allowed between all symbols of
 //!
 //! ```text
 //! expression = sign* operand (operator sign* operand)*
@@ -7,9 +7,8 @@
 //! name       = letter (letter | digit | "_")*
 //! ```
 //!
-//! Operators take their operands by binding power (V. R. Pratt, Top down operator precedence, *POPL*
-//! 1973). Where a symbol stands decides what it begins, so nothing is read twice, and the leftmost
-//! mistake is the one reported.
+//! Precedences are binding powers (V. R. Pratt, Top down operator precedence, *POPL* 1973). There
+//! is no backtracking beyond one symbol, so the leftmost mistake is the one reported.
 
 use std::ops::Range;
 
@@ -23,24 +22,25 @@ use winnow::{ModalResult, Parser};
 
 use crate::error::FormulaError;
 use crate::function::{CONSTANTS, Function};
-use crate::tree::{Binary, Tree};
+use crate::tree::Tree::{self, Call, Number};
 
 /// Longer texts are refused: no formula is, and reading one recurses.
 const LONGEST: usize = 4096;
 /// Parentheses within parentheses.
 const DEEPEST: usize = 64;
 
-/// The rest of the text, with its place in it.
+/// The rest of the text and its position.
 type Input<'a> = Stateful<LocatingSlice<&'a str>, Scope<'a>>;
 
 #[derive(Clone, Debug)]
 struct Scope<'a> {
     variables: &'a [&'a str],
-    /// Parentheses not closed yet.
+    /// Parentheses that are still open.
     open: usize,
 }
 
-/// What an alternative says that does not match. Nobody hears it: the last one always has words.
+/// Error of an alternative that does not match; never reported, because the last alternative has a
+/// message.
 impl ParserError<Input<'_>> for FormulaError {
     type Inner = Self;
 
@@ -62,7 +62,8 @@ pub(crate) fn tree(text: &str, variables: &[&str]) -> Result<Tree, FormulaError>
 fn formula(input: &mut Input) -> ModalResult<Tree, FormulaError> {
     let end = input.len();
     if end > LONGEST {
-        return refuse(format!("the formula is longer than {LONGEST} bytes"), LONGEST..end);
+        let message = format!("the formula is longer than {LONGEST} bytes");
+        return refuse(message, input.floor_char_boundary(LONGEST)..end);
     }
     if input.trim().is_empty() {
         return refuse("the formula is empty", 0..end);
@@ -76,7 +77,7 @@ fn formula(input: &mut Input) -> ModalResult<Tree, FormulaError> {
     }
 }
 
-/// No other reading is tried.
+/// An error that ends the parsing.
 fn refuse<T>(message: impl Into<String>, at: Range<usize>) -> ModalResult<T, FormulaError> {
     Err(ErrMode::Cut(FormulaError { message: message.into(), at }))
 }
@@ -90,21 +91,21 @@ fn misplaced<T>(input: &Input, wanted: &str) -> ModalResult<T, FormulaError> {
 }
 
 fn expression(input: &mut Input) -> ModalResult<Tree, FormulaError> {
-    let signs = [("+", Prefix(6, |_: &mut _, a| Ok(a))), ("-", Prefix(6, |_: &mut _, a| Ok(negative(a))))];
+    let signs = [("+", Prefix(6, |_: &mut _, a| Ok(a))), ("-", Prefix(6, |_, a| Ok(negative(a))))];
     let operators = [
-        ("||", Left(1, |_: &mut _, a, b| Ok(joined(Binary::Or, a, b)))),
-        ("&&", Left(2, |_, a, b| Ok(joined(Binary::And, a, b)))),
-        ("<=", Left(3, |_, a, b| Ok(joined(Binary::LessOrEqual, a, b)))),
-        (">=", Left(3, |_, a, b| Ok(joined(Binary::GreaterOrEqual, a, b)))),
-        ("==", Left(3, |_, a, b| Ok(joined(Binary::Equal, a, b)))),
-        ("!=", Left(3, |_, a, b| Ok(joined(Binary::NotEqual, a, b)))),
-        ("<", Left(3, |_, a, b| Ok(joined(Binary::Less, a, b)))),
-        (">", Left(3, |_, a, b| Ok(joined(Binary::Greater, a, b)))),
-        ("+", Left(4, |_, a, b| Ok(joined(Binary::Add, a, b)))),
-        ("-", Left(4, |_, a, b| Ok(joined(Binary::Subtract, a, b)))),
-        ("*", Left(5, |_, a, b| Ok(joined(Binary::Multiply, a, b)))),
-        ("/", Left(5, |_, a, b| Ok(joined(Binary::Divide, a, b)))),
-        ("^", Right(7, |_, a, b| Ok(joined(Binary::Power, a, b)))),
+        ("||", Left(1, |_: &mut _, a, b| Ok(Call(Function::Or, vec![a, b])))),
+        ("&&", Left(2, |_, a, b| Ok(Call(Function::And, vec![a, b])))),
+        ("<=", Left(3, |_, a, b| Ok(Call(Function::LessOrEqual, vec![a, b])))),
+        (">=", Left(3, |_, a, b| Ok(Call(Function::GreaterOrEqual, vec![a, b])))),
+        ("==", Left(3, |_, a, b| Ok(Call(Function::Equal, vec![a, b])))),
+        ("!=", Left(3, |_, a, b| Ok(Call(Function::NotEqual, vec![a, b])))),
+        ("<", Left(3, |_, a, b| Ok(Call(Function::Less, vec![a, b])))),
+        (">", Left(3, |_, a, b| Ok(Call(Function::Greater, vec![a, b])))),
+        ("+", Left(4, |_, a, b| Ok(Call(Function::Add, vec![a, b])))),
+        ("-", Left(4, |_, a, b| Ok(Call(Function::Subtract, vec![a, b])))),
+        ("*", Left(5, |_, a, b| Ok(Call(Function::Multiply, vec![a, b])))),
+        ("/", Left(5, |_, a, b| Ok(Call(Function::Divide, vec![a, b])))),
+        ("^", Right(7, |_, a, b| Ok(Call(Function::Power, vec![a, b])))),
     ];
     let operand = alt((number, named, delimited(open, expression, close)));
     let sign = alt((alt(signs.map(|(symbol, sign)| symbol.value(sign))), no_operand));
@@ -115,22 +116,15 @@ fn expression(input: &mut Input) -> ModalResult<Tree, FormulaError> {
         .parse_next(input)
 }
 
+fn negative(a: Tree) -> Tree {
+    if let Number(x) = a { Number(-x) } else { Call(Function::Negative, vec![a]) }
+}
+
 fn no_operand<T>(input: &mut Input) -> ModalResult<T, FormulaError> {
     misplaced(input, "a number, a variable or a function")
 }
 
-fn negative(a: Tree) -> Tree {
-    match a {
-        Tree::Number(x) => Tree::Number(-x),
-        a => Tree::Negative(Box::new(a)),
-    }
-}
-
-fn joined(operator: Binary, a: Tree, b: Tree) -> Tree {
-    Tree::Binary(operator, Box::new([a, b]))
-}
-
-/// The power of other languages.
+/// The power operator of other languages.
 fn starred<T>(input: &mut Input) -> ModalResult<T, FormulaError> {
     let at = "**".span().parse_next(input)?;
     refuse("a power is written ^, not **", at)
@@ -158,7 +152,7 @@ fn number(input: &mut Input) -> ModalResult<Tree, FormulaError> {
     let exponent = (one_of(['e', 'E']), opt(one_of(['+', '-'])), digit1);
     let (text, at) = (mantissa, opt(exponent)).take().with_span().parse_next(input)?;
     match text.parse() {
-        Ok(value) if f64::is_finite(value) => Ok(Tree::Number(value)),
+        Ok(value) if f64::is_finite(value) => Ok(Number(value)),
         _ => refuse(format!("the number {text} is too large"), at),
     }
 }
@@ -174,19 +168,12 @@ fn named(input: &mut Input) -> ModalResult<Tree, FormulaError> {
         function(name, input.state.variables).or_else(|message| refuse(message, at.clone()))?;
     let arguments: Vec<Tree> =
         terminated(separated(1.., expression, (multispace0, ',')), close).parse_next(input)?;
-    let got = arguments.len();
-    let called = match count {
-        1 => arguments.try_into().map(|[a]: [Tree; 1]| Tree::One(function, Box::new(a))),
-        2 => arguments.try_into().map(|two| Tree::Two(function, Box::new(two))),
-        _ => arguments.try_into().map(|three| Tree::Choice(Box::new(three))),
-    };
-    called.or_else(|_| {
+    let (got, at) = (arguments.len(), at.start..input.current_token_start());
+    if got != count {
         let s = if count == 1 { "" } else { "s" };
-        refuse(
-            format!("`{name}` takes {count} argument{s}, not {got}"),
-            at.start..input.current_token_start(),
-        )
-    })
+        return refuse(format!("`{name}` takes {count} argument{s}, not {got}"), at);
+    }
+    Ok(Call(function, arguments))
 }
 
 fn variable(name: &str, variables: &[&str]) -> Result<Tree, String> {
@@ -194,41 +181,42 @@ fn variable(name: &str, variables: &[&str]) -> Result<Tree, String> {
         return Ok(Tree::Variable(k));
     }
     if let Some((_, value)) = CONSTANTS.iter().find(|(constant, _)| *constant == name) {
-        return Ok(Tree::Number(*value));
+        return Ok(Number(*value));
     }
-    if let Some((_, _, count)) = Function::NAMES.iter().find(|(function, ..)| *function == name) {
+    if let Some((.., count)) = Function::NAMES.iter().find(|(function, ..)| *function == name) {
         let s = if *count == 1 { "" } else { "s" };
         return Err(format!("`{name}` is a function: write its argument{s} in parentheses"));
     }
-    let known: Vec<&str> = variables.iter().copied().chain(CONSTANTS.map(|(name, _)| name)).collect();
-    let other_case = known.iter().find(|k| k.eq_ignore_ascii_case(name)).copied();
-    let hint = match other_case.or_else(|| nearest(name, &known)) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None if variables.is_empty() => "this formula has no variables".to_owned(),
-        None => format!("the variables are {}", variables.join(", ")),
-    };
-    Err(format!("there is no variable `{name}`: {hint}"))
+    let hint = nearest(name, variables.iter().copied().chain(CONSTANTS.map(|(constant, _)| constant)));
+    Err(match hint {
+        Some(near) => format!("there is no variable `{name}`: did you mean `{near}`?"),
+        None if variables.is_empty() => {
+            format!("there is no variable `{name}`: this formula has no variables")
+        }
+        None => format!("there is no variable `{name}`: the variables are {}", variables.join(", ")),
+    })
 }
 
 /// A function and the number of its arguments.
 fn function(name: &str, variables: &[&str]) -> Result<(Function, usize), String> {
-    if let Some((_, function, count)) = Function::NAMES.iter().find(|(known, ..)| *known == name) {
-        return Ok((*function, *count));
+    let names = Function::NAMES.map(|(known, ..)| known);
+    if let Some(k) = names.iter().position(|known| *known == name) {
+        return Ok((Function::NAMES[k].1, Function::NAMES[k].2));
     }
     if variables.contains(&name) || CONSTANTS.iter().any(|(constant, _)| *constant == name) {
         return Err(format!("`{name}` is not a function: write `{name}*(`"));
     }
-    let names = Function::NAMES.map(|(name, ..)| name);
-    let hint = match nearest(name, &names) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => format!("known are {}", names.join(", ")),
-    };
-    Err(format!("there is no function `{name}`: {hint}"))
+    Err(match nearest(name, names) {
+        Some(near) => format!("there is no function `{name}`: did you mean `{near}`?"),
+        None => format!("there is no function `{name}`: known are {}", names.join(", ")),
+    })
 }
 
-/// The known name nearest to a misspelt one, if near enough to be meant.
-fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
-    let distance = |known: &str| strsim::damerau_levenshtein(name, known);
-    let near = known.iter().copied().filter(|k| k.len() > 1 && distance(k) <= 1 + k.len() / 4);
+/// The known name nearest to a misspelt one, capitals aside, if near enough to be meant.
+fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let distance = |known: &str| {
+        if known.eq_ignore_ascii_case(name) { 0 } else { strsim::damerau_levenshtein(name, known) }
+    };
+    let near = known.into_iter().filter(|k| distance(k) <= if k.len() == 1 { 0 } else { 1 + k.len() / 4 });
     near.min_by_key(|k| distance(k))
 }
