@@ -1,11 +1,12 @@
-//! The functions and constants a formula may name, and their derivatives. A new one is one line in
-//! [`Function::NAMES`] and one in each `match`.
+//! The operators, functions and constants of formulas, and their derivatives. A new function is one
+//! line in the list, one in [`Function::NAMES`] and one in a `match`.
 
-use crate::jet::Number;
+use crate::jet::Jet;
 
-/// A function of one argument or two.
+/// An operator or a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Function {
+    Negative,
     Sin,
     Cos,
     Tan,
@@ -25,6 +26,19 @@ pub(crate) enum Function {
     Max,
     Mod,
     Atan2,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+    Equal,
+    NotEqual,
+    And,
+    Or,
     /// Chooses between its second and third argument: three of them.
     If,
 }
@@ -59,7 +73,7 @@ impl Function {
 
     /// A function of one argument. At a kink (|0|, a jump of sign or floor) the derivative is that
     /// of the right-hand branch.
-    pub(crate) fn of<N: Number>(self, argument: N) -> N {
+    pub(crate) fn of<const N: usize>(self, argument: Jet<N>) -> Jet<N> {
         let x = argument.value();
         let jumps = |value| argument.map(value, || [0.0; 2]);
         match self {
@@ -83,28 +97,41 @@ impl Function {
             }
             Self::Exp => argument.map(x.exp(), || [x.exp(); 2]),
             Self::Ln => argument.map(x.ln(), || [1.0 / x, -1.0 / (x * x)]),
-            Self::Sqrt => {
-                let r = x.sqrt();
-                argument.map(r, || [0.5 / r, -0.25 / (r * x)])
-            }
+            Self::Sqrt => argument.map(x.sqrt(), || [0.5 / x.sqrt(), -0.25 / (x.sqrt() * x)]),
             Self::Abs if x < 0.0 => -argument,
             Self::Sign if x == 0.0 => jumps(0.0),
             Self::Sign => jumps(x.signum()),
             Self::Floor => jumps(x.floor()),
-            // Functions of more arguments never come here: the parser counts them.
-            Self::Abs | Self::Min | Self::Max | Self::Mod | Self::Atan2 | Self::If => argument,
+            Self::Negative => -argument,
+            // Abs of a positive number. The parser counts arguments: no others come here.
+            _ => argument,
         }
     }
 
     /// A function of two arguments. `mod(a, b)` = a − b⌊a/b⌋ has the sign of b; `atan2(y, x)` is
     /// the angle of (x, y).
-    pub(crate) fn of_two<N: Number>(self, a: N, b: N) -> N {
+    pub(crate) fn of_two<const N: usize>(self, a: Jet<N>, b: Jet<N>) -> Jet<N> {
         let (x, y) = (a.value(), b.value());
+        let truth = |holds: bool| Jet::constant(f64::from(u8::from(holds)));
         match self {
+            Self::Add => a + b,
+            Self::Subtract => a - b,
+            Self::Multiply => a * b,
+            Self::Divide => a / b,
+            Self::Power => power(a, b),
+            Self::Less => truth(x < y),
+            Self::LessOrEqual => truth(x <= y),
+            Self::Greater => truth(x > y),
+            Self::GreaterOrEqual => truth(x >= y),
+            Self::Equal => truth(x == y),
+            Self::NotEqual => truth(x != y),
+            Self::And => truth(x != 0.0 && y != 0.0),
+            Self::Or => truth(x != 0.0 || y != 0.0),
             Self::Min if y < x || y.is_nan() => b,
             Self::Max if y > x || y.is_nan() => b,
-            Self::Mod => a - b * N::constant((x / y).floor()),
+            Self::Mod => a - b * Jet::constant((x / y).floor()),
             Self::Atan2 => angle(a, b),
+            // Min and Max, if they are the first argument.
             _ => a,
         }
     }
@@ -117,7 +144,7 @@ fn inverse_sine(x: f64) -> [f64; 2] {
 
 /// The angle of (x, y): away from the axis at hand it differs by a constant from an arctangent,
 /// which has the derivatives.
-fn angle<N: Number>(y: N, x: N) -> N {
+fn angle<const N: usize>(y: Jet<N>, x: Jet<N>) -> Jet<N> {
     let value = y.value().atan2(x.value());
     let branch =
         if x.value().abs() > y.value().abs() { Function::Atan.of(y / x) } else { -Function::Atan.of(x / y) };
@@ -126,7 +153,7 @@ fn angle<N: Number>(y: N, x: N) -> N {
 
 /// Base to the power of exponent. A constant exponent allows a negative base (where it is whole),
 /// and 0⁰ = 1.
-pub(crate) fn power<N: Number>(base: N, exponent: N) -> N {
+fn power<const N: usize>(base: Jet<N>, exponent: Jet<N>) -> Jet<N> {
     let (x, n) = (base.value(), exponent.value());
     let value = if n.fract() == 0.0 && n.abs() <= 64.0 { x.powi(n as i32) } else { x.powf(n) };
     if exponent.is_constant() {

@@ -73,7 +73,7 @@ impl Formula {
     /// # Panics
     /// With fewer values than variables.
     pub fn value(&self, values: &[f64]) -> f64 {
-        self.tree.evaluate(&|k| values[k])
+        self.tree.evaluate(&|k| Jet([values[k]])).value()
     }
 
     /// Value, first and second derivative with respect to variable number `variable`. At a kink
@@ -82,8 +82,14 @@ impl Formula {
     /// # Panics
     /// With fewer values than variables.
     pub fn with_derivatives(&self, values: &[f64], variable: usize) -> [f64; 3] {
-        let slope = |k| if k == variable { 1.0 } else { 0.0 };
-        self.tree.evaluate(&|k| Jet([values[k], slope(k), 0.0])).0
+        self.along(values, [variable; 2])
+    }
+
+    /// Value and derivatives along the sum of two variables, or along one given twice.
+    fn along(&self, values: &[f64], [i, j]: [usize; 2]) -> [f64; 3] {
+        let slope = |k| if k == i || k == j { 1.0 } else { 0.0 };
+        let Jet([value, first, half_second]) = self.tree.evaluate(&|k| Jet([values[k], slope(k), 0.0]));
+        [value, first, 2.0 * half_second]
     }
 
     /// Value, gradient and second derivatives (row-major) with respect to the first `n` variables,
@@ -98,13 +104,9 @@ impl Formula {
     /// # Panics
     /// With fewer values than variables.
     pub fn with_gradient(&self, values: &[f64], n: usize) -> (f64, Vec<f64>, Vec<f64>) {
-        let along = |i: usize, j: usize| {
-            let slope = |k| if k == i || k == j { 1.0 } else { 0.0 };
-            self.tree.evaluate(&|k| Jet([values[k], slope(k), 0.0])).0
-        };
-        let own: Vec<[f64; 3]> = (0..n).map(|i| along(i, i)).collect();
+        let own: Vec<[f64; 3]> = (0..n).map(|i| self.along(values, [i; 2])).collect();
         let mixed = |i: usize, j: usize| {
-            if i == j { own[i][2] } else { 0.5 * (along(i.min(j), i.max(j))[2] - own[i][2] - own[j][2]) }
+            if i == j { own[i][2] } else { 0.5 * (self.along(values, [i, j])[2] - own[i][2] - own[j][2]) }
         };
         let second = (0..n * n).map(|k| mixed(k / n, k % n)).collect();
         (own.first().map_or_else(|| self.value(values), |o| o[0]), own.iter().map(|o| o[1]).collect(), second)

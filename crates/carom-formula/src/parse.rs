@@ -1,203 +1,222 @@
-//! From text to a formula's operations: the grammar `formula.pest` by pest, precedences by its
-//! Pratt parser, names and arguments here.
+//! From text to a formula's operations, with winnow. White space is allowed between all symbols of
+//!
+//! ```text
+//! expression = sign* operand (operator sign* operand)*
+//! operand    = number | name | name "(" expression ("," expression)* ")" | "(" expression ")"
+//! number     = (digit+ ("." digit*)? | "." digit+) (("e" | "E") ("+" | "-")? digit+)?
+//! name       = letter (letter | digit | "_")*
+//! ```
+//!
+//! Precedences are binding powers (V. R. Pratt, Top down operator precedence, *POPL* 1973). There
+//! is no backtracking beyond one symbol, so the leftmost mistake is the one reported.
 
-use pest::Parser;
-use pest::error::{ErrorVariant, InputLocation};
-use pest::iterators::Pair;
-use pest::pratt_parser::{Assoc, Op, PrattParser};
-use pest_derive::Parser;
-use std::sync::LazyLock;
+use std::ops::Range;
+
+use winnow::ascii::{digit0, digit1, multispace0};
+use winnow::combinator::Infix::{Left, Right};
+use winnow::combinator::{self, Prefix, alt, delimited, opt, preceded, separated, terminated};
+use winnow::error::{ErrMode, ParseError, ParserError};
+use winnow::stream::{AsChar, LocatingSlice, Location, Stateful};
+use winnow::token::{one_of, take_while};
+use winnow::{ModalResult, Parser};
 
 use crate::error::FormulaError;
 use crate::function::{CONSTANTS, Function};
-use crate::tree::{Binary, Tree};
+use crate::tree::Tree::{self, Call, Number};
 
 /// Longer texts are refused: no formula is, and reading one recurses.
 const LONGEST: usize = 4096;
-/// Parentheses within parentheses; pest recurses.
+/// Parentheses within parentheses.
 const DEEPEST: usize = 64;
 
-#[derive(Parser)]
-#[grammar = "formula.pest"]
-struct Grammar;
+/// The rest of the text and its position.
+type Input<'a> = Stateful<LocatingSlice<&'a str>, Scope<'a>>;
 
-/// Weakest first; a sign binds weaker than a power, as in print.
-static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
-    let left = |rule| Op::infix(rule, Assoc::Left);
-    PrattParser::new()
-        .op(left(Rule::or))
-        .op(left(Rule::and))
-        .op(left(Rule::compare))
-        .op(left(Rule::add) | left(Rule::subtract))
-        .op(left(Rule::multiply) | left(Rule::divide))
-        .op(Op::prefix(Rule::sign))
-        .op(Op::infix(Rule::power, Assoc::Right))
-});
+#[derive(Clone, Debug)]
+struct Scope<'a> {
+    variables: &'a [&'a str],
+    /// Parentheses that are still open.
+    open: usize,
+}
+
+/// Error of an alternative that does not match; never reported, because the last alternative has a
+/// message.
+impl ParserError<Input<'_>> for FormulaError {
+    type Inner = Self;
+
+    fn from_input(_: &Input) -> Self {
+        Self { message: String::new(), at: 0..0 }
+    }
+
+    fn into_inner(self) -> Result<Self, Self> {
+        Ok(self)
+    }
+}
 
 /// Reads a formula in these variables.
 pub(crate) fn tree(text: &str, variables: &[&str]) -> Result<Tree, FormulaError> {
-    refuse_deep(text)?;
-    let mut pairs = Grammar::parse(Rule::formula, text).map_err(|error| syntax(text, &error))?;
-    let formula = pairs.next().and_then(|formula| formula.into_inner().next());
-    formula
-        .map_or_else(|| Err(wrong("the formula is empty", 0..text.len())), |pair| expression(pair, variables))
+    let input = Stateful { input: LocatingSlice::new(text), state: Scope { variables, open: 0 } };
+    formula.parse(input).map_err(ParseError::into_inner)
 }
 
-fn wrong(message: impl Into<String>, at: std::ops::Range<usize>) -> FormulaError {
-    FormulaError { message: message.into(), at }
-}
-
-fn refuse_deep(text: &str) -> Result<(), FormulaError> {
-    if text.len() > LONGEST {
-        return Err(wrong(format!("the formula is longer than {LONGEST} bytes"), LONGEST..text.len()));
+fn formula(input: &mut Input) -> ModalResult<Tree, FormulaError> {
+    let end = input.len();
+    if end > LONGEST {
+        let message = format!("the formula is longer than {LONGEST} bytes");
+        return refuse(message, input.floor_char_boundary(LONGEST)..end);
     }
-    let mut depth = 0_usize;
-    for (at, byte) in text.bytes().enumerate() {
-        match byte {
-            b'(' => depth += 1,
-            b')' => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        if depth > DEEPEST {
-            return Err(wrong(format!("more than {DEEPEST} parentheses within each other"), at..at + 1));
-        }
+    if input.trim().is_empty() {
+        return refuse("the formula is empty", 0..end);
+    }
+    let tree = terminated(expression, multispace0).parse_next(input)?;
+    let at = input.current_token_start();
+    match input.chars().next() {
+        None => Ok(tree),
+        Some(')') => refuse("this parenthesis was never opened", at..at + 1),
+        Some(_) => misplaced(input, "an operator"),
+    }
+}
+
+/// An error that ends the parsing.
+fn refuse<T>(message: impl Into<String>, at: Range<usize>) -> ModalResult<T, FormulaError> {
+    Err(ErrMode::Cut(FormulaError { message: message.into(), at }))
+}
+
+fn misplaced<T>(input: &Input, wanted: &str) -> ModalResult<T, FormulaError> {
+    let at = input.current_token_start();
+    match input.chars().next() {
+        None => refuse(format!("the formula ends where {wanted} is expected"), at..at),
+        Some(c) => refuse(format!("`{c}` stands where {wanted} is expected"), at..at + c.len_utf8()),
+    }
+}
+
+fn expression(input: &mut Input) -> ModalResult<Tree, FormulaError> {
+    let signs = [("+", Prefix(6, |_: &mut _, a| Ok(a))), ("-", Prefix(6, |_, a| Ok(negative(a))))];
+    let operators = [
+        ("||", Left(1, |_: &mut _, a, b| Ok(Call(Function::Or, vec![a, b])))),
+        ("&&", Left(2, |_, a, b| Ok(Call(Function::And, vec![a, b])))),
+        ("<=", Left(3, |_, a, b| Ok(Call(Function::LessOrEqual, vec![a, b])))),
+        (">=", Left(3, |_, a, b| Ok(Call(Function::GreaterOrEqual, vec![a, b])))),
+        ("==", Left(3, |_, a, b| Ok(Call(Function::Equal, vec![a, b])))),
+        ("!=", Left(3, |_, a, b| Ok(Call(Function::NotEqual, vec![a, b])))),
+        ("<", Left(3, |_, a, b| Ok(Call(Function::Less, vec![a, b])))),
+        (">", Left(3, |_, a, b| Ok(Call(Function::Greater, vec![a, b])))),
+        ("+", Left(4, |_, a, b| Ok(Call(Function::Add, vec![a, b])))),
+        ("-", Left(4, |_, a, b| Ok(Call(Function::Subtract, vec![a, b])))),
+        ("*", Left(5, |_, a, b| Ok(Call(Function::Multiply, vec![a, b])))),
+        ("/", Left(5, |_, a, b| Ok(Call(Function::Divide, vec![a, b])))),
+        ("^", Right(7, |_, a, b| Ok(Call(Function::Power, vec![a, b])))),
+    ];
+    let operand = alt((number, named, delimited(open, expression, close)));
+    let sign = alt((alt(signs.map(|(symbol, sign)| symbol.value(sign))), no_operand));
+    let operator = alt((starred, alt(operators.map(|(symbol, operator)| symbol.value(operator)))));
+    combinator::expression(preceded(multispace0, operand))
+        .prefix(preceded(multispace0, sign))
+        .infix(preceded(multispace0, operator))
+        .parse_next(input)
+}
+
+fn negative(a: Tree) -> Tree {
+    if let Number(x) = a { Number(-x) } else { Call(Function::Negative, vec![a]) }
+}
+
+fn no_operand<T>(input: &mut Input) -> ModalResult<T, FormulaError> {
+    misplaced(input, "a number, a variable or a function")
+}
+
+/// The power operator of other languages.
+fn starred<T>(input: &mut Input) -> ModalResult<T, FormulaError> {
+    let at = "**".span().parse_next(input)?;
+    refuse("a power is written ^, not **", at)
+}
+
+fn open(input: &mut Input) -> ModalResult<(), FormulaError> {
+    let at = preceded(multispace0, '('.span()).parse_next(input)?;
+    input.state.open += 1;
+    if input.state.open > DEEPEST {
+        return refuse(format!("more than {DEEPEST} parentheses within each other"), at);
     }
     Ok(())
 }
 
-/// Pest says which rules it expected; a person wants to know what is there and what is missing.
-fn syntax(text: &str, error: &pest::error::Error<Rule>) -> FormulaError {
-    let at = match error.location {
-        InputLocation::Pos(at) => at,
-        InputLocation::Span((start, _)) => start,
-    };
-    let expected: &[Rule] = match &error.variant {
-        ErrorVariant::ParsingError { positives, .. } => positives,
-        ErrorVariant::CustomError { .. } => &[],
-    };
-    let operand =
-        expected.iter().any(|r| matches!(r, Rule::number | Rule::name | Rule::expression | Rule::call));
-    let wanted = if operand { "a number, a variable or a function" } else { "an operator" };
-    let unclosed = text[..at].matches('(').count() > text[..at].matches(')').count();
-    let or_parenthesis = if unclosed && !operand { " or a closing parenthesis" } else { "" };
-    match text[at..].chars().next() {
-        None if text.trim().is_empty() => wrong("the formula is empty", 0..text.len()),
-        None => wrong(format!("the formula ends where {wanted}{or_parenthesis} is expected"), at..at),
-        Some(')') if !operand && !unclosed => wrong("this parenthesis was never opened", at..at + 1),
-        Some('*') if operand && text[..at].ends_with('*') => {
-            wrong("a power is written ^, not **", at - 1..at + 1)
-        }
-        Some(c) => {
-            wrong(format!("`{c}` stands where {wanted}{or_parenthesis} is expected"), at..at + c.len_utf8())
-        }
+fn close(input: &mut Input) -> ModalResult<(), FormulaError> {
+    if preceded(multispace0, opt(')')).parse_next(input)?.is_none() {
+        return misplaced(input, "an operator or a closing parenthesis");
+    }
+    input.state.open -= 1;
+    Ok(())
+}
+
+fn number(input: &mut Input) -> ModalResult<Tree, FormulaError> {
+    let mantissa = alt(((digit1, opt(('.', digit0))).void(), ('.', digit1).void()));
+    let exponent = (one_of(['e', 'E']), opt(one_of(['+', '-'])), digit1);
+    let (text, at) = (mantissa, opt(exponent)).take().with_span().parse_next(input)?;
+    match text.parse() {
+        Ok(value) if f64::is_finite(value) => Ok(Number(value)),
+        _ => refuse(format!("the number {text} is too large"), at),
     }
 }
 
-fn expression(pair: Pair<Rule>, variables: &[&str]) -> Result<Tree, FormulaError> {
-    PRECEDENCE
-        .map_primary(|operand| primary(operand, variables))
-        .map_prefix(|sign, a| {
-            let a = a?;
-            Ok(match (sign.as_str(), a) {
-                ("+", a) => a,
-                (_, Tree::Number(x)) => Tree::Number(-x),
-                (_, a) => Tree::Negative(Box::new(a)),
-            })
-        })
-        .map_infix(|a, operator, b| Ok(Tree::Binary(binary(&operator), Box::new([a?, b?]))))
-        .parse(pair.into_inner())
-}
-
-fn binary(operator: &Pair<Rule>) -> Binary {
-    match operator.as_str() {
-        "+" => Binary::Add,
-        "-" => Binary::Subtract,
-        "*" => Binary::Multiply,
-        "/" => Binary::Divide,
-        "<" => Binary::Less,
-        "<=" => Binary::LessOrEqual,
-        ">" => Binary::Greater,
-        ">=" => Binary::GreaterOrEqual,
-        "==" => Binary::Equal,
-        "!=" => Binary::NotEqual,
-        "&&" => Binary::And,
-        "||" => Binary::Or,
-        _ => Binary::Power,
+/// A variable, a constant or a function with its arguments.
+fn named(input: &mut Input) -> ModalResult<Tree, FormulaError> {
+    let letters = (one_of(AsChar::is_alpha), take_while(0.., (AsChar::is_alphanum, '_')));
+    let (name, at) = letters.take().with_span().parse_next(input)?;
+    if opt(open).parse_next(input)?.is_none() {
+        return variable(name, input.state.variables).or_else(|message| refuse(message, at));
     }
-}
-
-fn primary(pair: Pair<Rule>, variables: &[&str]) -> Result<Tree, FormulaError> {
-    let span = pair.as_span().start()..pair.as_span().end();
-    match pair.as_rule() {
-        Rule::number => match pair.as_str().parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(Tree::Number(value)),
-            _ => Err(wrong(format!("the number {} is too large", pair.as_str()), span)),
-        },
-        Rule::name => variable(pair.as_str(), span, variables),
-        Rule::call => call(pair, variables),
-        _ => expression(pair, variables),
+    let (function, count) =
+        function(name, input.state.variables).or_else(|message| refuse(message, at.clone()))?;
+    let arguments: Vec<Tree> =
+        terminated(separated(1.., expression, (multispace0, ',')), close).parse_next(input)?;
+    let (got, at) = (arguments.len(), at.start..input.current_token_start());
+    if got != count {
+        let s = if count == 1 { "" } else { "s" };
+        return refuse(format!("`{name}` takes {count} argument{s}, not {got}"), at);
     }
+    Ok(Call(function, arguments))
 }
 
-fn variable(name: &str, at: std::ops::Range<usize>, variables: &[&str]) -> Result<Tree, FormulaError> {
+fn variable(name: &str, variables: &[&str]) -> Result<Tree, String> {
     if let Some(k) = variables.iter().position(|v| *v == name) {
         return Ok(Tree::Variable(k));
     }
     if let Some((_, value)) = CONSTANTS.iter().find(|(constant, _)| *constant == name) {
-        return Ok(Tree::Number(*value));
+        return Ok(Number(*value));
     }
-    if let Some((_, _, arguments)) = Function::NAMES.iter().find(|(function, ..)| *function == name) {
-        let example = if *arguments == 1 { "its argument" } else { "its arguments" };
-        return Err(wrong(format!("`{name}` is a function: write {example} in parentheses"), at));
+    if let Some((.., count)) = Function::NAMES.iter().find(|(function, ..)| *function == name) {
+        let s = if *count == 1 { "" } else { "s" };
+        return Err(format!("`{name}` is a function: write its argument{s} in parentheses"));
     }
-    let known: Vec<&str> = variables.iter().copied().chain(CONSTANTS.map(|(name, _)| name)).collect();
-    let other_case = known.iter().find(|k| k.eq_ignore_ascii_case(name)).copied();
-    let hint = match other_case.or_else(|| nearest(name, &known)) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None if variables.is_empty() => "this formula has no variables".to_owned(),
-        None => format!("the variables are {}", variables.join(", ")),
-    };
-    Err(wrong(format!("there is no variable `{name}`: {hint}"), at))
-}
-
-fn call(pair: Pair<Rule>, variables: &[&str]) -> Result<Tree, FormulaError> {
-    let whole = pair.as_span().start()..pair.as_span().end();
-    let mut inner = pair.into_inner();
-    let Some(name) = inner.next() else { return Err(wrong("a function needs a name", whole)) };
-    let at = name.as_span().start()..name.as_span().end();
-    let name = name.as_str();
-    let Some(&(_, function, count)) = Function::NAMES.iter().find(|(known, ..)| *known == name) else {
-        if variables.contains(&name) || CONSTANTS.iter().any(|(constant, _)| *constant == name) {
-            return Err(wrong(format!("`{name}` is not a function: write `{name}*(`"), at));
+    let hint = nearest(name, variables.iter().copied().chain(CONSTANTS.map(|(constant, _)| constant)));
+    Err(match hint {
+        Some(near) => format!("there is no variable `{name}`: did you mean `{near}`?"),
+        None if variables.is_empty() => {
+            format!("there is no variable `{name}`: this formula has no variables")
         }
-        let names: Vec<&str> = Function::NAMES.iter().map(|(name, ..)| *name).collect();
-        let hint = nearest(name, &names).map_or_else(
-            || format!("known are {}", names.join(", ")),
-            |near| format!("did you mean `{near}`?"),
-        );
-        return Err(wrong(format!("there is no function `{name}`: {hint}"), at));
-    };
-    let arguments = inner.map(|a| expression(a, variables)).collect::<Result<Vec<_>, _>>()?;
-    let got = arguments.len();
-    let arguments_wrong = |_| {
-        let s = if count == 1 { "" } else { "s" };
-        wrong(format!("`{name}` takes {count} argument{s}, not {got}"), whole.clone())
-    };
-    match count {
-        1 => <[Tree; 1]>::try_from(arguments)
-            .map_err(arguments_wrong)
-            .map(|[a]| Tree::One(function, Box::new(a))),
-        2 => arguments.try_into().map_err(arguments_wrong).map(|pair| Tree::Two(function, Box::new(pair))),
-        _ => arguments.try_into().map_err(arguments_wrong).map(|three| Tree::Choice(Box::new(three))),
-    }
+        None => format!("there is no variable `{name}`: the variables are {}", variables.join(", ")),
+    })
 }
 
-/// The known name nearest to a misspelt one, if near enough to be meant.
-fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
-    let distance = |known: &str| strsim::damerau_levenshtein(name, known);
-    known
-        .iter()
-        .copied()
-        .filter(|k| k.len() > 1 && distance(k) <= 1 + k.len() / 4)
-        .min_by_key(|k| distance(k))
+/// A function and the number of its arguments.
+fn function(name: &str, variables: &[&str]) -> Result<(Function, usize), String> {
+    let names = Function::NAMES.map(|(known, ..)| known);
+    if let Some(k) = names.iter().position(|known| *known == name) {
+        return Ok((Function::NAMES[k].1, Function::NAMES[k].2));
+    }
+    if variables.contains(&name) || CONSTANTS.iter().any(|(constant, _)| *constant == name) {
+        return Err(format!("`{name}` is not a function: write `{name}*(`"));
+    }
+    Err(match nearest(name, names) {
+        Some(near) => format!("there is no function `{name}`: did you mean `{near}`?"),
+        None => format!("there is no function `{name}`: known are {}", names.join(", ")),
+    })
+}
+
+/// The known name nearest to a misspelt one, capitals aside, if near enough to be meant.
+fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let distance = |known: &str| {
+        if known.eq_ignore_ascii_case(name) { 0 } else { strsim::damerau_levenshtein(name, known) }
+    };
+    let near = known.into_iter().filter(|k| distance(k) <= if k.len() == 1 { 0 } else { 1 + k.len() / 4 });
+    near.min_by_key(|k| distance(k))
 }

@@ -36,7 +36,7 @@ fn arithmetic_is_read_as_in_print() {
         assert_eq!(value(text), expected, "{text}");
     }
     let near = |text: &str, expected: f64| {
-        assert!((value(text) - expected).abs() < 1e-15, "{text}: {}", value(text))
+        assert!((value(text) - expected).abs() < 1e-15, "{text}: {}", value(text));
     };
     near("sin(pi/6)", 0.5);
     near("cos(pi/3)", 0.5);
@@ -118,6 +118,10 @@ fn mistakes_have_a_place_and_a_word_of_help() {
         ("sin(t, 2)", 0..9, "`sin` takes 1 argument, not 2"),
         ("if(t, 2)", 0..8, "`if` takes 3 arguments, not 2"),
         ("1e999", 0..5, "the number 1e999 is too large"),
+        ("SQRT(t)", 0..4, "there is no function `SQRT`: did you mean `sqrt`?"),
+        ("sin t", 0..3, "`sin` is a function: write its argument in parentheses"),
+        ("t*(X + velocity", 7..15, "there is no variable `velocity`: the variables are X, t"),
+        ("1e*t", 1..2, "`e` stands where an operator is expected"),
         ("sin()", 4..5, "`)` stands where a number, a variable or a function is expected"),
     ] {
         let error = Formula::parse(text, &["X", "t"]).unwrap_err();
@@ -126,6 +130,7 @@ fn mistakes_have_a_place_and_a_word_of_help() {
     let deep = format!("{}t{}", "(".repeat(65), ")".repeat(65));
     assert_eq!(Formula::parse(&deep, &["t"]).unwrap_err().at, 64..65);
     assert!(Formula::parse(&"-".repeat(5000), &[]).is_err());
+    assert_eq!(Formula::parse(&format!("-{}", "é".repeat(3000)), &[]).unwrap_err().at, 4095..6001);
     assert!(Formula::parse(&format!("{}1", "-".repeat(4000)), &[]).is_ok());
     assert!(Formula::parse(&format!("1{}", "^1".repeat(2000)), &[]).is_ok());
 }
