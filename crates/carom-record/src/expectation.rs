@@ -107,7 +107,9 @@ impl Bound {
     pub fn words(self) -> String {
         match self {
             Self::Near { value, tolerance } => format!("{} ± {}", plain(value), plain(tolerance)),
-            Self::Relative { value, relative } => format!("{} ± {} %", plain(value), plain(relative * 100.0)),
+            Self::Relative { value, relative } => {
+                format!("{} ± {} %", plain(value), plain(short_percent(relative)))
+            }
             Self::AtMost(most) => format!("≤ {}", plain(most)),
             Self::AtLeast(least) => format!("≥ {}", plain(least)),
         }
@@ -146,6 +148,11 @@ impl Bound {
 /// A number as one writes it: small ones with an exponent.
 fn plain(x: f64) -> String {
     if x != 0.0 && x.abs() < 1e-4 { format!("{x:e}") } else { x.to_string() }
+}
+
+/// A share in per cent, without the digits that the product by 100 makes up.
+fn short_percent(share: f64) -> f64 {
+    format!("{:.9e}", share * 100.0).parse().unwrap_or(share * 100.0)
 }
 
 impl Norm {

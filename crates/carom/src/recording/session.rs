@@ -1,5 +1,6 @@
 //! `run` and `resume`: run a simulation to its end, with records, checkpoints and manifest.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -15,6 +16,8 @@ use super::log::{entry, repairs};
 use super::outcome::{End, Options, Outcome, Progress, RunError};
 use super::verdicts::judge;
 use crate::setup::Setup;
+
+type Counters = BTreeMap<String, u64>;
 
 /// Data of a step besides the simulation.
 struct Session<'a> {
@@ -56,7 +59,11 @@ pub fn run(
         Manifest::new(version, resolved, source, columns(case, &simulation.model()), options.threads);
     manifest.sides = sides(&simulation.model());
     manifest.warnings = case.warnings();
-    let writer = RunWriter::create(directory, &manifest, &bytes(simulation.state(), Since::default())?)?;
+    let writer = RunWriter::create(
+        directory,
+        &manifest,
+        &bytes(simulation.state(), Since::default(), &manifest.counters)?,
+    )?;
     let mut session = Session::new(case, simulation, writer, manifest);
     session.write_start()?;
     session.go(observe, stop, Vec::new())
@@ -98,8 +105,8 @@ pub fn resume(
         });
     }
     let reopened = RunWriter::reopen(directory)?;
-    let (state, since): (State, Since) =
-        postcard::from_bytes(&reopened.payload).map_err(|error| RunError::Incompatible {
+    let (state, since, counters): (State, Since, Counters) = postcard::from_bytes(&reopened.payload)
+        .map_err(|error| RunError::Incompatible {
             what: format!(
                 "the checkpoint of {} does not fit this version of Carom: {error}",
                 directory.display()
@@ -114,6 +121,8 @@ pub fn resume(
     }
     let mut manifest = reopened.manifest;
     manifest.status = Status::Running;
+    // Those of a killed process are older in the manifest.
+    manifest.counters.extend(counters);
     manifest.reason = None;
     manifest.started = carom_record::now();
     manifest.threads = options.threads;
@@ -233,7 +242,8 @@ impl<'a> Session<'a> {
             self.write_fields()?;
         }
         if step % output.checkpoint_every as u64 == 0 && !last {
-            self.writer.checkpoint(step, &bytes(self.simulation.state(), self.since)?)?;
+            self.writer
+                .checkpoint(step, &bytes(self.simulation.state(), self.since, &self.manifest.counters)?)?;
         }
         Ok(())
     }
@@ -312,7 +322,7 @@ impl<'a> Session<'a> {
     /// Writes the last checkpoint and manifest.
     fn close(mut self, end: End, remarks: Vec<String>) -> Result<Outcome, RunError> {
         let state = &self.simulation.state();
-        self.writer.checkpoint(state.step, &bytes(state, self.since)?)?;
+        self.writer.checkpoint(state.step, &bytes(state, self.since, &self.manifest.counters)?)?;
         let wall = self.began.elapsed().as_secs_f64();
         let manifest = &mut self.manifest;
         (manifest.status, manifest.reason) = match &end {
@@ -353,9 +363,9 @@ fn stressed(simulation: &Simulation) -> Vec<bool> {
     model.probes.iter().map(|probe| probe.has_stress(&model.parts, &state.y)).collect()
 }
 
-/// A checkpoint: the state, then what the next row will count.
-fn bytes(state: &State, since: Since) -> Result<Vec<u8>, RunError> {
-    postcard::to_stdvec(&(state, since))
+/// A checkpoint: the state, what the next row will count, and what the run has counted.
+fn bytes(state: &State, since: Since, counters: &Counters) -> Result<Vec<u8>, RunError> {
+    postcard::to_stdvec(&(state, since, counters))
         .map_err(|e| RunError::Incompatible { what: format!("the state cannot be encoded: {e}") })
 }
 
