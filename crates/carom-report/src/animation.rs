@@ -6,11 +6,11 @@
 //! draws them with the colours of the figure `bodies`.
 
 use std::collections::HashMap;
-use std::fmt::Write as _;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use carom_record::{Block, Cell, FieldEntry, FieldSet, Run};
+use maud::{Markup, PreEscaped, html};
 use serde_json::json;
 
 use crate::bands::{Bands, color_bands};
@@ -19,7 +19,7 @@ use crate::chart::{Chart, Options, Panel, Series, Track, open};
 use crate::labels::{number, symbol, with_unit};
 use crate::palette::LINES;
 use crate::pen::Point;
-use crate::text::html;
+use crate::text::Label;
 
 /// Bytes of positions and stresses in the page, at most; beyond, field files are left out evenly.
 const BUDGET: usize = 2_400_000;
@@ -164,7 +164,7 @@ fn chosen(run: &Run, points: usize) -> Vec<&FieldEntry> {
 
 /// The animation as a part of the page, hidden until its script runs; nothing for fewer than two
 /// field files.
-pub(crate) fn html_of(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<String> {
+pub(crate) fn html_of(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<Markup> {
     let first = run.field(run.fields.first()?).ok()?;
     let flat = first.blocks.iter().all(|b| b.cell == Cell::Curve);
     let entries = chosen(run, if flat { 2 * first.points.len() } else { first.points.len() });
@@ -209,44 +209,48 @@ pub(crate) fn html_of(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let mut bar = open("Colours of the animation", 92.0, 330.0);
     color_bar(&mut bar, bands, cut, 8.0, (8.0, 312.0), (label, unit));
     bar.push_str("</svg>\n");
-    let force_unit = run.history.unit("contact_force_x");
-    let arrows = if largest > 0.0 {
-        format!(
-            " Arrows: contact forces −λn on the secondary nodes (contact.csv), the longest {} {}.",
-            number(largest),
-            html(force_unit)
-        )
-    } else {
-        String::new()
-    };
     let every = if entries.len() < run.fields.len() {
         format!("{} of the {} instants on record", entries.len(), run.fields.len())
     } else {
         format!("all {} instants on record", entries.len())
     };
-    let mut out = String::new();
-    let _ = write!(
-        out,
-        "<figure class=\"animation\" id=\"animation\" hidden>\n<div class=\"stage\"><canvas></canvas><div>{bar}</div><div>{}</div></div>\n\
-         <div class=\"controls\"><button type=\"button\" aria-label=\"play or pause\">▶</button>\
-         <input type=\"range\" min=\"0\" max=\"1\" step=\"any\" aria-label=\"time\"><output></output>\
-         <label>speed <select><option value=\"0.1\">0.1</option><option value=\"0.25\">0.25</option><option value=\"0.5\">0.5</option>\
-         <option value=\"1\" selected>1</option><option value=\"2\">2</option><option value=\"4\">4</option></select></label></div>\n\
-         <figcaption><b>Animation.</b> {}; frames are {every}, nothing in between is made up.{arrows} \
-         Space plays, ← and → go by one frame, a click into any time history goes there. Ticks under the histories: events of \
-         log.jsonl.</figcaption>\n</figure>\n",
-        histories(run, shades),
-        if flat {
-            format!("{} in colour", html(label))
-        } else {
-            format!("{} in the colours of figure {figure}", html(label))
-        },
-    );
     // Inside a script element only `<` could end it.
     let data = data.to_string().replace('<', "\\u003c");
-    let _ = writeln!(out, "<script type=\"application/json\" id=\"animation-data\">{data}</script>");
-    let _ = writeln!(out, "<script>\n{}</script>", include_str!("animation.js"));
-    Some(out)
+    Some(html! {
+        figure.animation #animation hidden {
+            div.stage {
+                canvas {}
+                div { (PreEscaped(bar)) }
+                div { (PreEscaped(histories(run, shades))) }
+            }
+            div.controls {
+                button type="button" aria-label="play or pause" { "▶" }
+                input type="range" min="0" max="1" step="any" aria-label="time";
+                output {}
+                label {
+                    "speed "
+                    select {
+                        @for speed in ["0.1", "0.25", "0.5", "1", "2", "4"] {
+                            option value=(speed) selected[speed == "1"] { (speed) }
+                        }
+                    }
+                }
+            }
+            figcaption {
+                b { "Animation." } " " (Label(label))
+                @if flat { " in colour" } @else { " in the colours of figure " (figure) }
+                "; frames are " (every) ", nothing in between is made up."
+                @if largest > 0.0 {
+                    " Arrows: contact forces −λn on the secondary nodes (contact.csv), the longest "
+                    (number(largest)) " " (Label(run.history.unit("contact_force_x"))) "."
+                }
+                " Space plays, ← and → go by one frame, a click into any time history goes there. \
+                 Ticks under the histories: events of log.jsonl."
+            }
+        }
+        script #animation-data type="application/json" { (PreEscaped(data)) }
+        script { (PreEscaped(include_str!("animation.js"))) }
+    })
 }
 
 #[cfg(test)]

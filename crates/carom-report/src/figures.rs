@@ -1,6 +1,7 @@
 //! Which figures a run has, and from which columns and files they are made.
 
 use carom_record::{Cell, FieldEntry, Run, metrics};
+use maud::Markup;
 
 use crate::bands::Bands;
 use crate::bodies::{self, Instant};
@@ -24,8 +25,8 @@ pub struct Figure {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shown {
     pub(crate) figures: Vec<Figure>,
-    /// The animation, as HTML.
-    pub(crate) animation: Option<String>,
+    /// The animation.
+    pub(crate) animation: Option<Markup>,
     /// What could not be drawn.
     pub(crate) notes: Vec<String>,
 }

@@ -13,6 +13,7 @@ mod collected;
 mod convergence;
 mod design;
 mod digits;
+mod document;
 mod figures;
 mod integrity;
 mod labels;
@@ -48,6 +49,6 @@ pub use verify_page::{verify, verify_markdown};
 pub fn report(directory: &Path) -> Result<ReportSummary, ReportError> {
     let run = Run::open(directory)?;
     let figures::Shown { figures, animation, notes } = figures::all(&run);
-    let page = page::page(&run, &figures, animation.as_deref(), &notes);
+    let page = page::page(&run, &figures, animation.as_ref(), &notes);
     publish(directory, "report.html", &page, figures.iter().map(|f| (f.name, f.svg.as_str())), notes)
 }

@@ -2,17 +2,17 @@
 //! errors and cost; energy and the contact force; contact, stresses and orders. What no arm has a
 //! value of has no column.
 
-use std::fmt::Write as _;
-
 use carom_record::study::compared::is_stress;
 use carom_record::study::design::{Design, Kind};
 use carom_record::study::ranking::{Ranking, error, standing};
 use carom_record::study::reference::Standing;
 use carom_record::study::{Study, step};
+use maud::{Markup, html};
 
 use crate::design::OFF_BUDGET;
 use crate::digits::{five, three};
-use crate::text::{escape, html};
+use crate::document::joined;
+use crate::text::Label;
 
 /// Probes' stresses with a column of their own at most.
 const STRESSES: usize = 3;
@@ -121,8 +121,8 @@ impl Ranked<'_> {
     }
 }
 
-/// Adds the tables.
-pub(crate) fn tables(out: &mut String, study: &Study, ranking: &Ranking) {
+/// The tables.
+pub(crate) fn tables(study: &Study, ranking: &Ranking) -> Markup {
     let ranked = Ranked { study, arms: ranking.levels.iter().flatten().map(|r| r.arm).collect() };
     let errors: Vec<f64> = ranking.levels.iter().flatten().map(|r| r.error).collect();
     let place = |arm: usize| ranked.arms.iter().position(|a| *a == arm);
@@ -142,7 +142,6 @@ pub(crate) fn tables(out: &mut String, study: &Study, ranking: &Ranking) {
         ranked.metric("Wall (s)", "wall_time"),
     ];
     first.extend(matched.into_iter().flat_map(|design| ranked.budgets(design)));
-    table(out, "Error and cost", ranking, study, &first);
     let second = [
         ranked.metric("Energy drift", "energy_drift"),
         ranked.metric("lost at the end", "energy_lost"),
@@ -153,7 +152,6 @@ pub(crate) fn tables(out: &mut String, study: &Study, ranking: &Ranking) {
         ranked.metric("High freq.", "force_high_frequency"),
         ranked.metric("Chatter", "chatter"),
     ];
-    table(out, "Energy, and roughness of the contact force", ranking, study, &second);
     let mut third = vec![
         ranked.metric("Penetration", "penetration"),
         ranked.metric("its mean", "penetration_mean"),
@@ -164,44 +162,46 @@ pub(crate) fn tables(out: &mut String, study: &Study, ranking: &Ranking) {
     ];
     third.extend(ranked.stresses());
     third.extend(ranked.orders());
-    table(out, "Penetration; errors of contact and stress; orders", ranking, study, &third);
+    html! {
+        (table("Error and cost", ranking, study, &first))
+        (table("Energy, and roughness of the contact force", ranking, study, &second))
+        (table("Penetration; errors of contact and stress; orders", ranking, study, &third))
+    }
 }
 
-fn table(out: &mut String, title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) {
-    let shown: Vec<&Column> = columns.iter().filter(|c| c.cells.iter().any(Option::is_some)).collect();
+fn table(title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) -> Markup {
+    let (shown, missing): (Vec<_>, Vec<_>) =
+        columns.iter().partition(|c| c.cells.iter().any(Option::is_some));
     if shown.is_empty() {
-        return;
+        return Markup::default();
     }
-    let heads =
-        shown.iter().fold(String::new(), |row, c| row + &format!("<th class=\"n\">{}</th>", html(&c.head)));
-    let _ = writeln!(
-        out,
-        "<h3>{title}</h3>\n<table class=\"metrics ranking\"><thead><tr><th class=\"n\">Place</th><th>Method</th>{heads}</tr></thead>"
-    );
-    let mut row = 0;
-    for (level, ranked) in ranking.levels.iter().enumerate() {
-        if ranking.levels.len() > 1 {
-            let _ =
-                writeln!(out, "<tr><td colspan=\"{}\"><b>Level {}</b></td></tr>", shown.len() + 2, level + 1);
+    // Cells are in the order of the places, level after level.
+    let mut rows = 0..;
+    html! {
+        h3 { (title) }
+        table.metrics.ranking {
+            thead {
+                tr {
+                    th.n { "Place" } th { "Method" }
+                    @for column in &shown { th.n { (Label(&column.head)) } }
+                }
+            }
+            @for (level, ranked) in ranking.levels.iter().enumerate() {
+                @if ranking.levels.len() > 1 {
+                    tr { td colspan=(shown.len() + 2) { b { "Level " (level + 1) } } }
+                }
+                @for (r, row) in ranked.iter().zip(rows.by_ref()) {
+                    @let arm = &study.manifest.arms[r.arm];
+                    tr {
+                        td.n { (r.place) }
+                        td.method { (arm.role.method.as_ref().unwrap_or(&arm.name)) }
+                        @for column in &shown { td.n { (column.cells[row].as_deref().unwrap_or("–")) } }
+                    }
+                }
+            }
         }
-        for r in ranked {
-            let arm = &study.manifest.arms[r.arm];
-            let cell =
-                |c: &&Column| format!("<td class=\"n\">{}</td>", c.cells[row].as_deref().unwrap_or("–"));
-            let cells: String = shown.iter().map(cell).collect();
-            let name = escape(arm.role.method.as_ref().unwrap_or(&arm.name));
-            let _ = writeln!(
-                out,
-                "<tr><td class=\"n\">{}</td><td class=\"method\">{name}</td>{cells}</tr>",
-                r.place
-            );
-            row += 1;
+        @if !missing.is_empty() {
+            p.small { "No value of: " (joined(missing.iter().map(|c| Label(&c.head)), ", ")) "." }
         }
-    }
-    out.push_str("</table>\n");
-    let missing: Vec<String> =
-        columns.iter().filter(|c| c.cells.iter().all(Option::is_none)).map(|c| html(&c.head)).collect();
-    if !missing.is_empty() {
-        let _ = writeln!(out, "<p class=\"small\">No value of: {}.</p>", missing.join(", "));
     }
 }

@@ -1,18 +1,18 @@
 //! The verdict of a study and what stands behind it: ranking, what cannot be ranked on, orders by
 //! phase.
 
-use std::fmt::Write as _;
-
 use carom_record::metrics::WORK;
 use carom_record::study::design::Goal;
 use carom_record::study::ranking::{Ranking, error, standing};
-use carom_record::study::reference::Standing;
-use carom_record::study::{Study, step};
+use carom_record::study::reference::{Reference, Standing};
+use carom_record::study::{Arm, Study, step};
+use maud::{Markup, html};
 
 use crate::digits::{five, three};
+use crate::document::{file, joined, or_dash};
 use crate::laboratory::methods;
 use crate::ranked;
-use crate::text::{escape, html};
+use crate::text::Label;
 
 /// Metrics whose error against the reference a user should know before taking a recommendation.
 const SIDE: [(&str, &str); 8] = [
@@ -40,49 +40,57 @@ const COLUMNS: [&str; 9] = [
 ];
 
 /// The box at the top; nothing for a study without a goal.
-pub(crate) fn show(out: &mut String, study: &Study) {
-    let Some(ranking) = &study.ranking else { return };
-    let goal = format!("goal: {} ({})", ranking.goal.word(), escape(ranking.goal.meaning()));
+pub(crate) fn summary(study: &Study) -> Markup {
+    let Some(ranking) = &study.ranking else { return Markup::default() };
+    let goal = format!("goal: {} ({}).", ranking.goal.word(), ranking.goal.meaning());
     let Some(verdict) = &ranking.verdict else {
         let why = match &ranking.measure {
             Err(why) => why.clone(),
             Ok(measure) => format!("no arm has a value of: {}", measure.words),
         };
-        let _ = writeln!(
-            out,
-            "<section class=\"verdict none\"><h2>No recommendation</h2>\n<p>{goal}. Nothing can be ranked: {}.</p></section>",
-            html(&why)
-        );
-        return;
+        return html! {
+            section.verdict.none {
+                h2 { "No recommendation" }
+                p { (goal) " Nothing can be ranked: " (Label(&why)) "." }
+            }
+        };
     };
     let arm = &study.manifest.arms[verdict.arm];
-    let name = arm.role.method.as_ref().unwrap_or(&arm.name);
-    let at = step(arm, "time.step").map_or_else(String::new, |h| format!(", Δt = {}", five(h)));
-    let _ = writeln!(
-        out,
-        "<section class=\"verdict\"><h2>Recommended: {}{at}</h2>\n<p>{goal}.</p>\n<dl>",
-        escape(name)
-    );
-    let sets = arm.sets.iter().filter(|set| !set.trim_start().starts_with("time.step"));
-    let sets: Vec<String> = sets.map(|set| format!("<code>{}</code>", escape(set))).collect();
-    if !sets.is_empty() {
-        let _ = writeln!(out, "<dt>In the case</dt><dd>{}</dd>", sets.join("<br>"));
-    }
-    let mut entry = |head: &str, lines: &[String]| {
-        let _ = write!(out, "<dt>{head}</dt>");
-        for line in lines {
-            let _ = write!(out, "<dd>{}</dd>", html(line));
+    let sets: Vec<&String> =
+        arm.sets.iter().filter(|set| !set.trim_start().starts_with("time.step")).collect();
+    let entry = |head: &str, lines: &[String]| {
+        html! {
+            dt { (head) }
+            @for line in lines { dd { (Label(line)) } }
         }
-        out.push('\n');
     };
-    entry("Why", &verdict.reasons);
-    if !verdict.alike.is_empty() {
-        entry("Not told apart from it", &[verdict.alike.join(" · ")]);
+    html! {
+        section.verdict {
+            h2 {
+                "Recommended: " (name(arm))
+                @if let Some(h) = step(arm, "time.step") { ", Δt = " (five(h)) }
+            }
+            p { (goal) }
+            dl {
+                @if !sets.is_empty() {
+                    dt { "In the case" }
+                    dd { (joined(sets.iter().map(|set| html! { code { (set) } }), html! { br; })) }
+                }
+                (entry("Why", &verdict.reasons))
+                @if !verdict.alike.is_empty() {
+                    (entry("Not told apart from it", &[verdict.alike.join(" · ")]))
+                }
+                (entry("What it costs", &[costs(study, verdict.arm)]))
+                (entry("What it distorts", &distorts(study, verdict.arm)))
+                (entry(&format!("Confidence: {}", verdict.confidence.word()), &verdict.confidence_reasons))
+            }
+        }
     }
-    entry("What it costs", &[costs(study, verdict.arm)]);
-    entry("What it distorts", &distorts(study, verdict.arm));
-    entry(&format!("Confidence: {}", verdict.confidence.word()), &verdict.confidence_reasons);
-    out.push_str("</dl></section>\n");
+}
+
+/// The method of an arm, or its own name where there are no methods.
+fn name(arm: &Arm) -> &str {
+    arm.role.method.as_ref().unwrap_or(&arm.name)
 }
 
 fn costs(study: &Study, arm: usize) -> String {
@@ -143,132 +151,149 @@ fn distorts(study: &Study, arm: usize) -> Vec<String> {
 }
 
 /// Ranking and what cannot be ranked on.
-pub(crate) fn rankings(out: &mut String, study: &Study) {
-    let Some(ranking) = &study.ranking else { return };
-    out.push_str("<h2>Ranking</h2>\n");
-    if let Ok(measure) = &ranking.measure {
-        let _ = writeln!(
-            out,
-            "<p>By {}; uncertainty of the errors {}.</p>",
-            html(&measure.words),
-            three(measure.uncertainty)
-        );
-        ranked_table(out, study, ranking);
+pub(crate) fn rankings(study: &Study) -> Markup {
+    let Some(ranking) = &study.ranking else { return Markup::default() };
+    html! {
+        h2 { "Ranking" }
+        @if let Ok(measure) = &ranking.measure {
+            p { "By " (Label(&measure.words)) "; uncertainty of the errors " (three(measure.uncertainty)) "." }
+            (ranked_table(study, ranking))
+        }
+        (other_goals(study))
+        @match &study.reference {
+            None => p {
+                "The study has no finished reference: only what has a right value by itself, such as energy, \
+                 can be ranked."
+            },
+            Some(reference) => (established(study, reference)),
+        }
     }
-    other_goals(out, study);
-    let Some(reference) = &study.reference else {
-        out.push_str("<p>The study has no finished reference: only what has a right value by itself, such as energy, can be ranked.</p>\n");
-        return;
-    };
-    let mut not = Vec::new();
-    let mut yes = Vec::new();
+}
+
+/// What the reference establishes, and what it does not.
+fn established(study: &Study, reference: &Reference) -> Markup {
+    let (mut not, mut yes) = (Vec::new(), Vec::new());
     for metric in study.metrics().into_iter().filter(|m| !WORK.iter().any(|(d, _)| d.name == m.name)) {
         match standing(Some(reference), &metric.name) {
             Standing::Not(why) => not.push((metric.name.to_string(), why)),
             Standing::Established { value, uncertainty } => yes.push((metric, value, uncertainty)),
         }
     }
-    let _ = writeln!(
-        out,
-        "<p>Reference: {}.</p>\n<details><summary>What it establishes, with its uncertainty</summary>\n<table><thead><tr><th>Metric</th><th>Unit</th><th class=\"n\">Value</th><th class=\"n\">±</th></tr></thead>",
-        escape(&reference.what)
-    );
-    for (metric, value, uncertainty) in yes {
-        let _ = writeln!(
-            out,
-            "<tr><td><code>{}</code></td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>",
-            escape(&metric.name),
-            html(&metric.unit),
-            three(value),
-            three(uncertainty)
-        );
-    }
-    out.push_str("</table></details>\n<details open><summary>Not established by a refinement: never ranked on</summary>\n<table>\n");
-    let deviations = reference.columns().into_iter().filter_map(|c| match reference.uncertainty(c) {
+    not.extend(reference.columns().into_iter().filter_map(|c| match reference.uncertainty(c) {
         Standing::Not(why) => Some((format!("deviation of {c}"), why)),
         Standing::Established { .. } => None,
-    });
-    for (name, why) in not.into_iter().chain(deviations) {
-        let _ = writeln!(out, "<tr><td><code>{}</code></td><td>{}</td></tr>", escape(&name), escape(&why));
+    }));
+    html! {
+        p { "Reference: " (reference.what) "." }
+        details {
+            summary { "What it establishes, with its uncertainty" }
+            table {
+                thead { tr { th { "Metric" } th { "Unit" } th.n { "Value" } th.n { "±" } } }
+                @for (metric, value, uncertainty) in yes {
+                    tr {
+                        td { code { (metric.name) } }
+                        td { (Label(&metric.unit)) }
+                        td.n { (three(value)) }
+                        td.n { (three(uncertainty)) }
+                    }
+                }
+            }
+        }
+        details open {
+            summary { "Not established by a refinement: never ranked on" }
+            table { @for (name, why) in not { tr { td { code { (name) } } td { (why) } } } }
+        }
     }
-    out.push_str("</table></details>\n");
 }
 
 /// What would be recommended by the other goals.
-fn other_goals(out: &mut String, study: &Study) {
-    out.push_str("<h3>By other goals</h3>\n<table><thead><tr><th>Goal</th><th>Recommended</th><th class=\"n\">Δt</th><th>Confidence</th><th>By</th></tr></thead>\n");
-    for ranking in &study.other_rankings {
-        let cells = match (&ranking.verdict, &ranking.measure) {
-            (Some(verdict), Ok(measure)) => {
-                let arm = &study.manifest.arms[verdict.arm];
-                let mut name = escape(arm.role.method.as_ref().unwrap_or(&arm.name));
-                if !verdict.alike.is_empty() {
-                    let alike = escape(&verdict.alike.join(" · "));
-                    let _ = write!(name, "<br><span class=\"small\">not told apart: {alike}</span>");
+fn other_goals(study: &Study) -> Markup {
+    html! {
+        h3 { "By other goals" }
+        table {
+            thead {
+                tr { th { "Goal" } th { "Recommended" } th.n { "Δt" } th { "Confidence" } th { "By" } }
+            }
+            @for ranking in &study.other_rankings {
+                tr {
+                    td { (ranking.goal.word()) }
+                    @match (&ranking.verdict, &ranking.measure) {
+                        (Some(verdict), Ok(measure)) => {
+                            @let arm = &study.manifest.arms[verdict.arm];
+                            td {
+                                (name(arm))
+                                @if !verdict.alike.is_empty() {
+                                    br; span.small { "not told apart: " (verdict.alike.join(" · ")) }
+                                }
+                            }
+                            td.n { (or_dash(step(arm, "time.step"), five)) }
+                            td { (verdict.confidence.word()) }
+                            td { (Label(&measure.words)) }
+                        }
+                        (_, Err(why)) => td colspan="4" { "nothing can be ranked: " span.small { (why) } },
+                        (None, Ok(measure)) => td colspan="4" {
+                            "no arm has a value of: " span.small { (Label(&measure.words)) }
+                        },
+                    }
                 }
-                let at = step(arm, "time.step").map_or("–".into(), five);
-                format!(
-                    "<td>{name}</td><td class=\"n\">{at}</td><td>{}</td><td>{}</td>",
-                    verdict.confidence.word(),
-                    html(&measure.words)
-                )
             }
-            (_, Err(why)) => {
-                format!(
-                    "<td colspan=\"4\">nothing can be ranked: <span class=\"small\">{}</span></td>",
-                    escape(why)
-                )
-            }
-            (None, Ok(measure)) => format!(
-                "<td colspan=\"4\">no arm has a value of: <span class=\"small\">{}</span></td>",
-                html(&measure.words)
-            ),
-        };
-        let _ = writeln!(out, "<tr><td>{}</td>{cells}</tr>", ranking.goal.word());
+        }
     }
-    out.push_str("</table>\n");
 }
 
-fn ranked_table(out: &mut String, study: &Study, ranking: &Ranking) {
-    ranked::tables(out, study, ranking);
+fn ranked_table(study: &Study, ranking: &Ranking) -> Markup {
     let placed = |arm: &usize| ranking.levels.iter().flatten().any(|r| r.arm == *arm);
     let without = methods(study).into_iter().flat_map(|(_, arms)| arms).filter(|arm| !placed(arm));
-    let without: Vec<String> = without.map(|arm| escape(&study.rows[arm].name)).collect();
-    if !without.is_empty() {
-        let why =
-            if ranking.goal == Goal::Cost { "not accurate enough" } else { "without a value of the measure" };
-        let _ = writeln!(out, "<p class=\"small\">In no place, because {why}: {}.</p>", without.join("; "));
+    let without: Vec<&str> = without.map(|arm| study.rows[arm].name.as_str()).collect();
+    let why =
+        if ranking.goal == Goal::Cost { "not accurate enough" } else { "without a value of the measure" };
+    html! {
+        (ranked::tables(study, ranking))
+        @if !without.is_empty() {
+            p.small { "In no place, because " (why) ": " (without.join("; ")) "." }
+        }
+        p.small {
+            "Arms that share a place are not told apart: their errors differ by no more than the uncertainty \
+             of the reference, or 5 %."
+            @if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) {
+                " An exclamation mark: off the budget by more than 10 %."
+            }
+        }
+        ul.small { @for line in COLUMNS { li { (line) } } }
+        p.small { "All digits are in " (file("ranking.csv")) " and " (file("reference.csv")) "." }
     }
-    out.push_str("<p class=\"small\">Arms that share a place are not told apart: their errors differ by no more than the uncertainty of the reference, or 5 %.");
-    if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) {
-        out.push_str(" An exclamation mark: off the budget by more than 10 %.");
-    }
-    out.push_str("</p>\n<ul class=\"small\">\n");
-    for line in COLUMNS {
-        let _ = writeln!(out, "<li>{line}</li>");
-    }
-    out.push_str("</ul>\n<p class=\"small\">All digits are in <a href=\"ranking.csv\">ranking.csv</a> and <a href=\"reference.csv\">reference.csv</a>.</p>\n");
 }
 
 /// Observed orders before the first contact and after it.
-pub(crate) fn phases(out: &mut String, study: &Study) {
-    if study.phase_orders.is_empty() {
-        return;
-    }
-    out.push_str("<h2>Order before and after the first contact</h2>\n<table><thead><tr><th>Method</th><th>Column</th><th>Before the first contact</th><th>After it</th></tr></thead>\n");
-    let cell = |order: &Result<f64, String>| match order {
-        Ok(order) => format!("{order:.2}").replace('-', "−"),
-        Err(why) => format!("<span class=\"small\">no order ({})</span>", escape(why)),
+pub(crate) fn phases(study: &Study) -> Markup {
+    let cell = |order: &Result<f64, String>| {
+        html! {
+            @match order {
+                Ok(order) => (format!("{order:.2}").replace('-', "−")),
+                Err(why) => span.small { "no order (" (why) ")" },
+            }
+        }
     };
-    for o in &study.phase_orders {
-        let _ = writeln!(
-            out,
-            "<tr><td>{}</td><td><code>{}</code></td><td>{}</td><td>{}</td></tr>",
-            escape(&o.method),
-            escape(&o.column),
-            cell(&o.smooth),
-            cell(&o.across)
-        );
+    html! {
+        @if !study.phase_orders.is_empty() {
+            h2 { "Order before and after the first contact" }
+            table {
+                thead {
+                    tr { th { "Method" } th { "Column" } th { "Before the first contact" } th { "After it" } }
+                }
+                @for o in &study.phase_orders {
+                    tr {
+                        td { (o.method) }
+                        td { code { (o.column) } }
+                        td { (cell(&o.smooth)) }
+                        td { (cell(&o.across)) }
+                    }
+                }
+            }
+            p.small {
+                "From the errors against the reference at the two finest levels, root mean square over the rows \
+                 before the reference's first contact, and over those after its end."
+            }
+        }
     }
-    out.push_str("</table>\n<p class=\"small\">From the errors against the reference at the two finest levels, root mean square over the rows before the reference's first contact, and over those after its end.</p>\n");
 }

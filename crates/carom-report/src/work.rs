@@ -1,11 +1,9 @@
 //! Where the time of a run went: wall seconds by phase, in all and per step, and what was counted.
 
-use std::fmt::Write as _;
-
 use carom_record::Manifest;
+use maud::{Markup, html};
 
 use crate::labels::number;
-use crate::text::escape;
 
 /// Three digits, or all of a larger number.
 fn three(x: f64) -> String {
@@ -17,48 +15,45 @@ fn three(x: f64) -> String {
 const WIDTH: f64 = 8.0;
 
 /// The section of the page.
-pub(crate) fn work(out: &mut String, m: &Manifest) {
+pub(crate) fn work(m: &Manifest) -> Markup {
     let steps = m.counters.get("steps").copied().unwrap_or(0);
     let each = |whole: f64| if steps > 0 { three(whole / steps as f64) } else { "–".into() };
-    out.push_str("<h2>Where the time went</h2>\n");
-    if let Some(&total) = m.timings.get("total") {
-        out.push_str(
-            "<table>\n<thead><tr><th>Phase</th><th>In all (s)</th><th>Per step (ms)</th><th>Share</th><th></th><th>What it is</th></tr></thead>\n",
-        );
-        for (name, what, seconds) in m.phases() {
-            let share = if total > 0.0 { seconds / total } else { 0.0 };
-            row(out, name, seconds, &each(1e3 * seconds), share, what);
+    let timings = m.timings.get("total").map(|&total| {
+        let phases =
+            m.phases().into_iter().chain([("total", "wall seconds of the run, its set-up left out", total)]);
+        phases.map(move |(name, what, seconds)| (name, what, seconds, seconds / total.max(f64::MIN_POSITIVE)))
+    });
+    html! {
+        h2 { "Where the time went" }
+        @if let Some(phases) = timings {
+            table {
+                thead {
+                    tr { th { "Phase" } th { "In all (s)" } th { "Per step (ms)" } th { "Share" } th {} th { "What it is" } }
+                }
+                @for (name, what, seconds, share) in phases {
+                    tr {
+                        td { (name) }
+                        td.n { (three(seconds)) }
+                        td.n { (each(1e3 * seconds)) }
+                        td.n { (format_args!("{:.0} %", 100.0 * share)) }
+                        td.share { span style=(format_args!("width:{:.2}rem", WIDTH * share)) {} }
+                        td { (what) }
+                    }
+                }
+            }
         }
-        row(out, "total", total, &each(1e3 * total), 1.0, "wall seconds of the run, its set-up left out");
-        out.push_str("</table>\n");
+        @if let Some(&cpu) = m.timings.get("cpu") {
+            p {
+                "Processor time of the first thread in steps, output left out: " (three(cpu)) " s, "
+                (each(1e3 * cpu)) " ms a step. What the phases took beyond it was waited for."
+            }
+        }
+        table {
+            thead { tr { th { "Counted" } th { "In all" } th { "Per step" } } }
+            @for (name, &count) in &m.counters {
+                tr { td { (name.replace('_', " ")) } td.n { (count) } td.n { (each(count as f64)) } }
+            }
+        }
+        p.small { "From manifest.json: counters, timings; " code { "carom run --profile" } " tells the same at once." }
     }
-    if let Some(&cpu) = m.timings.get("cpu") {
-        let _ = writeln!(
-            out,
-            "<p>Processor time of the first thread in steps, output left out: {} s, {} ms a step. What the phases took beyond it was waited for.</p>",
-            three(cpu),
-            each(1e3 * cpu)
-        );
-    }
-    out.push_str("<table>\n<thead><tr><th>Counted</th><th>In all</th><th>Per step</th></tr></thead>\n");
-    for (name, &count) in &m.counters {
-        let name = escape(&name.replace('_', " "));
-        let _ = writeln!(
-            out,
-            "<tr><td>{name}</td><td class=\"n\">{count}</td><td class=\"n\">{}</td></tr>",
-            each(count as f64)
-        );
-    }
-    out.push_str("</table>\n<p class=\"small\">From manifest.json: counters, timings; <code>carom run --profile</code> tells the same at once.</p>\n");
-}
-
-fn row(out: &mut String, name: &str, seconds: f64, each: &str, share: f64, what: &str) {
-    let _ = writeln!(
-        out,
-        "<tr><td>{name}</td><td class=\"n\">{}</td><td class=\"n\">{each}</td><td class=\"n\">{:.0} %</td>\
-         <td class=\"share\"><span style=\"width:{:.2}rem\"></span></td><td>{what}</td></tr>",
-        three(seconds),
-        100.0 * share,
-        WIDTH * share
-    );
 }

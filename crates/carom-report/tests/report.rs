@@ -76,7 +76,7 @@ fn figures_and_page() {
         "<td>assembly</td><td class=\"n\">1.25</td><td class=\"n\">3.13</td><td class=\"n\">50 %</td>",
         "<td>rest</td><td class=\"n\">0.5</td><td class=\"n\">1.25</td><td class=\"n\">20 %</td>",
         "<td>newton</td><td class=\"n\">1532</td><td class=\"n\">3.83</td>",
-        r"&#39;\&#39;&#39;x",
+        r"--set 'title='\''x'\'''",
     ] {
         assert!(page.contains(part), "{part}");
     }
