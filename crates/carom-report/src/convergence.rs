@@ -1,5 +1,6 @@
-//! Convergence in a study: for every key in which arms differ by numbers alone, each metric by
-//! step, its observed order, and the limit where an order is established ([`carom_record::order`]).
+//! Convergence in a study. For every key whose numerical value alone differs between arms: each
+//! metric by step, its observed order, and the limit where the order is established
+//! ([`carom_record::order`]).
 
 use carom_record::order::{self, MARGIN};
 use carom_record::study::{Refinement, Study, numeric_keys};
@@ -9,13 +10,13 @@ use crate::document::or_dash;
 use crate::labels::number;
 use crate::text::Label;
 
-/// Fewest steps that say something of an order.
+/// Fewest steps from which an order can be estimated.
 const LEAST: usize = 3;
 
-/// Metrics of the work say nothing of the solution.
+/// Metrics of the work, which say nothing about the solution.
 const WORK: [&str; 4] = ["steps", "newton_iterations", "rejected_steps", "wall_time"];
 
-/// The section; nothing for a study that refines nothing.
+/// The section of the page; nothing for a study without refinement.
 pub(crate) fn section(study: &Study) -> Markup {
     let keys = numeric_keys(&study.manifest, LEAST);
     html! {
@@ -25,10 +26,10 @@ pub(crate) fn section(study: &Study) -> Markup {
                 @for group in groups { (table(study, key, group)) }
             }
             p.small {
-                "Order: from the differences of successive values, f = f₀ + C hᵖ solved for p at the three finest \
-                 steps. An order counts as established where the estimates at the two finest triples of steps \
-                 agree within " (MARGIN) "; then the limit is Richardson's extrapolation, and its band 1.25 times \
-                 the distance of the finest value from it (P. J. Roache, J. Fluids Eng. 116, 1994)."
+                "Order: the exponent p of f = f₀ + C hᵖ through the three finest steps. An order is \
+                 established where the estimates from the two finest triples of steps agree within " (MARGIN)
+                ". The limit is then Richardson's extrapolation, and its uncertainty 1.25 times the distance \
+                 of the finest value from it (P. J. Roache, J. Fluids Eng. 116, 1994)."
             }
         }
     }
@@ -39,7 +40,7 @@ fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
     metrics.retain(|m| !WORK.contains(&m.name.as_ref()));
     html! {
         h3 {
-            "Against " code { (key) }
+            "Refinement of " code { (key) }
             @if key.ends_with("cells") { " (step: 1/cells)" }
             @if !group.common.is_empty() { ", " code { (group.common) } }
         }
@@ -55,8 +56,7 @@ fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
                 @let values: Vec<_> = group.arms.iter().map(|i| study.rows[*i].value(&metric.name)).collect();
                 @if values.iter().any(Option::is_some) {
                     tr {
-                        td { code { (metric.name) } }
-                        td { (Label(&metric.unit)) }
+                        td { code { (metric.name) } } td { (Label(&metric.unit)) }
                         @for value in &values { td.n { (or_dash(*value, number)) } }
                         (observed(&group.steps, &values))
                     }
@@ -66,12 +66,12 @@ fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
     }
 }
 
-/// The cells of the order and the limit.
+/// The cells of the observed order and the limit.
 fn observed(steps: &[f64], values: &[Option<f64>]) -> Markup {
     let known: Option<Vec<f64>> = values.iter().copied().collect();
-    let limit = known.ok_or_else(|| "not every run has it".to_owned());
+    let known = known.ok_or_else(|| "not available in every run".to_owned());
     html! {
-        @match limit.and_then(|values| order::extrapolated(steps, &values)) {
+        @match known.and_then(|values| order::extrapolated(steps, &values)) {
             Ok(limit) => {
                 td.n { (format_args!("{:.2}", limit.order)) }
                 td.n { (number(limit.value)) " ± " (number(limit.band)) }

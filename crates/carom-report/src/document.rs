@@ -1,11 +1,10 @@
-//! What the pages have in common: a document that needs nothing but itself, figures with numbers
-//! and captions, lists in a sentence.
+//! Elements that the pages share: the frame of a document, figures, links and lists.
 
 use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 
-use crate::text::Label;
+use crate::text::Prose;
 
-/// A page; `style` is added to the style of all pages.
+/// A self-contained page; `style` is added to the style sheet of all pages.
 pub(crate) fn document(title: &str, style: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
@@ -22,14 +21,14 @@ pub(crate) fn document(title: &str, style: &str, body: &Markup) -> String {
     page.into_string()
 }
 
-/// A figure with its number, its caption and links to its files.
+/// A numbered figure with its caption and links to its files.
 pub(crate) fn figure(number: usize, name: &str, endings: &[&str], caption: &str, svg: &str) -> Markup {
     let links = endings.iter().map(|ending| file(&format!("figures/{name}.{ending}")));
     html! {
         figure {
             (PreEscaped(svg))
             figcaption {
-                b { "Figure " (number) "." } " " (Label(caption)) " "
+                b { "Figure " (number) "." } " " (Prose(caption)) " "
                 span.small { "(" (joined(links, ", ")) ")" }
             }
         }
@@ -41,17 +40,22 @@ pub(crate) fn file(path: &str) -> Markup {
     html! { a href=(path) { (path) } }
 }
 
-/// Pieces with something between them.
-pub(crate) fn joined(pieces: impl IntoIterator<Item = impl Render>, between: impl Render) -> Markup {
+/// Items with a separator between them.
+pub(crate) fn joined(items: impl IntoIterator<Item = impl Render>, separator: impl Render) -> Markup {
     html! {
-        @for (i, piece) in pieces.into_iter().enumerate() {
-            @if i > 0 { (between) }
-            (piece)
+        @for (i, item) in items.into_iter().enumerate() {
+            @if i > 0 { (separator) }
+            (item)
         }
     }
 }
 
-/// What is known of a number, or a dash.
-pub(crate) fn or_dash(x: Option<f64>, written: impl Fn(f64) -> String) -> String {
-    x.map_or_else(|| "–".to_owned(), written)
+/// An expected value with minus signs in place of hyphens.
+pub(crate) fn minus(expected: &str) -> String {
+    expected.replace('-', "−")
+}
+
+/// A number in the given format, or a dash where there is none.
+pub(crate) fn or_dash(x: Option<f64>, format: impl Fn(f64) -> String) -> String {
+    x.map_or_else(|| "–".to_owned(), format)
 }

@@ -1,86 +1,83 @@
-//! What can be said for the numbers of a study: how each arm ended, the fingerprints by which a
-//! repetition is known to be one, and what was tried on one arm.
+//! Evidence that the numbers of a study can be reproduced: how each arm ended, hashes of its input
+//! and its record, and the arm that was recomputed.
 
 use carom_record::Status;
 use carom_record::study::Study;
 use maud::{Markup, html};
 
-use crate::collected::Origins;
-use crate::design::unmatched;
+use crate::collected::Origin;
+use crate::design::budgets;
 use crate::digits::three;
 use crate::document::or_dash;
+use crate::text::Prose;
 
-/// The beginning of a hash, which is enough to compare two by eye.
+const HASHES: &str = "Input hash: BLAKE3 of the case and the settings of the arm. Record hash: BLAKE3 of \
+    `history.csv` and `contact.csv`; a repetition with the same version on the same platform gives the same \
+    hash. Cycles and fallbacks are logged in `log.jsonl` of the arm.";
+
+/// The first digits of a hash, enough to compare two by eye.
 fn short(hash: &str) -> &str {
     hash.get(..12).unwrap_or(hash)
 }
 
-/// The section.
-pub(crate) fn section(study: &Study, origins: &Origins) -> Markup {
+/// The section of the page.
+pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
     html! {
         h2 { "Integrity" }
         table.metrics.ranking {
             thead {
                 tr {
-                    th { "Arm" }
-                    th { "Ended" }
-                    th.n { "Rejected steps" }
-                    th.n { "Cycles, fallbacks" }
-                    th.n { "Deepest penetration" }
-                    th { "Input" }
-                    th { "Record" }
+                    th { "Arm" } th { "Status" } th.n { "Rejected steps" } th.n { "Cycles and fallbacks" }
+                    th.n { "Max. penetration" } th { "Input hash" } th { "Record hash" }
                 }
             }
-            @for origin in &origins.arms {
+            @for origin in origins {
                 @let row = &study.rows[origin.arm];
                 tr {
                     td { (row.name) }
                     td { @if row.status == Some(Status::Finished) { "finished" } @else { "not finished" } }
-                    td.n { (origin.rejected) }
-                    td.n { (origin.told) }
+                    td.n { (origin.rejected) } td.n { (origin.fallbacks) }
                     td.n { (or_dash(row.value("penetration"), three)) }
-                    td { code { (short(&origin.input)) } }
-                    td { code { (short(&origin.record)) } }
+                    td { code { (short(&origin.input)) } } td { code { (short(&origin.record)) } }
                 }
             }
         }
-        p.small {
-            "Input: blake3 of the case and what the arm sets. Record: blake3 of " code { "history.csv" } " and "
-            code { "contact.csv" } "; a repetition with the same version on the same platform has the same. \
-             Events stand in each arm's " code { "log.jsonl" } "."
-        }
-        (tried(study))
-        @if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) { (unmatched(study)) }
+        p.small { (Prose(HASHES)) }
+        (recomputed(study))
+        @if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) { (budgets(study)) }
     }
 }
 
-/// Whether an arm, computed again, came to the same bits.
-fn tried(study: &Study) -> Markup {
+/// Whether an arm that was computed again gave the same bits.
+fn recomputed(study: &Study) -> Markup {
     let Some(checks) = &study.checks else {
         return html! {
-            p { "No arm of this study was computed again with more threads, or stopped and resumed." }
+            p {
+                "Bitwise reproducibility was not checked: no arm was computed again with more threads, or \
+                 stopped and resumed."
+            }
         };
     };
-    let word = |hash: &str| {
+    let result = |hash: &str| {
         html! {
             @if hash == checks.fingerprint {
-                b { "the same bits" }
+                b { "bitwise identical" } "."
             } @else {
-                b.miss { "other bits" } " (kept in " code { "checks/" } ")"
+                b.miss { "different" } " (kept in " code { "checks/" } ")."
             }
         }
     };
-    let active_pairs = match checks.active_pairs {
-        0 => "no pair active".to_owned(),
-        1 => "one pair active".to_owned(),
-        n => format!("{n} pairs active"),
+    let contact = match checks.active_pairs {
+        0 => "no active contact pair".to_owned(),
+        1 => "one active contact pair".to_owned(),
+        n => format!("{n} active contact pairs"),
     };
     html! {
         p {
-            "Tried on the arm with the fewest steps and iterations, " (checks.arm) ", record "
-            code { (short(&checks.fingerprint)) } ": with " (checks.threads.0) " threads " (word(&checks.threads.1))
-            "; stopped after step " (checks.resumed.0) ", with " (active_pairs) ", and resumed from its files "
-            (word(&checks.resumed.1)) "."
+            "Reproducibility was checked on the arm with the fewest steps and iterations, " (checks.arm)
+            " (record hash " code { (short(&checks.fingerprint)) } "). With " (checks.threads.0) " threads: "
+            (result(&checks.threads.1)) " Stopped after step " (checks.resumed.0) ", with " (contact)
+            ", and resumed from its files: " (result(&checks.resumed.1))
         }
     }
 }

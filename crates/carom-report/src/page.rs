@@ -1,4 +1,4 @@
-//! `report.html`: one page that needs nothing but itself, on screen and on paper.
+//! `report.html`: the report of a run as a single self-contained page, for screen and print.
 
 use std::collections::BTreeMap;
 
@@ -6,50 +6,57 @@ use carom_record::{FieldFormat, Run, Status, metrics};
 use maud::{Markup, Render, html};
 use serde_json::Value;
 
-use crate::document::{document, figure, file, joined, or_dash};
+use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::figures::Figure;
 use crate::labels::number;
-use crate::text::Label;
-use crate::work::work;
+use crate::text::{Label, Prose};
+use crate::timing::timing;
 
-/// Log events shown; all are counted.
+/// Number of log events listed; all of them are counted.
 const EVENTS: usize = 50;
+
+const HEADER: &str = "Data: `manifest.json` (version, input_hash, case, machine, threads, timings.total, \
+    started) and `history.csv` (rows and times). The input hash is the BLAKE3 hash of the case file and of \
+    the options given with it.";
+
+const RESULTS: &str = "All values are computed from `history.csv` alone: times from `time` and `active`, \
+    forces from `contact_force_…`, impulses from `contact_impulse_…`, energies from `dissipation`, `kinetic` \
+    and `strain`, and motion from `center_…` and `velocity_…` of the striker.";
 
 /// The page.
 pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, notes: &[String]) -> String {
     let title = run.manifest.case.get("title").and_then(Value::as_str).unwrap_or("Carom run");
     let figure = |(i, f): (usize, &Figure)| figure(i + 1, f.name, &["svg"], &f.caption, &f.svg);
-    let (case, others): (Vec<_>, Vec<_>) = figures.iter().enumerate().partition(|(_, f)| f.name == "setup");
+    let (setup, others): (Vec<_>, Vec<_>) = figures.iter().enumerate().partition(|(_, f)| f.name == "setup");
     let body = html! {
         (header(run))
         @for warning in &run.manifest.warnings { p { b.miss { "Warning:" } " " (warning) "." } }
         @for note in notes { p.small { (note) } }
-        @for f in case { (figure(f)) }
+        @for f in setup { (figure(f)) }
         @if let Some(animation) = animation { (animation) }
         (results(run))
         (expectations(run))
         h2 { "Figures" }
         @for f in others { (figure(f)) }
         (events(run))
-        (work(&run.manifest))
+        (timing(&run.manifest))
         (reproduce(run))
     };
     document(title, "", &body)
 }
 
 fn header(run: &Run) -> Markup {
-    let m = &run.manifest;
+    let (m, machine) = (&run.manifest, &run.manifest.machine);
     let (class, word) = match m.status {
-        Status::Running => ("running", "running, or killed: resumable"),
+        Status::Running => ("running", "running or interrupted; can be resumed"),
         Status::Finished => ("finished", "finished"),
-        Status::Stopped => ("stopped", "stopped: resumable"),
+        Status::Stopped => ("stopped", "stopped; can be resumed"),
         Status::Failed => ("failed", "failed"),
     };
     let (rows, last) = (run.times().len(), run.times().last().copied().unwrap_or(0.0));
     let wall: f64 = m.timings.get("total").copied().unwrap_or_else(|| m.timings.values().sum());
     let bodies = m.case.get("bodies").and_then(Value::as_array).into_iter().flatten();
     let bodies: Vec<&str> = bodies.filter_map(|b| b.get("name")?.as_str()).collect();
-    let machine = &m.machine;
     html! {
         p {
             span.status.(class) { (word) }
@@ -57,17 +64,19 @@ fn header(run: &Run) -> Markup {
         }
         table {
             @if !bodies.is_empty() { (row("Bodies", bodies.join(", "))) }
-            (row("Carom", &m.version))
+            (row("Carom version", &m.version))
             (row("Input hash", html! { code.hash { (m.input_hash) } }))
-            (row("Recorded", html! { (rows) " rows to t = " (number(last)) " " (Label(run.history.unit("time"))) }))
+            (row("Record", html! {
+                (rows) " rows, up to t = " (number(last)) " " (Label(run.history.unit("time")))
+            }))
             @if let Some(time) = integration(&m.case) { (row("Time integration", time)) }
-            (row("Machine", format_args!("{} cores, {} {}; threads: {}", machine.cpus, machine.os, machine.arch, m.threads)))
-            (row("Wall time", format_args!("{} s", number(wall))))
+            (row("Machine", html! {
+                (machine.cpus) " cores, " (machine.os) " " (machine.arch) "; threads: " (m.threads)
+            }))
+            (row("Wall time", html! { (number(wall)) " s" }))
             (row("Started", &m.started))
         }
-        p.small {
-            "From manifest.json: version, input_hash, case, machine, threads, timings.total, started. The hash is BLAKE3 of the case file and the options given with it. Rows and times: history.csv."
-        }
+        p.small { (Prose(HEADER)) }
     }
 }
 
@@ -75,7 +84,7 @@ fn row(name: &str, value: impl Render) -> Markup {
     html! { tr { th { (name) } td { (value) } } }
 }
 
-/// The scheme with its parameters, and the step.
+/// The scheme with its parameters, and the time step.
 fn integration(case: &Value) -> Option<String> {
     let part = |(k, v): (&String, &Value)| match v.as_str() {
         Some(text) if k == "kind" => text.to_string(),
@@ -91,26 +100,18 @@ fn results(run: &Run) -> Markup {
     html! {
         h2 { "Key results" }
         table {
-            thead { tr { th { "Metric" } th { "Value" } th { "Unit" } th { "Definition" } } }
+            thead { tr { th { "Metric" } th.n { "Value" } th { "Unit" } th { "Definition" } } }
             @for metric in metrics::all(&run.history) {
                 @if let Some(value) = metric.value {
                     tr {
-                        td { code { (metric.name) } }
-                        td.n { (number(value)) }
-                        td { (Label(&metric.unit)) }
+                        td { code { (metric.name) } } td.n { (number(value)) } td { (Label(&metric.unit)) }
                         td { (metric.definition) }
                     }
                 }
             }
         }
         @if let Some(body) = metrics::striker(&run.history) {
-            p.small {
-                "Striker: " (body) ". All values are computed from history.csv alone: times from "
-                code { "time" } " and " code { "active" } ", forces from " code { "contact_force_…" }
-                ", impulses from " code { "contact_impulse_…" } ", energies from " code { "dissipation" } ", "
-                code { "kinetic" } " and " code { "strain" } ", motion from " code { "center_…" } " and "
-                code { "velocity_…" } " of the striker."
-            }
+            p.small { "Striker: " (body) ". " (Prose(RESULTS)) }
         }
     }
 }
@@ -120,13 +121,12 @@ fn expectations(run: &Run) -> Markup {
         @if !run.manifest.expectations.is_empty() {
             h2 { "Expectations" }
             table {
-                thead { tr { th { "What" } th { "Expected" } th { "Got" } th {} th { "Source" } } }
+                thead { tr { th { "Quantity" } th { "Expected" } th.n { "Result" } th {} th { "Source" } } }
                 @for e in &run.manifest.expectations {
                     tr {
-                        td { code { (e.what) } }
-                        td { (e.expected.replace('-', "−")) }
+                        td { code { (e.what) } } td { (minus(&e.expected)) }
                         td.n { (or_dash(e.got, number)) }
-                        @if e.pass { td.pass { "holds" } } @else { td.miss { "missed" } }
+                        @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
                         td { @if let Some(source) = &e.source { (source) } }
                     }
                 }
@@ -141,30 +141,30 @@ fn events(run: &Run) -> Markup {
         *kinds.entry(&event.kind).or_default() += 1;
     }
     let counts: Vec<String> = kinds.iter().map(|(kind, n)| format!("{n} × {kind}")).collect();
-    let shown = run.log.len().min(EVENTS);
+    let (listed, all) = (run.log.len().min(EVENTS), run.log.len());
     html! {
         h2 { "Events" }
-        p.small { "log.jsonl, one event per line." }
         @if counts.is_empty() {
             p { "None." }
         } @else {
             p { (counts.join(", ")) "." }
             details {
-                summary { "The first " (shown) " of " (run.log.len()) }
+                summary { (listed) " of " (all) " events" }
                 table {
-                    thead { tr { th { "Step" } th { "Time" } th { "Kind" } th { "What happened" } } }
-                    @for e in &run.log[..shown] {
+                    thead { tr { th.n { "Step" } th.n { "Time" } th { "Kind" } th { "Message" } } }
+                    @for e in &run.log[..listed] {
                         tr { td.n { (e.step) } td.n { (number(e.time)) } td { (e.kind) } td { (e.message) } }
                     }
                 }
             }
         }
+        p.small { (Prose("Data: `log.jsonl`, one event per line.")) }
     }
 }
 
 fn reproduce(run: &Run) -> Markup {
     let source = &run.manifest.source;
-    // A quote inside single quotes of a shell ends them, is escaped, and begins them anew.
+    // Inside single quotes a shell has no escape: the quote is closed, written and opened again.
     let sets: String =
         source.sets.iter().map(|s| [" --set '", &s.replace('\'', r"'\''"), "'"].concat()).collect();
     let fields = match run.field_format {
@@ -174,10 +174,10 @@ fn reproduce(run: &Run) -> Markup {
     };
     let files = ["manifest.json", "history.csv", "contact.csv", "log.jsonl"].into_iter().chain(fields);
     html! {
-        h2 { "To reproduce" }
-        p { "Save the case as " code { "case.toml" } ", then with Carom " (run.manifest.version) ":" }
+        h2 { "How to reproduce" }
+        p { (Prose("Save the case file below as `case.toml` and run Carom ")) (run.manifest.version) ":" }
         pre { "carom run case.toml" (sets) }
-        details { summary { "The case file" } pre { (source.text) } }
-        p { "Beside this page: " (joined(files.map(file), ", ")) "." }
+        details { summary { "Case file" } pre { (source.text) } }
+        p { "Files beside this page: " (joined(files.map(file), ", ")) "." }
     }
 }

@@ -1,31 +1,32 @@
-//! `study.html`: arms, claims, metrics and overlays, in one page that needs nothing but itself.
+//! `study.html`: recommendation, arms, ranking, figures and metrics of a study as a single
+//! self-contained page.
 
 use carom_record::Status;
 use carom_record::study::{Row, Study, Verdict};
 use maud::{Markup, PreEscaped, Render, html};
 
-use crate::collected::Origins;
+use crate::collected::Origin;
 use crate::digits::five;
-use crate::document::{document, figure, file, joined, or_dash};
+use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::plot::{Plot, style};
-use crate::text::Label;
+use crate::text::{Label, Prose};
 use crate::{convergence, design, integrity, verdict};
 
-/// Arms in one table of metrics; more make more tables.
+/// Arms in one table of metrics; more arms need more tables.
 const ACROSS: usize = 8;
 
-/// Values of a key that are told one by one.
+/// Largest number of values of a key that are listed one by one.
 const FEW: usize = 4;
 
-/// More arms than these are folded away.
+/// Longer lists of arms are folded.
 const MANY: usize = 12;
 
 /// The page.
-pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins: &Origins) -> String {
+pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins: &[Origin]) -> String {
     let (class, word) = match study.manifest.status {
         Status::Finished => ("finished", "finished"),
-        Status::Running => ("running", "running, or killed: resumable"),
-        Status::Stopped | Status::Failed => ("stopped", "stopped: resumable"),
+        Status::Running => ("running", "running or interrupted; can be resumed"),
+        Status::Stopped | Status::Failed => ("stopped", "stopped; can be resumed"),
     };
     let body = html! {
         p { span.status.(class) { (word) } }
@@ -48,7 +49,7 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
     document(&study.manifest.title, "", &body)
 }
 
-/// The case drawn, what is made of what, and what the arms vary.
+/// The drawing of the case, the values that differ between arms, and the design.
 fn setup(study: &Study, picture: Option<&str>) -> Markup {
     let mut varied: Vec<(&str, Vec<&str>)> = Vec::new();
     let sets = study.manifest.arms.iter().filter(|a| !a.role.fine).flat_map(|a| &a.sets);
@@ -66,13 +67,14 @@ fn setup(study: &Study, picture: Option<&str>) -> Markup {
             figure {
                 (PreEscaped(svg))
                 figcaption {
-                    "The case " code { (study.manifest.source.case_path) } " as its first arm has it "
+                    "Initial configuration of the first arm, case "
+                    code { (study.manifest.source.case_path) } ". "
                     span.small { "(" (file("figures/setup.svg")) ")" }
                 }
             }
         }
         @if !varied.is_empty() {
-            p { "Varied, where an arm does not leave it as the case has it:" }
+            p { "Values that differ between arms; an arm that does not set one has that of the case:" }
             ul {
                 @for (key, values) in varied {
                     li {
@@ -86,20 +88,25 @@ fn setup(study: &Study, picture: Option<&str>) -> Markup {
     }
 }
 
-/// Pieces of input with something between them.
-fn codes(pieces: &[impl Render], between: impl Render) -> Markup {
-    joined(pieces.iter().map(|piece| html! { code { (piece) } }), between)
+/// Items set as code, with a separator between them.
+fn codes(items: &[impl Render], separator: impl Render) -> Markup {
+    joined(items.iter().map(|item| html! { code { (item) } }), separator)
 }
 
 fn arms(study: &Study) -> Markup {
     let m = &study.manifest;
     html! {
         h2 { "Arms" }
-        // A long list stands in the way of what was found.
+        // A long list would push the results down the page.
         details open[study.rows.len() <= MANY] {
-            summary { (study.rows.len()) " arms, and what each sets" }
+            summary { (study.rows.len()) " arms (variants of the case) and their settings" }
             table {
-                thead { tr { th {} th {} th { "Arm" } th { "Sets" } th.n { "Steps" } th {} } }
+                thead {
+                    tr {
+                        th.n { "No." } th { "Line" } th { "Arm" } th { "Settings" } th.n { "Steps" }
+                        th { "Status" }
+                    }
+                }
                 @for (i, (row, arm)) in study.rows.iter().zip(&m.arms).enumerate() {
                     tr {
                         td.n { (i + 1) }
@@ -128,7 +135,7 @@ fn ended(row: &Row) -> Markup {
         Some(Status::Finished) => ("pass", "finished"),
         Some(Status::Failed) => ("miss", "failed"),
         Some(Status::Running | Status::Stopped) => ("undecided", "not finished"),
-        None => ("undecided", "not begun"),
+        None => ("undecided", "not started"),
     };
     html! {
         td.(class) {
@@ -158,7 +165,7 @@ fn claims(verdicts: &[Verdict]) -> Markup {
         @if !verdicts.is_empty() {
             h2 { "Claims" }
             table {
-                thead { tr { th { "Claim" } th.n { "Left" } th.n { "Right" } th {} } }
+                thead { tr { th { "Claim" } th.n { "Left side" } th.n { "Right side" } th { "Result" } } }
                 @for v in verdicts {
                     tr {
                         td { (v.claim.text) br; code { (v.claim.compare) } }
@@ -176,18 +183,19 @@ fn expectations(study: &Study) -> Markup {
     let arms = study.rows.iter().flat_map(|row| row.expectations.iter().map(move |e| (row.name.as_str(), e)));
     let all: Vec<_> = arms.chain(study.expectations.iter().map(|e| ("", e))).collect();
     let met = all.iter().filter(|(_, e)| e.pass).count();
-    let across = side_by_side(study);
+    let table = by_arm(study);
     html! {
         @if !all.is_empty() {
             h2 { "Expectations" }
             p { (met) " of " (all.len()) " met." }
-            @if let Some(table) = &across { (table) }
-            details open[across.is_none()] {
-                summary { "One by one, with their sources" }
+            @if let Some(table) = &table { (table) }
+            details open[table.is_none()] {
+                summary { "All expectations with their sources" }
                 table {
                     thead {
                         tr {
-                            th { "What" } th { "Arm" } th { "Expected" } th.n { "Got" } th {} th { "Source" }
+                            th { "Quantity" } th { "Arm" } th { "Expected" } th.n { "Result" } th {}
+                            th { "Source" }
                         }
                     }
                     @for (arm, e) in all {
@@ -197,7 +205,7 @@ fn expectations(study: &Study) -> Markup {
                                 @if let Some(why) = &e.why { br; span.small { (why) } }
                             }
                             td { (arm) }
-                            td { (e.expected) }
+                            td { (minus(&e.expected)) }
                             td.n { (or_dash(e.got, five)) }
                             @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
                             td { @if let Some(source) = &e.source { (source) } }
@@ -209,39 +217,39 @@ fn expectations(study: &Study) -> Markup {
     }
 }
 
-/// Most columns that stand side by side.
+/// Largest number of columns of the table of expectations by arm.
 const COLUMNS: usize = 8;
 
-/// What is expected of several arms, a row per arm and a column per question: what it got over what
-/// was expected.
-fn side_by_side(study: &Study) -> Option<Markup> {
-    let mut questions: Vec<&str> = Vec::new();
+/// Expectations by arm, one row per arm and one column per quantity, result above expected value;
+/// nothing for fewer than three arms.
+fn by_arm(study: &Study) -> Option<Markup> {
+    let mut quantities: Vec<&str> = Vec::new();
     for e in study.rows.iter().flat_map(|row| &row.expectations) {
-        if !questions.contains(&e.what.as_str()) {
-            questions.push(&e.what);
+        if !quantities.contains(&e.what.as_str()) {
+            quantities.push(&e.what);
         }
     }
     let arms: Vec<_> = study.rows.iter().filter(|row| !row.expectations.is_empty()).collect();
-    if arms.len() < 3 || questions.is_empty() || questions.len() > COLUMNS {
+    if arms.len() < 3 || quantities.is_empty() || quantities.len() > COLUMNS {
         return None;
     }
-    let cell = |row: &Row, question: &str| {
-        let mine: Vec<_> = row.expectations.iter().filter(|e| e.what == question).collect();
+    let cell = |row: &Row, quantity: &str| {
+        let mine: Vec<_> = row.expectations.iter().filter(|e| e.what == quantity).collect();
         let class = if mine.iter().all(|e| e.pass) { "pass" } else { "miss" };
         let Some(first) = mine.first() else { return html! { td {} } };
         html! {
             td.n {
                 span.(class) { (or_dash(first.got, five)) }
                 br;
-                span.small { (joined(mine.iter().map(|e| &e.expected), ", ")) }
+                span.small { (joined(mine.iter().map(|e| minus(&e.expected)), ", ")) }
             }
         }
     };
     Some(html! {
         table.metrics {
-            thead { tr { th { "Arm" } @for question in &questions { th.n { code { (question) } } } } }
+            thead { tr { th { "Arm" } @for quantity in &quantities { th.n { code { (quantity) } } } } }
             @for row in arms {
-                tr { td { (row.name) } @for question in &questions { (cell(row, question)) } }
+                tr { td { (row.name) } @for quantity in &quantities { (cell(row, quantity)) } }
             }
         }
     })
@@ -262,16 +270,15 @@ fn metrics(study: &Study) -> Markup {
                 }
                 @for metric in &shown {
                     tr {
-                        td { code { (metric.name) } }
-                        td { (Label(&metric.unit)) }
+                        td { code { (metric.name) } } td { (Label(&metric.unit)) }
                         @for row in rows { td.n { (or_dash(row.value(&metric.name), five)) } }
                     }
                 }
             }
         }
         p.small {
-            "Columns are the numbers of the arms. Every value is computed from the arm's own directory alone; the same \
-             numbers with all digits are in " (file("study.csv")) " and " (file("study_tidy.csv")) "."
+            "Column headings are the numbers of the arms. Every value is computed from the directory of its \
+             arm alone. Data in full precision: " (file("study.csv")) ", " (file("study_tidy.csv")) "."
         }
         details {
             summary { "Definitions" }
@@ -282,18 +289,19 @@ fn metrics(study: &Study) -> Markup {
     }
 }
 
-/// An entry for a bibliography that names the program and the input.
+/// A bibliography entry with the version of the program and the hash of the input.
 fn bibtex(study: &Study) -> String {
     let m = &study.manifest;
     let (year, hash) = (m.created.get(..4).unwrap_or_default(), m.input_hash.get(..16).unwrap_or_default());
+    let title = "Carom: impact and contact by the positional finite element method";
     format!(
-        "@software{{carom,\n  title   = {{Carom: impact and contact by the positional finite element method}},\n  version = {{{}}},\n  year    = {{{year}}},\n  \
+        "@software{{carom,\n  title   = {{{title}}},\n  version = {{{}}},\n  year    = {{{year}}},\n  \
          note    = {{study \"{}\", input {hash}}}\n}}",
         m.version, m.title
     )
 }
 
-/// Files of a study directory, where it has them.
+/// Files that a study directory may contain.
 const FILES: [&str; 9] = [
     "study.json",
     "study.csv",
@@ -310,27 +318,28 @@ fn reproduce(study: &Study) -> Markup {
     let m = &study.manifest;
     let there = FILES.iter().filter(|name| study.directory.join(name).is_file());
     html! {
-        h2 { "To reproduce" }
+        h2 { "How to reproduce" }
         p {
-            "Save the study as " code { "study.toml" } " and the case as " code { (m.source.case_path) }
-            " beside it, then with Carom " (m.version) ":"
+            (Prose("Save the study file below as `study.toml` and the case file as "))
+            code { (m.source.case_path) } " relative to it, and run Carom " (m.version) ":"
         }
         pre { "carom study study.toml" }
         p.small {
-            "Input hash " code.hash { (m.input_hash) } "; made " (m.created) " on " (m.machine.cpus) " cores, "
-            (m.machine.os) " " (m.machine.arch) ". Results do not depend on the number of jobs; wall times do."
+            "Input hash " code.hash { (m.input_hash) } "; created " (m.created) " on " (m.machine.cpus)
+            " cores, " (m.machine.os) " " (m.machine.arch) ". Results do not depend on the number of jobs; \
+             wall times do."
         }
-        details { summary { "The study file" } pre { (m.source.study) } }
-        details { summary { "The case file" } pre { (m.source.case) } }
+        details { summary { "Study file" } pre { (m.source.study) } }
+        details { summary { "Case file" } pre { (m.source.case) } }
+        @for (path, text) in &m.source.others {
+            details { summary { "Case file " code { (path) } } pre { (text) } }
+        }
         p {
-            "The folder of this page is the record of the study, and enough to make the page again with "
-            code { "carom report" } ": put it into an archive whole. In it: " code { "arms/" }
+            (Prose("The folder of this page is the complete record of the study: archive it as a whole, and \
+                    `carom report` rebuilds the page from it. Files: `arms/`"))
             @for name in there { " · " (file(name)) }
         }
-        h2 { "To cite" }
+        h2 { "How to cite" }
         pre { (bibtex(study)) }
-        @for (path, text) in &m.source.others {
-            details { summary { "The case file " (path) } pre { (text) } }
-        }
     }
 }

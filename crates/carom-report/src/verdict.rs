@@ -1,5 +1,5 @@
-//! The verdict of a study and what stands behind it: ranking, what cannot be ranked on, orders by
-//! phase.
+//! The recommendation of a study and its basis: ranking, reference values, orders before and after
+//! the first contact.
 
 use carom_record::metrics::WORK;
 use carom_record::study::design::Goal;
@@ -12,166 +12,158 @@ use crate::digits::{five, three};
 use crate::document::{file, joined, or_dash};
 use crate::laboratory::methods;
 use crate::ranked;
-use crate::text::Label;
+use crate::text::{Label, Prose};
 
-/// Metrics whose error against the reference a user should know before taking a recommendation.
-const SIDE: [(&str, &str); 8] = [
+/// Metrics whose error a user should know before following a recommendation.
+const SIDE_EFFECTS: [(&str, &str); 8] = [
     ("energy_lost", "energy lost"),
-    ("dissipated_integrator", "dissipated by the integrator"),
-    ("dissipated_contact", "taken by contact"),
-    ("force_variation", "error of the force's variation"),
-    ("impulse_x", "error of the impulse along x"),
-    ("impulse_y", "error of the impulse along y"),
-    ("contact_duration", "error of the contact's duration"),
-    ("restitution", "error of restitution"),
+    ("dissipated_integrator", "energy dissipated by the integrator"),
+    ("dissipated_contact", "energy dissipated by contact"),
+    ("force_variation", "error of the total variation of the contact force"),
+    ("impulse_x", "error of the x impulse"),
+    ("impulse_y", "error of the y impulse"),
+    ("contact_duration", "error of the contact duration"),
+    ("restitution", "error of the restitution"),
 ];
 
-/// What the columns of the ranking hold.
-const COLUMNS: [&str; 9] = [
-    "Errors and energies are relative.",
-    "±: the uncertainty of the reference.",
-    "Energy drift: its largest change at any time.",
-    "Lost in an impact: over the one that changes the energy most.",
-    "By integrator: what it took by the end.",
-    "By contact: what it took by the end.",
-    "TV beyond: total variation of the contact force over the reference's, minus 1.",
-    "Peak: the stress averaged over a sixteenth of the contact.",
-    "Orders: of the errors against the reference at the two finest levels, before the first contact and after it.",
+/// What the columns of the ranking mean.
+const COLUMNS: [&str; 11] = [
+    "Errors are relative errors; energies are fractions of the largest kinetic + strain energy.",
+    "± in a heading: relative uncertainty of the reference value.",
+    "Delay: time by which the motion lags the reference; negative where it leads.",
+    "Energy drift: largest change of the energy at any time.",
+    "Lost in impact: energy lost over the impact that changes it most.",
+    "By integrator, by contact: energy dissipated until the end by the time integrator and by contact.",
+    "Excess variation: total variation of the contact force divided by that of the reference, minus 1.",
+    "High-frequency power: share of the power of the contact force above 16 cycles per contact.",
+    "Chatter: switches of contact nodes, on and off, per time in contact.",
+    "Peak: largest stress averaged over 1/16 of the contact.",
+    "Order: observed order of the errors at the two finest levels, before and after the first contact.",
 ];
 
-/// The box at the top; nothing for a study without a goal.
+/// The recommendation at the top of the page; nothing for a study without a goal.
 pub(crate) fn summary(study: &Study) -> Markup {
     let Some(ranking) = &study.ranking else { return Markup::default() };
-    let goal = format!("goal: {} ({}).", ranking.goal.word(), ranking.goal.meaning());
+    let goal = format!("Goal: {} ({}).", ranking.goal.word(), ranking.goal.meaning());
     let Some(verdict) = &ranking.verdict else {
         let why = match &ranking.measure {
             Err(why) => why.clone(),
-            Ok(measure) => format!("no arm has a value of: {}", measure.words),
+            Ok(measure) => format!("not available in any arm: {}", measure.words),
         };
         return html! {
             section.verdict.none {
                 h2 { "No recommendation" }
-                p { (goal) " Nothing can be ranked: " (Label(&why)) "." }
+                p { (Prose(&goal)) " The arms cannot be ranked: " (Label(&why)) "." }
             }
         };
     };
     let arm = &study.manifest.arms[verdict.arm];
     let sets: Vec<&String> =
         arm.sets.iter().filter(|set| !set.trim_start().starts_with("time.step")).collect();
-    let entry = |head: &str, lines: &[String]| {
-        html! {
-            dt { (head) }
-            @for line in lines { dd { (Label(line)) } }
-        }
-    };
+    let entry =
+        |head: &str, lines: &[String]| html! { dt { (head) } @for line in lines { dd { (Label(line)) } } };
     html! {
         section.verdict {
             h2 {
                 "Recommended: " (name(arm))
                 @if let Some(h) = step(arm, "time.step") { ", Δt = " (five(h)) }
             }
-            p { (goal) }
+            p { (Prose(&goal)) }
             dl {
                 @if !sets.is_empty() {
-                    dt { "In the case" }
+                    dt { "Settings" }
                     dd { (joined(sets.iter().map(|set| html! { code { (set) } }), html! { br; })) }
                 }
-                (entry("Why", &verdict.reasons))
-                @if !verdict.alike.is_empty() {
-                    (entry("Not told apart from it", &[verdict.alike.join(" · ")]))
-                }
-                (entry("What it costs", &[costs(study, verdict.arm)]))
-                (entry("What it distorts", &distorts(study, verdict.arm)))
+                (entry("Reasons", &verdict.reasons))
+                @if !verdict.alike.is_empty() { (entry("Tied with", &[verdict.alike.join(" · ")])) }
+                (entry("Cost", &[costs(study, verdict.arm)]))
+                (entry("Side effects", &side_effects(study, verdict.arm)))
                 (entry(&format!("Confidence: {}", verdict.confidence.word()), &verdict.confidence_reasons))
             }
         }
     }
 }
 
-/// The method of an arm, or its own name where there are no methods.
+/// The method of an arm, or the name of the arm where there are no methods.
 fn name(arm: &Arm) -> &str {
     arm.role.method.as_ref().unwrap_or(&arm.name)
 }
 
+/// Finished arms at the level of an arm, itself included.
+fn same_level(study: &Study, arm: usize) -> impl Iterator<Item = usize> {
+    let level = |arm: usize| study.manifest.arms[arm].role.level;
+    let arms = methods(study).into_iter().flat_map(|(_, arms)| arms);
+    arms.filter(move |i| level(*i) == level(arm))
+}
+
 fn costs(study: &Study, arm: usize) -> String {
     let cost = |i: usize| study.rows[i].value("cpu_time");
-    let level = study.manifest.arms[arm].role.level;
-    let same = methods(study)
-        .into_iter()
-        .flat_map(|(_, arms)| arms)
-        .filter(|i| study.manifest.arms[*i].role.level == level);
-    let least = same.filter_map(cost).fold(f64::INFINITY, f64::min);
-    let of = |name: &str| study.rows[arm].value(name).map_or("–".into(), three);
-    let against = cost(arm)
-        .filter(|c| least > 0.0 && c.is_finite())
-        .map_or_else(String::new, |c| format!(", {} times the least of its level", three(c / least)));
+    let least = same_level(study, arm).filter_map(cost).fold(f64::INFINITY, f64::min);
+    let of = |name: &str| or_dash(study.rows[arm].value(name), three);
+    let against = match cost(arm) {
+        Some(c) if c == least => " (the lowest of its level)".to_owned(),
+        Some(c) if least > 0.0 && c.is_finite() => {
+            format!(" ({} times the lowest of its level)", three(c / least))
+        }
+        _ => String::new(),
+    };
+    let (cpu, steps, newton) = (of("cpu_time"), of("steps"), of("newton_iterations"));
+    let (factorisations, rejected) = (of("factorisations"), of("rejected_steps"));
     format!(
-        "{} s of processor time{against}; {} steps, {} Newton iterations, {} factorisations, {} rejected steps",
-        of("cpu_time"),
-        of("steps"),
-        of("newton_iterations"),
-        of("factorisations"),
-        of("rejected_steps")
+        "{cpu} s of processor time{against}; {steps} steps, {newton} Newton iterations, {factorisations} \
+         factorisations, {rejected} rejected steps"
     )
 }
 
-/// Side effects that can be told, each with the least of its level.
-fn distorts(study: &Study, arm: usize) -> Vec<String> {
-    let level = study.manifest.arms[arm].role.level;
-    let same: Vec<usize> = methods(study)
-        .into_iter()
-        .flat_map(|(_, arms)| arms)
-        .filter(|i| study.manifest.arms[*i].role.level == level)
-        .collect();
+/// Known side effects of an arm, each with the smallest value of its level.
+fn side_effects(study: &Study, arm: usize) -> Vec<String> {
     let mut lines = Vec::new();
-    for (metric, words) in SIDE {
+    for (metric, words) in SIDE_EFFECTS {
         let Standing::Established { value: right, .. } = standing(study.reference.as_ref(), metric) else {
             continue;
         };
-        // An error that is relative to nothing says nothing.
+        // A relative error needs a nonzero reference; energies are fractions already.
         if right == 0.0 && !metric.starts_with("energy") && !metric.starts_with("dissipated") {
             continue;
         }
         let of = |i: usize| study.rows[i].value(metric).map(|v| error(v, right));
         let Some(mine) = study.rows[arm].value(metric) else { continue };
-        let least = same.iter().filter_map(|i| of(*i)).fold(f64::INFINITY, f64::min);
+        let least = same_level(study, arm).filter_map(of).fold(f64::INFINITY, f64::min);
         let shown = if right == 0.0 { mine } else { error(mine, right) };
-        lines.push(format!("{words}: {} (least of its level {})", three(shown), three(least)));
+        lines.push(format!("{words}: {} (smallest of its level: {})", three(shown), three(least)));
     }
     if let Some((column, late)) =
         study.compared.get(arm).and_then(Option::as_ref).and_then(|c| c.late.clone())
     {
-        lines.push(format!(
-            "{column} is {} by {}",
-            if late < 0.0 { "early" } else { "late" },
-            three(late.abs())
-        ));
+        let direction = if late < 0.0 { "leads" } else { "lags" };
+        lines.push(format!("{column} {direction} the reference by {}", three(late.abs())));
     }
     lines
 }
 
-/// Ranking and what cannot be ranked on.
+/// The ranking and the reference behind it.
 pub(crate) fn rankings(study: &Study) -> Markup {
     let Some(ranking) = &study.ranking else { return Markup::default() };
     html! {
         h2 { "Ranking" }
         @if let Ok(measure) = &ranking.measure {
-            p { "By " (Label(&measure.words)) "; uncertainty of the errors " (three(measure.uncertainty)) "." }
+            @let uncertainty = three(measure.uncertainty);
+            p { "Ranked by " (Label(&measure.words)) " (uncertainty of the errors: " (uncertainty) ")." }
             (ranked_table(study, ranking))
         }
         (other_goals(study))
         @match &study.reference {
+            Some(reference) => (reference_values(study, reference)),
             None => p {
-                "The study has no finished reference: only what has a right value by itself, such as energy, \
-                 can be ranked."
+                "The study has no finished reference: only quantities whose exact value is known, such as \
+                 the energy, can be ranked."
             },
-            Some(reference) => (established(study, reference)),
         }
     }
 }
 
 /// What the reference establishes, and what it does not.
-fn established(study: &Study, reference: &Reference) -> Markup {
+fn reference_values(study: &Study, reference: &Reference) -> Markup {
     let (mut not, mut yes) = (Vec::new(), Vec::new());
     for metric in study.metrics().into_iter().filter(|m| !WORK.iter().any(|(d, _)| d.name == m.name)) {
         match standing(Some(reference), &metric.name) {
@@ -186,33 +178,34 @@ fn established(study: &Study, reference: &Reference) -> Markup {
     html! {
         p { "Reference: " (reference.what) "." }
         details {
-            summary { "What it establishes, with its uncertainty" }
+            summary { "Reference values and their uncertainties" }
             table {
-                thead { tr { th { "Metric" } th { "Unit" } th.n { "Value" } th.n { "±" } } }
+                thead { tr { th { "Metric" } th { "Unit" } th.n { "Value" } th.n { "Uncertainty" } } }
                 @for (metric, value, uncertainty) in yes {
                     tr {
-                        td { code { (metric.name) } }
-                        td { (Label(&metric.unit)) }
-                        td.n { (three(value)) }
-                        td.n { (three(uncertainty)) }
+                        td { code { (metric.name) } } td { (Label(&metric.unit)) }
+                        td.n { (three(value)) } td.n { (three(uncertainty)) }
                     }
                 }
             }
         }
         details open {
-            summary { "Not established by a refinement: never ranked on" }
-            table { @for (name, why) in not { tr { td { code { (name) } } td { (why) } } } }
+            summary { "Quantities without an established reference value (not used for ranking)" }
+            table {
+                thead { tr { th { "Quantity" } th { "Reason" } } }
+                @for (name, why) in not { tr { td { code { (name) } } td { (why) } } }
+            }
         }
     }
 }
 
-/// What would be recommended by the other goals.
+/// What is recommended for the other goals.
 fn other_goals(study: &Study) -> Markup {
     html! {
-        h3 { "By other goals" }
+        h3 { "Recommendations for the other goals" }
         table {
             thead {
-                tr { th { "Goal" } th { "Recommended" } th.n { "Δt" } th { "Confidence" } th { "By" } }
+                tr { th { "Goal" } th { "Recommended" } th.n { "Δt" } th { "Confidence" } th { "Ranked by" } }
             }
             @for ranking in &study.other_rankings {
                 tr {
@@ -223,16 +216,15 @@ fn other_goals(study: &Study) -> Markup {
                             td {
                                 (name(arm))
                                 @if !verdict.alike.is_empty() {
-                                    br; span.small { "not told apart: " (verdict.alike.join(" · ")) }
+                                    br; span.small { "tied with " (verdict.alike.join(" · ")) }
                                 }
                             }
                             td.n { (or_dash(step(arm, "time.step"), five)) }
-                            td { (verdict.confidence.word()) }
-                            td { (Label(&measure.words)) }
+                            td { (verdict.confidence.word()) } td { (Label(&measure.words)) }
                         }
-                        (_, Err(why)) => td colspan="4" { "nothing can be ranked: " span.small { (why) } },
+                        (_, Err(why)) => td colspan="4" { "no ranking: " span.small { (why) } },
                         (None, Ok(measure)) => td colspan="4" {
-                            "no arm has a value of: " span.small { (Label(&measure.words)) }
+                            "not available in any arm: " span.small { (Label(&measure.words)) }
                         },
                     }
                 }
@@ -245,22 +237,19 @@ fn ranked_table(study: &Study, ranking: &Ranking) -> Markup {
     let placed = |arm: &usize| ranking.levels.iter().flatten().any(|r| r.arm == *arm);
     let without = methods(study).into_iter().flat_map(|(_, arms)| arms).filter(|arm| !placed(arm));
     let without: Vec<&str> = without.map(|arm| study.rows[arm].name.as_str()).collect();
-    let why =
-        if ranking.goal == Goal::Cost { "not accurate enough" } else { "without a value of the measure" };
+    let why = if ranking.goal == Goal::Cost { "not accurate enough" } else { "no value of the metric" };
     html! {
         (ranked::tables(study, ranking))
-        @if !without.is_empty() {
-            p.small { "In no place, because " (why) ": " (without.join("; ")) "." }
-        }
+        @if !without.is_empty() { p.small { "Not ranked (" (why) "): " (without.join("; ")) "." } }
         p.small {
-            "Arms that share a place are not told apart: their errors differ by no more than the uncertainty \
-             of the reference, or 5 %."
+            "Arms share a place where their errors differ by no more than the uncertainty of the reference, \
+             or by 5 %."
             @if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) {
-                " An exclamation mark: off the budget by more than 10 %."
+                " An exclamation mark means more than 10 % off the budget."
             }
         }
         ul.small { @for line in COLUMNS { li { (line) } } }
-        p.small { "All digits are in " (file("ranking.csv")) " and " (file("reference.csv")) "." }
+        p.small { "Data in full precision: " (file("ranking.csv")) ", " (file("reference.csv")) "." }
     }
 }
 
@@ -276,23 +265,20 @@ pub(crate) fn phases(study: &Study) -> Markup {
     };
     html! {
         @if !study.phase_orders.is_empty() {
-            h2 { "Order before and after the first contact" }
+            h2 { "Order of convergence before and after the first contact" }
             table {
-                thead {
-                    tr { th { "Method" } th { "Column" } th { "Before the first contact" } th { "After it" } }
-                }
+                thead { tr { th { "Method" } th { "Column" } th { "Before" } th { "After" } } }
                 @for o in &study.phase_orders {
                     tr {
-                        td { (o.method) }
-                        td { code { (o.column) } }
-                        td { (cell(&o.smooth)) }
-                        td { (cell(&o.across)) }
+                        td { (o.method) } td { code { (o.column) } }
+                        td { (cell(&o.smooth)) } td { (cell(&o.across)) }
                     }
                 }
             }
             p.small {
-                "From the errors against the reference at the two finest levels, root mean square over the rows \
-                 before the reference's first contact, and over those after its end."
+                "Orders of the root mean square errors against the reference, from the two finest levels. \
+                 Before: rows before the first contact of the reference. After: rows after the end of this \
+                 contact."
             }
         }
     }

@@ -1,5 +1,5 @@
-//! `verify.html`: what was verified, family by family, in one page that needs nothing but itself;
-//! and the same as Markdown.
+//! `verify.html`: the results of a verification by family, as a single self-contained page; the
+//! same tables in Markdown.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 use carom_record::verification::{Row, SetUp, Verification};
 use maud::{Markup, html};
 
-use crate::document::{document, file, or_dash};
+use crate::document::{document, file, minus, or_dash};
 use crate::labels::number;
-use crate::publish::ReportError;
+use crate::publish::{ReportError, write};
 
 /// Writes `verify.html` into the directory of a verification, from `verify.json` alone.
 ///
 /// # Errors
-/// What cannot be read or written.
+/// A file cannot be read or written.
 pub fn verify(directory: &Path) -> Result<PathBuf, ReportError> {
     let verification = Verification::read(directory)?;
     write(directory.join("verify.html"), &page(&verification, directory))
@@ -23,7 +23,7 @@ pub fn verify(directory: &Path) -> Result<PathBuf, ReportError> {
 /// Writes one Markdown table per family, `FAMILY.md`.
 ///
 /// # Errors
-/// What cannot be read or written.
+/// A file cannot be read or written.
 pub fn verify_markdown(directory: &Path, out: &Path) -> Result<Vec<PathBuf>, ReportError> {
     let verification = Verification::read(directory)?;
     std::fs::create_dir_all(out).map_err(|source| ReportError::Write { path: out.to_owned(), source })?;
@@ -31,23 +31,16 @@ pub fn verify_markdown(directory: &Path, out: &Path) -> Result<Vec<PathBuf>, Rep
     verification.families().iter().map(one).collect()
 }
 
-fn write(path: PathBuf, text: &str) -> Result<PathBuf, ReportError> {
-    match std::fs::write(&path, text) {
-        Ok(()) => Ok(path),
-        Err(source) => Err(ReportError::Write { path, source }),
-    }
-}
-
 fn page(v: &Verification, directory: &Path) -> String {
-    let title = format!("Carom {}, verified", v.version);
+    let title = format!("Verification of Carom {}", v.version);
     let body = html! {
         (summary(v))
         h2 { "Families" }
         table {
             thead {
                 tr {
-                    th { "Family" }
-                    @for head in ["Set-ups", "with contact", "Values", "Missed", "Seconds"] { th.n { (head) } }
+                    th { "Family" } th.n { "Set-ups" } th.n { "With contact" } th.n { "Values" }
+                    th.n { "Missed" } th.n { "Time (s)" }
                 }
             }
             @for name in v.families() { (family(v, name)) }
@@ -58,8 +51,7 @@ fn page(v: &Verification, directory: &Path) -> String {
                 thead {
                     tr {
                         th { "Arm" } th { "Quantity" } th { "Expected" }
-                        @for head in ["Got", "Error", "Tolerance"] { th.n { (head) } }
-                        th {} th { "Source" }
+                        th.n { "Result" } th.n { "Error" } th.n { "Tolerance" } th {} th { "Source" }
                     }
                 }
                 @for set_up in v.set_ups.iter().filter(|s| s.family == name) {
@@ -83,16 +75,16 @@ fn summary(v: &Verification) -> Markup {
         }
     };
     let lines = [
-        ("Set-ups", format!("{} (a study with all its arms counts once)", v.set_ups.len())),
-        ("with dynamic contact", v.with_contact().to_string()),
+        ("Set-ups", format!("{} (a study counts as one)", v.set_ups.len())),
+        ("With dynamic contact", v.with_contact().to_string()),
         ("Simulations", v.set_ups.iter().map(|s| s.runs).sum::<usize>().to_string()),
         ("Expected values", rows.to_string()),
-        ("missed", missed.to_string()),
-        ("Runs that stopped unexpectedly", stopped.to_string()),
-        ("Wall time", format!("{} s, {} runs at a time", number(v.wall), v.jobs)),
+        ("Missed", missed.to_string()),
+        ("Unexpected stops", stopped.to_string()),
+        ("Wall time", format!("{} s, {} concurrent runs", number(v.wall), v.jobs)),
         ("Machine", format!("{} cores, {}, {}", v.machine.cpus, v.machine.os, v.machine.arch)),
         ("Date", v.started.clone()),
-        ("Selection", if v.fast { "without what is marked slow (--fast)" } else { "all" }.to_owned()),
+        ("Selection", if v.fast { "all but those marked slow (--fast)" } else { "all" }.to_owned()),
     ];
     html! {
         p { span.status.(class) { (word) } }
@@ -100,7 +92,7 @@ fn summary(v: &Verification) -> Markup {
     }
 }
 
-/// A family's row in the table of all.
+/// The row of a family in the table of families.
 fn family(v: &Verification, name: &str) -> Markup {
     let mine: Vec<&SetUp> = v.set_ups.iter().filter(|s| s.family == name).collect();
     let rows: Vec<&Row> = mine.iter().flat_map(|s| &s.rows).collect();
@@ -108,18 +100,18 @@ fn family(v: &Verification, name: &str) -> Markup {
     html! {
         tr {
             td { a href={ "#" (name) } { (name) } }
-            td.n { (mine.len()) }
-            td.n { (mine.iter().filter(|s| s.contact).count()) }
-            td.n { (rows.len()) }
+            td.n { (mine.len()) } td.n { (mine.iter().filter(|s| s.contact).count()) } td.n { (rows.len()) }
             td.n.(if missed == 0 { "pass" } else { "miss" }) { (missed) }
             td.n { (number(mine.iter().map(|s| s.wall).sum())) }
         }
     }
 }
 
+/// The row above the results of a set-up: title, link, time and hash.
 fn head(set_up: &SetUp, directory: &Path) -> Markup {
     let pages = ["report.html", "study.html", "manifest.json", "study.json"];
     let page = pages.into_iter().find(|page| directory.join(&set_up.directory).join(page).is_file());
+    let hash: String = set_up.input_hash.chars().take(10).collect();
     html! {
         tr.set-up {
             td colspan="8" {
@@ -129,7 +121,7 @@ fn head(set_up: &SetUp, directory: &Path) -> Markup {
                     @if set_up.runs != 1 { ", " (set_up.runs) " runs" }
                     @if set_up.contact { ", contact" }
                     ", " (number(set_up.wall)) " s, "
-                    code.hash title=(set_up.input_hash) { (set_up.input_hash.chars().take(10).collect::<String>()) }
+                    code.hash title=(set_up.input_hash) { (hash) }
                 }
                 @for why in &set_up.stopped { br; "stopped: " (why) }
             }
@@ -146,9 +138,8 @@ fn row(row: &Row) -> Markup {
                 a href={ (row.directory) "/" } { code { (verdict.what) } }
                 @if let Some(why) = &verdict.why { br; span.small { (why) } }
             }
-            td { (verdict.expected) }
-            td.n { (or_dash(verdict.got, number)) }
-            td.n { (or_dash(row.error(), number)) }
+            td { (minus(&verdict.expected)) }
+            td.n { (or_dash(verdict.got, number)) } td.n { (or_dash(row.error(), number)) }
             td.n { (or_dash(verdict.tolerance, number)) }
             @if verdict.pass { td.pass { "met" } } @else { td.miss { "missed" } }
             td.source { @if let Some(source) = &verdict.source { (source) } }
@@ -158,18 +149,21 @@ fn row(row: &Row) -> Markup {
 
 fn foot(v: &Verification) -> Markup {
     html! {
-        h2 { "To reproduce" }
-        p { "With Carom " (v.version) ", in a folder with the cases:" }
+        h2 { "How to reproduce" }
+        p { "Run Carom " (v.version) " in a folder with the cases:" }
         pre { "carom verify" @if v.fast { " --fast" } }
         p.small {
-            "Error: got − expected; for a bound, how far beyond it. Expected values are written in the case files, \
-             with their sources. Every value is computed from the run directory its row links to; the hash after a \
-             title is BLAKE3 of the files and options that were run. All digits are in " (file("verify.csv")) ". \
-             Results do not depend on the number of runs at a time; wall times do."
+            "Error: result − expected value; for a bound, the amount beyond it. The expected values and \
+             their sources are given in the case files. Every value is computed from the run directory that \
+             its row links to. The hash after a title is the BLAKE3 hash of the files and options of its \
+             runs. Results do not depend on the number of concurrent runs; wall times do. Data in full \
+             precision: "
+            (file("verify.csv")) "."
         }
         p.small {
-            "To cite: Carom " (v.version) ", verification of " (v.started.split('T').next().unwrap_or_default()) " ("
-            (v.set_ups.len()) " set-ups, " (v.rows().count()) " expected values, " (v.missed()) " missed)."
+            "Cite as: Carom " (v.version) ", verification of "
+            (v.started.split('T').next().unwrap_or_default()) " (" (v.set_ups.len()) " set-ups, "
+            (v.rows().count()) " expected values, " (v.missed()) " missed)."
         }
     }
 }
@@ -177,7 +171,8 @@ fn foot(v: &Verification) -> Markup {
 fn markdown(v: &Verification, family: &str) -> String {
     let cell = |text: &str| text.replace('|', "\\|").replace('\n', " ");
     let mut out = String::from(
-        "| case | quantity | expected | got | error | source | |\n| --- | --- | --- | ---: | ---: | --- | --- |\n",
+        "| case | quantity | expected | result | error | source | |\n\
+         | --- | --- | --- | ---: | ---: | --- | --- |\n",
     );
     for (set_up, row) in v.rows().filter(|(s, _)| s.family == family) {
         let verdict = &row.verdict;
