@@ -11,7 +11,7 @@
   const frames = data.frames, colors = data.bands.colors, width = (data.bands.high - data.bands.low) / colors.length;
   const band = s => Math.min(colors.length - 1, Math.max(0, Math.floor((s - data.bands.low) / width)));
 
-  // Cells, and of every degree the shape functions at the points of a subdivision.
+  // Cells, and the shape functions of each degree at the points of a subdivision.
   const numbers = new Uint32Array(bytes(data.cells));
   const cells = [], edges = new Map();
   let next = 0;
@@ -43,7 +43,7 @@
     return { points, triangles };
   });
 
-  // Picture: room for arrows around the box.
+  // The picture leaves a margin for arrows around the bodies.
   const aspect = (high - low) / (right - left);
   const W = data.flat || aspect < 0.5 ? 900 : Math.min(380, Math.max(220, 440 / aspect)), pad = 18;
   root.classList.toggle("wide", W > 400);
@@ -138,7 +138,7 @@
     for (let i = 0; i < f.length; i += 4) arrow(px(f[i]), py(f[i + 1]), f[i + 2], f[i + 3]);
   };
 
-  // Cursors in every time history of the page.
+  // A cursor in every time history of the page.
   const axes = [...document.querySelectorAll("svg g.time")].map(axis => {
     const [x0, x1, t0, t1, top, bottom] = axis.dataset.axis.split(" ").map(Number);
     const line = document.createElementNS("http://www.w3.org/2000/svg", "path");
@@ -175,7 +175,7 @@
     if (now >= end) now = start;
     button.textContent = "❚❚";
     let last = performance.now();
-    // The whole run in eight seconds at speed 1.
+    // At speed 1 the whole run takes eight seconds.
     const tick = at => {
       playing = requestAnimationFrame(tick);
       show(now + (at - last) / 8000 * (end - start) * speed.value);
@@ -194,7 +194,7 @@
     if (event.key === " " && event.target !== button) { playing === null ? play() : pause(); event.preventDefault(); }
   });
   root.hidden = false;
-  // The frame with the largest force says most.
+  // Start at the frame with the largest contact force.
   const force = f => f.forces.reduce((s, v, i) => i % 4 > 1 ? s + Math.abs(v) : s, 0);
   show(frames.reduce((a, b) => force(b) > force(a) ? b : a).time);
 })();

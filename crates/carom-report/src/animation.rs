@@ -1,16 +1,16 @@
-//! The motion, to be played offline: deformed bodies with the stress in colour and contact forces
-//! as arrows, frame by frame beside the time histories.
+//! Animation of a run: deformed bodies coloured by stress, contact forces as arrows, and time
+//! histories with a cursor.
 //!
-//! Frames are the field files and nothing between them. Positions and stresses travel as 16-bit
-//! integers over their range (a 65 000th of the picture's width), the mesh once; `animation.js`
-//! draws them with the colours of the figure `bodies`.
+//! The frames are the field files; nothing is interpolated. Positions and stresses are stored as
+//! 16-bit integers over their range (a 65 000th of the width of the picture), the mesh only once;
+//! `animation.js` draws them with the colours of the figure `bodies`.
 
 use std::collections::HashMap;
-use std::fmt::Write as _;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use carom_record::{Block, Cell, FieldEntry, FieldSet, Run};
+use maud::{Markup, PreEscaped, html};
 use serde_json::json;
 
 use crate::bands::{Bands, color_bands};
@@ -19,15 +19,16 @@ use crate::chart::{Chart, Options, Panel, Series, Track, open};
 use crate::labels::{number, symbol, with_unit};
 use crate::palette::LINES;
 use crate::pen::Point;
-use crate::text::html;
+use crate::text::{Label, Prose};
 
-/// Bytes of positions and stresses in the page, at most; beyond, field files are left out evenly.
+/// Largest number of bytes of positions and stresses in the page; field files are skipped evenly to
+/// stay below.
 const BUDGET: usize = 2_400_000;
 const FRAMES: usize = 300;
-/// Kinds of events drawn, the most frequent last.
+/// Largest number of kinds of events drawn; the rarest come first.
 const KINDS: usize = 6;
 
-/// One frame's instant, and the bodies of dimension 1 as strips.
+/// The bodies in one frame; bars are drawn as strips.
 pub(crate) fn instant(fields: &FieldSet, time: String) -> Option<Instant> {
     if fields.blocks.iter().all(|b| b.cell == Cell::Curve) {
         strip(fields, time)
@@ -36,7 +37,7 @@ pub(crate) fn instant(fields: &FieldSet, time: String) -> Option<Instant> {
     }
 }
 
-/// Bars as strips of triangles around the x axis, coloured by σ_xx.
+/// Bars as strips of triangles around the x axis, with σ_xx.
 fn strip(fields: &FieldSet, time: String) -> Option<Instant> {
     let stress = fields.array("stress").filter(|a| a.components == 6)?;
     let u = fields.array("displacement").filter(|a| a.components == 3)?;
@@ -64,7 +65,8 @@ fn strip(fields: &FieldSet, time: String) -> Option<Instant> {
     .filter(|i| !i.cells.is_empty())
 }
 
-/// Integers over a range; what is not finite becomes the smallest one.
+/// Values as 16-bit integers over a range, in base 64; the smallest integer stands for a value that
+/// is not finite.
 fn packed<'a>(values: impl Iterator<Item = &'a f64>, (low, high): (f64, f64)) -> String {
     let scale = if high > low { 65534.0 / (high - low) } else { 0.0 };
     let integer =
@@ -72,7 +74,7 @@ fn packed<'a>(values: impl Iterator<Item = &'a f64>, (low, high): (f64, f64)) ->
     STANDARD.encode(values.flat_map(|x| integer(x).to_le_bytes()).collect::<Vec<u8>>())
 }
 
-/// Forces −λn on secondary nodes by step: x, y, fx, fy.
+/// Contact forces −λn on the secondary nodes by step: x, y, fx, fy.
 fn forces(run: &Run) -> HashMap<u64, Vec<[f64; 4]>> {
     let mut found: HashMap<u64, Vec<[f64; 4]>> = HashMap::new();
     for row in &run.contact {
@@ -84,7 +86,7 @@ fn forces(run: &Run) -> HashMap<u64, Vec<[f64; 4]>> {
     found
 }
 
-/// Kinds of events with their times, the rarest first.
+/// Times of the events of each kind, the rarest kind first.
 pub(crate) fn tracks(run: &Run) -> Vec<Track> {
     let mut tracks: Vec<Track> = Vec::new();
     for event in &run.log {
@@ -98,7 +100,7 @@ pub(crate) fn tracks(run: &Run) -> Vec<Track> {
     tracks
 }
 
-/// Histories beside the picture: contact force, then the probes.
+/// Time histories beside the picture: contact force, then the probes.
 fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     let h = &run.history;
     let series = |name: &str, label: String, k: usize| {
@@ -137,11 +139,11 @@ fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
         }
     }
     let x_label = with_unit("time t", h.unit("time"));
-    let chart = Chart { title: "Histories beside the animation", x_label, shades, panels };
+    let chart = Chart { title: "Time histories beside the animation", x_label, shades, panels };
     chart.draw(&Options { width: 470.0, tracks: &tracks(run), time: true })
 }
 
-/// Rigid planes: a point and the direction out of the solid.
+/// Rigid planes: a point and the normal out of the rigid body.
 fn planes(run: &Run, flat: bool) -> Vec<[Point; 2]> {
     let contacts = run.manifest.case.get("contacts").and_then(|c| c.as_array()).into_iter().flatten();
     let vector = |v: &serde_json::Value, key: &str| {
@@ -154,7 +156,7 @@ fn planes(run: &Run, flat: bool) -> Vec<[Point; 2]> {
     contacts.filter_map(plane).map(|[p, n]| if flat { [[p[0], 0.0], [n[0], 0.0]] } else { [p, n] }).collect()
 }
 
-/// Field files that become frames.
+/// Field files that are used as frames.
 fn chosen(run: &Run, points: usize) -> Vec<&FieldEntry> {
     let most = (BUDGET / (8 * points.max(1))).clamp(2, FRAMES);
     let stride = run.fields.len().div_ceil(most).max(1);
@@ -162,9 +164,8 @@ fn chosen(run: &Run, points: usize) -> Vec<&FieldEntry> {
     run.fields.iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last).map(|(_, e)| e).collect()
 }
 
-/// The animation as a part of the page, hidden until its script runs; nothing for fewer than two
-/// field files.
-pub(crate) fn html_of(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<String> {
+/// The section of the page, hidden until its script runs; nothing for fewer than two field files.
+pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure: usize) -> Option<Markup> {
     let first = run.field(run.fields.first()?).ok()?;
     let flat = first.blocks.iter().all(|b| b.cell == Cell::Curve);
     let entries = chosen(run, if flat { 2 * first.points.len() } else { first.points.len() });
@@ -199,54 +200,59 @@ pub(crate) fn html_of(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         "points": frames[0].1.points.len(), "frames": frames.iter().map(frame_of).collect::<Vec<_>>(),
         "degrees": cells.iter().map(|(d, _)| d.to_string()).collect::<String>(),
         "cells": STANDARD.encode(numbers),
-        "x": packed(coordinates(0), (x0, x1)), "y": packed(coordinates(1), (y0, y1)), "s": packed(values.iter(), range),
+        "x": packed(coordinates(0), (x0, x1)), "y": packed(coordinates(1), (y0, y1)),
+        "s": packed(values.iter(), range),
         "bands": { "low": bands.low, "high": bands.high,
                    "colors": (0..bands.count).map(|b| bands.color(b)).collect::<Vec<_>>() },
         "largest": largest, "planes": planes, "flat": flat,
     });
     let unit = first.array("stress").map_or("", |a| a.unit.as_str());
     let label = if flat { "σ_{xx}" } else { "σ_{yy}" };
-    let mut bar = open("Colours of the animation", 92.0, 330.0);
+    let mut bar = open("Colour bar of the animation", 92.0, 330.0);
     color_bar(&mut bar, bands, cut, 8.0, (8.0, 312.0), (label, unit));
     bar.push_str("</svg>\n");
-    let force_unit = run.history.unit("contact_force_x");
-    let arrows = if largest > 0.0 {
-        format!(
-            " Arrows: contact forces −λn on the secondary nodes (contact.csv), the longest {} {}.",
-            number(largest),
-            html(force_unit)
-        )
-    } else {
-        String::new()
-    };
     let every = if entries.len() < run.fields.len() {
-        format!("{} of the {} instants on record", entries.len(), run.fields.len())
+        format!("{} of the {} recorded instants", entries.len(), run.fields.len())
     } else {
-        format!("all {} instants on record", entries.len())
+        format!("all {} recorded instants", entries.len())
     };
-    let mut out = String::new();
-    let _ = write!(
-        out,
-        "<figure class=\"animation\" id=\"animation\" hidden>\n<div class=\"stage\"><canvas></canvas><div>{bar}</div><div>{}</div></div>\n\
-         <div class=\"controls\"><button type=\"button\" aria-label=\"play or pause\">▶</button>\
-         <input type=\"range\" min=\"0\" max=\"1\" step=\"any\" aria-label=\"time\"><output></output>\
-         <label>speed <select><option value=\"0.1\">0.1</option><option value=\"0.25\">0.25</option><option value=\"0.5\">0.5</option>\
-         <option value=\"1\" selected>1</option><option value=\"2\">2</option><option value=\"4\">4</option></select></label></div>\n\
-         <figcaption><b>Animation.</b> {}; frames are {every}, nothing in between is made up.{arrows} \
-         Space plays, ← and → go by one frame, a click into any time history goes there. Ticks under the histories: events of \
-         log.jsonl.</figcaption>\n</figure>\n",
-        histories(run, shades),
-        if flat {
-            format!("{} in colour", html(label))
-        } else {
-            format!("{} in the colours of figure {figure}", html(label))
-        },
-    );
-    // Inside a script element only `<` could end it.
+    // Only `<` could end the script element.
     let data = data.to_string().replace('<', "\\u003c");
-    let _ = writeln!(out, "<script type=\"application/json\" id=\"animation-data\">{data}</script>");
-    let _ = writeln!(out, "<script>\n{}</script>", include_str!("animation.js"));
-    Some(out)
+    Some(html! {
+        figure.animation #animation hidden {
+            div.stage {
+                canvas {}
+                div { (PreEscaped(bar)) }
+                div { (PreEscaped(histories(run, shades))) }
+            }
+            div.controls {
+                button type="button" aria-label="play or pause" { "▶" }
+                input type="range" min="0" max="1" step="any" aria-label="time";
+                output {}
+                label {
+                    "speed "
+                    select {
+                        @for speed in ["0.1", "0.25", "0.5", "1", "2", "4"] {
+                            option value=(speed) selected[speed == "1"] { (speed) }
+                        }
+                    }
+                }
+            }
+            figcaption {
+                b { "Animation." } " " (Label(label))
+                @if flat { " in colour" } @else { " in the colours of figure " (figure) }
+                "; frames are " (every) ", without interpolation."
+                @if largest > 0.0 {
+                    (Prose(" Arrows: contact forces −λn on the secondary nodes (`contact.csv`), at most "))
+                    (number(largest)) " " (Label(run.history.unit("contact_force_x"))) "."
+                }
+                (Prose(" Ticks below the histories: events in `log.jsonl`. Space: play or pause. ← and →: \
+                        previous or next frame. A click in a time history goes to that instant."))
+            }
+        }
+        script #animation-data type="application/json" { (PreEscaped(data)) }
+        script { (PreEscaped(include_str!("animation.js"))) }
+    })
 }
 
 #[cfg(test)]

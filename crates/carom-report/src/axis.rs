@@ -1,4 +1,4 @@
-//! Axes: round ticks, and a power of ten taken out of numbers that are far from one.
+//! Axes with round ticks, and a power of ten factored out of numbers far from one.
 
 /// Ticks of an axis from `low` to `high`.
 #[derive(Clone, Debug, PartialEq)]
@@ -6,7 +6,7 @@ pub(crate) struct Axis {
     pub(crate) low: f64,
     pub(crate) high: f64,
     pub(crate) ticks: Vec<(f64, String)>,
-    /// Ticks are labelled in units of 10^exponent.
+    /// Tick labels are in units of 10^exponent.
     pub(crate) exponent: i32,
 }
 
@@ -19,13 +19,13 @@ pub(crate) fn round_step(span: f64, count: f64) -> f64 {
 }
 
 impl Axis {
-    /// An axis that ends at the data (`tight`) or at round numbers around it.
+    /// An axis that ends at the data (`tight`) or at round numbers around them.
     pub(crate) fn new(range: (f64, f64), count: f64, tight: bool) -> Self {
         let (mut low, mut high) = range;
         if !(low.is_finite() && high.is_finite()) || low > high {
             (low, high) = (0.0, 1.0);
         }
-        // Beyond this, differences overflow; below the other, steps vanish.
+        // Differences of larger numbers overflow; steps below 1e-290 underflow.
         (low, high) = (low.max(-1e300), high.min(1e300));
         let size = low.abs().max(high.abs());
         if high - low <= 1e-12 * size || high - low < 1e-290 {
@@ -34,7 +34,7 @@ impl Axis {
         }
         let step = round_step(high - low, count);
         if !tight {
-            // A few per cent of air, then out to half a step.
+            // A margin of 2 %, then rounded outwards to half a step.
             let air = 0.02 * (high - low);
             let half = 0.5 * step;
             low = if low == 0.0 { 0.0 } else { ((low - air) / half).floor() * half };
@@ -49,7 +49,7 @@ impl Axis {
         let last = (high / step + 1e-9).floor() as i64;
         let ticks = (first..=last.min(first + 50)).map(|i| {
             let value = i as f64 * step;
-            // A real minus sign, and no minus zero.
+            // A minus sign, not a hyphen, and no negative zero.
             let text = format!("{:.decimals$}", value.abs() / scale);
             (value, if value < 0.0 { format!("−{text}") } else { text })
         });
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_to_show_is_no_panic() {
+    fn degenerate_ranges_do_not_panic() {
         assert_eq!(labels((3.0, 3.0), true).1, 0);
         assert!(!labels((f64::NAN, f64::NAN), false).0.is_empty());
         assert!(!labels((f64::INFINITY, f64::NEG_INFINITY), false).0.is_empty());

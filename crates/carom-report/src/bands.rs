@@ -1,7 +1,7 @@
-//! Bands of equal colour inside a Lagrange triangle.
+//! Colour bands inside a Lagrange triangle.
 //!
-//! A small triangle, on which the quantity is taken as linear, is cut along the levels between
-//! bands: every band's part is a convex polygon and together they are the triangle.
+//! A small triangle, on which the quantity is taken as linear, is cut along the levels between the
+//! bands into convex polygons, one per band, which together cover the triangle.
 
 use crate::axis::round_step;
 use crate::palette::diverging;
@@ -27,7 +27,7 @@ pub(crate) fn shape(degree: usize, [a, b, c]: [f64; 3], out: &mut Vec<f64>) {
     }
 }
 
-/// What remains of a polygon where sign·(value − level) ≥ 0.
+/// The part of a polygon where sign·(value − level) ≥ 0.
 fn clip(polygon: &[(Point, f64)], level: f64, sign: f64) -> Vec<(Point, f64)> {
     let mut out = Vec::with_capacity(polygon.len() + 1);
     for (i, &(p, f)) in polygon.iter().enumerate() {
@@ -44,8 +44,8 @@ fn clip(polygon: &[(Point, f64)], level: f64, sign: f64) -> Vec<(Point, f64)> {
     out
 }
 
-/// Colour bands: `count` of equal width between `low` and `high`, zero in the middle of one;
-/// everything beyond takes the last colour.
+/// Colour bands: `count` of equal width between `low` and `high`, with zero in the middle of one;
+/// values outside take the colour of the nearest band.
 pub(crate) struct Bands {
     pub(crate) low: f64,
     pub(crate) high: f64,
@@ -68,8 +68,8 @@ impl Bands {
     }
 }
 
-/// Colour bands of all values but the outermost half per cent on either side; and whether any were
-/// cut off.
+/// Colour bands for all values except the outermost 0.5 % at either end, and whether values lie
+/// below or above them.
 pub(crate) fn color_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool; 2]) {
     let mut values: Vec<f64> = values.filter(|x| x.is_finite()).collect();
     values.sort_unstable_by(f64::total_cmp);
@@ -77,14 +77,14 @@ pub(crate) fn color_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool; 2
     let value = |k: usize| values.get(k).copied().unwrap_or(0.0);
     let (low, high) = (value(last / 200).min(0.0), value(last - last / 200).max(0.0));
     let (low, high) = if low == high { (-1.0, 1.0) } else { (low, high) };
-    // Edges half a step beside round numbers: what is not stressed is white.
+    // Edges are half a step off round numbers, so that zero stress is white.
     let step = round_step(high - low, 24.0);
     let [below, above] = [-low, high].map(|x| (x / step - 0.5).ceil().max(0.0));
     let (low, high) = (-(below + 0.5) * step, (above + 0.5) * step);
     (Bands { low, high, count: (below + above) as usize + 1 }, [value(0) < low, value(last) > high])
 }
 
-/// Adds a triangle's parts to the path of each band.
+/// Adds the parts of a triangle to the paths of the bands.
 pub(crate) fn band_polygons(triangle: &[(Point, f64); 3], bands: &Bands, paths: &mut [Pen]) {
     if triangle.iter().any(|(_, f)| !f.is_finite()) {
         return;

@@ -1,8 +1,8 @@
-//! Deformed bodies with a nodal quantity in colour, several instants at one scale.
+//! Deformed bodies coloured by a nodal quantity, at several instants and the same scale.
 //!
-//! A cell's geometry and quantity are its own Lagrange polynomials: filled in bands of equal colour
-//! on a fine subdivision, its edges drawn as exact Bézier curves (a Lagrange edge of degree ≤ 3 is
-//! one).
+//! Geometry and quantity of a cell are its own Lagrange polynomials: colour bands are filled on a
+//! fine subdivision, and edges are drawn as Bézier curves, exactly (a Lagrange edge of degree ≤ 3
+//! is one).
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -50,7 +50,7 @@ impl Instant {
     }
 }
 
-/// Where the points of a field set are: reference position + displacement.
+/// Current positions of the points of a field set: reference position + displacement.
 pub(crate) fn places(fields: &FieldSet) -> Vec<Point> {
     let u = fields.array("displacement").filter(|a| a.components == 3);
     let moved = |(i, x): (usize, &[f64; 3])| [0, 1].map(|d| x[d] + u.map_or(0.0, |u| u.values[3 * i + d]));
@@ -75,7 +75,7 @@ fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -
                 corner.push((to(p), sum(&|k| instant.values[k])));
             }
         }
-        // A cell of one colour is drawn whole, inside its exact edges.
+        // A cell within one band is filled as a whole, inside its exact edges.
         let band = bands.of(corner[0].1);
         if corner.iter().all(|(_, f)| f.is_finite() && bands.of(*f) == band) {
             let edge =
@@ -98,22 +98,24 @@ fn fill(out: &mut String, instant: &Instant, bands: &Bands, to: &dyn Fn(Point) -
     }
     for (band, pen) in paths.iter().enumerate().filter(|(_, pen)| !pen.is_empty()) {
         let (d, color) = (pen.data(), bands.color(band));
-        // The stroke in the fill's own colour closes the hairlines between neighbours.
+        // A stroke in the colour of the fill closes the hairlines between neighbours.
         let _ = writeln!(
             out,
-            "<path d=\"{d}\" fill=\"{color}\" stroke=\"{color}\" stroke-width=\"10\" stroke-linejoin=\"round\"/>"
+            "<path d=\"{d}\" fill=\"{color}\" stroke=\"{color}\" stroke-width=\"10\" \
+             stroke-linejoin=\"round\"/>"
         );
     }
 }
 
-/// Nodes of an edge in order from end to end.
+/// Nodes of an edge from end to end.
 pub(crate) fn edge_nodes(degree: usize, nodes: &[usize], edge: usize) -> impl Iterator<Item = usize> {
     let inner = degree - 1;
     let between = &nodes[3 + edge * inner..3 + (edge + 1) * inner];
     std::iter::once(nodes[edge]).chain(between.iter().copied()).chain([nodes[(edge + 1) % 3]])
 }
 
-/// Bézier of an edge's nodes in order from end to end; `moved`: the pen goes to its start first.
+/// Adds the Bézier curve through the nodes of an edge; with `moved` the pen first moves to its
+/// start.
 pub(crate) fn bezier(pen: &mut Pen, nodes: &[Point], moved: bool) {
     let mix = |weights: &[f64]| [0, 1].map(|d| weights.iter().zip(nodes).map(|(w, p)| w * p[d]).sum::<f64>());
     let controls: &[&[f64]] = match nodes.len() {
@@ -129,7 +131,8 @@ pub(crate) fn bezier(pen: &mut Pen, nodes: &[Point], moved: bool) {
     pen.draw(&controls.iter().map(|w| mix(w)).collect::<Vec<_>>());
 }
 
-/// Edges of all cells: inner ones and the outline, which are those of one cell only.
+/// Edges of all cells: interior edges, and the outline made of the edges that belong to one cell
+/// only.
 pub(crate) fn edges(instant: &Instant, to: &dyn Fn(Point) -> Point) -> [Pen; 2] {
     let mut found: HashMap<[usize; 2], (usize, Vec<usize>)> = HashMap::new();
     let mut order = Vec::new();
@@ -152,7 +155,7 @@ pub(crate) fn edges(instant: &Instant, to: &dyn Fn(Point) -> Point) -> [Pen; 2] 
     [inside, outline]
 }
 
-/// Box of the cells' points: left, right, low, high.
+/// Bounding box of the cells: left, right, bottom, top.
 pub(crate) fn frame<'a>(instants: impl IntoIterator<Item = &'a Instant>) -> [f64; 4] {
     let mut frame = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
     for instant in instants {
@@ -163,7 +166,7 @@ pub(crate) fn frame<'a>(instants: impl IntoIterator<Item = &'a Instant>) -> [f64
     frame
 }
 
-/// Colours for the values of some instants.
+/// Colour bands for the values at some instants.
 pub(crate) fn colors(instants: &[Instant]) -> (Bands, [bool; 2]) {
     let used = |i: &Instant| {
         i.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| i.values[k])).collect::<Vec<_>>()
@@ -171,7 +174,7 @@ pub(crate) fn colors(instants: &[Instant]) -> (Bands, [bool; 2]) {
     color_bands(instants.iter().flat_map(used))
 }
 
-/// The figure; `label` and `unit` stand at the colour bar.
+/// The figure; `label` and `unit` belong to the colour bar.
 pub(crate) fn figure(
     instants: &[Instant],
     (bands, cut): (&Bands, [bool; 2]),
@@ -215,11 +218,13 @@ pub(crate) fn figure(
         let [inside, outline] = edges(instant, &to).map(|pen| pen.data().to_string());
         let _ = writeln!(
             out,
-            "<path d=\"{inside}\" fill=\"none\" stroke=\"#000\" stroke-opacity=\"0.28\" stroke-width=\"8\"/>\n\
-             <path d=\"{outline}\" fill=\"none\" stroke=\"#000\" stroke-width=\"18\" stroke-linecap=\"round\"/>\n</g>"
+            "<path d=\"{inside}\" fill=\"none\" stroke=\"#000\" stroke-opacity=\"0.28\" \
+             stroke-width=\"8\"/>\n\
+             <path d=\"{outline}\" fill=\"none\" stroke=\"#000\" stroke-width=\"18\" \
+             stroke-linecap=\"round\"/>\n</g>"
         );
     }
-    // A bar of a round length under the first picture.
+    // Scale bar of a round length below the first picture.
     let size = round_step(x1 - x0, 3.0);
     let y = height - 22.0;
     let _ = writeln!(
@@ -234,7 +239,7 @@ pub(crate) fn figure(
     out
 }
 
-/// Vertical bar of the bands with ticks; an arrow at an end beyond which values were cut off.
+/// Vertical colour bar with ticks, and an arrow at an end beyond which there are values.
 pub(crate) fn color_bar(
     out: &mut String,
     bands: &Bands,
@@ -249,7 +254,8 @@ pub(crate) fn color_bar(
         let color = bands.color(band);
         let _ = writeln!(
             out,
-            "<path d=\"M{x:.1} {end:.1}h{width}l-7.5 {tip}z\" fill=\"{color}\" stroke=\"#222\" stroke-width=\"0.7\"/>"
+            "<path d=\"M{x:.1} {end:.1}h{width}l-7.5 {tip}z\" fill=\"{color}\" stroke=\"#222\" \
+             stroke-width=\"0.7\"/>"
         );
     };
     if cut[1] {
@@ -269,7 +275,8 @@ pub(crate) fn color_bar(
     }
     let _ = writeln!(
         out,
-        "<rect x=\"{x:.1}\" y=\"{top:.1}\" width=\"{width}\" height=\"{:.1}\" fill=\"none\" stroke=\"#222\" stroke-width=\"0.7\"/>",
+        "<rect x=\"{x:.1}\" y=\"{top:.1}\" width=\"{width}\" height=\"{:.1}\" fill=\"none\" stroke=\"#222\" \
+         stroke-width=\"0.7\"/>",
         bottom - top
     );
     let axis = Axis::new((bands.low, bands.high), 6.0, true);
@@ -286,8 +293,7 @@ pub(crate) fn color_bar(
 mod tests {
     use super::*;
 
-    /// A cubic edge through four points of a parabola is the parabola: its Bézier's middle is the
-    /// parabola's.
+    /// A cubic edge through four points of a parabola is that parabola.
     #[test]
     fn beziers_pass_through_the_nodes() {
         let on = |s: f64| [s * 30.0, s * s * 90.0];

@@ -28,11 +28,11 @@ pub(crate) struct Panel<'a> {
     pub(crate) series: Vec<Series<'a>>,
 }
 
-/// What all panels share.
+/// Panels with a common horizontal axis.
 pub(crate) struct Chart<'a> {
     pub(crate) title: &'a str,
     pub(crate) x_label: String,
-    /// Intervals of x to shade.
+    /// Shaded intervals of x.
     pub(crate) shades: Vec<(f64, f64)>,
     pub(crate) panels: Vec<Panel<'a>>,
 }
@@ -43,13 +43,13 @@ pub(crate) struct Track {
     pub(crate) times: Vec<f64>,
 }
 
-/// How a chart is drawn when not as usual.
+/// Options of the drawing.
 pub(crate) struct Options<'a> {
     /// Width in pixels.
     pub(crate) width: f64,
-    /// Events under the panels.
+    /// Events below the panels.
     pub(crate) tracks: &'a [Track],
-    /// Whether x is the time of the run: the animation's cursor moves along it.
+    /// Whether x is the time of the run, along which the cursor of the animation moves.
     pub(crate) time: bool,
 }
 
@@ -59,11 +59,13 @@ impl Default for Options<'_> {
     }
 }
 
-/// Opening of a figure. It names its own fonts and is legible on its own.
+/// The opening of an SVG figure, with fonts and background so that it stands alone.
 pub(crate) fn open(title: &str, width: f64, height: f64) -> String {
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\" \
-         role=\"img\" font-family=\"Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif\" font-size=\"{FONT}\" fill=\"#222\">\n\
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 \
+         0 {width:.0} {height:.0}\" \
+         role=\"img\" font-family=\"Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif\" \
+         font-size=\"{FONT}\" fill=\"#222\">\n\
          <title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
         text::escape(title)
     )
@@ -80,7 +82,7 @@ impl Chart<'_> {
         self.draw(&Options::default())
     }
 
-    /// The figure with events and at any width.
+    /// The figure with options.
     pub(crate) fn draw(&self, options: &Options) -> String {
         const GAP: f64 = 16.0;
         const ROW: f64 = 15.0;
@@ -102,7 +104,7 @@ impl Chart<'_> {
             let h = panel.height;
             let (low, high) = range(panel.series.iter().flat_map(|s| &s.y));
             let whole = panel.series.iter().flat_map(|s| &s.y).all(|y| y.fract() == 0.0);
-            // Counts have no ticks between them.
+            // Integer quantities have ticks at integers only.
             let most = if whole { (high - low).max(1.0) } else { f64::INFINITY };
             let y_axis = Axis::new((low, high), (h / 42.0).max(2.0).min(most), false);
             let to_y = |y: f64| y0 + h * (1.0 - y_axis.position(y));
@@ -134,14 +136,16 @@ impl Chart<'_> {
             }
             let _ = writeln!(
                 out,
-                "<path d=\"M{LEFT} {y0:.1}v{h:.1}h{plot}\" fill=\"none\" stroke=\"#222\" stroke-width=\"0.9\"/>"
+                "<path d=\"M{LEFT} {y0:.1}v{h:.1}h{plot}\" fill=\"none\" stroke=\"#222\" \
+                 stroke-width=\"0.9\"/>"
             );
             for series in &panel.series {
                 let points = series.x.iter().zip(&series.y).map(|(&x, &y)| (to_x(x), to_y(y)));
                 let (d, color) = (path(points), series.color);
                 let _ = writeln!(
                     out,
-                    "<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.5\" stroke-linejoin=\"round\"/>"
+                    "<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.5\" \
+                     stroke-linejoin=\"round\"/>"
                 );
             }
             let label = with_unit(&panel.label, &scaled(&panel.unit, y_axis.exponent));
@@ -163,7 +167,8 @@ impl Chart<'_> {
             d.dedup();
             let _ = writeln!(
                 out,
-                "<path d=\"M{LEFT} {y0:.1}h{plot}\" stroke=\"#d8d8d8\" stroke-width=\"0.6\"/>\n<path d=\"{}\" stroke=\"#000\" stroke-width=\"0.8\"/>",
+                "<path d=\"M{LEFT} {y0:.1}h{plot}\" stroke=\"#d8d8d8\" stroke-width=\"0.6\"/>\n<path \
+                 d=\"{}\" stroke=\"#000\" stroke-width=\"0.8\"/>",
                 d.concat()
             );
             write_text(&mut out, LEFT - 6.0, y0 + 3.6, "text-anchor=\"end\" font-size=\"11\"", &track.label);
@@ -190,7 +195,7 @@ impl Chart<'_> {
     }
 }
 
-/// A unit with the power of ten its numbers are in.
+/// A unit preceded by the power of ten that is factored out of the ticks.
 pub(crate) fn scaled(unit: &str, exponent: i32) -> String {
     match (exponent, unit) {
         (0, unit) => unit.to_string(),
@@ -203,7 +208,7 @@ fn entry_width(series: &Series) -> f64 {
     46.0 + text::width(&series.label) * FONT
 }
 
-/// Which entries of the legend stand on which line; a single curve needs none.
+/// Entries of the legend by line; curves without a label have none.
 fn legend_rows(panel: &Panel, width: f64) -> Vec<Vec<usize>> {
     let mut rows: Vec<Vec<usize>> = Vec::new();
     let mut used = f64::INFINITY;

@@ -1,5 +1,5 @@
-//! What the page of a study keeps of the records of its arms: columns, thinned, and how each record
-//! came about.
+//! What the page of a study needs from the records of its arms: columns, thinned, and the origin of
+//! each record.
 
 use carom_record::Run;
 use carom_record::metrics::{contact_force, probe_columns};
@@ -10,10 +10,10 @@ use crate::labels::{symbol, words};
 
 /// Columns shown besides those of the probes: name, label, caption.
 const OTHERS: [(&str, &str, &str); 4] = [
-    (FORCE, "|F|", "size of the contact force"),
-    ("contact_impulse_x", "P_{x}", "contact impulse along x"),
-    ("contact_impulse_y", "P_{y}", "contact impulse along y"),
-    ("dissipation", "dissipation", "energy dissipated so far; negative: created"),
+    (FORCE, "|F|", "magnitude of the contact force"),
+    ("contact_impulse_x", "P_{x}", "contact impulse in x direction"),
+    ("contact_impulse_y", "P_{y}", "contact impulse in y direction"),
+    ("dissipation", "dissipation", "accumulated dissipation (negative: energy created)"),
 ];
 
 /// A column of all arms, thinned.
@@ -23,36 +23,30 @@ pub(crate) struct Column {
     pub(crate) curves: Vec<(usize, Vec<f64>, Vec<f64>)>,
 }
 
-/// What the record of an arm says of how it came about.
+/// The origin of the record of an arm.
 pub(crate) struct Origin {
     /// Number of the arm.
     pub(crate) arm: usize,
     /// Hash of its input.
     pub(crate) input: String,
-    /// Fingerprint of its tables.
+    /// Hash of its tables.
     pub(crate) record: String,
     /// Rejected steps.
     pub(crate) rejected: u64,
-    /// Events that are no change of contact.
-    pub(crate) told: usize,
+    /// Number of fallbacks and cycles of the solver.
+    pub(crate) fallbacks: usize,
 }
 
 impl Origin {
     /// From the record of an arm.
     pub(crate) fn of(arm: usize, run: &Run) -> Self {
-        let told =
-            run.log.iter().filter(|e| ["fallback", "cycle", "no-stress"].contains(&e.kind.as_str())).count();
+        let fallback = |kind: &str| ["fallback", "cycle", "no-stress"].contains(&kind);
+        let fallbacks = run.log.iter().filter(|e| fallback(&e.kind)).count();
         let rejected = run.manifest.counters.get("rejected").copied().unwrap_or_default();
         let (input, record) =
             (run.manifest.input_hash.clone(), fingerprint(&run.directory).unwrap_or_default());
-        Self { arm, input, record, rejected, told }
+        Self { arm, input, record, rejected, fallbacks }
     }
-}
-
-/// Those of all arms.
-#[derive(Default)]
-pub(crate) struct Origins {
-    pub(crate) arms: Vec<Origin>,
 }
 
 /// Adds the columns of an arm.
@@ -79,8 +73,8 @@ fn put(columns: &mut Vec<Column>, name: &str, unit: &str, curve: (usize, Vec<f64
     }
 }
 
-/// A curve thinned to the first, lowest, highest and last point of each of 1600 spans of time, more
-/// than a figure has pixels.
+/// A curve thinned to the first, lowest, highest and last point of each of 1600 intervals of equal
+/// row count, more than a figure has pixels.
 fn thinned(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
     const SPANS: usize = 1600;
     if times.len() <= 4 * SPANS {
@@ -103,7 +97,7 @@ fn thinned(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
     (keep.iter().map(|&i| times[i]).collect(), keep.iter().map(|&i| values[i]).collect())
 }
 
-/// Symbol and words of a column.
+/// Symbol and description of a column.
 pub(crate) fn named(column: &str) -> (String, String) {
     match (OTHERS.iter().find(|o| o.0 == column), column.rsplit_once('.')) {
         (Some((_, label, caption)), _) => ((*label).to_string(), (*caption).to_string()),

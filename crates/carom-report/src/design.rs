@@ -1,87 +1,76 @@
-//! What made the arms of a study comparable, and where it failed to.
-
-use std::fmt::Write as _;
+//! What makes the arms of a study comparable: equal time steps or equal costs.
 
 use carom_record::study::design::Kind;
 use carom_record::study::{Arm, Study};
+use maud::{Markup, html};
 
 use crate::digits::{five, three};
-use crate::text::escape;
 
-/// Costs are matched within this share of the budget.
+/// A cost is matched when it is within this fraction of the budget.
 pub(crate) const OFF_BUDGET: f64 = 0.1;
 
-/// What made the arms comparable; nothing for a study that ranks nothing.
-pub(crate) fn show(out: &mut String, study: &Study) {
-    if study.ranking.is_none() && study.manifest.design.is_none() {
-        return;
-    }
-    match study.manifest.design.as_ref().map(|d| (d.kind, &d.cost_of)) {
-        None => {
-            out.push_str(
-                "<p>The arms are as written: neither their steps nor their costs were made equal.</p>\n",
-            );
-        }
-        Some((Kind::MatchedStep, _)) => {
-            let _ = writeln!(
-                out,
-                "<p>Matched step: at a level every method has the same step ({}).</p>",
-                levels(study)
-            );
-            let by_cost = study.manifest.methods().into_iter().filter(|method| {
-                let mut arms = study.manifest.arms.iter();
-                arms.any(|arm| arm.role.method.as_deref() == Some(method) && study.manifest.by_cost(arm))
-            });
-            let by_cost: Vec<String> = by_cost.map(escape).collect();
-            if let Some(design) = study.manifest.design.as_ref().filter(|_| !by_cost.is_empty()) {
-                let _ = writeln!(
-                    out,
-                    "<p>By cost, not by step: {}. Each has the step at which its counted cost is that of <b>{}</b> at the level.</p>",
-                    by_cost.join("; "),
-                    escape(&design.cost_of)
-                );
-                out.push_str(&unmatched(study));
+/// The design in words; nothing for a study that ranks nothing.
+pub(crate) fn paragraphs(study: &Study) -> Markup {
+    let m = &study.manifest;
+    let Some(design) = &m.design else {
+        return html! {
+            @if study.ranking.is_some() {
+                p { "The arms run as written: neither their time steps nor their costs were matched." }
+            }
+        };
+    };
+    let levels = design.steps.iter().enumerate().map(|(i, h)| format!("level {}: Δt = {}", i + 1, five(*h)));
+    let levels = levels.collect::<Vec<_>>().join(", ");
+    let matched_by_cost =
+        |method: &&str| m.arms.iter().any(|arm| arm.role.method.as_deref() == Some(method) && m.by_cost(arm));
+    let by_cost: Vec<&str> = m.methods().into_iter().filter(matched_by_cost).collect();
+    html! {
+        @match design.kind {
+            Kind::MatchedStep => {
+                p { "Matched step: at each level all methods have the same time step (" (levels) ")." }
+                @if !by_cost.is_empty() {
+                    p {
+                        "Matched by cost instead: " (by_cost.join("; ")) ". At each level such a method has \
+                         the time step at which its counted cost equals that of " b { (design.cost_of) } "."
+                    }
+                    (budgets(study))
+                }
+            }
+            Kind::MatchedCost => {
+                p {
+                    "Matched cost: at each level a method has the time step at which its cost equals that of "
+                    b { (design.cost_of) } " (" (levels) "). The cost is counted in Newton iterations and \
+                     factorisations, or in steps, each weighted by its processor time in a pilot run. The \
+                     processor times in the tables are those of the arms themselves. Pilot runs: "
+                    code { "pilots/" } "."
+                }
+                (budgets(study))
             }
         }
-        Some((Kind::MatchedCost, of)) => {
-            let _ = writeln!(
-                out,
-                "<p>Matched cost: at a level every method has the step at which it costs what <b>{}</b> does at its own ({}). Cost is counted (Newton iterations and factorisations, or \
-                 steps) and weighted by processor seconds that a pilot run measured (<code>pilots/</code>); the column of processor time is what the arms themselves took.</p>",
-                escape(of),
-                levels(study)
-            );
-            out.push_str(&unmatched(study));
-        }
     }
 }
 
-/// The steps of the levels, in words.
-fn levels(study: &Study) -> String {
-    let steps = study.manifest.design.iter().flat_map(|d| &d.steps);
-    let steps: Vec<String> =
-        steps.enumerate().map(|(i, h)| format!("level {} Δt = {}", i + 1, five(*h))).collect();
-    steps.join(", ")
-}
-
-/// Whether costs were matched within the tenth that is claimed, and of which arms not.
-pub(crate) fn unmatched(study: &Study) -> String {
+/// Whether all matched costs are within 10 % of their budget, and which arms miss it.
+pub(crate) fn budgets(study: &Study) -> Markup {
     let off = |arm: &&Arm| arm.role.cost.is_none_or(|share| (share - 1.0).abs() > OFF_BUDGET);
     let matched: Vec<&Arm> = study.manifest.arms.iter().filter(|a| study.manifest.by_cost(a)).collect();
     let missed: Vec<&Arm> = matched.iter().copied().filter(off).collect();
-    if missed.is_empty() {
-        return "<p>The counted cost of every arm whose cost is matched is within 10 % of its budget.</p>\n"
-            .to_owned();
-    }
-    let told = |arm: &&Arm| {
-        let share = arm.role.cost.map_or("none".to_owned(), three);
-        format!("{} ({share} of the budget)", escape(&arm.name))
+    let cost = |arm: &&Arm| match arm.role.cost {
+        Some(share) => format!("{} ({} of the budget)", arm.name, three(share)),
+        None => format!("{} (cost unknown)", arm.name),
     };
-    format!(
-        "<p><span class=\"miss\">{} of {} arms are not within 10 % of their budget</span>, because no number of steps was found at which they cost it, or they \
-         did not run to their end: {}. Errors of these arms are not at equal cost.</p>\n",
-        missed.len(),
-        matched.len(),
-        missed.iter().map(told).collect::<Vec<_>>().join("; ")
-    )
+    html! {
+        @if missed.is_empty() {
+            p { "The counted costs of all arms matched by cost are within 10 % of their budgets." }
+        } @else {
+            p {
+                span.miss {
+                    (missed.len()) " of " (matched.len()) " arms missed the budget by more than 10 %"
+                }
+                ", because no number of steps with this cost was found or because the run did not finish: "
+                (missed.iter().map(cost).collect::<Vec<_>>().join("; ")) ". These arms are not compared at \
+                 equal cost."
+            }
+        }
+    }
 }

@@ -1,7 +1,6 @@
-//! Numbers on the page of a study: in five digits, and in three where a table beside it has them
-//! all.
+//! Numbers on the page of a study: five digits, or three where a file has them in full precision.
 
-/// A number in five digits, an exponent when far from one.
+/// A number with five digits, with an exponent when far from one.
 pub(crate) fn five(x: f64) -> String {
     let text = if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) {
         format!("{x:.3e}")
@@ -14,7 +13,7 @@ pub(crate) fn five(x: f64) -> String {
     text.replace('-', "−")
 }
 
-/// A number in three digits: the tables have them all.
+/// A number with three digits.
 pub(crate) fn three(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return five(x);

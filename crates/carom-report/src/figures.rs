@@ -1,6 +1,7 @@
-//! Which figures a run has, and from which columns and files they are made.
+//! The figures of a run, and the columns and files from which they are drawn.
 
 use carom_record::{Cell, FieldEntry, Run, metrics};
+use maud::Markup;
 
 use crate::bands::Bands;
 use crate::bodies::{self, Instant};
@@ -12,46 +13,46 @@ use crate::{animation, setup};
 /// A figure of a report.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// File name without its ending.
+    /// File name without extension.
     pub name: &'static str,
-    /// Caption, in the markup of labels: `σ_{yy}`.
+    /// Caption, with `σ_{yy}` for subscripts and backticks around code.
     pub caption: String,
     /// The picture.
     pub svg: String,
 }
 
-/// All a record allows to show.
+/// Everything that can be drawn from a record.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shown {
     pub(crate) figures: Vec<Figure>,
-    /// The animation, as HTML.
-    pub(crate) animation: Option<String>,
-    /// What could not be drawn.
+    /// The animation.
+    pub(crate) animation: Option<Markup>,
+    /// Notes on what could not be drawn.
     pub(crate) notes: Vec<String>,
 }
 
-/// All figures a record allows, and what could not be drawn.
+/// Draws everything that the record of a run allows.
 pub(crate) fn all(run: &Run) -> Shown {
     let mut shown = Shown::default();
     if run.times().is_empty() {
-        shown.notes.push("The history has no rows yet: nothing to draw.".to_string());
+        shown.notes.push("The history has no rows yet; there is nothing to draw.".to_string());
         return shown;
     }
     shown.figures.extend(setup(run));
     let place = shown.figures.len() + 1;
     if let Some((bodies, bands)) = instants(run, &mut shown.notes) {
         shown.figures.push(bodies);
-        shown.animation = animation::html_of(run, &bands, shades(run), place);
+        shown.animation = animation::section(run, &bands, shades(run), place);
     }
     shown.figures.extend([probes(run), force(run), energy(run), solver(run)].into_iter().flatten());
     shown
 }
 
-/// The case drawn.
+/// The initial configuration.
 fn setup(run: &Run) -> Option<Figure> {
     let svg = setup::figure(run, &run.field(run.fields.first()?).ok()?)?;
-    let caption = "The case as it starts: bodies with their mesh, supports, loads, contact sides and probes. \
-                   Data: the first field file; case and sides in manifest.json.";
+    let caption = "Initial configuration: bodies with their mesh, supports, loads, contact sides and probes. \
+                   Data: first field file; case and sides in `manifest.json`.";
     Some(Figure { name: "setup", caption: caption.into(), svg })
 }
 
@@ -72,8 +73,8 @@ fn chart<'a>(run: &Run, title: &'a str, panels: Vec<Panel<'a>>) -> Option<String
     })
 }
 
-/// Curves of columns with their labels; those without a column, or zero throughout compared with
-/// `size`, are left out.
+/// Curves of columns with their labels, without those that are missing or, compared with `size`,
+/// zero throughout.
 fn curves<'a>(run: &'a Run, columns: &[(&str, &str)], size: f64) -> Vec<Series<'a>> {
     let found = columns.iter().enumerate().filter_map(|(i, (name, label))| {
         let y = run.column(name)?;
@@ -93,13 +94,13 @@ fn panel<'a>(label: &str, unit: &str, height: f64, series: Vec<Series<'a>>) -> P
     Panel { label: label.into(), unit: unit.into(), height, series }
 }
 
-/// Names in an array of the resolved case.
+/// Names of the items of a list of the resolved case.
 fn names<'a>(run: &'a Run, list: &str) -> Vec<&'a str> {
     let items = run.manifest.case.get(list).and_then(|v| v.as_array());
     items.into_iter().flatten().filter_map(|item| item.get("name")?.as_str()).collect()
 }
 
-/// Every quantity of every probe against time, one panel per quantity.
+/// Time histories of all probes, one panel per quantity.
 fn probes(run: &Run) -> Option<Figure> {
     let probes = names(run, "probes");
     let mut panels: Vec<(String, Panel)> = Vec::new();
@@ -120,11 +121,11 @@ fn probes(run: &Run) -> Option<Figure> {
     }
     let mut list: Vec<String> = panels.iter().map(|(q, _)| format!("{} {}", words(q), symbol(q))).collect();
     list.dedup();
-    let svg = chart(run, "Probes against time", panels.into_iter().map(|(_, p)| p).collect())?;
+    let svg = chart(run, "Time histories at the probes", panels.into_iter().map(|(_, p)| p).collect())?;
     let caption = format!(
-        "Probes against time: {}. Shaded: contact. Data: history.csv, columns {}.",
+        "Time histories at the probes: {}. Shaded: contact. Data: `history.csv`, columns `{}`.",
         list.join(", "),
-        columns.join(", ")
+        columns.join("`, `")
     );
     Some(Figure { name: "probes", caption, svg })
 }
@@ -141,9 +142,10 @@ fn force(run: &Run) -> Option<Figure> {
         panel("contact force f", h.unit("contact_force_x"), 200.0, forces),
         panel("impulse P", h.unit("contact_impulse_x"), 130.0, impulses),
     ];
-    let caption = "Contact force on the secondary side at the end of each step, and its impulse so far. Shaded: contact. \
-                   Single peaks of the force depend on the time step; impulse, duration and restitution do not. \
-                   Data: history.csv, columns contact_force_… and contact_impulse_….";
+    let caption = "Contact force on the secondary (slave) side at the end of each step, and its accumulated \
+                   impulse. Shaded: contact. Single peaks of the force depend on the time step; impulse, \
+                   duration and restitution do not. Data: `history.csv`, columns `contact_force_…` and \
+                   `contact_impulse_…`.";
     Some(Figure {
         name: "force",
         caption: caption.into(),
@@ -151,7 +153,7 @@ fn force(run: &Run) -> Option<Figure> {
     })
 }
 
-/// The energy ledger.
+/// The energy balance.
 fn energy(run: &Run) -> Option<Figure> {
     let unit = run.history.unit("total");
     let size = run
@@ -171,29 +173,34 @@ fn energy(run: &Run) -> Option<Figure> {
         panel("energy", unit, 200.0, curves(run, &energies, size)),
         panel("work, dissipation", unit, 150.0, curves(run, &works, 1e-3 * size)),
     ];
-    let caption = "Energy ledger: energies above, work done so far and dissipation below. \
-                   Dissipation = external work + contact work − change of the total; where it is negative, energy was created. What stays zero is left \
-                   out. Data: history.csv, columns of these names.";
-    Some(Figure { name: "energy", caption: caption.into(), svg: chart(run, "Energy ledger", panels)? })
+    let caption = "Energy balance. Top: energies. Bottom: accumulated work and dissipation, which is \
+                   external work + contact work − change of the total energy; where it is negative, energy \
+                   was created. Quantities that remain zero are omitted. Data: `history.csv`, columns of the \
+                   same names.";
+    Some(Figure { name: "energy", caption: caption.into(), svg: chart(run, "Energy balance", panels)? })
 }
 
-/// What the solver did.
+/// Iterations, active nodes and rejections by step.
 fn solver(run: &Run) -> Option<Figure> {
     let one = |name: &str, label: &str| panel(label, "", 84.0, curves(run, &[(name, "")], 0.0));
     let mut panels = vec![one("newton", "iterations"), one("active", "active nodes")];
     if run.column("rejected").is_some_and(|c| c.iter().any(|&x| x > 0.0)) {
         panels.push(one("rejected", "rejected"));
     }
-    let quiet = if panels.len() == 2 { " No step was rejected." } else { "" };
+    let what = if panels.len() == 2 {
+        "Newton iterations and active contact nodes per step. No step was rejected."
+    } else {
+        "Newton iterations, active contact nodes and rejected attempts per step."
+    };
     let caption = format!(
-        "Newton iterations and active contact nodes of each step, and attempts rejected in it.{quiet} Ticks: events by kind. Data: \
-                          history.csv, columns newton, active and rejected; log.jsonl."
+        "{what} Ticks: events by kind. Data: `history.csv`, columns `newton`, `active` and `rejected`; \
+         `log.jsonl`."
     );
     Some(Figure { name: "solver", caption, svg: chart(run, "Solver", panels)? })
 }
 
-/// Field files nearest to five instants spread evenly over the first contact (or the run, without
-/// contact).
+/// The field files nearest to five equidistant instants of the first contact; of the run if there
+/// is no contact.
 fn five(run: &Run) -> (Vec<&FieldEntry>, bool) {
     let t = run.times();
     let contact = metrics::first_episode(&run.history).map(|e| (t[e.start], t[e.end.unwrap_or(t.len()) - 1]));
@@ -212,11 +219,11 @@ fn five(run: &Run) -> (Vec<&FieldEntry>, bool) {
     }
 }
 
-/// The bodies at instants, with the colours of their stress.
+/// The deformed bodies at several instants, coloured by stress.
 fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
     let (entries, contact) = five(run);
     if entries.is_empty() {
-        notes.push("No field files were written (output.fields_every = 0): no picture of the bodies.".into());
+        notes.push("No field files were written (output.fields_every = 0); the bodies are not drawn.".into());
     }
     let mut sets = Vec::new();
     for entry in entries {
@@ -226,7 +233,7 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
         }
     }
     let first = &sets.first()?.1;
-    let during = if contact { "of the first contact" } else { "of the run, which had no contact" };
+    let during = if contact { "of the first contact" } else { "of the run (there was no contact)" };
     let unit = run.history.unit("time");
     if first.blocks.iter().all(|b| b.cell == Cell::Curve) {
         let strips: Vec<Instant> =
@@ -241,20 +248,21 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
     let title = "Deformed bodies with vertical Cauchy stress";
     let svg = bodies::figure(&list, (&bands, cut), title, ("σ_{yy}", &stress), &length);
     let arrow = if cut[0] || cut[1] {
-        " Arrows at the colour bar: the outermost half per cent of the values lies beyond."
+        " Arrows at the colour bar: up to 0.5 % of the values at either end are out of its range."
     } else {
         ""
     };
     let caption = format!(
-        "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal means) at instants {during}, all at one scale, displacements as \
-         they are. Blue presses, red pulls.{arrow} Data: stress and displacement of the field files."
+        "Deformed bodies with vertical Cauchy stress σ_{{yy}} (nodal averages) at instants {during}. All at \
+         the same scale; displacements are not magnified. Blue: compression. Red: tension.{arrow} Data: \
+         stress and displacement in the field files."
     );
     Some((Figure { name: "bodies", caption, svg }, bands))
 }
 
-/// Dimension 1: displacement and stress along the bars at the instants.
+/// In 1D: displacement and stress along the bars at several instants.
 fn bars(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Figure {
-    // Places and values of an array's component along the bars, with a gap after each.
+    // Positions and values of a component along the bars, with a gap after each bar.
     let along =
         |set: &carom_record::FieldSet, array: &str, component: usize| -> Option<(Vec<f64>, Vec<f64>)> {
             let values = set.array(array).filter(|a| component < a.components)?;
@@ -281,7 +289,7 @@ fn bars(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Figu
     let mut panels = Vec::new();
     for (label, array, lines) in [("u_{x}", "displacement", &u), ("σ_{xx}", "stress", &stress)] {
         let series = lines.iter().enumerate().map(|(i, (t, x, y))| Series {
-            // The legend stands once.
+            // Both panels share one legend.
             label: if panels.is_empty() { format!("t = {t:.4} {time}") } else { String::new() },
             color: sequence(i, sets.len()),
             x,
@@ -296,8 +304,8 @@ fn bars(run: &Run, sets: &[(f64, carom_record::FieldSet)], during: &str) -> Figu
     let svg =
         Chart { title: "Displacement and stress along the bars", x_label, shades: Vec::new(), panels }.svg();
     let caption = format!(
-        "Displacement u_{{x}} and Cauchy stress σ_{{xx}} (nodal means) along the bars at instants {during}. \
-         Data: displacement and stress of the field files."
+        "Displacement u_{{x}} and Cauchy stress σ_{{xx}} (nodal averages) along the bars at instants \
+         {during}. Data: displacement and stress in the field files."
     );
     Figure { name: "bodies", caption, svg }
 }

@@ -1,73 +1,83 @@
-//! What can be said for the numbers of a study: how each arm ended, the fingerprints by which a
-//! repetition is known to be one, and what was tried on one arm.
-
-use std::fmt::Write as _;
+//! Evidence that the numbers of a study can be reproduced: how each arm ended, hashes of its input
+//! and its record, and the arm that was recomputed.
 
 use carom_record::Status;
 use carom_record::study::Study;
+use maud::{Markup, html};
 
-use crate::collected::Origins;
-use crate::design::unmatched;
+use crate::collected::Origin;
+use crate::design::budgets;
 use crate::digits::three;
-use crate::text::escape;
+use crate::document::or_dash;
+use crate::text::Prose;
 
-/// Digits of a hash that are shown.
-const DIGITS: usize = 12;
+const HASHES: &str = "Input hash: BLAKE3 of the case and the settings of the arm. Record hash: BLAKE3 of \
+    `history.csv` and `contact.csv`; a repetition with the same version on the same platform gives the same \
+    hash. Cycles and fallbacks are logged in `log.jsonl` of the arm.";
 
-/// Adds the section.
-pub(crate) fn show(out: &mut String, study: &Study, origins: &Origins) {
-    out.push_str("<h2>Integrity</h2>\n<table class=\"metrics ranking\"><thead><tr><th>Arm</th><th>Ended</th><th class=\"n\">Rejected steps</th><th class=\"n\">Cycles, fallbacks</th><th class=\"n\">Deepest penetration</th><th>Input</th><th>Record</th></tr></thead>\n");
-    let short = |hash: &str| hash.get(..DIGITS).unwrap_or(hash).to_owned();
-    for origin in &origins.arms {
-        let row = &study.rows[origin.arm];
-        let word = if row.status == Some(Status::Finished) { "finished" } else { "not finished" };
-        let _ = writeln!(
-            out,
-            "<tr><td>{}</td><td>{word}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td><code>{}</code></td><td><code>{}</code></td></tr>",
-            escape(&row.name),
-            origin.rejected,
-            origin.told,
-            row.value("penetration").map_or("–".into(), three),
-            short(&origin.input),
-            short(&origin.record)
-        );
-    }
-    out.push_str("</table>\n<p class=\"small\">Input: blake3 of the case and what the arm sets. Record: blake3 of <code>history.csv</code> and <code>contact.csv</code>; a repetition with the \
-                  same version on the same platform has the same. Events stand in each arm's <code>log.jsonl</code>.</p>\n");
-    tried(out, study);
-    if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) {
-        out.push_str(&unmatched(study));
+/// The first digits of a hash, enough to compare two by eye.
+fn short(hash: &str) -> &str {
+    hash.get(..12).unwrap_or(hash)
+}
+
+/// The section of the page.
+pub(crate) fn section(study: &Study, origins: &[Origin]) -> Markup {
+    html! {
+        h2 { "Integrity" }
+        table.metrics.ranking {
+            thead {
+                tr {
+                    th { "Arm" } th { "Status" } th.n { "Rejected steps" } th.n { "Cycles and fallbacks" }
+                    th.n { "Max. penetration" } th { "Input hash" } th { "Record hash" }
+                }
+            }
+            @for origin in origins {
+                @let row = &study.rows[origin.arm];
+                tr {
+                    td { (row.name) }
+                    td { @if row.status == Some(Status::Finished) { "finished" } @else { "not finished" } }
+                    td.n { (origin.rejected) } td.n { (origin.fallbacks) }
+                    td.n { (or_dash(row.value("penetration"), three)) }
+                    td { code { (short(&origin.input)) } } td { code { (short(&origin.record)) } }
+                }
+            }
+        }
+        p.small { (Prose(HASHES)) }
+        (recomputed(study))
+        @if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) { (budgets(study)) }
     }
 }
 
-/// Whether an arm, computed again, came to the same bits.
-fn tried(out: &mut String, study: &Study) {
+/// Whether an arm that was computed again gave the same bits.
+fn recomputed(study: &Study) -> Markup {
     let Some(checks) = &study.checks else {
-        out.push_str(
-            "<p>No arm of this study was computed again with more threads, or stopped and resumed.</p>\n",
-        );
-        return;
+        return html! {
+            p {
+                "Bitwise reproducibility was not checked: no arm was computed again with more threads, or \
+                 stopped and resumed."
+            }
+        };
     };
-    let word = |hash: &str| {
-        if hash == checks.fingerprint {
-            "<b>the same bits</b>"
-        } else {
-            "<b class=\"miss\">other bits</b> (kept in <code>checks/</code>)"
+    let result = |hash: &str| {
+        html! {
+            @if hash == checks.fingerprint {
+                b { "bitwise identical" } "."
+            } @else {
+                b.miss { "different" } " (kept in " code { "checks/" } ")."
+            }
         }
     };
-    let active_pairs = match checks.active_pairs {
-        0 => "no pair active".to_owned(),
-        1 => "one pair active".to_owned(),
-        n => format!("{n} pairs active"),
+    let contact = match checks.active_pairs {
+        0 => "no active contact pair".to_owned(),
+        1 => "one active contact pair".to_owned(),
+        n => format!("{n} active contact pairs"),
     };
-    let _ = writeln!(
-        out,
-        "<p>Tried on the arm with the fewest steps and iterations, {}, record <code>{}</code>: with {} threads {}; stopped after step {}, with {active_pairs}, and resumed from its files {}.</p>",
-        escape(&checks.arm),
-        checks.fingerprint.get(..DIGITS).unwrap_or_default(),
-        checks.threads.0,
-        word(&checks.threads.1),
-        checks.resumed.0,
-        word(&checks.resumed.1)
-    );
+    html! {
+        p {
+            "Reproducibility was checked on the arm with the fewest steps and iterations, " (checks.arm)
+            " (record hash " code { (short(&checks.fingerprint)) } "). With " (checks.threads.0) " threads: "
+            (result(&checks.threads.1)) " Stopped after step " (checks.resumed.0) ", with " (contact)
+            ", and resumed from its files: " (result(&checks.resumed.1))
+        }
+    }
 }

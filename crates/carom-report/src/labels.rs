@@ -1,6 +1,6 @@
-//! What columns are called in figures.
+//! Labels of columns and numbers in figures and tables.
 
-/// Symbol of a probe's quantity: `σ_{yy}`.
+/// Symbol of a probe quantity: `σ_{yy}`.
 pub(crate) fn symbol(quantity: &str) -> String {
     match quantity {
         "ux" | "uy" | "vx" | "vy" | "ax" | "ay" => format!("{}_{{{}}}", &quantity[..1], &quantity[1..]),
@@ -13,7 +13,7 @@ pub(crate) fn symbol(quantity: &str) -> String {
     }
 }
 
-/// What a probe's quantity is.
+/// Description of a probe quantity.
 pub(crate) fn words(quantity: &str) -> String {
     let axis = |c: &str| if c == "x" { "horizontal" } else { "vertical" }.to_string();
     match quantity {
@@ -32,7 +32,18 @@ pub(crate) fn with_unit(label: &str, unit: &str) -> String {
     if unit.is_empty() || unit == "1" { label.to_string() } else { format!("{label} ({unit})") }
 }
 
-/// A number as people read it: six digits, an exponent when far from one.
+/// A sentence or caption with a capital letter at its start.
+pub(crate) fn capitalised(text: &str) -> String {
+    let mut chars = text.chars();
+    chars.next().into_iter().flat_map(char::to_uppercase).chain(chars).collect()
+}
+
+/// A name with only those characters that are safe in a file name.
+pub(crate) fn file_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' }).collect()
+}
+
+/// A number with six digits, with an exponent when far from one.
 pub(crate) fn number(x: f64) -> String {
     if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) {
         return format!("{x:.5e}").replace('-', "−");

@@ -1,6 +1,6 @@
-//! The figures of the integrator laboratory: what accuracy costs, what smoothness costs, each
-//! method's histories over the reference's band, and the theory of the schemes at the model's own
-//! frequencies.
+//! Figures that compare time integrators: error against cost, roughness against dissipation, the
+//! histories of each method with the reference, and the spectral properties of the schemes at the
+//! frequencies of the model.
 
 use carom_record::Status;
 use carom_record::study::compared::{established, is_trajectory};
@@ -9,13 +9,13 @@ use carom_record::study::reference::{FORCE, Reference};
 use carom_record::study::{Study, step};
 
 use crate::collected::{Column, named};
-use crate::labels::with_unit;
+use crate::labels::{capitalised, file_name, with_unit};
 use crate::plot::{Curve, Pane, Plot};
 
-/// Small multiples in one figure at most.
+/// Largest number of small multiples in one figure.
 const MULTIPLES: usize = 24;
 
-/// Every figure of a study that has a goal; none for one that has not.
+/// The figures of a study with a goal; none for a study without.
 pub(crate) fn plots(study: &Study, columns: &[Column], time: &str) -> Vec<Plot> {
     if study.manifest.goal.is_none() {
         return Vec::new();
@@ -27,13 +27,13 @@ pub(crate) fn plots(study: &Study, columns: &[Column], time: &str) -> Vec<Plot> 
     plots
 }
 
-/// What an arm is called where its level is not meant.
+/// The method of an arm, or the name of the arm where there are no methods.
 fn method(study: &Study, arm: usize) -> &str {
     let arm = &study.manifest.arms[arm];
     arm.role.method.as_deref().unwrap_or(&arm.name)
 }
 
-/// Methods with their finished arms, the coarsest first; arms of the reference are none.
+/// Methods with their finished arms, the coarsest first, without the arms of the reference.
 pub(crate) fn methods(study: &Study) -> Vec<(&str, Vec<usize>)> {
     let mut found: Vec<(&str, Vec<usize>)> = Vec::new();
     for (i, row) in study.rows.iter().enumerate() {
@@ -51,7 +51,7 @@ pub(crate) fn methods(study: &Study) -> Vec<(&str, Vec<usize>)> {
     found
 }
 
-/// One marked curve per method through the points of its arms.
+/// One curve with markers per method, through the points of its arms.
 fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Vec<Curve> {
     let curve = |(style, (name, arms)): (usize, (&str, Vec<usize>))| {
         let points: Vec<(f64, f64)> =
@@ -97,8 +97,9 @@ fn error_cost(study: &Study) -> Option<Plot> {
     panes.retain(|p| !p.curves.is_empty());
     (!panes.is_empty()).then(|| Plot {
         name: "error-cost".into(),
-        caption: "Error against cost, a point per arm and a curve per method: the lower left edge is what an effort can buy. Cost: processor time of the steps, output \
-                  excluded. Errors of zero have no place on these axes."
+        caption: "Error against cost: one point per arm, one curve per method. The lower-left envelope is \
+                  the Pareto front. Cost: processor time of the time steps without output. Zero errors are \
+                  omitted (logarithmic axes)."
             .into(),
         x_label: "processor time (s)".into(),
         log: [true, true],
@@ -118,8 +119,8 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
         .filter(|v| *v > 0.0);
     let variation = |arm: usize| {
         let value = study.rows[arm].value("force_variation")?;
-        // Without an established reference: over twice the peak mean force, what one rise and one
-        // fall of it need.
+        // Without an established reference the scale is twice the peak mean force: one rise and one
+        // fall.
         Some(value / right.or_else(|| Some(2.0 * study.rows[arm].value("peak_mean_force")?))?)
     };
     let high = |arm: usize| study.rows[arm].value("force_high_frequency");
@@ -131,18 +132,23 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
         ..Pane::default()
     };
     let mut panes = vec![
-        pane("variation of the contact force", over, scatter(study, |a| Some((lost(a)?, variation(a)?)))),
+        pane(
+            "total variation of the contact force",
+            over,
+            scatter(study, |a| Some((lost(a)?, variation(a)?))),
+        ),
         pane(
             "power above 16 cycles per contact",
-            "share of the power",
+            "share of power",
             scatter(study, |a| Some((lost(a)?, high(a)?))),
         ),
     ];
     panes.retain(|p| !p.curves.is_empty());
     (!panes.is_empty()).then(|| Plot {
         name: "roughness-dissipation".into(),
-        caption: "Roughness of the contact force against the largest change of energy, a point per arm and a curve per method. Damping buys smoothness; a method at the \
-                  lower left needs none. TV: total variation in the first contact."
+        caption: "Roughness of the contact force against energy drift: one point per arm, one curve per \
+                  method. Numerical damping reduces roughness at the cost of energy; methods at the lower \
+                  left are smooth without it. TV: total variation during the first contact."
             .into(),
         x_label: "energy drift / largest energy".into(),
         log: [true, true],
@@ -152,7 +158,7 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
     })
 }
 
-/// The reference's band of a column: its values, wide as its uncertainty.
+/// The band of a column: the reference ± its uncertainty.
 fn band(reference: &Reference, column: &str) -> Option<[Vec<f64>; 3]> {
     let (x, y) = reference.column(column)?;
     let off = reference.band(column);
@@ -162,8 +168,8 @@ fn band(reference: &Reference, column: &str) -> Option<[Vec<f64>; 3]> {
     Some([rows.clone().map(|i| x[i]).collect(), edge(-1.0), edge(1.0)])
 }
 
-/// A column of every method at its finest level, or of every arm where there are no methods, each
-/// in its own pane.
+/// A column of every method at its finest level, or of every arm where there are no methods, one
+/// pane each.
 fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
     let band = study.reference.as_ref().and_then(|r| band(r, &column.name));
     let (label, what) = named(&column.name);
@@ -182,20 +188,18 @@ fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
             ..Pane::default()
         });
     }
-    // One pane is no comparison, and the columns of all methods stand in one figure below.
+    // A single pane compares nothing; the overlays show the column as well.
     if panes.len() < 2 {
         return None;
     }
-    let grey = if band.is_some() { "Grey: the reference, wide as it is uncertain. " } else { "" };
+    let grey =
+        if band.is_some() { "Grey: the reference; the width of the band is its uncertainty. " } else { "" };
     let name = if column.name == FORCE { "contact-force".to_owned() } else { column.name.clone() };
-    let name: String =
-        name.chars().map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' }).collect();
-    let first: String = what.chars().next().map_or(String::new(), |c| c.to_uppercase().collect());
     Some(Plot {
-        name: format!("each-{name}"),
+        name: format!("each-{}", file_name(&name)),
         caption: format!(
-            "{first}{}, method by method at the finest level. {grey}All panes have the same axes.",
-            what.chars().skip(1).collect::<String>()
+            "{}, for each method at its finest level. {grey}All panels have the same axes.",
+            capitalised(&what)
         ),
         x_label: with_unit("time t", time),
         log: [false, false],
@@ -205,8 +209,8 @@ fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
     })
 }
 
-/// Spectral radius, damping and period error of every scheme, from `theory.csv`; the model's
-/// frequencies from `frequencies.csv`.
+/// Spectral radius, damping and period error of every scheme, from `theory.csv`; frequencies of the
+/// model, from `frequencies.csv`.
 fn theory(study: &Study) -> Option<Plot> {
     let rows = |name: &str| -> Option<Vec<csv::StringRecord>> {
         csv::Reader::from_path(study.directory.join(name)).ok()?.records().collect::<Result<_, _>>().ok()
@@ -217,7 +221,7 @@ fn theory(study: &Study) -> Option<Plot> {
     let mut marks: Vec<(f64, String)> = Vec::new();
     for row in rows("frequencies.csv").unwrap_or_default() {
         let (word, Ok(omega)) = (&row[0], row[1].parse::<f64>()) else { continue };
-        // The lowest stand too close for a word each.
+        // The lowest frequencies are too close for a label each.
         let symbol = match word {
             "1" => "ω_{1}Δt",
             "highest" => "ω_{max}Δt",
@@ -230,7 +234,7 @@ fn theory(study: &Study) -> Option<Plot> {
         }
     }
     let springs = if marks.iter().any(|m| m.1.starts_with("ω_{c}")) {
-        " ω_{c}: the stiffest contact spring of a penalty on its node alone, the other side at rest."
+        " ω_{c}: the stiffest penalty spring on its node alone, with the other side at rest."
     } else {
         ""
     };
@@ -261,8 +265,9 @@ fn theory(study: &Study) -> Option<Plot> {
     Some(Plot {
         name: "theory".into(),
         caption: format!(
-            "Theory of the schemes on an undamped oscillator of frequency ω. Vertical lines: the model's own frequencies at the longest step, with a word, and at the \
-             shortest.{springs} A node held by a multiplier is at ωΔt = ∞, where only ρ_{{∞}} counts."
+            "Properties of the schemes for an undamped oscillator of angular frequency ω. Vertical lines: \
+             frequencies of the model at the longest time step (labelled) and at the shortest.{springs} For \
+             a node constrained by a multiplier ωΔt = ∞, where only ρ_{{∞}} matters."
         ),
         x_label: "ωΔt".into(),
         log: [true, false],

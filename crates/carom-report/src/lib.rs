@@ -1,8 +1,9 @@
-//! Figures and a page from a run directory alone; nothing here runs anything.
+//! Figures and HTML pages from records alone; nothing here runs a simulation.
 //!
-//! `report` writes `figures/*.svg` and a self-contained `report.html` beside the record: no request
-//! to anywhere, every text that came from a user escaped, one small script for the animation
-//! without which, as on paper, the figures remain.
+//! [`report`] writes `figures/*.svg` and `report.html` into a run directory, [`study()`] does the
+//! same for a study and [`verify`] for a verification. The pages are self-contained: they make no
+//! network request, and all text from the user is escaped. One small script plays the animation of
+//! a run; without it, and in print, the figures remain.
 
 mod animation;
 mod axis;
@@ -13,6 +14,7 @@ mod collected;
 mod convergence;
 mod design;
 mod digits;
+mod document;
 mod figures;
 mod integrity;
 mod labels;
@@ -29,10 +31,10 @@ mod study;
 mod study_page;
 mod symbols;
 mod text;
+mod timing;
 mod trace;
 mod verdict;
 mod verify_page;
-mod work;
 
 use std::path::Path;
 
@@ -44,10 +46,10 @@ pub use publish::{ReportError, ReportSummary};
 pub use study::study;
 pub use verify_page::{verify, verify_markdown};
 
-/// Makes figures and page of a run directory, from the record alone.
+/// Writes the figures and the page of a run directory, from its record alone.
 pub fn report(directory: &Path) -> Result<ReportSummary, ReportError> {
     let run = Run::open(directory)?;
     let figures::Shown { figures, animation, notes } = figures::all(&run);
-    let page = page::page(&run, &figures, animation.as_deref(), &notes);
+    let page = page::page(&run, &figures, animation.as_ref(), &notes);
     publish(directory, "report.html", &page, figures.iter().map(|f| (f.name, f.svg.as_str())), notes)
 }

@@ -1,11 +1,11 @@
-//! Colours that survive colour blindness and a grey printer.
+//! Colours that remain distinct for colour-blind readers and in greyscale print.
 
-/// Line colours: M. Okabe and K. Ito, "Color Universal Design", without yellow, which print loses;
-/// black first.
+/// Line colours: M. Okabe and K. Ito, "Color Universal Design", black first, without yellow, which
+/// is too light for print.
 pub(crate) const LINES: [&str; 7] =
     ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
-/// ColorBrewer's RdBu (C. Brewer, colour-blind safe), blue for compression: from −1 to 1 in ten
+/// RdBu of ColorBrewer (C. Brewer; colour-blind safe), blue for compression, from −1 to 1 in ten
 /// steps.
 const DIVERGING: [[f64; 3]; 11] = [
     [5.0, 48.0, 97.0],
@@ -30,8 +30,8 @@ pub(crate) fn diverging(value: f64) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// A run of instants from dark to light: cividis (J. R. Nuñez et al., PLOS ONE 13(7), 2018), its
-/// dark three quarters.
+/// Colours of successive instants from dark to light: the darker three quarters of cividis
+/// (J. R. Nuñez et al., PLOS ONE 13(7), 2018).
 pub(crate) fn sequence(i: usize, n: usize) -> &'static str {
     const STEPS: [&str; 5] = ["#00224e", "#3b496c", "#6c6e72", "#9a9376", "#c9b764"];
     STEPS[(i * STEPS.len() / n.max(1)).min(STEPS.len() - 1)]

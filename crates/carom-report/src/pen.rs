@@ -1,21 +1,20 @@
-//! SVG path data on a grid of a twentieth of a pixel: relative whole numbers, short and without
-//! drift.
+//! SVG path data on a grid of 1/20 pixel, as relative integers: short, and without accumulated
+//! rounding errors.
 //!
-//! Such data belong into a group that [`open_grid`] opens; widths of strokes there are in units of
-//! the grid.
+//! Such data belong in a group opened by [`open_grid`], where stroke widths are in grid units.
 
-/// A place in pixels, or in the units of what is drawn.
+/// A point in pixels or in the units of length of the case.
 pub(crate) type Point = [f64; 2];
 
-/// Lines of the grid per pixel.
+/// Grid lines per pixel.
 pub(crate) const GRID: f64 = 20.0;
 
-/// Opens a group whose coordinates are those of a pen; close it with `</g>`.
+/// Opens a group in the coordinates of a pen; close it with `</g>`.
 pub(crate) fn open_grid() -> String {
     format!("<g transform=\"scale({})\">\n", 1.0 / GRID)
 }
 
-/// Path data being drawn.
+/// Path data under construction.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pen {
     data: String,
@@ -25,7 +24,7 @@ pub(crate) struct Pen {
 }
 
 impl Pen {
-    /// Goes to the start of a new part.
+    /// Moves to the start of a new subpath.
     pub(crate) fn go(&mut self, p: Point) {
         self.put('m', &[p]);
         self.start = self.at;
@@ -36,7 +35,7 @@ impl Pen {
         self.put(['l', 'q', 'c'][points.len().clamp(1, 3) - 1], points);
     }
 
-    /// Closes the part.
+    /// Closes the subpath.
     pub(crate) fn close(&mut self) {
         self.data.push('z');
         self.command = 'z';
@@ -44,7 +43,7 @@ impl Pen {
     }
 
     fn put(&mut self, command: char, points: &[Point]) {
-        // A command may be left out where it is the one before, and after `m` an `l`.
+        // A repeated command may be omitted, and so may an `l` after an `m`.
         let implied = command != 'm' && (self.command == command || (self.command == 'm' && command == 'l'));
         if !implied {
             self.data.push(command);
@@ -90,7 +89,7 @@ mod tests {
         pen.go([0.0, 0.0]);
         pen.draw(&[[1.0, 0.0], [2.0, -1.0]]);
         assert_eq!(pen.data(), "m20 40 10-20 0 40zm-20-40q20 0 40-20");
-        // A thousand steps of a third of the grid end where they should.
+        // Rounding errors of a thousand steps of a third of the grid do not add up.
         let mut pen = Pen::default();
         pen.go([0.0, 0.0]);
         (1..=1000).for_each(|i| pen.draw(&[[f64::from(i) / 60.0, 0.0]]));

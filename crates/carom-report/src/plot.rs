@@ -1,8 +1,7 @@
-//! Plots in panels. [`crate::redraw`] gives each its table and a script that draws it again.
+//! Plots in panels. [`crate::redraw`] writes the table and a script for each of them.
 //!
-//! Axes are linear or logarithmic; on a logarithmic axis what is not positive is left out and
-//! counted. Curves of one label have one style in all panels and one entry in the legend below
-//! them.
+//! Axes are linear or logarithmic; values that are not positive are omitted on a logarithmic axis.
+//! Curves with the same label have the same style in all panels and one entry in the common legend.
 
 use std::fmt::Write as _;
 
@@ -16,31 +15,31 @@ const WIDTH: f64 = 720.0;
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 12.0;
 
-/// Points of one thing.
+/// A curve.
 #[derive(Clone, Debug)]
 pub(crate) struct Curve {
     pub(crate) label: String,
-    /// Number of its style.
+    /// Number of the style.
     pub(crate) style: usize,
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
-    /// Whether its points are marked, and not only joined.
+    /// Whether the points have markers.
     pub(crate) marked: bool,
 }
 
-/// Axes and what is drawn in them.
+/// One panel: axes and curves.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pane {
     pub(crate) title: String,
     pub(crate) y_label: String,
     pub(crate) curves: Vec<Curve>,
-    /// x, lower and upper edge of a grey band behind the curves.
+    /// Grey band behind the curves: x, lower and upper edge.
     pub(crate) band: Option<[Vec<f64>; 3]>,
-    /// Vertical lines with a word.
+    /// Vertical lines with labels.
     pub(crate) marks: Vec<(f64, String)>,
-    /// A horizontal line with a word.
+    /// A horizontal line with a label.
     pub(crate) floor: Option<(f64, String)>,
-    /// What the vertical axis shows, where it does not show everything.
+    /// Range of the vertical axis, where it is not that of the curves.
     pub(crate) limits: Option<(f64, f64)>,
 }
 
@@ -51,21 +50,21 @@ pub(crate) struct Plot {
     pub(crate) caption: String,
     pub(crate) x_label: String,
     pub(crate) log: [bool; 2],
-    /// Panes side by side.
+    /// Number of panes side by side.
     pub(crate) across: usize,
-    /// Whether all panes have the same vertical axis.
+    /// Whether all panes share one vertical axis.
     pub(crate) same: bool,
     pub(crate) panes: Vec<Pane>,
 }
 
-/// Colour, dashes and number of the marker of a style: seven colours of Okabe and Ito and grey;
-/// with five markers forty styles differ.
+/// Colour, dashes and marker number of a style. Seven colours of Okabe and Ito and grey, with five
+/// markers, give forty different styles.
 pub(crate) fn style(i: usize) -> (&'static str, &'static str, usize) {
     const DASHES: [&str; 8] = ["", "9 3", "3 2", "9 3 2 3", "14 4", "5 2 1.5 2 1.5 2", "1.5 2.5", "6 6"];
     (LINES.get(i % 8).copied().unwrap_or("#777777"), DASHES[(i + i / 8) % 8], i % 5)
 }
 
-/// A scale of either kind.
+/// A linear or logarithmic scale.
 struct Scale {
     axis: Axis,
     log: bool,
@@ -103,7 +102,7 @@ impl Scale {
         Self { axis: Axis { low, high, ticks: ticks.collect(), exponent: 0 }, log }
     }
 
-    /// 0 at the low end, 1 at the high end; NaN where there is no such point.
+    /// 0 at the low end, 1 at the high end; NaN for values that a logarithmic axis cannot show.
     fn position(&self, value: f64) -> f64 {
         self.axis.position(if !self.log {
             value
@@ -127,8 +126,8 @@ impl Plot {
 
     fn y_range(&self, pane: &Pane) -> (f64, f64) {
         let of = |pane: &Pane| {
-            // Of the band its middle: where the reference is most uncertain its edges would hide
-            // the rest.
+            // The middle of the band only: where the reference is most uncertain, its edges would
+            // compress the curves.
             let band =
                 pane.band.iter().flat_map(|b| b[1].iter().zip(&b[2]).map(|(low, high)| 0.5 * (low + high)));
             let middle: Vec<f64> = band.collect();
@@ -146,7 +145,7 @@ impl Plot {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (c, d)| (a.min(c), b.max(d)))
     }
 
-    /// Labels with their styles, each once.
+    /// Distinct labels with their styles.
     pub(crate) fn legend(&self) -> Vec<(&str, usize, bool)> {
         let mut found: Vec<(&str, usize, bool)> = Vec::new();
         for curve in self.panes.iter().flat_map(|p| &p.curves).filter(|c| !c.label.is_empty()) {
@@ -192,14 +191,16 @@ impl Plot {
             let id = format!("{}-{i}", self.name.replace(|c: char| !c.is_alphanumeric(), "-"));
             let _ = writeln!(
                 out,
-                "<clipPath id=\"{id}\"><rect x=\"{x0:.1}\" y=\"{y0:.1}\" width=\"{wide:.1}\" height=\"{high:.1}\"/></clipPath>"
+                "<clipPath id=\"{id}\"><rect x=\"{x0:.1}\" y=\"{y0:.1}\" width=\"{wide:.1}\" \
+                 height=\"{high:.1}\"/></clipPath>"
             );
             if let Some([x, low, up]) = &pane.band {
                 let upper = x.iter().zip(up).map(|(x, y)| (to_x(*x), to_y(*y)));
                 let lower = x.iter().zip(low).map(|(x, y)| (to_x(*x), to_y(*y)));
                 let _ = writeln!(
                     out,
-                    "<path clip-path=\"url(#{id})\" d=\"{}\" fill=\"#cfcfcf\" stroke=\"#cfcfcf\" stroke-width=\"2.5\" stroke-linejoin=\"round\"/>",
+                    "<path clip-path=\"url(#{id})\" d=\"{}\" fill=\"#cfcfcf\" stroke=\"#cfcfcf\" \
+                     stroke-width=\"2.5\" stroke-linejoin=\"round\"/>",
                     trace::area(upper, lower)
                 );
             }
@@ -222,7 +223,8 @@ impl Plot {
                 let y = to_y(*value);
                 let _ = writeln!(
                     out,
-                    "<path d=\"M{x0:.1} {y:.1}h{wide:.1}\" stroke=\"#777\" stroke-width=\"0.8\" stroke-dasharray=\"2 2\"/>"
+                    "<path d=\"M{x0:.1} {y:.1}h{wide:.1}\" stroke=\"#777\" stroke-width=\"0.8\" \
+                     stroke-dasharray=\"2 2\"/>"
                 );
                 let place = "text-anchor=\"end\" font-size=\"10\" fill=\"#555\"";
                 write_text(&mut out, x0 + wide - 4.0, y - 4.0, place, word);
@@ -230,7 +232,8 @@ impl Plot {
             marks(&mut out, pane, &to_x, (y0, bottom), (x0, x0 + wide));
             let _ = writeln!(
                 out,
-                "<path d=\"M{x0:.1} {y0:.1}v{high:.1}h{wide:.1}\" fill=\"none\" stroke=\"#222\" stroke-width=\"0.9\"/>"
+                "<path d=\"M{x0:.1} {y0:.1}v{high:.1}h{wide:.1}\" fill=\"none\" stroke=\"#222\" \
+                 stroke-width=\"0.9\"/>"
             );
             for curve in &pane.curves {
                 draw(&mut out, curve, &id, &to_x, &to_y);
@@ -246,7 +249,8 @@ impl Plot {
                     with_unit(words, &scaled(unit, y_axis.axis.exponent))
                 };
                 let place = format!(
-                    "text-anchor=\"middle\" font-size=\"12\" transform=\"translate({:.1} {:.1}) rotate(-90)\"",
+                    "text-anchor=\"middle\" font-size=\"12\" transform=\"translate({:.1} {:.1}) \
+                     rotate(-90)\"",
                     x0 - LEFT + 13.0,
                     y0 + 0.5 * high
                 );
@@ -269,7 +273,8 @@ impl Plot {
                 let dashes = if marked { "" } else { dashes };
                 let _ = writeln!(
                     out,
-                    "<path d=\"M{x:.1} {y:.1}h26\" stroke=\"{color}\" stroke-width=\"1.8\" stroke-dasharray=\"{dashes}\"/>"
+                    "<path d=\"M{x:.1} {y:.1}h26\" stroke=\"{color}\" stroke-width=\"1.8\" \
+                     stroke-dasharray=\"{dashes}\"/>"
                 );
                 if marked {
                     mark(&mut out, marker, color, x + 13.0, y);
@@ -283,12 +288,12 @@ impl Plot {
     }
 }
 
-/// A label and the unit in brackets at its end.
+/// Splits a label into text and the unit in brackets at its end.
 fn unit_of(label: &str) -> (&str, &str) {
     label.strip_suffix(')').and_then(|l| l.rsplit_once(" (")).unwrap_or((label, ""))
 }
 
-/// A title cut to a width.
+/// A title shortened to a width.
 fn fitted(title: &str, width: f64, size: f64) -> String {
     if text::width(title) * size <= width {
         return title.to_owned();
@@ -334,11 +339,13 @@ fn marks(
         }
         let _ = writeln!(
             out,
-            "<path d=\"M{x:.1} {top:.1}V{bottom:.1}\" stroke=\"#777\" stroke-width=\"0.8\" stroke-dasharray=\"2 2\"/>"
+            "<path d=\"M{x:.1} {top:.1}V{bottom:.1}\" stroke=\"#777\" stroke-width=\"0.8\" \
+             stroke-dasharray=\"2 2\"/>"
         );
         if !word.is_empty() {
             let place = format!(
-                "font-size=\"10\" fill=\"#555\" text-anchor=\"end\" transform=\"translate({:.1} {:.1}) rotate(-90)\"",
+                "font-size=\"10\" fill=\"#555\" text-anchor=\"end\" transform=\"translate({:.1} {:.1}) \
+                 rotate(-90)\"",
                 x - 3.0,
                 top + 4.0
             );
@@ -351,11 +358,12 @@ fn draw(out: &mut String, curve: &Curve, id: &str, to_x: &dyn Fn(f64) -> f64, to
     let (color, dashes, marker) = style(curve.style);
     let points: Vec<(f64, f64)> = curve.x.iter().zip(&curve.y).map(|(x, y)| (to_x(*x), to_y(*y))).collect();
     let d = trace::path(points.iter().copied());
-    // Alone in its pane it needs no dashes to be known by.
+    // A curve alone in its pane needs no dashes to be identified.
     let dashes = if curve.marked || curve.label.is_empty() { "" } else { dashes };
     let _ = writeln!(
         out,
-        "<path clip-path=\"url(#{id})\" d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.4\" stroke-linejoin=\"round\" stroke-dasharray=\"{dashes}\"/>"
+        "<path clip-path=\"url(#{id})\" d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.4\" \
+         stroke-linejoin=\"round\" stroke-dasharray=\"{dashes}\"/>"
     );
     if curve.marked {
         for (x, y) in points.into_iter().filter(|p| p.0.is_finite() && p.1.is_finite()) {
@@ -364,7 +372,7 @@ fn draw(out: &mut String, curve: &Curve, id: &str, to_x: &dyn Fn(f64) -> f64, to
     }
 }
 
-/// Circle, square, triangle, diamond, triangle upside down.
+/// Markers: circle, square, triangle, diamond, inverted triangle.
 fn mark(out: &mut String, marker: usize, color: &str, x: f64, y: f64) {
     let at = |dx: f64, dy: f64| format!("{:.1} {:.1}", x + dx, y + dy);
     let d = match marker {
@@ -409,7 +417,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn what_is_not_positive_has_no_point_on_a_logarithmic_axis() {
+    fn a_logarithmic_axis_omits_values_that_are_not_positive() {
         let svg = plot().svg();
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
         // One marker in the pane, one in the legend.

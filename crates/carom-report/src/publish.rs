@@ -1,22 +1,22 @@
-//! Figures and a page put on disk, and why they cannot be.
+//! Writing of figures and pages, and its errors.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use carom_record::RecordError;
 
-/// What a report consists of.
+/// The files of a report.
 #[derive(Clone, Debug)]
 pub struct ReportSummary {
     /// The page.
     pub page: PathBuf,
     /// The figures' files.
     pub figures: Vec<PathBuf>,
-    /// What could not be shown, and why.
+    /// Notes on what could not be shown.
     pub notes: Vec<String>,
 }
 
-/// Why there is no report.
+/// Reasons why a report cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// The record cannot be read.
@@ -25,20 +25,28 @@ pub enum ReportError {
     /// The page or a figure cannot be written.
     #[error("cannot write {}: {source}", path.display())]
     Write {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// The system's answer.
+        /// The input/output error.
         source: std::io::Error,
     },
 }
 
 impl ReportError {
-    /// Exit code of the command line: 4 when the machine refused, 2 when the record is at fault.
+    /// Exit code of the command line: 4 for an input/output error, 2 for a faulty record.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Record(error) => error.exit_code(),
             Self::Write { .. } => 4,
         }
+    }
+}
+
+/// Writes a file and returns its path.
+pub(crate) fn write(path: PathBuf, text: &str) -> Result<PathBuf, ReportError> {
+    match fs::write(&path, text) {
+        Ok(()) => Ok(path),
+        Err(source) => Err(ReportError::Write { path, source }),
     }
 }
 
@@ -50,10 +58,6 @@ pub(crate) fn publish<'a>(
     figures: impl Iterator<Item = (&'a str, &'a str)>,
     notes: Vec<String>,
 ) -> Result<ReportSummary, ReportError> {
-    let write = |path: PathBuf, text: &str| match fs::write(&path, text) {
-        Ok(()) => Ok(path),
-        Err(source) => Err(ReportError::Write { path, source }),
-    };
     let folder = directory.join("figures");
     fs::create_dir_all(&folder).map_err(|source| ReportError::Write { path: folder.clone(), source })?;
     let written = figures.map(|(name, svg)| write(folder.join(format!("{name}.svg")), svg));

@@ -1,29 +1,29 @@
-//! The arms of a study in the order of its ranking, in three tables narrow enough to be printed:
-//! errors and cost; energy and the contact force; contact, stresses and orders. What no arm has a
-//! value of has no column.
-
-use std::fmt::Write as _;
+//! The arms of a study in the order of the ranking, in three tables narrow enough for print: errors
+//! and costs; energy and contact force; penetration, errors and orders. A quantity that is not
+//! available in any arm has no column.
 
 use carom_record::study::compared::is_stress;
 use carom_record::study::design::{Design, Kind};
 use carom_record::study::ranking::{Ranking, error, standing};
 use carom_record::study::reference::Standing;
 use carom_record::study::{Study, step};
+use maud::{Markup, html};
 
 use crate::design::OFF_BUDGET;
 use crate::digits::{five, three};
-use crate::text::{escape, html};
+use crate::document::joined;
+use crate::text::Label;
 
-/// Probes' stresses with a column of their own at most.
+/// Largest number of probe stresses that have a column.
 const STRESSES: usize = 3;
 
-/// A heading and the cells below it, in the order of the arms.
+/// A heading and the cells below it, in the order of the ranked arms.
 struct Column {
     head: String,
     cells: Vec<Option<String>>,
 }
 
-/// The ranked arms, and whatever can be put into columns of them.
+/// The ranked arms, from which columns are made.
 struct Ranked<'a> {
     study: &'a Study,
     arms: Vec<usize>,
@@ -34,13 +34,12 @@ impl Ranked<'_> {
         Column { head: head.to_owned(), cells: self.arms.iter().map(|arm| cell(*arm)).collect() }
     }
 
-    /// A metric as it is.
+    /// The values of a metric.
     fn metric(&self, head: &str, metric: &str) -> Column {
         self.column(head, |arm| self.study.rows[arm].value(metric).map(three))
     }
 
-    /// Error of a metric against the reference, where a refinement establishes it and it is not
-    /// zero.
+    /// Relative error of a metric, where the reference establishes a nonzero value.
     fn error(&self, head: &str, metric: &str) -> Column {
         let known = standing(self.study.reference.as_ref(), metric);
         let Standing::Established { value: right, uncertainty } = known else {
@@ -56,20 +55,21 @@ impl Ranked<'_> {
         })
     }
 
-    /// Total variation of the contact force beyond the reference's.
-    fn beyond(&self) -> Column {
+    /// Total variation of the contact force relative to that of the reference, minus 1.
+    fn excess_variation(&self) -> Column {
         let right = standing(self.study.reference.as_ref(), "force_variation").established();
         let right = right.map(|known| known.0).filter(|right| *right > 0.0);
-        self.column("TV beyond", |arm| {
+        self.column("Excess variation", |arm| {
             Some(three(self.study.rows[arm].value("force_variation")? / right? - 1.0))
         })
     }
 
-    fn late(&self) -> Column {
-        self.column("Late by", |arm| Some(three(self.study.compared.get(arm)?.as_ref()?.late.as_ref()?.1)))
+    /// Time by which an arm lags the reference.
+    fn delay(&self) -> Column {
+        self.column("Delay", |arm| Some(three(self.study.compared.get(arm)?.as_ref()?.late.as_ref()?.1)))
     }
 
-    /// Steps and processor time beside the budget.
+    /// Counted cost and processor time relative to the budget.
     fn budgets(&self, design: &Design) -> [Column; 2] {
         let share = |share: f64| {
             let mark = if (share - 1.0).abs() <= OFF_BUDGET { "" } else { " !" };
@@ -89,20 +89,23 @@ impl Ranked<'_> {
             Some(share(self.study.rows[arm].value("cpu_time")? / self.study.rows[anchor].value("cpu_time")?))
         };
         [
-            self.column("Counted / budget", |arm| parts(arm).cost.map(share)),
-            self.column("CPU / budget", measured),
+            self.column("Counted cost / budget", |arm| parts(arm).cost.map(share)),
+            self.column("CPU time / budget", measured),
         ]
     }
 
-    /// Errors of the stresses' mean peaks, each probe's by itself.
+    /// Errors of the mean peaks of the probe stresses.
     fn stresses(&self) -> Vec<Column> {
         let metrics = self.study.metrics();
         let peaks = metrics.iter().filter_map(|m| m.name.strip_suffix(":peak_mean")).filter(|c| is_stress(c));
-        peaks.take(STRESSES).map(|c| self.error(&format!("{c} peak"), &format!("{c}:peak_mean"))).collect()
+        peaks
+            .take(STRESSES)
+            .map(|c| self.error(&format!("Error of {c} peak"), &format!("{c}:peak_mean")))
+            .collect()
     }
 
-    /// Observed orders of the first displacement that has them, before the first contact and after
-    /// it.
+    /// Observed orders before and after the first contact, of the first displacement for which they
+    /// are known.
     fn orders(&self) -> [Column; 2] {
         let orders = &self.study.phase_orders;
         let named = orders.iter().find(|o| o.across.is_ok() || o.smooth.is_ok()).map(|o| o.column.clone());
@@ -113,16 +116,19 @@ impl Ranked<'_> {
         };
         let cell =
             |order: &Result<f64, String>| order.as_ref().ok().map(|p| format!("{p:.2}").replace('-', "−"));
-        let what = named.clone().unwrap_or_default();
+        let head = |phase: &str| match &named {
+            Some(column) => format!("Order of {column} {phase} contact"),
+            None => format!("Order {phase} contact"),
+        };
         [
-            self.column(&format!("{what} order before"), |arm| cell(&of(arm)?.smooth)),
-            self.column(&format!("{what} order after"), |arm| cell(&of(arm)?.across)),
+            self.column(&head("before"), |arm| cell(&of(arm)?.smooth)),
+            self.column(&head("after"), |arm| cell(&of(arm)?.across)),
         ]
     }
 }
 
-/// Adds the tables.
-pub(crate) fn tables(out: &mut String, study: &Study, ranking: &Ranking) {
+/// The tables.
+pub(crate) fn tables(study: &Study, ranking: &Ranking) -> Markup {
     let ranked = Ranked { study, arms: ranking.levels.iter().flatten().map(|r| r.arm).collect() };
     let errors: Vec<f64> = ranking.levels.iter().flatten().map(|r| r.error).collect();
     let place = |arm: usize| ranked.arms.iter().position(|a| *a == arm);
@@ -134,74 +140,74 @@ pub(crate) fn tables(out: &mut String, study: &Study, ranking: &Ranking) {
     let mut first = vec![
         ranked.column("Δt", |arm| step(&study.manifest.arms[arm], "time.step").map(five)),
         ranked.column("Error", |arm| place(arm).map(|i| three(errors[i]))),
-        ranked.late(),
+        ranked.delay(),
         ranked.metric("Steps", "steps"),
-        ranked.metric("Newton its", "newton_iterations"),
+        ranked.metric("Newton iterations", "newton_iterations"),
         ranked.metric("Rejected", "rejected_steps"),
         ranked.metric("CPU (s)", "cpu_time"),
         ranked.metric("Wall (s)", "wall_time"),
     ];
     first.extend(matched.into_iter().flat_map(|design| ranked.budgets(design)));
-    table(out, "Error and cost", ranking, study, &first);
     let second = [
         ranked.metric("Energy drift", "energy_drift"),
-        ranked.metric("lost at the end", "energy_lost"),
-        ranked.metric("lost in an impact", "energy_lost_impact"),
-        ranked.metric("by integrator", "dissipated_integrator"),
-        ranked.metric("by contact", "dissipated_contact"),
-        ranked.beyond(),
-        ranked.metric("High freq.", "force_high_frequency"),
+        ranked.metric("Lost at end", "energy_lost"),
+        ranked.metric("Lost in impact", "energy_lost_impact"),
+        ranked.metric("By integrator", "dissipated_integrator"),
+        ranked.metric("By contact", "dissipated_contact"),
+        ranked.excess_variation(),
+        ranked.metric("High-frequency power", "force_high_frequency"),
         ranked.metric("Chatter", "chatter"),
     ];
-    table(out, "Energy, and roughness of the contact force", ranking, study, &second);
     let mut third = vec![
-        ranked.metric("Penetration", "penetration"),
-        ranked.metric("its mean", "penetration_mean"),
-        ranked.error("Impulse x", "impulse_x"),
-        ranked.error("Impulse y", "impulse_y"),
-        ranked.error("Restitution", "restitution"),
-        ranked.error("Duration", "contact_duration"),
+        ranked.metric("Max. penetration", "penetration"),
+        ranked.metric("Mean penetration", "penetration_mean"),
+        ranked.error("Error of x impulse", "impulse_x"),
+        ranked.error("Error of y impulse", "impulse_y"),
+        ranked.error("Error of restitution", "restitution"),
+        ranked.error("Error of contact duration", "contact_duration"),
     ];
     third.extend(ranked.stresses());
     third.extend(ranked.orders());
-    table(out, "Penetration; errors of contact and stress; orders", ranking, study, &third);
+    html! {
+        (table("Error and cost", ranking, study, &first))
+        (table("Energy and roughness of the contact force", ranking, study, &second))
+        (table("Penetration, errors and orders of convergence", ranking, study, &third))
+    }
 }
 
-fn table(out: &mut String, title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) {
-    let shown: Vec<&Column> = columns.iter().filter(|c| c.cells.iter().any(Option::is_some)).collect();
+fn table(title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) -> Markup {
+    let (shown, missing): (Vec<_>, Vec<_>) =
+        columns.iter().partition(|c| c.cells.iter().any(Option::is_some));
     if shown.is_empty() {
-        return;
+        return Markup::default();
     }
-    let heads =
-        shown.iter().fold(String::new(), |row, c| row + &format!("<th class=\"n\">{}</th>", html(&c.head)));
-    let _ = writeln!(
-        out,
-        "<h3>{title}</h3>\n<table class=\"metrics ranking\"><thead><tr><th class=\"n\">Place</th><th>Method</th>{heads}</tr></thead>"
-    );
-    let mut row = 0;
-    for (level, ranked) in ranking.levels.iter().enumerate() {
-        if ranking.levels.len() > 1 {
-            let _ =
-                writeln!(out, "<tr><td colspan=\"{}\"><b>Level {}</b></td></tr>", shown.len() + 2, level + 1);
+    // The cells of a column run through all levels.
+    let mut rows = 0..;
+    html! {
+        h3 { (title) }
+        table.metrics.ranking {
+            thead {
+                tr {
+                    th.n { "Place" } th { "Method" }
+                    @for column in &shown { th.n { (Label(&column.head)) } }
+                }
+            }
+            @for (level, ranked) in ranking.levels.iter().enumerate() {
+                @if ranking.levels.len() > 1 {
+                    tr { td colspan=(shown.len() + 2) { b { "Level " (level + 1) } } }
+                }
+                @for (r, row) in ranked.iter().zip(rows.by_ref()) {
+                    @let arm = &study.manifest.arms[r.arm];
+                    tr {
+                        td.n { (r.place) }
+                        td.method { (arm.role.method.as_ref().unwrap_or(&arm.name)) }
+                        @for column in &shown { td.n { (column.cells[row].as_deref().unwrap_or("–")) } }
+                    }
+                }
+            }
         }
-        for r in ranked {
-            let arm = &study.manifest.arms[r.arm];
-            let cell =
-                |c: &&Column| format!("<td class=\"n\">{}</td>", c.cells[row].as_deref().unwrap_or("–"));
-            let cells: String = shown.iter().map(cell).collect();
-            let name = escape(arm.role.method.as_ref().unwrap_or(&arm.name));
-            let _ = writeln!(
-                out,
-                "<tr><td class=\"n\">{}</td><td class=\"method\">{name}</td>{cells}</tr>",
-                r.place
-            );
-            row += 1;
+        @if !missing.is_empty() {
+            p.small { "Not available: " (joined(missing.iter().map(|c| Label(&c.head)), ", ")) "." }
         }
-    }
-    out.push_str("</table>\n");
-    let missing: Vec<String> =
-        columns.iter().filter(|c| c.cells.iter().all(Option::is_none)).map(|c| html(&c.head)).collect();
-    if !missing.is_empty() {
-        let _ = writeln!(out, "<p class=\"small\">No value of: {}.</p>", missing.join(", "));
     }
 }

@@ -1,13 +1,13 @@
-//! What lies beside a figure: its numbers as a table, and a short script that draws them again with
-//! matplotlib, panes, axes, marks and styles alike.
+//! Files beside a figure: its data as a table, and a short script that redraws it with matplotlib
+//! with the same panes, axes, marks and styles.
 
 use std::fmt::Write as _;
 
 use crate::plot::{Pane, Plot, style};
 
-/// The script; `@WORD@` stands for what differs.
+/// The script; every `@WORD@` is replaced.
 const SCRIPT: &str = r##"#!/usr/bin/env python3
-"""Draws @NAME@.csv again, as @NAME@-redrawn.pdf: python3 @NAME@.py  (needs matplotlib)"""
+"""Plots @NAME@.csv into @NAME@-redrawn.pdf: python3 @NAME@.py  (needs matplotlib)"""
 import csv, pathlib
 import matplotlib.pyplot as plt
 
@@ -34,7 +34,9 @@ def style(label):
 
 rows = -(-len(panes) // across)
 size = (7.2, @HIGH@ * rows + 0.5 + 0.1 * len(styles))
-figure, axes = plt.subplots(rows, across, figsize=size, squeeze=False, sharex=True, sharey=@SAME@, layout="constrained")
+figure, axes = plt.subplots(
+    rows, across, figsize=size, squeeze=False, sharex=True, sharey=@SAME@, layout="constrained"
+)
 for k, (title, curves) in enumerate(panes.items()):
     ax = axes.flat[k]
     low, high = curves.pop("reference, low", None), curves.pop("reference, high", None)
@@ -44,10 +46,15 @@ for k, (title, curves) in enumerate(panes.items()):
         ax.plot(x, y, lw=1.2, label=label, **style(label))
     for x, word in marks[k]:
         ax.axvline(x, color="#777777", lw=0.7, ls=":")
-        ax.annotate(word, (x, 0.97), xycoords=("data", "axes fraction"), rotation=90, ha="right", va="top", fontsize=7)
+        ax.annotate(
+            word, (x, 0.97), xycoords=("data", "axes fraction"), rotation=90, ha="right", va="top", fontsize=7
+        )
     if floors[k]:
         ax.axhline(floors[k][0], color="#777777", lw=0.7, ls=":")
-        ax.annotate(floors[k][1], (0.98, floors[k][0]), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=7)
+        level, word = floors[k]
+        ax.annotate(
+            word, (0.98, level), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=7
+        )
     ax.set_title(title, fontsize=9 if across < 3 else 7.5)
     ax.set(ylabel=y_labels[k], xscale="@X_SCALE@", yscale="@Y_SCALE@", ylim=limits[k])
 for ax in axes.flat[len(panes):]:
@@ -63,7 +70,8 @@ figure.savefig(here / "@NAME@-redrawn.pdf")
 "##;
 
 impl Plot {
-    /// `pane,curve,x,y`, and the bands as curves `reference, low` and `reference, high`.
+    /// The table with columns `pane,curve,x,y`; the edges of a band are the curves `reference, low`
+    /// and `reference, high`.
     pub(crate) fn csv(&self) -> String {
         let mut out = String::from("pane,curve,x,y\n");
         let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
@@ -82,7 +90,7 @@ impl Plot {
         out
     }
 
-    /// A script that draws the table with matplotlib.
+    /// The script that plots the table with matplotlib.
     pub(crate) fn script(&self) -> String {
         let list = |of: &dyn Fn(&Pane) -> String| {
             let each: Vec<String> = self.panes.iter().map(of).collect();
@@ -126,12 +134,12 @@ impl Plot {
     }
 }
 
-/// Dashes as matplotlib has them; `"-"` for none.
+/// Dashes in the notation of matplotlib; `"-"` for none.
 fn dashes(svg: &str) -> String {
     if svg.is_empty() { "\"-\"".to_owned() } else { format!("(0, ({}))", svg.replace(' ', ", ")) }
 }
 
-/// A label for matplotlib: subscripts and superscripts as it writes them.
+/// A label with subscripts and superscripts in the notation of matplotlib.
 fn plain(label: &str) -> String {
     let mut out = String::new();
     let mut rest = label;
@@ -154,7 +162,7 @@ mod tests {
     use crate::plot::tests::plot;
 
     #[test]
-    fn the_table_has_every_number() {
+    fn the_table_has_all_values() {
         assert_eq!(
             plot().csv(),
             "pane,curve,x,y\n\"one\",\"Hu, \"\"a\"\"\",0.001,0.0\n\"one\",\"Hu, \"\"a\"\"\",0.01,0.0002\n"
@@ -162,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_of_the_script_is_left_open() {
+    fn every_word_of_the_script_is_replaced() {
         let script = plot().script();
         assert!(
             script.contains("time t$_{\\\\mathrm{c}}$ (s)")

@@ -1,8 +1,8 @@
-//! The case drawn: bodies with their mesh, supports, loads, gravity, initial velocities, contact
-//! sides, probes and what it is made of.
+//! Drawing of the initial configuration: bodies with their mesh, supports, loads, gravity, initial
+//! velocities, contact sides and probes, with a key.
 //!
-//! From the record alone: positions and cells from the first field file, the rest from
-//! `manifest.json` (`case`, `sides`).
+//! Positions and cells come from the first field file, everything else from `manifest.json`
+//! (`case`, `sides`).
 
 mod drawing;
 mod forces;
@@ -25,11 +25,11 @@ use crate::symbols::{arrow, direction, guides, plus, rollers, wall};
 use drawing::{BAR, PRIMARY, SECONDARY, Setup};
 use values::{list, text, vector};
 
-/// Widest picture, and the width of its key.
+/// Largest width of the picture, and width of the key.
 const ROOM: f64 = 470.0;
 const KEY: f64 = 320.0;
 
-/// The figure, from the initial fields; nothing where there are no cells.
+/// The figure, from the initial fields; nothing without cells.
 pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     let flat = fields.blocks.iter().all(|b| b.cell == Cell::Curve);
     let points = places(fields);
@@ -37,7 +37,7 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     for p in fields.blocks.iter().flat_map(|b| &b.connectivity).map(|&k| points[k]) {
         frame = [frame[0].min(p[0]), frame[1].max(p[0]), frame[2].min(p[1]), frame[3].max(p[1])];
     }
-    // A wall in dimension 1 belongs into the picture.
+    // In 1D the picture includes the walls.
     for point in list(&run.manifest.case, "contacts").iter().filter_map(|c| c.pointer("/primary/plane/point"))
     {
         let x = vector(Some(point)).first().copied().filter(|_| flat).unwrap_or(frame[0]);
@@ -63,7 +63,8 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     let mut key = String::new();
     let lines = setup.key(&mut key, right + margin + 36.0);
     let bottom = (top + picture + margin).max(if flat { 0.0 } else { lines - 60.0 });
-    let mut out = open("The case", right + margin + 36.0 + KEY, (bottom + 44.0).max(lines + 8.0));
+    let mut out =
+        open("Initial configuration", right + margin + 36.0 + KEY, (bottom + 44.0).max(lines + 8.0));
     setup.axes(&mut out, [left - margin, right + margin, top - margin, bottom]);
     setup.bodies(&mut out);
     setup.planes(&mut out, &planes, 0.6 * margin);
@@ -78,7 +79,7 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
 }
 
 impl Setup<'_> {
-    /// Coordinates at the edges of the picture.
+    /// Coordinate axes at the edges of the picture.
     fn axes(&self, out: &mut String, [left, right, top, bottom]: [f64; 4]) {
         let length = self.case().pointer("/units/length").and_then(Value::as_str).unwrap_or_default();
         let axis = |low: f64, high: f64, pixels: f64| Axis::new((low, high), (pixels / 80.0).max(2.0), true);
@@ -124,7 +125,8 @@ impl Setup<'_> {
                     let (a, b) = (self.node(cell[0]), self.node(cell[1]));
                     let _ = writeln!(
                         out,
-                        "<rect x=\"{:.2}\" y=\"{:.1}\" width=\"{:.2}\" height=\"{BAR}\" fill=\"{fill}\" stroke=\"#98a2ad\" stroke-width=\"0.6\"/>",
+                        "<rect x=\"{:.2}\" y=\"{:.1}\" width=\"{:.2}\" height=\"{BAR}\" fill=\"{fill}\" \
+                         stroke=\"#98a2ad\" stroke-width=\"0.6\"/>",
                         a[0].min(b[0]),
                         a[1] - 0.5 * BAR,
                         (b[0] - a[0]).abs()
@@ -155,7 +157,8 @@ impl Setup<'_> {
                 out,
                 "{}<path d=\"{cells}\" fill=\"{fill}\" stroke=\"{fill}\" stroke-width=\"10\"/>\n\
                  <path d=\"{inside}\" fill=\"none\" stroke=\"#98a2ad\" stroke-width=\"11\"/>\n\
-                 <path d=\"{outline}\" fill=\"none\" stroke=\"#222\" stroke-width=\"24\" stroke-linecap=\"round\"/>\n</g>",
+                 <path d=\"{outline}\" fill=\"none\" stroke=\"#222\" stroke-width=\"24\" \
+                 stroke-linecap=\"round\"/>\n</g>",
                 open_grid()
             );
         }
@@ -170,9 +173,14 @@ impl Setup<'_> {
                         wall(out, &walk, 0.0);
                         continue;
                     }
-                    let held = if fix.first() == Some(&0.0) { [1.0, 0.0] } else { [0.0, 1.0] };
-                    let across = walk.iter().all(|(_, n)| (n[0] * held[0] + n[1] * held[1]).abs() > 0.7);
-                    if across { rollers(out, &walk) } else { guides(out, &walk, held) }
+                    let constrained = if fix.first() == Some(&0.0) { [1.0, 0.0] } else { [0.0, 1.0] };
+                    let along_normal =
+                        |(_, n): &(Point, Point)| (n[0] * constrained[0] + n[1] * constrained[1]).abs() > 0.7;
+                    if walk.iter().all(along_normal) {
+                        rollers(out, &walk);
+                    } else {
+                        guides(out, &walk, constrained);
+                    }
                 }
             }
         }
@@ -198,7 +206,7 @@ impl Setup<'_> {
         }
     }
 
-    /// Names of bodies, gravity and initial velocity.
+    /// Names of bodies, gravity and initial velocities.
     fn loads(&self, out: &mut String) {
         for body in list(self.case(), "bodies") {
             let Some(center) = self.center(text(body, "name")) else { continue };
@@ -207,7 +215,8 @@ impl Setup<'_> {
             } else {
                 [center[0], center[1] - 24.0]
             };
-            let halo = "text-anchor=\"middle\" font-style=\"italic\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
+            let halo = "text-anchor=\"middle\" font-style=\"italic\" font-size=\"15\" stroke=\"#fff\" \
+                        stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
             write_text(out, x, y, halo, text(body, "name"));
             let mut at = if self.flat {
                 [center[0], center[1] - 0.5 * BAR - 30.0]
@@ -243,10 +252,12 @@ impl Setup<'_> {
                 self.to(self.moved([at.first().copied().unwrap_or(0.0), at.get(1).copied().unwrap_or(0.0)]));
             let _ = writeln!(
                 out,
-                "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.8\"/>",
+                "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" \
+                 stroke-width=\"1.8\"/>",
                 p[0], p[1]
             );
-            let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" paint-order=\"stroke\" stroke-linejoin=\"round\"";
+            let bold = "font-weight=\"bold\" font-size=\"15\" stroke=\"#fff\" stroke-width=\"4\" \
+                        paint-order=\"stroke\" stroke-linejoin=\"round\"";
             let [x, y] =
                 if self.flat { [p[0] - 4.0, p[1] - 0.5 * BAR - 7.0] } else { [p[0] + 8.0, p[1] - 7.0] };
             write_text(out, x, y, bold, text(probe, "name"));

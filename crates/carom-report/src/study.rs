@@ -1,34 +1,34 @@
-//! The page of a study: its tables and, for every probe's column, one figure with the curves of all
-//! arms.
+//! The report of a study: its tables, its page and, for every probe column, figures with the curves
+//! of all arms.
 
 use std::path::Path;
 
 use carom_record::study::Study;
 
-use crate::collected::{Column, Origin, Origins, collect, named};
-use crate::labels::with_unit;
+use crate::collected::{Column, Origin, collect, named};
+use crate::labels::{capitalised, file_name, with_unit};
 use crate::plot::{Curve, Pane, Plot};
-use crate::publish::{ReportError, ReportSummary, publish};
+use crate::publish::{ReportError, ReportSummary, publish, write};
 use crate::{laboratory, setup, study_page};
 
-/// Curves of one figure; more arms make more figures.
+/// Curves in one figure; more arms need more figures.
 const MOST: usize = 8;
 
-/// Makes figures, tables and page of a study directory, from the records alone; arm by arm, so that
-/// long histories do not add up.
+/// Writes the figures, tables and page of a study directory, from the records alone. Arms are read
+/// one by one to limit the memory that long histories need.
 ///
 /// # Errors
-/// What cannot be read or written.
+/// A file cannot be read or written.
 pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     let mut columns: Vec<Column> = Vec::new();
     let mut time = String::new();
-    let mut origins = Origins::default();
+    let mut origins = Vec::new();
     let mut picture = None;
     let study = Study::open(directory, &mut |arm, run| {
         run.history.unit("time").clone_into(&mut time);
         picture = picture.take().or_else(|| setup::figure(run, &run.field(run.fields.first()?).ok()?));
         collect(&mut columns, arm, run);
-        origins.arms.push(Origin::of(arm, run));
+        origins.push(Origin::of(arm, run));
     })?;
     study.write_tables()?;
     let mut plots = laboratory::plots(&study, &columns, &time);
@@ -44,26 +44,20 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
         all.iter().map(|(n, s)| (n.as_str(), s.as_str())),
         Vec::new(),
     )?;
+    // Beside each figure its table and the script that redraws it.
     for plot in &plots {
-        write_beside(directory, plot)?;
+        let beside = |ending: &str| directory.join("figures").join(format!("{}.{ending}", plot.name));
+        write(beside("csv"), &plot.csv())?;
+        write(beside("py"), &plot.script())?;
     }
     Ok(summary)
 }
 
-/// The table of a figure and the script that draws it again.
-fn write_beside(directory: &Path, plot: &Plot) -> Result<(), ReportError> {
-    for (ending, text) in [("csv", plot.csv()), ("py", plot.script())] {
-        let path = directory.join("figures").join(format!("{}.{ending}", plot.name));
-        std::fs::write(&path, text).map_err(|source| ReportError::Write { path, source })?;
-    }
-    Ok(())
-}
-
-/// A column of all arms, eight curves to a figure.
+/// A column of all arms, with up to eight curves in a figure.
 fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
     let (label, what) = named(&column.name);
     let arms = &study.manifest.arms;
-    // Arms of one case stand together.
+    // Arms of the same case are grouped.
     let groups: Vec<Vec<usize>> = arms
         .iter()
         .enumerate()
@@ -85,11 +79,7 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
         if curves.is_empty() {
             return None;
         }
-        let file: String = column
-            .name
-            .chars()
-            .map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' })
-            .collect();
+        let file = file_name(&column.name);
         let (name, part) = match (groups.len(), &members[..]) {
             (2.., [first, .., last]) => {
                 (format!("{file}-{}", group + 1), format!(", arms {} to {}", first + 1, last + 1))
@@ -97,10 +87,9 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
             (2.., [only]) => (format!("{file}-{}", group + 1), format!(", arm {}", only + 1)),
             _ => (file, String::new()),
         };
-        let first = what.chars().next().map_or(String::new(), |c| c.to_uppercase().collect());
         Some(Plot {
             name,
-            caption: format!("{first}{}{part}.", what.chars().skip(1).collect::<String>()),
+            caption: format!("{}{part}.", capitalised(&what)),
             x_label: with_unit("time t", time),
             log: [false, false],
             across: 1,

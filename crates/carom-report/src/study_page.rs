@@ -1,85 +1,56 @@
-//! `study.html`: arms, claims, metrics and overlays, in one page that needs nothing but itself.
-
-use std::fmt::Write as _;
+//! `study.html`: recommendation, arms, ranking, figures and metrics of a study as a single
+//! self-contained page.
 
 use carom_record::Status;
-use carom_record::study::{Study, Verdict};
+use carom_record::study::{Row, Study, Verdict};
+use maud::{Markup, PreEscaped, Render, html};
 
-use crate::collected::Origins;
+use crate::collected::Origin;
 use crate::digits::five;
+use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::plot::{Plot, style};
-use crate::text::{escape, html};
+use crate::text::{Label, Prose};
 use crate::{convergence, design, integrity, verdict};
 
-/// Arms in one table of metrics; more make more tables.
+/// Arms in one table of metrics; more arms need more tables.
 const ACROSS: usize = 8;
 
-/// Values of a key that are told one by one.
+/// Largest number of values of a key that are listed one by one.
 const FEW: usize = 4;
 
-/// More arms than these are folded away.
+/// Longer lists of arms are folded.
 const MANY: usize = 12;
 
-/// What the page of a run does not need.
-const CSS: &str = "td.method { min-width: 10rem; } .verdict { border: 2px solid #0072b2; border-radius: 6px; padding: .2rem 1.1rem .6rem; margin: 1rem 0; background: #f4f9fd; } \
-.verdict.none { border-color: #8a5a00; background: #fdf8ee; } .verdict dt { font-weight: 600; margin-top: .5rem; } .verdict dd { margin-left: 1.2rem; } span.miss { color: #a32b00; font-weight: 600; } td.undecided { color: #8a5a00; font-weight: 600; } th.n { text-align: right; } \
-table.metrics td, table.metrics th { padding-right: .7rem; } table.ranking { font-size: .78rem; } table.ranking td, table.ranking th { padding-right: .45rem; } .ranking td.method { min-width: 7rem; } .ranking code { font-size: inherit; } svg.line { vertical-align: middle; } \
-@media print { body { -webkit-print-color-adjust: exact; print-color-adjust: exact; } .metrics { font-size: 8.5pt; } }\n";
-
 /// The page.
-pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins: &Origins) -> String {
-    let m = &study.manifest;
-    let mut out = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
-         <title>{title}</title>\n<style>\n{}{CSS}</style>\n</head>\n<body>\n<h1>{title}</h1>\n",
-        include_str!("page.css"),
-        title = escape(&m.title)
-    );
-    let (class, word) = match m.status {
+pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins: &[Origin]) -> String {
+    let (class, word) = match study.manifest.status {
         Status::Finished => ("finished", "finished"),
-        Status::Running => ("running", "running, or killed: resumable"),
-        Status::Stopped | Status::Failed => ("stopped", "stopped: resumable"),
+        Status::Running => ("running", "running or interrupted; can be resumed"),
+        Status::Stopped | Status::Failed => ("stopped", "stopped; can be resumed"),
     };
-    let _ = writeln!(out, "<p><span class=\"status {class}\">{word}</span></p>");
-    verdict::show(&mut out, study);
-    setup(&mut out, study, picture);
-    arms(&mut out, study);
-    verdict::rankings(&mut out, study);
-    claims(&mut out, &study.verdicts);
-    expectations(&mut out, study);
-    out.push_str("<h2>Figures</h2>\n");
-    for (i, plot) in plots.iter().enumerate() {
-        let (caption, name) = (html(&plot.caption), escape(&plot.name));
-        let link =
-            ["svg", "csv", "py"].map(|e| format!("<a href=\"figures/{name}.{e}\">figures/{name}.{e}</a>"));
-        let _ = writeln!(
-            out,
-            "<figure>\n{}<figcaption><b>Figure {}.</b> {caption} <span class=\"small\">({})</span></figcaption>\n</figure>",
-            plot.svg(),
-            i + 1,
-            link.join(", ")
-        );
-    }
-    metrics(&mut out, study);
-    convergence::show(&mut out, study);
-    verdict::phases(&mut out, study);
-    integrity::show(&mut out, study, origins);
-    reproduce(&mut out, study);
-    out.push_str("</body>\n</html>\n");
-    out
+    let body = html! {
+        p { span.status.(class) { (word) } }
+        (verdict::summary(study))
+        (setup(study, picture))
+        (arms(study))
+        (verdict::rankings(study))
+        (claims(&study.verdicts))
+        (expectations(study))
+        h2 { "Figures" }
+        @for (i, plot) in plots.iter().enumerate() {
+            (figure(i + 1, &plot.name, &["svg", "csv", "py"], &plot.caption, &plot.svg()))
+        }
+        (metrics(study))
+        (convergence::section(study))
+        (verdict::phases(study))
+        (integrity::section(study, origins))
+        (reproduce(study))
+    };
+    document(&study.manifest.title, "", &body)
 }
 
-/// The case drawn, what is made of what, and what the arms vary.
-fn setup(out: &mut String, study: &Study, picture: Option<&str>) {
-    out.push_str("<h2>Setup</h2>\n");
-    if let Some(svg) = picture {
-        let _ = writeln!(
-            out,
-            "<figure>\n{svg}<figcaption>The case <code>{}</code> as its first arm has it <span class=\"small\">(<a \
-             href=\"figures/setup.svg\">figures/setup.svg</a>)</span></figcaption>\n</figure>",
-            escape(&study.manifest.source.case_path)
-        );
-    }
+/// The drawing of the case, the values that differ between arms, and the design.
+fn setup(study: &Study, picture: Option<&str>) -> Markup {
     let mut varied: Vec<(&str, Vec<&str>)> = Vec::new();
     let sets = study.manifest.arms.iter().filter(|a| !a.role.fine).flat_map(|a| &a.sets);
     for (key, value) in sets.filter_map(|set| set.split_once('=')) {
@@ -90,212 +61,247 @@ fn setup(out: &mut String, study: &Study, picture: Option<&str>) {
             None => varied.push((key, vec![value])),
         }
     }
-    let told = |(key, values): &(&str, Vec<&str>)| {
-        let values = match values.len() {
-            n if n > FEW => format!("{n} values"),
-            _ => values.iter().map(|v| format!("<code>{}</code>", escape(v))).collect::<Vec<_>>().join(", "),
-        };
-        format!("<li><code>{}</code>: {values}</li>", escape(key))
+    html! {
+        h2 { "Setup" }
+        @if let Some(svg) = picture {
+            figure {
+                (PreEscaped(svg))
+                figcaption {
+                    "Initial configuration of the first arm, case "
+                    code { (study.manifest.source.case_path) } ". "
+                    span.small { "(" (file("figures/setup.svg")) ")" }
+                }
+            }
+        }
+        @if !varied.is_empty() {
+            p { "Values that differ between arms; an arm that does not set one has that of the case:" }
+            ul {
+                @for (key, values) in varied {
+                    li {
+                        code { (key) } ": "
+                        @if values.len() > FEW { (values.len()) " values" } @else { (codes(&values, ", ")) }
+                    }
+                }
+            }
+        }
+        (design::paragraphs(study))
+    }
+}
+
+/// Items set as code, with a separator between them.
+fn codes(items: &[impl Render], separator: impl Render) -> Markup {
+    joined(items.iter().map(|item| html! { code { (item) } }), separator)
+}
+
+fn arms(study: &Study) -> Markup {
+    let m = &study.manifest;
+    html! {
+        h2 { "Arms" }
+        // A long list would push the results down the page.
+        details open[study.rows.len() <= MANY] {
+            summary { (study.rows.len()) " arms (variants of the case) and their settings" }
+            table {
+                thead {
+                    tr {
+                        th.n { "No." } th { "Line" } th { "Arm" } th { "Settings" } th.n { "Steps" }
+                        th { "Status" }
+                    }
+                }
+                @for (i, (row, arm)) in study.rows.iter().zip(&m.arms).enumerate() {
+                    tr {
+                        td.n { (i + 1) }
+                        td { (line(i)) }
+                        td {
+                            a href={ (arm.directory) "/report.html" } { (row.name) }
+                            @if m.reference.as_ref() == Some(&row.name) { " (reference)" }
+                        }
+                        td {
+                            @if let Some(path) = &arm.case_path { "case " code { (path) } }
+                            @if arm.case_path.is_some() && !arm.sets.is_empty() { br; }
+                            (codes(&arm.sets, html! { br; }))
+                        }
+                        td.n { (arm.steps) }
+                        (ended(row))
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// How an arm ended, and why.
+fn ended(row: &Row) -> Markup {
+    let (class, word) = match row.status {
+        Some(Status::Finished) => ("pass", "finished"),
+        Some(Status::Failed) => ("miss", "failed"),
+        Some(Status::Running | Status::Stopped) => ("undecided", "not finished"),
+        None => ("undecided", "not started"),
     };
-    if !varied.is_empty() {
-        let _ = writeln!(
-            out,
-            "<p>Varied, where an arm does not leave it as the case has it:</p>\n<ul>{}</ul>",
-            varied.iter().map(told).collect::<String>()
-        );
+    html! {
+        td.(class) {
+            (word)
+            @if let Some(reason) = &row.reason { br; span.small { (reason) } }
+        }
     }
-    design::show(out, study);
 }
 
-fn arms(out: &mut String, study: &Study) {
-    // A long list stands in the way of what was found.
-    let open = if study.rows.len() > MANY { "" } else { " open" };
-    let _ = writeln!(
-        out,
-        "<h2>Arms</h2>\n<details{open}><summary>{} arms, and what each sets</summary>",
-        study.rows.len()
-    );
-    out.push_str("<table>\n<thead><tr><th></th><th></th><th>Arm</th><th>Sets</th><th class=\"n\">Steps</th><th></th></tr></thead>\n");
-    for (i, (row, arm)) in study.rows.iter().zip(&study.manifest.arms).enumerate() {
-        let (color, dashes, _) = style(i);
-        let (class, word) = match row.status {
-            Some(Status::Finished) => ("pass", "finished"),
-            Some(Status::Failed) => ("miss", "failed"),
-            Some(Status::Running | Status::Stopped) => ("undecided", "not finished"),
-            None => ("undecided", "not begun"),
-        };
-        let reason = row.reason.as_ref().map(|r| format!("<br><span class=\"small\">{}</span>", escape(r)));
-        let reference =
-            if study.manifest.reference.as_ref() == Some(&row.name) { " (reference)" } else { "" };
-        let _ = writeln!(
-            out,
-            "<tr><td class=\"n\">{}</td><td><svg class=\"line\" width=\"44\" height=\"10\"><path d=\"M1 5h42\" stroke=\"{color}\" \
-             stroke-width=\"2\" stroke-dasharray=\"{dashes}\"/></svg></td><td><a href=\"{}/report.html\">{}</a>{reference}</td>\
-             <td>{}</td><td class=\"n\">{}</td><td class=\"{class}\">{word}{}</td></tr>",
-            i + 1,
-            escape(&arm.directory),
-            escape(&row.name),
-            arm.case_path
-                .iter()
-                .map(|path| format!("case <code>{}</code>", escape(path)))
-                .chain(arm.sets.iter().map(|s| format!("<code>{}</code>", escape(s))))
-                .collect::<Vec<_>>()
-                .join("<br>"),
-            arm.steps,
-            reason.unwrap_or_default()
-        );
+/// The line of an arm in the figures.
+fn line(arm: usize) -> Markup {
+    let (color, dashes, _) = style(arm);
+    html! {
+        svg.line width="44" height="10" {
+            path d="M1 5h42" stroke=(color) stroke-width="2" stroke-dasharray=(dashes) {}
+        }
     }
-    out.push_str("</table></details>\n");
 }
 
-fn claims(out: &mut String, verdicts: &[Verdict]) {
-    if verdicts.is_empty() {
-        return;
+fn claims(verdicts: &[Verdict]) -> Markup {
+    let class = |v: &Verdict| match v.holds {
+        Some(true) => "pass",
+        Some(false) => "miss",
+        None => "undecided",
+    };
+    html! {
+        @if !verdicts.is_empty() {
+            h2 { "Claims" }
+            table {
+                thead { tr { th { "Claim" } th.n { "Left side" } th.n { "Right side" } th { "Result" } } }
+                @for v in verdicts {
+                    tr {
+                        td { (v.claim.text) br; code { (v.claim.compare) } }
+                        td.n { (or_dash(v.left, five)) }
+                        td.n { (or_dash(v.right, five)) }
+                        td.(class(v)) { (v.word()) }
+                    }
+                }
+            }
+        }
     }
-    out.push_str("<h2>Claims</h2>\n<table>\n<thead><tr><th>Claim</th><th class=\"n\">Left</th><th class=\"n\">Right</th><th></th></tr></thead>\n");
-    for v in verdicts {
-        let class = match v.holds {
-            Some(true) => "pass",
-            Some(false) => "miss",
-            None => "undecided",
-        };
-        let _ = writeln!(
-            out,
-            "<tr><td>{}<br><code>{}</code></td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"{class}\">{}</td></tr>",
-            escape(&v.claim.text),
-            escape(&v.claim.compare),
-            v.left.map_or("–".into(), five),
-            v.right.map_or("–".into(), five),
-            v.word()
-        );
-    }
-    out.push_str("</table>\n");
 }
 
-fn expectations(out: &mut String, study: &Study) {
+fn expectations(study: &Study) -> Markup {
     let arms = study.rows.iter().flat_map(|row| row.expectations.iter().map(move |e| (row.name.as_str(), e)));
     let all: Vec<_> = arms.chain(study.expectations.iter().map(|e| ("", e))).collect();
-    if all.is_empty() {
-        return;
-    }
-    out.push_str("<h2>Expectations</h2>\n");
     let met = all.iter().filter(|(_, e)| e.pass).count();
-    let _ = writeln!(out, "<p>{met} of {} met.</p>", all.len());
-    let across = side_by_side(out, study);
-    let _ = writeln!(
-        out,
-        "<details{}><summary>One by one, with their sources</summary>",
-        if across { "" } else { " open" }
-    );
-    out.push_str("<table>\n<thead><tr><th>What</th><th>Arm</th><th>Expected</th><th class=\"n\">Got</th><th></th><th>Source</th></tr></thead>\n");
-    for (arm, e) in all {
-        let (class, word) = if e.pass { ("pass", "met") } else { ("miss", "missed") };
-        let why = e
-            .why
-            .as_ref()
-            .map_or_else(String::new, |w| format!("<br><span class=\"small\">{}</span>", escape(w)));
-        let _ = writeln!(
-            out,
-            "<tr><td><code>{}</code>{why}</td><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"{class}\">{word}</td><td>{}</td></tr>",
-            escape(&e.what),
-            escape(arm),
-            escape(&e.expected),
-            e.got.map_or("–".into(), five),
-            escape(e.source.as_deref().unwrap_or_default())
-        );
+    let table = by_arm(study);
+    html! {
+        @if !all.is_empty() {
+            h2 { "Expectations" }
+            p { (met) " of " (all.len()) " met." }
+            @if let Some(table) = &table { (table) }
+            details open[table.is_none()] {
+                summary { "All expectations with their sources" }
+                table {
+                    thead {
+                        tr {
+                            th { "Quantity" } th { "Arm" } th { "Expected" } th.n { "Result" } th {}
+                            th { "Source" }
+                        }
+                    }
+                    @for (arm, e) in all {
+                        tr {
+                            td {
+                                code { (e.what) }
+                                @if let Some(why) = &e.why { br; span.small { (why) } }
+                            }
+                            td { (arm) }
+                            td { (minus(&e.expected)) }
+                            td.n { (or_dash(e.got, five)) }
+                            @if e.pass { td.pass { "met" } } @else { td.miss { "missed" } }
+                            td { @if let Some(source) = &e.source { (source) } }
+                        }
+                    }
+                }
+            }
+        }
     }
-    out.push_str("</table></details>\n");
 }
 
-/// Most columns that stand side by side.
+/// Largest number of columns of the table of expectations by arm.
 const COLUMNS: usize = 8;
 
-/// What is expected of several arms, a row per arm and a column per question: what it got over what
-/// was expected. Whether there is such a table.
-fn side_by_side(out: &mut String, study: &Study) -> bool {
-    let mut questions: Vec<&str> = Vec::new();
+/// Expectations by arm, one row per arm and one column per quantity, result above expected value;
+/// nothing for fewer than three arms.
+fn by_arm(study: &Study) -> Option<Markup> {
+    let mut quantities: Vec<&str> = Vec::new();
     for e in study.rows.iter().flat_map(|row| &row.expectations) {
-        if !questions.contains(&e.what.as_str()) {
-            questions.push(&e.what);
+        if !quantities.contains(&e.what.as_str()) {
+            quantities.push(&e.what);
         }
     }
     let arms: Vec<_> = study.rows.iter().filter(|row| !row.expectations.is_empty()).collect();
-    if arms.len() < 3 || questions.is_empty() || questions.len() > COLUMNS {
-        return false;
+    if arms.len() < 3 || quantities.is_empty() || quantities.len() > COLUMNS {
+        return None;
     }
-    let heads: Vec<String> =
-        questions.iter().map(|q| format!("<th class=\"n\"><code>{}</code></th>", escape(q))).collect();
-    let heads = heads.concat();
-    let _ = writeln!(out, "<table class=\"metrics\"><thead><tr><th>Arm</th>{heads}</tr></thead>");
-    for row in arms {
-        let cell = |question: &&str| {
-            let mine: Vec<_> = row.expectations.iter().filter(|e| e.what == **question).collect();
-            let Some(first) = mine.first() else { return "<td></td>".to_owned() };
-            let class = if mine.iter().all(|e| e.pass) { "pass" } else { "miss" };
-            let expected = mine.iter().map(|e| escape(&e.expected)).collect::<Vec<_>>().join(", ");
-            let got = first.got.map_or("–".into(), five);
-            format!(
-                "<td class=\"n\"><span class=\"{class}\">{got}</span><br><span class=\"small\">{expected}</span></td>"
-            )
-        };
-        let cells: String = questions.iter().map(cell).collect();
-        let _ = writeln!(out, "<tr><td>{}</td>{cells}</tr>", escape(&row.name));
-    }
-    out.push_str("</table>\n");
-    true
-}
-
-fn metrics(out: &mut String, study: &Study) {
-    out.push_str("<h2>Metrics</h2>\n");
-    let all = study.metrics();
-    let shown: Vec<_> =
-        all.iter().filter(|m| study.rows.iter().any(|r| r.value(&m.name).is_some())).collect();
-    for first in (0..study.rows.len()).step_by(ACROSS) {
-        let rows = &study.rows[first..study.rows.len().min(first + ACROSS)];
-        let heads = (0..rows.len())
-            .fold(String::new(), |row, i| row + &format!("<th class=\"n\">{}</th>", first + i + 1));
-        let _ = writeln!(
-            out,
-            "<table class=\"metrics\">\n<thead><tr><th>Metric</th><th>Unit</th>{heads}</tr></thead>"
-        );
-        for metric in &shown {
-            let cells = rows.iter().map(|r| r.value(&metric.name).map_or("–".into(), five));
-            let cells = cells.fold(String::new(), |row, c| row + &format!("<td class=\"n\">{c}</td>"));
-            let _ = writeln!(
-                out,
-                "<tr><td><code>{}</code></td><td>{}</td>{cells}</tr>",
-                escape(&metric.name),
-                html(&metric.unit)
-            );
+    let cell = |row: &Row, quantity: &str| {
+        let mine: Vec<_> = row.expectations.iter().filter(|e| e.what == quantity).collect();
+        let class = if mine.iter().all(|e| e.pass) { "pass" } else { "miss" };
+        let Some(first) = mine.first() else { return html! { td {} } };
+        html! {
+            td.n {
+                span.(class) { (or_dash(first.got, five)) }
+                br;
+                span.small { (joined(mine.iter().map(|e| minus(&e.expected)), ", ")) }
+            }
         }
-        out.push_str("</table>\n");
-    }
-    out.push_str("<p class=\"small\">Columns are the numbers of the arms. Every value is computed from the arm's own directory alone; the same \
-                  numbers with all digits are in <a href=\"study.csv\">study.csv</a> and <a href=\"study_tidy.csv\">study_tidy.csv</a>.</p>\n\
-                  <details><summary>Definitions</summary>\n<table>\n");
-    for metric in &shown {
-        let _ = writeln!(
-            out,
-            "<tr><td><code>{}</code></td><td>{}</td></tr>",
-            escape(&metric.name),
-            escape(metric.definition)
-        );
-    }
-    out.push_str("</table></details>\n");
+    };
+    Some(html! {
+        table.metrics {
+            thead { tr { th { "Arm" } @for quantity in &quantities { th.n { code { (quantity) } } } } }
+            @for row in arms {
+                tr { td { (row.name) } @for quantity in &quantities { (cell(row, quantity)) } }
+            }
+        }
+    })
 }
 
-/// An entry for a bibliography that names the program and the input.
+fn metrics(study: &Study) -> Markup {
+    let mut shown = study.metrics();
+    shown.retain(|m| study.rows.iter().any(|r| r.value(&m.name).is_some()));
+    html! {
+        h2 { "Metrics" }
+        @for (part, rows) in study.rows.chunks(ACROSS).enumerate() {
+            table.metrics {
+                thead {
+                    tr {
+                        th { "Metric" } th { "Unit" }
+                        @for i in 1..=rows.len() { th.n { (part * ACROSS + i) } }
+                    }
+                }
+                @for metric in &shown {
+                    tr {
+                        td { code { (metric.name) } } td { (Label(&metric.unit)) }
+                        @for row in rows { td.n { (or_dash(row.value(&metric.name), five)) } }
+                    }
+                }
+            }
+        }
+        p.small {
+            "Column headings are the numbers of the arms. Every value is computed from the directory of its \
+             arm alone. Data in full precision: " (file("study.csv")) ", " (file("study_tidy.csv")) "."
+        }
+        details {
+            summary { "Definitions" }
+            table {
+                @for metric in &shown { tr { td { code { (metric.name) } } td { (metric.definition) } } }
+            }
+        }
+    }
+}
+
+/// A bibliography entry with the version of the program and the hash of the input.
 fn bibtex(study: &Study) -> String {
     let m = &study.manifest;
     let (year, hash) = (m.created.get(..4).unwrap_or_default(), m.input_hash.get(..16).unwrap_or_default());
+    let title = "Carom: impact and contact by the positional finite element method";
     format!(
-        "@software{{carom,\n  title   = {{Carom: impact and contact by the positional finite element method}},\n  version = {{{}}},\n  year    = {{{year}}},\n  \
+        "@software{{carom,\n  title   = {{{title}}},\n  version = {{{}}},\n  year    = {{{year}}},\n  \
          note    = {{study \"{}\", input {hash}}}\n}}",
         m.version, m.title
     )
 }
 
-/// Files of a study directory, where it has them.
+/// Files that a study directory may contain.
 const FILES: [&str; 9] = [
     "study.json",
     "study.csv",
@@ -308,35 +314,32 @@ const FILES: [&str; 9] = [
     "checks.json",
 ];
 
-fn reproduce(out: &mut String, study: &Study) {
+fn reproduce(study: &Study) -> Markup {
     let m = &study.manifest;
-    let case = escape(&m.source.case_path);
-    let _ = writeln!(
-        out,
-        "<h2>To reproduce</h2>\n<p>Save the study as <code>study.toml</code> and the case as <code>{case}</code> beside it, then with Carom \
-         {}:</p>\n<pre>carom study study.toml</pre>\n<p class=\"small\">Input hash <code class=\"hash\">{}</code>; made {} on {} cores, {} {}. \
-         Results do not depend on the number of jobs; wall times do.</p>\n\
-         <details><summary>The study file</summary>\n<pre>{}</pre></details>\n<details><summary>The case file</summary>\n<pre>{}</pre></details>",
-        escape(&m.version),
-        escape(&m.input_hash),
-        escape(&m.created),
-        m.machine.cpus,
-        escape(&m.machine.os),
-        escape(&m.machine.arch),
-        escape(&m.source.study),
-        escape(&m.source.case)
-    );
     let there = FILES.iter().filter(|name| study.directory.join(name).is_file());
-    let files = there.fold(String::new(), |list, name| list + &format!(" · <a href=\"{name}\">{name}</a>"));
-    let _ = writeln!(
-        out,
-        "<p>The folder of this page is the record of the study, and enough to make the page again with <code>carom report</code>: put it into an archive whole. In it: \
-         <code>arms/</code>{files}</p>"
-    );
-    let _ = writeln!(out, "<h2>To cite</h2>\n<pre>{}</pre>", escape(&bibtex(study)));
-    for (path, text) in &m.source.others {
-        let (path, text) = (escape(path), escape(text));
-        let _ =
-            writeln!(out, "<details><summary>The case file {path}</summary>\n<pre>{text}</pre></details>");
+    html! {
+        h2 { "How to reproduce" }
+        p {
+            (Prose("Save the study file below as `study.toml` and the case file as "))
+            code { (m.source.case_path) } " relative to it, and run Carom " (m.version) ":"
+        }
+        pre { "carom study study.toml" }
+        p.small {
+            "Input hash " code.hash { (m.input_hash) } "; created " (m.created) " on " (m.machine.cpus)
+            " cores, " (m.machine.os) " " (m.machine.arch) ". Results do not depend on the number of jobs; \
+             wall times do."
+        }
+        details { summary { "Study file" } pre { (m.source.study) } }
+        details { summary { "Case file" } pre { (m.source.case) } }
+        @for (path, text) in &m.source.others {
+            details { summary { "Case file " code { (path) } } pre { (text) } }
+        }
+        p {
+            (Prose("The folder of this page is the complete record of the study: archive it as a whole, and \
+                    `carom report` rebuilds the page from it. Files: `arms/`"))
+            @for name in there { " · " (file(name)) }
+        }
+        h2 { "How to cite" }
+        pre { (bibtex(study)) }
     }
 }

@@ -15,7 +15,7 @@ pub(crate) fn direction(a: Point, b: Point) -> Point {
     if length > 0.0 { [d[0] / length, d[1] / length] } else { [0.0; 2] }
 }
 
-/// An arrow with a filled head, on a white halo.
+/// An arrow with a filled head and a white outline.
 pub(crate) fn arrow(out: &mut String, from: Point, to: Point, color: &str) {
     let d = direction(from, to);
     let side = [-d[1], d[0]];
@@ -24,7 +24,8 @@ pub(crate) fn arrow(out: &mut String, from: Point, to: Point, color: &str) {
     for (stroke, width) in [("#fff", 5.0), (color, 1.8)] {
         let _ = writeln!(
             out,
-            "<path d=\"M{:.1} {:.1}L{:.1} {:.1}\" stroke=\"{stroke}\" stroke-width=\"{width}\" fill=\"none\"/>",
+            "<path d=\"M{:.1} {:.1}L{:.1} {:.1}\" stroke=\"{stroke}\" stroke-width=\"{width}\" \
+             fill=\"none\"/>",
             from[0], from[1], neck[0], neck[1]
         );
     }
@@ -35,8 +36,7 @@ pub(crate) fn arrow(out: &mut String, from: Point, to: Point, color: &str) {
     );
 }
 
-/// Points at about equal distances along a polyline, with the outward direction there; ends
-/// included.
+/// Equidistant points along a polyline, ends included, with the outward normal.
 pub(crate) fn along(line: &[(Point, Point)], spacing: f64) -> Vec<(Point, Point)> {
     let lengths: Vec<f64> =
         line.windows(2).map(|w| (w[1].0[0] - w[0].0[0]).hypot(w[1].0[1] - w[0].0[1])).collect();
@@ -56,8 +56,8 @@ pub(crate) fn along(line: &[(Point, Point)], spacing: f64) -> Vec<(Point, Point)
     places
 }
 
-/// A line with hatching on its outer side, `offset` away from `line`: points with outward unit
-/// vectors.
+/// A line with hatching on its outer side, at a distance `offset` from `line`, whose points have
+/// outward unit normals.
 pub(crate) fn wall(out: &mut String, line: &[(Point, Point)], offset: f64) {
     let shifted: Vec<(Point, Point)> = line.iter().map(|&(p, n)| (plus(p, offset, n), n)).collect();
     let mut d = String::new();
@@ -66,34 +66,36 @@ pub(crate) fn wall(out: &mut String, line: &[(Point, Point)], offset: f64) {
     }
     let mut hatch = String::new();
     for (p, n) in along(&shifted, 7.0) {
-        // Outwards, turned by 45 degrees.
+        // The outward normal turned by 45 degrees.
         let q = plus(p, 7.0, [n[0] - n[1], n[1] + n[0]]);
         let _ = write!(hatch, "M{:.1} {:.1}L{:.1} {:.1}", p[0], p[1], q[0], q[1]);
     }
     let _ = writeln!(
         out,
-        "<path d=\"{hatch}\" stroke=\"#555\" stroke-width=\"0.8\" fill=\"none\"/>\n<path d=\"{d}\" stroke=\"#222\" stroke-width=\"1.5\" fill=\"none\"/>"
+        "<path d=\"{hatch}\" stroke=\"#555\" stroke-width=\"0.8\" fill=\"none\"/>\n<path d=\"{d}\" \
+         stroke=\"#222\" stroke-width=\"1.5\" fill=\"none\"/>"
     );
 }
 
-/// Rollers between a side and a wall: free along the side.
+/// Rollers between a side and a wall: the side can move along the wall.
 pub(crate) fn rollers(out: &mut String, line: &[(Point, Point)]) {
     wall(out, line, 9.0);
     for (p, n) in along(line, 22.0) {
         let c = plus(p, 4.5, n);
         let _ = writeln!(
             out,
-            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"3.8\" fill=\"#fff\" stroke=\"#222\" stroke-width=\"1.1\"/>",
+            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"3.8\" fill=\"#fff\" stroke=\"#222\" \
+             stroke-width=\"1.1\"/>",
             c[0], c[1]
         );
     }
 }
 
-/// Supports held across the side's normal: bars along the direction that is held.
-pub(crate) fn guides(out: &mut String, line: &[(Point, Point)], held: Point) {
+/// Bars along the constrained direction, for a side that is free along its normal.
+pub(crate) fn guides(out: &mut String, line: &[(Point, Point)], constrained: Point) {
     for (p, n) in along(line, 22.0) {
         let c = plus(p, 5.0, n);
-        let [a, b] = [-6.0, 6.0].map(|s| plus(c, s, held));
+        let [a, b] = [-6.0, 6.0].map(|s| plus(c, s, constrained));
         let _ = writeln!(
             out,
             "<path d=\"M{:.1} {:.1}L{:.1} {:.1}\" stroke=\"#222\" stroke-width=\"2\"/>",

@@ -1,27 +1,17 @@
-//! Text in SVG and HTML: escaping, and labels with subscripts and superscripts, `σ_{yy}` and
-//! `kg·m/s^2`.
+//! Text in SVG and HTML: labels with subscripts and superscripts, `σ_{yy}` and `kg·m/s^2`.
 
 use std::fmt::Write as _;
 
-/// Escapes text for HTML and SVG, in content and in attributes.
+use maud::{Markup, Render, html};
+
+/// Text as the content of an SVG element; HTML is escaped by the templates.
 pub(crate) fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            // XML has no way to write the other control characters.
-            c if c.is_control() && !matches!(c, '\n' | '\t') => out.push('\u{fffd}'),
-            c => out.push(c),
-        }
-    }
-    out
+    // XML cannot represent the other control characters.
+    let text = text.replace(|c: char| c.is_control() && !matches!(c, '\n' | '\t'), "\u{fffd}");
+    text.render().into_string()
 }
 
-/// Where a piece of a label stands.
+/// Vertical position of a piece of a label.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Level {
     Base,
@@ -29,8 +19,8 @@ enum Level {
     Super,
 }
 
-/// Pieces of a label. A `_` or `^` takes the group in braces; `^` without braces takes the sign and
-/// digits that follow.
+/// Splits a label into pieces. A `_` or `^` applies to the group in braces; `^` without braces
+/// applies to the sign and digits that follow.
 fn pieces(label: &str) -> Vec<(Level, String)> {
     let mut pieces = vec![(Level::Base, String::new())];
     let mut rest = label;
@@ -60,7 +50,7 @@ fn pieces(label: &str) -> Vec<(Level, String)> {
     pieces
 }
 
-/// A label as the content of an SVG `<text>`.
+/// A label as the content of an SVG `<text>` element.
 pub(crate) fn svg(label: &str) -> String {
     let mut out = String::new();
     let mut raised = 0.0;
@@ -70,8 +60,8 @@ pub(crate) fn svg(label: &str) -> String {
             Level::Sub => (0.28, " font-size=\"75%\""),
             Level::Super => (-0.36, " font-size=\"75%\""),
         };
-        // `dy` moves the pen for good, in units of the tspan's own size: 0.75 of the label's for
-        // the small ones.
+        // `dy` also moves all text that follows. Its unit is the font size of the tspan, which is
+        // 0.75 of that of the label in small pieces.
         let scale = if size.is_empty() { 1.0 } else { 0.75 };
         let dy = (to - raised) / scale;
         raised = to;
@@ -85,16 +75,36 @@ pub(crate) fn svg(label: &str) -> String {
 }
 
 /// A label as HTML.
-pub(crate) fn html(label: &str) -> String {
-    let piece = |(level, text): (Level, String)| match level {
-        Level::Base => escape(&text),
-        Level::Sub => format!("<sub>{}</sub>", escape(&text)),
-        Level::Super => format!("<sup>{}</sup>", escape(&text)),
-    };
-    pieces(label).into_iter().map(piece).collect()
+pub(crate) struct Label<'a>(pub(crate) &'a str);
+
+impl Render for Label<'_> {
+    fn render(&self) -> Markup {
+        html! {
+            @for (level, text) in pieces(self.0) {
+                @match level {
+                    Level::Base => (text),
+                    Level::Sub => sub { (text) },
+                    Level::Super => sup { (text) },
+                }
+            }
+        }
+    }
 }
 
-/// A label's width in units of the font size, roughly: good enough to put legends side by side.
+/// A sentence as HTML: text between backticks is code, the rest a label.
+pub(crate) struct Prose<'a>(pub(crate) &'a str);
+
+impl Render for Prose<'_> {
+    fn render(&self) -> Markup {
+        html! {
+            @for (i, part) in self.0.split('`').enumerate() {
+                @if i % 2 == 1 { code { (part) } } @else { (Label(part)) }
+            }
+        }
+    }
+}
+
+/// Approximate width of a label in units of the font size, for the layout of legends.
 pub(crate) fn width(label: &str) -> f64 {
     let piece = |(level, text): (Level, String)| {
         let size = if level == Level::Base { 1.0 } else { 0.75 };
@@ -112,9 +122,12 @@ mod tests {
 
     #[test]
     fn labels() {
+        let html = |label: &str| Label(label).render().into_string();
         assert_eq!(html("σ_{yy} at <B>"), "σ<sub>yy</sub> at &lt;B&gt;");
         assert_eq!(html("kg·m/s^2"), "kg·m/s<sup>2</sup>");
         assert_eq!(html("10^-3 a_b ^ {x"), "10<sup>-3</sup> a_b ^ {x");
+        let prose = Prose("Data: σ_{yy} in `a_{b}`.").render().into_string();
+        assert_eq!(prose, "Data: σ<sub>yy</sub> in <code>a_{b}</code>.");
         let text = svg("σ_{yy} (Pa)");
         assert_eq!(
             text,
@@ -124,9 +137,6 @@ mod tests {
 
     #[test]
     fn escapes() {
-        assert_eq!(
-            escape("<a href='x' b=\"y\">&\u{0}"),
-            "&lt;a href=&#39;x&#39; b=&quot;y&quot;&gt;&amp;\u{fffd}"
-        );
+        assert_eq!(escape("<a b=\"y\">&\u{0}"), "&lt;a b=&quot;y&quot;&gt;&amp;\u{fffd}");
     }
 }

@@ -1,21 +1,21 @@
-//! A curve as SVG path data, with no more points than a picture shows.
+//! A curve as SVG path data, with no more points than can be seen.
 //!
-//! Two rules, one after the other; what both leave out is within 0.6 pixels of what is drawn, and
-//! within 0.1 where no column of half a pixel has more than four points. In each such column the
-//! first, lowest, highest and last point stay: what is left out of it is within half a pixel of
-//! what stays. Of these, points go that are within a tenth of a pixel of the line between two
-//! others that stay (D. H. Douglas, T. K. Peucker, Cartographica 10, 1973); the lowest and the
-//! highest of all, the first and the last always stay. What remains is written in tenths of a
-//! pixel, each from the point before as written, so that nothing drifts.
+//! Points are removed by two rules. First, of each column of half a pixel only the first, lowest,
+//! highest and last point are kept. Second, points within a tenth of a pixel of the line between
+//! two kept points are removed (D. H. Douglas, T. K. Peucker, Cartographica 10, 1973); the first,
+//! last, lowest and highest point of the curve are always kept. Removed points are thus within 0.6
+//! pixels of the drawn curve, and within 0.1 pixels where no column has more than four points.
+//! Coordinates are written in tenths of a pixel relative to the previous point as written, so that
+//! rounding errors do not accumulate.
 
 use crate::pen::Point;
 
 /// Width of a column in pixels.
 const COLUMN: f64 = 0.5;
-/// How far from the line drawn a point may be that the second rule leaves out, in pixels.
+/// Largest distance in pixels from the drawn line of a point removed by the second rule.
 const BOUND: f64 = 0.1;
 
-/// Path data of a curve in pixels; gaps stay gaps.
+/// Path data of a curve in pixels; points that are not finite are gaps.
 pub(crate) fn path(points: impl Iterator<Item = (f64, f64)>) -> String {
     let points: Vec<(f64, f64)> = points.collect();
     let parts = points.split(|p| !(p.0.is_finite() && p.1.is_finite())).filter(|part| !part.is_empty());
@@ -89,7 +89,7 @@ fn columns(points: &[(f64, f64)]) -> Vec<Point> {
     out
 }
 
-/// Distance of a point from the stretch between two others.
+/// Distance of a point from the segment between two others.
 fn distance(p: Point, a: Point, b: Point) -> f64 {
     let (d, r) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
     let square = d[0] * d[0] + d[1] * d[1];
@@ -97,11 +97,11 @@ fn distance(p: Point, a: Point, b: Point) -> f64 {
     (r[0] - along * d[0]).hypot(r[1] - along * d[1])
 }
 
-/// Appends one part: a move and lines, each relative to the point before.
+/// Appends one part: a move and lines, each relative to the previous point.
 fn write(out: &mut String, at: &mut [i64; 2], points: &[Point]) {
     for (k, p) in points.iter().enumerate() {
         let end = p.map(|x| (x * 10.0).round() as i64);
-        // The first move of a path is from the origin; after a move lines need no letter.
+        // The first move of a path starts at the origin; lines after a move need no letter.
         if k == 0 {
             out.push('m');
         }
@@ -173,12 +173,12 @@ mod tests {
         assert!(d.len() < 2000, "{}", d.len());
     }
 
-    /// Every point of the curve is near the line drawn: within the bound and half the diagonal of
-    /// the grid of a tenth.
+    /// Every point of the curve is within the bound, plus half the diagonal of the grid, of the
+    /// drawn line.
     #[test]
-    fn what_is_left_out_is_near_what_is_drawn() {
+    fn removed_points_are_close_to_the_drawn_line() {
         let grid = 0.05 * f64::sqrt(2.0);
-        // A column has at most one of these points: the second rule alone.
+        // At most one point in a column: the second rule alone.
         let curve: Vec<(f64, f64)> = (0..1200)
             .map(|i| f64::from(i) * 0.55)
             .map(|x| (x, 90.0 + 60.0 * (x / 40.0).sin() * (-x / 300.0).exp()))
@@ -188,7 +188,7 @@ mod tests {
         let worst = curve.iter().map(|p| away(*p, &line)).fold(0.0, f64::max);
         assert!(worst <= BOUND + grid && worst > 0.5 * BOUND, "{worst}");
         assert!(line.len() < curve.len() / 5, "{} of {}", line.len(), curve.len());
-        // Lowest, highest, first and last are there to the grid.
+        // Lowest, highest, first and last point are kept.
         let edge = |better: fn(f64, f64) -> bool| {
             curve.iter().copied().reduce(|a, b| if better(b.1, a.1) { b } else { a }).unwrap()
         };
@@ -214,7 +214,7 @@ mod tests {
         );
         assert_eq!(path([(f64::NAN, 1.0)].into_iter()), "");
         assert_eq!(area([].into_iter(), [].into_iter()), "");
-        // A thousand bends of a third of a tenth of a pixel each end where they should.
+        // Rounding errors of a thousand segments do not accumulate.
         let zigzag = (0..1000).map(|i| (f64::from(i) * 0.633, f64::from(i % 2) * 5.0));
         let end = *read(&path(zigzag)).concat().last().unwrap();
         assert!((end[0] - 632.4).abs() < 1e-6 && (end[1] - 5.0).abs() < 1e-6, "{end:?}");

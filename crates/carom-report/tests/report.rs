@@ -1,5 +1,5 @@
-//! A report is made of a made-up run: whole, self-contained, well-formed, and safe from what a user
-//! wrote.
+//! The report of a synthetic run is complete, self-contained, well-formed, and escapes all text
+//! from the user.
 
 #![allow(clippy::unwrap_used)]
 
@@ -11,7 +11,7 @@ use std::path::Path;
 use carom_record::{Block, Cell, Column, FieldSet, Manifest, PointArray, RunWriter, Source};
 use carom_report::report;
 
-/// Elements of an XML text; panics where it is not well-formed.
+/// Number of elements of an XML text, which must be well-formed.
 fn elements(text: &str) -> usize {
     let mut reader = quick_xml::Reader::from_str(text);
     let mut count = 0;
@@ -27,7 +27,7 @@ fn elements(text: &str) -> usize {
 fn check_page(directory: &Path) -> String {
     let page = fs::read_to_string(directory.join("report.html")).unwrap();
     let without_namespace = page.replace("http://www.w3.org/2000/svg", "");
-    // One script and its data, nothing from a user among them.
+    // One script and its data, and no script from the user.
     let scripts = without_namespace.matches("<script").count();
     assert!(scripts == if page.contains("id=\"animation\"") { 2 } else { 0 }, "{scripts}");
     for outside in ["http:", "https:", "src=", "url(", "@import", "<script>alert", "<link", "import("] {
@@ -52,11 +52,11 @@ fn figures_and_page() {
         assert!(!text.contains("NaN") && !text.contains("inf"), "{figure:?}");
     }
     let setup = fs::read_to_string(&summary.figures[0]).unwrap();
-    // The key, gravity, the primary side in its colour, rollers on the left side.
+    // Key, gravity, support, colour of the primary side, rollers.
     for part in [
         "cylinder: rubber, 196 T10 cells",
         "g = (0, −9.81) m/s",
-        "x, y held: prism.bottom",
+        "prism.bottom: u<tspan",
         "stroke=\"#0072b2\"",
         "<circle",
     ] {
@@ -76,12 +76,12 @@ fn figures_and_page() {
         "<td>assembly</td><td class=\"n\">1.25</td><td class=\"n\">3.13</td><td class=\"n\">50 %</td>",
         "<td>rest</td><td class=\"n\">0.5</td><td class=\"n\">1.25</td><td class=\"n\">20 %</td>",
         "<td>newton</td><td class=\"n\">1532</td><td class=\"n\">3.83</td>",
-        r"&#39;\&#39;&#39;x",
+        r"--set 'title='\''x'\'''",
     ] {
         assert!(page.contains(part), "{part}");
     }
     assert!(page.contains("id=\"animation\" hidden") && page.contains("fields/00000168.vtu"));
-    // From the record alone, a second report is the same report.
+    // A second report from the same record is identical.
     report(&directory).unwrap();
     assert_eq!(fs::read_to_string(directory.join("report.html")).unwrap(), page);
 }
@@ -131,7 +131,7 @@ fn dimension_one_shows_displacement_along_the_bar() {
 }
 
 #[test]
-fn little_to_show_is_said_and_no_error() {
+fn missing_data_are_noted_without_an_error() {
     let scratch = tempfile::tempdir().unwrap();
     for (rows, expected) in [(0, "no rows yet"), (1, "No field files"), (9, "No field files")] {
         let directory = scratch.path().join(format!("run-{rows}"));

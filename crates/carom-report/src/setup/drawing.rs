@@ -1,4 +1,4 @@
-//! The case as a drawing: where its nodes, sides and bodies are on the page.
+//! Positions of nodes, sides and bodies in the drawing of a case.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -13,24 +13,24 @@ use crate::symbols::{direction, plus};
 /// Colours of the two sides of a contact.
 pub(super) const SECONDARY: &str = LINES[2];
 pub(super) const PRIMARY: &str = LINES[1];
-/// Height of a bar in the picture.
+/// Height of a bar in pixels.
 pub(super) const BAR: f64 = 26.0;
-/// Fills of bodies, in turn.
+/// Fill colours of bodies, used in turn.
 pub(super) const BODIES: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
 
-/// A side's polyline with outward unit vectors, in pixels.
+/// The polyline of a side in pixels, with outward unit normals.
 pub(super) type Walk = Vec<(Point, Point)>;
 
-/// The case, and where it stands on the page.
+/// A case and its mapping to the page.
 pub(super) struct Setup<'a> {
     pub(super) run: &'a Run,
     pub(super) fields: &'a FieldSet,
-    /// Where the points of `fields` are.
+    /// Positions of the points of `fields`.
     pub(super) points: Vec<Point>,
     pub(super) flat: bool,
     pub(super) scale: f64,
     pub(super) origin: Point,
-    /// A point of the body inside an edge, by the numbers of its ends.
+    /// A point on the inner side of each edge, by the numbers of its end nodes.
     pub(super) inside: HashMap<[usize; 2], Point>,
 }
 
@@ -51,7 +51,7 @@ impl Setup<'_> {
         BODIES[k % BODIES.len()]
     }
 
-    /// Middle of a body's points.
+    /// Mean position of the nodes of a body.
     pub(super) fn center(&self, body: &str) -> Option<Point> {
         let block: &Block = self.fields.blocks.iter().find(|b| b.body == body)?;
         let mut sum = [0.0; 2];
@@ -59,7 +59,7 @@ impl Setup<'_> {
         Some(sum.map(|s| s / block.connectivity.len() as f64))
     }
 
-    /// Where a reference place is, as far as the nearest node tells.
+    /// Current position of a reference point, moved like the nearest node.
     pub(super) fn moved(&self, [x, y]: Point) -> Point {
         let distance = |p: &[f64; 3]| (p[0] - x).hypot(p[1] - y);
         let near = self
@@ -71,13 +71,13 @@ impl Setup<'_> {
         near.map_or([x, y], |(from, to)| [x + to[0] - from[0], y + to[1] - from[1]])
     }
 
-    /// Degree of the cells a side belongs to.
+    /// Degree of the cells along a side.
     pub(super) fn degree(&self, side: &str) -> usize {
         let body = side.split_once('.').map_or(side, |s| s.0);
         self.fields.blocks.iter().find(|b| b.body == body).map_or(1, |b| b.degree)
     }
 
-    /// The chains of a side.
+    /// The connected parts of a side.
     pub(super) fn walks(&self, side: &str) -> Vec<Walk> {
         let chains = self.run.manifest.sides.get(side).map_or(&[][..], Vec::as_slice);
         let degree = self.degree(side);
@@ -112,7 +112,8 @@ impl Setup<'_> {
         let d = pen.data();
         let _ = writeln!(
             out,
-            "{}<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"64\" stroke-linecap=\"round\"/>\n</g>",
+            "{}<path d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"64\" \
+             stroke-linecap=\"round\"/>\n</g>",
             open_grid()
         );
     }

@@ -1,5 +1,5 @@
-//! Loads in the drawn case: arrows at sides and in bodies, with the directions their formulas have
-//! at the end of the run (or, where they are zero then, the last of a few times before).
+//! Loads in the drawing of a case: arrows at sides and in bodies. Their directions are those at the
+//! end of the run or, where the load is then zero, at the last of a few earlier times.
 
 use carom_formula::Formula;
 use serde_json::Value;
@@ -11,12 +11,12 @@ use crate::pen::Point;
 use crate::symbols::{along, arrow, direction, plus};
 
 const COLOR: &str = "#7a2f8f";
-/// Length of an arrow at a side, and the gap it leaves there.
+/// Length of an arrow at a side, and its gap to the side.
 const LENGTH: f64 = 20.0;
 const GAP: f64 = 3.0;
 const SPACING: f64 = 26.0;
 
-/// A load as the manifest has it.
+/// A load of the manifest.
 struct Load<'a> {
     kind: &'a str,
     spec: &'a Value,
@@ -36,7 +36,7 @@ pub(super) fn written(value: &Value) -> String {
 }
 
 impl Setup<'_> {
-    /// A formula's value at a reference place and a time.
+    /// The value of a formula at a reference position and a time.
     fn value(&self, given: &Value, [x, y]: Point, time: f64) -> f64 {
         let (names, values) =
             if self.flat { (vec!["X", "t"], vec![x, time]) } else { (vec!["X", "Y", "t"], vec![x, y, time]) };
@@ -44,7 +44,7 @@ impl Setup<'_> {
         given.as_str().map_or_else(|| given.as_f64().unwrap_or(0.0), formula)
     }
 
-    /// Values of a load's components in pixels' directions, the last that are not all zero.
+    /// The components of a load at a pixel, at the last time when they are not all zero.
     fn values(&self, load: &Load, pixel: Point) -> Vec<f64> {
         let place = [(pixel[0] - self.origin[0]) / self.scale, (self.origin[1] - pixel[1]) / self.scale];
         let end = self.case().pointer("/time/end").and_then(Value::as_f64).unwrap_or(0.0);
@@ -55,7 +55,7 @@ impl Setup<'_> {
         times.into_iter().map(at).find(|v| v.iter().any(|x| *x != 0.0 && x.is_finite())).unwrap_or_default()
     }
 
-    /// Arrows of all loads.
+    /// Draws the arrows of all loads.
     pub(super) fn forces(&self, out: &mut String) {
         for load in list(self.case(), "loads").iter().filter_map(load) {
             if load.kind == "body-force" {
@@ -83,7 +83,7 @@ impl Setup<'_> {
                             None => continue,
                         },
                     };
-                    // What presses ends at the side, what pulls begins there.
+                    // A compressive load ends at the side, a tensile load begins there.
                     let presses = towards[0] * n[0] + towards[1] * n[1] < 0.0;
                     let [from, to] = if presses { [-GAP - LENGTH, -GAP] } else { [GAP, GAP + LENGTH] };
                     arrow(out, plus(spot, from, towards), plus(spot, to, towards), COLOR);
@@ -92,7 +92,7 @@ impl Setup<'_> {
         }
     }
 
-    /// Lines of the key: what acts where.
+    /// Lines of the key: loads and where they act.
     pub(super) fn forces_in_words(&self) -> Vec<String> {
         let words = |value: &Value| {
             let load = load(value)?;
@@ -102,26 +102,24 @@ impl Setup<'_> {
             let place = if sides.is_empty() { text(load.spec, "body").to_owned() } else { sides.join(", ") };
             let table = value.pointer("/table/file").and_then(Value::as_str);
             let table = table.map_or_else(String::new, |file| format!(" × {file}"));
-            Some(format!("{} {amount}{table}: {place}", load.kind.replace('-', " ")))
+            Some(format!("{place}: {} {amount}{table}", load.kind.replace('-', " ")))
         };
         list(self.case(), "loads").iter().filter_map(words).collect()
     }
 
-    /// What a support holds and how it moves, in words.
+    /// The conditions of a support: `u_{x} = u_{y} = 0`.
     pub(super) fn support_in_words(support: &Value) -> String {
-        let axis = |i: f64| if i == 0.0 { "x" } else { "y" };
-        let held: Vec<&str> = vector(support.get("fix")).iter().map(|i| axis(*i)).collect();
+        let axis = |i: f64| if i == 0.0 { "u_{x}" } else { "u_{y}" };
+        let fixed: Vec<&str> = vector(support.get("fix")).iter().map(|i| axis(*i)).collect();
+        let fixed = (!fixed.is_empty()).then(|| fixed.join(" = ") + " = 0");
         let moved = list(support, "move").iter().filter_map(|m| {
             let [axis_number, formula] = m.as_array()?.as_slice() else { return None };
             Some(format!("{} = {}", axis(axis_number.as_f64()?), written(formula)))
         });
-        let moved: Vec<String> = moved.collect();
-        let held = if held.is_empty() { String::new() } else { format!("{} held", held.join(", ")) };
-        let moved = if moved.is_empty() { String::new() } else { format!("moved by {}", moved.join(", ")) };
-        [held, moved].into_iter().filter(|s| !s.is_empty()).collect::<Vec<_>>().join("; ")
+        fixed.into_iter().chain(moved).collect::<Vec<_>>().join(", ")
     }
 
-    /// Directions a support holds or moves.
+    /// Directions constrained or moved by a support.
     pub(super) fn directions(support: &Value) -> Vec<f64> {
         let moved = list(support, "move").iter().filter_map(|m| m.get(0).and_then(Value::as_f64));
         vector(support.get("fix")).into_iter().chain(moved).collect()

@@ -1,4 +1,4 @@
-//! The key beside the drawn case: what colours and symbols mean, and the numbers.
+//! The key beside the drawing of a case: colours, symbols and numbers.
 
 use std::collections::HashSet;
 use std::fmt::Write as _;
@@ -12,7 +12,7 @@ use crate::labels::number;
 use crate::symbols::{plus, rollers, wall};
 
 impl Setup<'_> {
-    /// What the picture's colours and symbols mean, with the numbers; the height it needs.
+    /// Draws the key and returns its height.
     pub(super) fn key(&self, out: &mut String, left: f64) -> f64 {
         let mut y = 8.0;
         let unit = |key: &str| {
@@ -78,7 +78,7 @@ impl Setup<'_> {
             } else {
                 rollers(&mut swatch, &ends.map(|(p, n)| (plus(p, -3.0, n), n)));
             }
-            line(&swatch, &format!("{}: {}", Self::support_in_words(support), on.join(", ")), false);
+            line(&swatch, &format!("{}: {}", on.join(", "), Self::support_in_words(support)), false);
         }
         for (k, load) in self.forces_in_words().iter().enumerate() {
             if k == 0 {
@@ -103,7 +103,7 @@ impl Setup<'_> {
             let dot = "<circle cx=\"10\" r=\"4.2\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.8\"/>";
             line(
                 dot,
-                &format!("{} at {} {length} of {}", text(probe, "name"), tuple(&at), text(probe, "body")),
+                &format!("{}: {} at {} {length}", text(probe, "name"), text(probe, "body"), tuple(&at)),
                 false,
             );
         }

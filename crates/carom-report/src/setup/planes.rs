@@ -1,4 +1,4 @@
-//! Rigid planes in the drawn case.
+//! Rigid planes in the drawing of a case.
 
 use serde_json::Value;
 
@@ -7,15 +7,15 @@ use super::values::{list, vector};
 use crate::pen::{Pen, Point};
 use crate::symbols::{direction, plus, wall};
 
-/// A rigid plane of dimension 2 as far as it is drawn.
+/// The drawn part of a rigid plane in 2D.
 pub(super) struct RigidPlane {
     pub(super) ends: [Point; 2],
-    /// Unit normal out of the solid.
+    /// Unit normal out of the rigid body.
     normal: Point,
 }
 
-/// The rigid planes of a case, along bodies in a box: from side to side where they lie rather flat,
-/// else from the bottom to the top.
+/// The rigid planes of a case along the bounding box of the bodies: from left to right where they
+/// are closer to horizontal, from bottom to top otherwise.
 pub(super) fn rigid(case: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Vec<RigidPlane> {
     let planes = list(case, "contacts").iter().filter_map(|c| c.pointer("/primary/plane"));
     let one = |plane: &Value| {
@@ -34,8 +34,8 @@ pub(super) fn rigid(case: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Vec<RigidPlane>
 }
 
 impl Setup<'_> {
-    /// Rigid planes, hatched on their solid side: a wall in dimension 1, else lines drawn `air`
-    /// pixels beyond the bodies.
+    /// Draws the rigid planes, hatched on the rigid side: walls in 1D, lines that extend `air`
+    /// pixels beyond the bodies in 2D.
     pub(super) fn planes(&self, out: &mut String, planes: &[RigidPlane], air: f64) {
         let mut draw = |ends: [Point; 2], outward: Point| {
             wall(out, &ends.map(|p| (p, outward)), 0.0);
@@ -61,15 +61,18 @@ impl Setup<'_> {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
 
-    /// Bodies in 0 ≤ x ≤ 2, 1 ≤ y ≤ 4: the floor y = 0, a slope x + 3y = 0 and a wall x = −1, whose
-    /// ends belong into the picture.
+    /// Bodies in 0 ≤ x ≤ 2, 1 ≤ y ≤ 4, the floor y = 0, a slope x + 3y = 0 and a wall x = −1.
     #[test]
     fn planes_reach_along_the_bodies() {
-        let contact = |point: [f64; 2], normal: [f64; 2]| serde_json::json!({ "primary": { "plane": { "point": point, "normal": normal } } });
-        let case = serde_json::json!({ "contacts": [
-            contact([9.0, 0.0], [0.0, 1.0]), contact([3.0, -1.0], [1.0, 3.0]), contact([-1.0, 0.0], [2.0, 0.0]), { "primary": { "side": "a.top" } },
+        let plane = |point: [f64; 2], normal: [f64; 2]| json!({ "point": point, "normal": normal });
+        let contact = |point, normal| json!({ "primary": { "plane": plane(point, normal) } });
+        let case = json!({ "contacts": [
+            contact([9.0, 0.0], [0.0, 1.0]), contact([3.0, -1.0], [1.0, 3.0]),
+            contact([-1.0, 0.0], [2.0, 0.0]), { "primary": { "side": "a.top" } },
         ] });
         let planes = rigid(&case, [0.0, 2.0, 1.0, 4.0]);
         let close = |ends: [Point; 2], right: [Point; 2]| {

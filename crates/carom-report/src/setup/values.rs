@@ -1,4 +1,4 @@
-//! Values of the case as `manifest.json` has it; what is missing is empty.
+//! Values of the case in `manifest.json`; missing values are empty.
 
 use serde_json::Value;
 
@@ -16,7 +16,7 @@ pub(super) fn vector(value: Option<&Value>) -> Vec<f64> {
     value.and_then(Value::as_array).map_or(Vec::new(), |v| v.iter().filter_map(Value::as_f64).collect())
 }
 
-/// A vector as people write it.
+/// A vector in parentheses; a single component without.
 pub(super) fn tuple(v: &[f64]) -> String {
     let parts: Vec<String> = v.iter().map(|x| number(*x)).collect();
     if parts.len() == 1 { parts[0].clone() } else { format!("({})", parts.join(", ")) }

@@ -1,5 +1,5 @@
-//! A made-up run that looks like a half disc striking a block: smooth formulas in place of a
-//! simulation, written with the real writer.
+//! A synthetic run that looks like a half disc striking a block: smooth formulas instead of a
+//! simulation, written by the real writer.
 
 #![allow(clippy::unwrap_used)]
 
@@ -14,7 +14,7 @@ const N: usize = 7;
 const START: f64 = 0.32;
 const END: f64 = 0.56;
 
-/// T10 cells on a lattice of 3n × 3m intervals, each square cut in two.
+/// T10 cells on a lattice of 3n × 3m intervals, two per square.
 fn lattice(n: usize, m: usize, map: impl Fn(f64, f64) -> [f64; 2]) -> (Vec<[f64; 3]>, Vec<usize>) {
     let (w, h) = (3 * n, 3 * m);
     let node = |i: usize, j: usize| j * (w + 1) + i;
@@ -29,7 +29,7 @@ fn lattice(n: usize, m: usize, map: impl Fn(f64, f64) -> [f64; 2]) -> (Vec<[f64;
     (points, cells)
 }
 
-/// How far the strike has come: 0 outside the contact, 1 in its middle.
+/// Progress of the contact: 0 outside it, 1 at its middle.
 fn press(t: f64) -> f64 {
     if (START..END).contains(&t) { (PI * (t - START) / (END - START)).sin() } else { 0.0 }
 }
@@ -45,7 +45,7 @@ fn fall(t: f64) -> f64 {
 }
 
 fn fields(t: f64) -> FieldSet {
-    // A square mapped on the half disc, elliptically.
+    // Elliptical mapping of a square to the half disc.
     let disc = |s: f64, r: f64| {
         let r = 2.0 * r - 1.0;
         [0.5 * s * (1.0 - 0.5 * r * r).sqrt(), 1.0 + 0.5 * r * (1.0 - 0.5 * s * s).sqrt()]
@@ -124,7 +124,7 @@ const COLUMNS: [(&str, &str); 27] = [
     ("min_det_f", ""),
 ];
 
-/// Writes the run; `title` and `reason` come from a user.
+/// Writes the run; `title` and `reason` are text from the user.
 pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
     let columns = COLUMNS.map(|(name, unit)| Column {
         name: name.into(),
@@ -135,18 +135,27 @@ pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
     let case = serde_json::json!({
         "title": title, "dimension": 2, "units": {"length": "m", "time": "s", "mass": "kg"},
         "materials": [{"name": "rubber", "law": "neo-hookean", "density": 0.25, "lambda": 200.0, "mu": 15.0}],
-        "bodies": [{"name": "cylinder", "material": "rubber", "element": "T10", "gravity": [0.0, -9.81]}, {"name": "prism"}],
+        "bodies": [
+            {"name": "cylinder", "material": "rubber", "element": "T10", "gravity": [0.0, -9.81]},
+            {"name": "prism"},
+        ],
         "supports": [{"on": ["prism.bottom"], "fix": [0, 1]}, {"on": ["prism.left"], "fix": [0]}],
         "contacts": [{"name": "strike", "secondary": "cylinder.arc", "primary": {"side": "prism.top"}}],
-        "probes": [{"name": "A", "at": [0.0, 1.5], "body": "cylinder"}, {"name": "B", "at": [0.0, 0.0], "body": "prism"}],
-        "time": {"step": 1.875e-3, "scheme": {"kind": "chung-hulbert", "rho_inf": 0.1, "forces": "average-forces"}},
+        "probes": [
+            {"name": "A", "at": [0.0, 1.5], "body": "cylinder"},
+            {"name": "B", "at": [0.0, 0.0], "body": "prism"},
+        ],
+        "time": {
+            "step": 1.875e-3,
+            "scheme": {"kind": "chung-hulbert", "rho_inf": 0.1, "forces": "average-forces"},
+        },
     });
     let source = Source {
         text: format!("title = \"{title}\"\n# …\n"),
         sets: vec!["time.end=0.75".into(), "title='x'".into()],
     };
     let mut manifest = Manifest::new("0.1.0", case, source, columns.to_vec(), 1);
-    // Points of the prism follow the disc's; its lattice has 25 by 13.
+    // The points of the prism follow those of the disc; its lattice has 25 × 13 points.
     let first = (3 * N + 1) * (6 * N + 1);
     let sides: [(&str, Vec<usize>); 3] = [
         ("prism.bottom", (first..first + 25).collect()),

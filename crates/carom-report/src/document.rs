@@ -1,0 +1,61 @@
+//! Elements that the pages share: the frame of a document, figures, links and lists.
+
+use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
+
+use crate::text::Prose;
+
+/// A self-contained page; `style` is added to the style sheet of all pages.
+pub(crate) fn document(title: &str, style: &str, body: &Markup) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width";
+                title { (title) }
+                style { (PreEscaped(include_str!("page.css"))) (PreEscaped(style)) }
+            }
+            body { h1 { (title) } (body) }
+        }
+    };
+    page.into_string()
+}
+
+/// A numbered figure with its caption and links to its files.
+pub(crate) fn figure(number: usize, name: &str, endings: &[&str], caption: &str, svg: &str) -> Markup {
+    let links = endings.iter().map(|ending| file(&format!("figures/{name}.{ending}")));
+    html! {
+        figure {
+            (PreEscaped(svg))
+            figcaption {
+                b { "Figure " (number) "." } " " (Prose(caption)) " "
+                span.small { "(" (joined(links, ", ")) ")" }
+            }
+        }
+    }
+}
+
+/// A link to a file beside the page.
+pub(crate) fn file(path: &str) -> Markup {
+    html! { a href=(path) { (path) } }
+}
+
+/// Items with a separator between them.
+pub(crate) fn joined(items: impl IntoIterator<Item = impl Render>, separator: impl Render) -> Markup {
+    html! {
+        @for (i, item) in items.into_iter().enumerate() {
+            @if i > 0 { (separator) }
+            (item)
+        }
+    }
+}
+
+/// An expected value with minus signs in place of hyphens.
+pub(crate) fn minus(expected: &str) -> String {
+    expected.replace('-', "−")
+}
+
+/// A number in the given format, or a dash where there is none.
+pub(crate) fn or_dash(x: Option<f64>, format: impl Fn(f64) -> String) -> String {
+    x.map_or_else(|| "–".to_owned(), format)
+}
