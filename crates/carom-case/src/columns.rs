@@ -2,7 +2,7 @@
 
 use super::{BodySpec, Case, ContactSpec, ProbeSpec, Quantity, SupportSpec};
 
-const SCALARS: [&str; 10] = [
+const SCALARS: [&str; 12] = [
     "step",
     "time",
     "dt",
@@ -13,6 +13,8 @@ const SCALARS: [&str; 10] = [
     "external_work",
     "contact_work",
     "dissipation",
+    "energy_created",
+    "energy_scale",
 ];
 const COUNTS: [&str; 7] =
     ["active", "activations", "releases", "newton", "rejected", "penetration", "min_det_f"];

@@ -73,15 +73,15 @@ impl Drop for Live {
     }
 }
 
-/// `t 0.3375  Δt 1.88e-3  Newton 4  contacts 7  energy -1.2e-6  left 3 s`
+/// `t 0.3375  Δt 1.88e-3  Newton 4  contacts 7  created 1.2e-6  left 3 s`
 fn line(p: &Progress) -> String {
     format!(
-        "t {:.4e}  Δt {:.3e}  Newton {}  contacts {}  energy {:+.1e}  left {}",
+        "t {:.4e}  Δt {:.3e}  Newton {}  contacts {}  created {:.1e}  left {}",
         p.time,
         p.dt,
         p.newton,
         p.active,
-        p.energy_drift,
+        p.created,
         duration(p.eta)
     )
 }
@@ -138,11 +138,11 @@ mod tests {
             rejected: 1,
             activations: 0,
             releases: 2,
-            energy_drift: -1.2e-6,
+            created: 1.2e-6,
             wall: 1.0,
             eta: 130.0,
         };
-        let told = "t 3.3750e-1  Δt 1.875e-3  Newton 4  contacts 7  energy -1.2e-6  left 2 min 10 s";
+        let told = "t 3.3750e-1  Δt 1.875e-3  Newton 4  contacts 7  created 1.2e-6  left 2 min 10 s";
         assert_eq!(line(&p), told);
         let told = "step 180  t 3.375000e-1  Newton 4  1 rejected, 2 released";
         assert_eq!(changes(&p).as_deref(), Some(told));

@@ -36,8 +36,8 @@ pub(crate) struct Progress {
     /// Contact nodes that became active in it, and that ceased to be.
     pub(crate) activations: usize,
     pub(crate) releases: usize,
-    /// (total − total₀ − external work) / largest energy so far.
-    pub(crate) energy_drift: f64,
+    /// Energy created so far over the largest energy so far.
+    pub(crate) created: f64,
     /// Wall seconds so far and left.
     pub(crate) wall: f64,
     pub(crate) eta: f64,
@@ -163,7 +163,7 @@ fn seen(progress: &recording::Progress) -> Progress {
         rejected: progress.rejected as usize,
         activations: progress.activations as usize,
         releases: progress.releases as usize,
-        energy_drift: progress.energy_drift,
+        created: progress.created,
         wall: progress.wall,
         eta: progress.left,
     }

@@ -190,6 +190,7 @@ pub(crate) fn account(
     }
     if !equations.motions.is_empty() {
         next.ledger.external_work += work_of_motions(equations, next, increment, dt, means);
+        next.ledger.open += open_work_of_motions(model, state, next, increment);
     }
     next.ledger.open += open_work(state, next, increment);
     book_contact_forces(model, next);
@@ -215,6 +216,20 @@ fn work_of_motions(equations: &Equations, next: &State, increment: &[f64], dt: f
     let mut impulse = vec![0.0; increment.len()];
     model.mass.multiply_into(&jump, &mut impulse);
     sum + dot(increment, &impulse) / dt
+}
+
+/// Δy·ΔR of moving supports: as [`open_work`] of the loads.
+fn open_work_of_motions(model: &Model, state: &State, next: &State, increment: &[f64]) -> f64 {
+    let reactions = |state: &State| {
+        let mut forces = vec![0.0; model.dofs()];
+        model.mass.multiply_into(&state.a, &mut forces);
+        for i in model.motions.dofs() {
+            forces[i] += state.f_internal[i] + state.f_contact[i] - model.gravity[i] - state.f_external[i];
+        }
+        forces
+    };
+    let (before, now) = (reactions(state), reactions(next));
+    model.motions.dofs().map(|i| increment[i] * (now[i] - before[i])).sum()
 }
 
 /// Force on a secondary side, −Σ λ ∂g/∂y_N over the active pairs.

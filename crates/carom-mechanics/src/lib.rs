@@ -7,6 +7,7 @@ mod carried;
 mod cells;
 mod constraints;
 mod contact_update;
+mod created;
 mod equations;
 mod factor;
 pub mod frequencies;
@@ -35,6 +36,7 @@ mod timings;
 mod workspace;
 
 pub use carried::Carried;
+pub use created::Created;
 pub use ledger::secondary_force;
 pub use rejected::Rejected;
 pub use renewal::{FrozenTangent, Point};

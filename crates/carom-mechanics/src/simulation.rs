@@ -33,17 +33,17 @@ pub enum Stopped {
     },
     /// The scheme created energy.
     #[error(
-        "energy was created at t = {time:.6}: {created:.4e}, more than {share} of the largest kinetic + strain energy so far ({largest:.4e})"
+        "energy was created at t = {time:.6}: {created:.4e}, more than {share} of the largest energy so far ({scale:.4e})"
     )]
     EnergyGuard {
         /// Time.
         time: f64,
-        /// total − total at start − external work.
+        /// Rise of total − external work above its running minimum.
         created: f64,
         /// Allowed fraction.
         share: f64,
-        /// Largest kinetic + strain energy so far.
-        largest: f64,
+        /// Largest kinetic + strain energy so far, or Σ |ΔW| of the external work.
+        scale: f64,
     },
 }
 
@@ -269,7 +269,8 @@ impl Simulation {
                 &mut self.work,
             ) {
                 Ok(accepted) => {
-                    let (next, step) = accepted.into_parts();
+                    let (mut next, step) = accepted.into_parts();
+                    next.ledger.observe();
                     if let Some(before) = reached.replace(next) {
                         self.work.put(before);
                     }
@@ -324,12 +325,12 @@ impl Simulation {
     fn watch(&self, state: &State) -> Result<(), Stopped> {
         let Some(share) = self.guard else { return Ok(()) };
         let ledger = &state.ledger;
-        let created = ledger.created();
+        let (created, scale) = (ledger.rise(), ledger.scale());
         // Round-off of the energies themselves does not count.
         let noise = 1e-12
             * (ledger.kinetic + ledger.strain.abs() + ledger.potential.abs() + ledger.total_at_start.abs());
-        if created > share * ledger.largest + ledger.open.abs() + noise {
-            return Err(Stopped::EnergyGuard { time: state.time, created, share, largest: ledger.largest });
+        if created > share * scale + ledger.unknown_work() + noise {
+            return Err(Stopped::EnergyGuard { time: state.time, created, share, scale });
         }
         Ok(())
     }

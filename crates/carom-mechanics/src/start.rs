@@ -12,6 +12,7 @@ use carom_contact::{Pair, Point, Rows};
 
 use crate::carried::Carried;
 use crate::constraints::{Constraints, independent_rows};
+use crate::created::Created;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::{LoadsAt, Model};
 use crate::persistency::{averaged_contact_into, drive, measure_all, pressing, take_accelerations};
@@ -90,6 +91,7 @@ pub(crate) fn start(
     book_kinetic(model, &mut state);
     state.ledger.potential = model.potential(&state.y);
     state.ledger.total_at_start = state.ledger.total();
+    state.ledger.created = Created::at_start(&state.ledger);
     Ok(state)
 }
 

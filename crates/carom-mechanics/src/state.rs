@@ -4,6 +4,7 @@ use carom_contact::{Pair, Pairing};
 use serde::{Deserialize, Serialize};
 
 use crate::carried::Carried;
+use crate::created::Created;
 use crate::renewal::FrozenTangent;
 
 /// Energies and works, design.md §5: cumulative from the start of the run.
@@ -29,6 +30,8 @@ pub struct Ledger {
     pub contact_work: f64,
     /// Largest kinetic + strain energy so far.
     pub largest: f64,
+    /// Energy created so far.
+    pub created: Created,
     /// Part of the impulses of contact that projections and changes of the step move between
     /// velocities and algorithmic accelerations.
     pub algorithmic_impulse: [f64; 3],
@@ -45,8 +48,8 @@ impl Ledger {
         self.external_work + self.contact_work - (self.total() - self.total_at_start)
     }
 
-    /// Energy created, which the guard limits.
-    pub fn created(&self) -> f64 {
+    /// Change of the energy since the start beyond the work of loads and supports.
+    pub fn drift(&self) -> f64 {
         self.total() - self.total_at_start - self.external_work
     }
 }

@@ -379,7 +379,7 @@ const TIME: Table = Table {
         key(
             "energy_guard",
             NumberOrFalse(POSITIVE),
-            "Fraction of the largest energy so far that may be created before the run stops; false: never.",
+            "Fraction of the largest energy so far by which total − external_work may rise above its running minimum before the run stops; false: never.",
         )
         .default("0.02")
         .paper("false"),

@@ -26,9 +26,11 @@ pub(super) fn lost(facts: &Facts) -> Option<f64> {
     Some(-changes.last()? / scale)
 }
 
+/// The columns have the running values of the run, between rows too.
 pub(super) fn created(facts: &Facts) -> Option<f64> {
-    let (changes, scale) = changes(facts.history)?;
-    Some(changes.iter().copied().fold(0.0, f64::max) / scale)
+    let last = |name: &str| facts.history.column(name)?.last().copied();
+    let scale = last("energy_scale").filter(|&scale| scale > 0.0)?;
+    Some(last("energy_created")? / scale)
 }
 
 pub(super) fn drift(facts: &Facts) -> Option<f64> {

@@ -185,9 +185,9 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
         d(
             "energy_created",
             Unit::None,
-            "max (0, ΔE)/E*",
+            "max_t [E(t) − min_{s ≤ t} E(s)] / max(E*, Σ |ΔW|), E = total − W, W = external_work",
             "Krenk 2006",
-            "largest energy created at any time / largest kinetic + strain energy",
+            "largest rise of the energy above its running minimum / largest kinetic + strain energy or Σ of |external work|",
         ),
         ledger::created,
     ),

@@ -32,6 +32,11 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
         ("external_work", "work of the other loads and of supports, cumulative"),
         ("contact_work", "work of the contact forces on the bodies and of projections, cumulative"),
         ("dissipation", "external_work + contact_work − (total − total at the start); negative: created"),
+        ("energy_created", "largest rise of total − external_work above its running minimum so far"),
+        (
+            "energy_scale",
+            "largest kinetic + strain energy so far, or Σ |change of external_work| where that is more",
+        ),
     ] {
         add(name.into(), &label.energy, what, false);
     }
@@ -183,6 +188,7 @@ pub(super) fn row(model: &Model, state: &State, dt: f64, since: &Since, weights:
     row.extend([state.step as f64, state.time, dt]);
     row.extend([ledger.kinetic, ledger.strain, ledger.potential, ledger.total()]);
     row.extend([ledger.external_work, ledger.contact_work, ledger.dissipation()]);
+    row.extend([ledger.created.most(), ledger.scale()]);
 
     let mut momentum = vec![0.0; state.v.len()];
     model.mass.multiply_into(&state.v, &mut momentum);

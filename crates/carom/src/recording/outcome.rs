@@ -34,8 +34,8 @@ pub struct Progress {
     pub activations: u32,
     /// Pairs that left contact in it.
     pub releases: u32,
-    /// Created energy over the largest kinetic + strain energy so far.
-    pub energy_drift: f64,
+    /// Energy created so far over the largest energy so far.
+    pub created: f64,
     /// Wall seconds of this process.
     pub wall: f64,
     /// Estimated wall seconds remaining.

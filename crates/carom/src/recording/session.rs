@@ -313,7 +313,7 @@ impl<'a> Session<'a> {
             rejected: report.rejected,
             activations: report.activations,
             releases: report.releases,
-            energy_drift: if ledger.largest > 0.0 { ledger.created() / ledger.largest } else { 0.0 },
+            created: if ledger.scale() > 0.0 { ledger.created.most() / ledger.scale() } else { 0.0 },
             wall,
             left: wall / done as f64 * (steps - state.step) as f64,
         }

@@ -137,7 +137,7 @@ fn two_discs_keep_their_momentum() {
                     "{scheme}: {booked:e} {expected:e}"
                 );
             }
-            assert!(state.ledger.created() < 0.02 * state.ledger.largest, "{scheme} {:?}", state.ledger);
+            assert!(state.ledger.drift() < 0.02 * state.ledger.largest, "{scheme} {:?}", state.ledger);
         }
         let impulse = sim.state().impulse();
         let left: f64 = sim.model().parts[0]
@@ -244,7 +244,7 @@ fn the_impact_by_central_differences() {
         if sim.state().pairs[0].iter().any(|p| p.active) {
             end = sim.state().time;
         }
-        created = created.max(sim.state().ledger.created() / sim.state().ledger.largest);
+        created = created.max(sim.state().ledger.drift() / sim.state().ledger.largest);
     }
     assert!((lowest + 0.783).abs() < 0.004, "{lowest}");
     assert!((end - 0.555).abs() < 0.003, "{end}");
