@@ -208,7 +208,7 @@ def examples(carom, place):
         start = ["--set", f'initial.from="{place / f"example-{pathlib.Path(before).name}"}"'] if before else []
         said = run(carom, "study" if study else "run", case.relative_to(ROOT), "--out", out, *start)
         if said is not None:
-            if "NOT as expected" in said:
+            if "MISSED: expected" in said or ": not available" in said:
                 problems.append(f"what {case.name} expects: {said.strip()}")
 
 
