@@ -55,7 +55,7 @@ def misspelt(document, place):
 def main(program):
     kinds = {False: validator(program), True: validator(program, "--study")}
     files = keys = 0
-    for path in sorted([*ROOT.glob("cases/*/*.toml"), *ROOT.glob("crates/carom-cli/templates/*.toml"), *ROOT.glob("docs/book/examples/*.toml")]):
+    for path in sorted([*ROOT.glob("cases/*/*.toml"), *ROOT.glob("crates/carom/templates/*.toml"), *ROOT.glob("docs/book/examples/*.toml")]):
         document = tomllib.loads(path.read_text())
         kind = kinds["case" in document]
         told = [f"{error.message} at {error.json_path}" for error in kind.iter_errors(document)]

@@ -24,9 +24,9 @@ ORDER = [
     ["carom-solid", "carom-record"],
     ["carom-contact", "carom-case"],
     ["carom-mechanics"],
-    ["carom", "carom-report"],
+    ["carom-run", "carom-report"],
     ["carom-study"],
-    ["carom-cli"],
+    ["carom"],
 ]
 ROW = {crate: row for row, crates in enumerate(ORDER) for crate in crates}
 

@@ -96,7 +96,7 @@ def copy():
 def build():
     """The error output of the compiler, or None."""
     environment = {**os.environ, "CARGO_TARGET_DIR": str(PLACE / "target"), "CARGO_INCREMENTAL": "1"}
-    command = ["cargo", "build", "--quiet", "--package", "carom-cli"]
+    command = ["cargo", "build", "--quiet", "--package", "carom"]
     done = subprocess.run(command, cwd=TREE, env=environment, capture_output=True, text=True, check=False)
     return done.stderr if done.returncode else None
 

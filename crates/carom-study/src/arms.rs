@@ -1,7 +1,7 @@
 //! Arms of a study: those written down, then the product of the grid; and an arm's problems, shown
 //! where the arm was written.
 
-use carom::case::{Diagnostic, Document, Problem};
+use carom_run::case::{Diagnostic, Document, Problem};
 use carom_record::study::design::{Kind, Role};
 use toml_edit::Value;
 

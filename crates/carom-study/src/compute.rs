@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use carom::case::Case;
-use carom::recording::{self, Options, Progress};
+use carom_run::case::Case;
+use carom_run::recording::{self, Options, Progress};
 use carom_record::study::StudyManifest;
 
 use crate::error::StudyError;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use carom::recording::RunError;
+use carom_run::recording::RunError;
 use carom_record::RecordError;
 
 /// Why a study cannot go on.

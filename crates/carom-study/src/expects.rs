@@ -1,7 +1,7 @@
 //! Expectations of a study must be in the records of its arms: names of arms, columns and metrics,
 //! keys that are numbers.
 
-use carom::case::{Case, Problem, history_columns};
+use carom_run::case::{Case, Problem, history_columns};
 use carom_record::question::{Asked, Quantity, Question, Series, column_metric_names, metric_names};
 use carom_record::{Expect, Expression, OrderOf};
 

@@ -1,7 +1,7 @@
 //! The study file as written: its keys, their types, and where each of them stands. A path names a
-//! place as in [`carom::case::Problem`]: `arm[0].set."time.step"`.
+//! place as in [`carom_run::case::Problem`]: `arm[0].set."time.step"`.
 
-use carom::case::{Asked, Document, Problem, read_expects};
+use carom_run::case::{Asked, Document, Problem, read_expects};
 use carom_record::Expect;
 use carom_record::study::design::{Goal, Kind};
 use toml_edit::{Item, TableLike, Value};

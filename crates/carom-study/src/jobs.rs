@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, mpsc};
 
-use carom::recording::{self, End, Progress};
+use carom_run::recording::{self, End, Progress};
 use carom_record::Status;
 
 /// What happens to an arm, told by its number.

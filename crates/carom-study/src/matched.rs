@@ -23,8 +23,8 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
-use carom::case::Case;
-use carom::recording::{self, Options, Progress};
+use carom_run::case::Case;
+use carom_run::recording::{self, Options, Progress};
 use carom_record::study::{Arm, StudyManifest};
 use carom_record::{Manifest, RecordError, Status};
 use serde::{Deserialize, Serialize};

@@ -4,8 +4,8 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 
-use carom::Setup;
-use carom::case::{Case, CaseError, Diagnostic, Document, Problem, read};
+use carom_run::Setup;
+use carom_run::case::{Case, CaseError, Diagnostic, Document, Problem, read};
 use carom_record::study::design::{Design, Goal};
 use carom_record::study::{Arm, Comparison, StudyManifest, StudySource};
 use carom_record::{Machine, Source, Status, now};

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use carom::recording::Progress;
+use carom_run::recording::Progress;
 use carom_record::study::{Study, StudyManifest};
 use carom_record::{RecordError, Status};
 

@@ -1,7 +1,7 @@
 //! JSON Schema (draft 2020-12) of the study file, for editors: its own keys, and those of the case
 //! wherever a value is set.
 
-use carom::case;
+use carom_run::case;
 use serde_json::{Map, Value, json};
 
 use carom_record::study::design::Goal;

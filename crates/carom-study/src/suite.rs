@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use carom::case::{Case, CaseError, Diagnostic, Document};
+use carom_run::case::{Case, CaseError, Diagnostic, Document};
 use carom_record::{Expect, Source};
 
 use crate::Plan;
@@ -119,7 +119,7 @@ fn kind(file: &Path, fast: bool) -> Result<Option<Kind>, CaseError> {
         let arms = plan.arms.iter().flat_map(|arm| &arm.case.expects);
         return Ok(wanted(arms.chain(&plan.manifest.expects), fast).then(|| Kind::Study(Box::new(plan))));
     }
-    let case = carom::case::read(&document).map_err(|problems| document.diagnose_all(&problems))?;
+    let case = carom_run::case::read(&document).map_err(|problems| document.diagnose_all(&problems))?;
     if !wanted(&case.expects, fast) {
         return Ok(None);
     }

@@ -5,9 +5,9 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use carom::Setup;
-use carom::case::{Case, Enforcement, SchemeSpec};
-use carom::frequencies::{Frequencies, frequencies, spring};
+use carom_run::Setup;
+use carom_run::case::{Case, Enforcement, SchemeSpec};
+use carom_run::frequencies::{Frequencies, frequencies, spring};
 use carom_record::RecordError;
 use carom_time::Integrator;
 

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use carom::case::Case;
-use carom::recording::{self, Options, Progress};
+use carom_run::case::Case;
+use carom_run::recording::{self, Options, Progress};
 use carom_record::question::Question;
 use carom_record::study::{Study, StudyManifest};
 use carom_record::verification::{Row, SetUp, Verification};

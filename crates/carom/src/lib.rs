@@ -6,17 +6,16 @@
 //! ```
 #![doc = include_str!("../examples/sweep.rs")]
 //! ```
+//!
+//! [`Setup::material`] and [`Setup::kernel`] take a law and a time integrator of your own: any
+//! [`solid::material::Material`] and any [`time::Kernel`]. The crates behind this one are
+//! re-exported as modules.
 
-mod build;
-mod initial;
-pub mod recording;
-mod setup;
-
-pub use build::overlaps;
-pub use carom_case as case;
-pub use carom_mechanics::{
-    Accepted, Before, Bisection, Explicit, FrozenTangent, Grid, GridReport, HalfStepVelocity, Implicit,
-    Impulsive, Ledger, LogEvent, Means, OtherModel, Point, Previous, Rejected, Settings, Simulation, State,
-    StepReport, Stepper, Stopped, Tangent, Timings, Workspace, frequencies, model, stability,
-};
-pub use setup::{Setup, too_long};
+pub use carom_algebra as algebra;
+pub use carom_contact as contact;
+pub use carom_record as record;
+pub use carom_report as report;
+pub use carom_run::*;
+pub use carom_solid as solid;
+pub use carom_study as study;
+pub use carom_time as time;

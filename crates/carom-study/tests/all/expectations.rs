@@ -5,7 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
-use carom::case::{CaseError, Diagnostic};
+use carom_run::case::{CaseError, Diagnostic};
 use carom_record::study::Study;
 use carom_study::{Plan, start};
 

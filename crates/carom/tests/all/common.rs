@@ -1,102 +1,58 @@
-//! Common helpers: cases from text and settings, runs to the end, sums over bodies.
+//! What the tests of the binary share: a place to run it in.
 
-use carom::case::{Case, Document, read};
-use carom::{GridReport, Simulation, State};
-use carom_time::{KINDS, KindInfo, Member};
+#![allow(dead_code)] // each test file uses its part
 
-/// Two discs that collide off centre, in contact within the run.
-pub(crate) const DISCS: &str = r#"
-title = "Two discs, off centre"
-dimension = 2
-[[material]]
-name = "rubber"
-law = "neo-hookean"
-density = 0.25
-lambda = 20.0
-mu = 15.0
-[[body]]
-name = "left"
-material = "rubber"
-element = "T6"
-mass = "lumped"
-mesh = { shape = "disc", radius = 0.5, center = [-0.55, 0.1], size = 0.25 }
-velocity = [1.5, 0.0]
-[[body]]
-name = "right"
-material = "rubber"
-element = "T6"
-mass = "lumped"
-mesh = { shape = "disc", radius = 0.5, center = [0.55, -0.1], size = 0.25 }
-velocity = [-1.5, 0.0]
-[[contact]]
-name = "strike"
-secondary = "left.arc"
-primary = "right.arc"
-[time]
-end = 0.4
-step = 1e-3
-scheme = { kind = "hu" }
-"#;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
 
-/// A case from its text, with some of its keys changed.
-pub(crate) fn case<S: AsRef<str>>(text: &str, sets: &[S]) -> Case {
-    let sets: Vec<String> = sets.iter().map(|set| set.as_ref().to_owned()).collect();
-    let document = Document::parse("case.toml", text, &sets).unwrap_or_else(|e| panic!("{e}"));
-    read(&document).unwrap_or_else(|p| panic!("{}", document.diagnose_all(&p)))
-}
+/// The impact of the paper.
+pub(crate) const IMPACT: &str = include_str!("../../../../cases/impact/impact.toml");
 
-/// Changes the state of a simulation.
-pub(crate) fn change(simulation: &mut Simulation, how: impl FnOnce(&mut State)) {
-    let mut state = simulation.state().clone();
-    how(&mut state);
-    simulation.restore(state).unwrap();
-}
+/// The impact on a coarse mesh: 400 steps, about half a second.
+pub(crate) const COARSE: [&str; 4] =
+    ["--set", "body.cylinder.mesh.size=0.25", "--set", "body.prism.mesh.cells=[4,2]"];
 
-/// A simulation at another state of its model.
-pub(crate) fn restored(mut simulation: Simulation, state: State) -> Simulation {
-    simulation.restore(state).unwrap();
-    simulation
-}
+/// A directory of its own per test, removed when it ends.
+pub(crate) struct Place(pub(crate) PathBuf);
 
-/// The members of every kind with its own contact law, or of all others: name as in a case, and
-/// published properties.
-pub(crate) fn schemes(nonsmooth: bool) -> impl Iterator<Item = (String, &'static Member)> {
-    let kinds = KINDS.iter().filter(move |kind| kind.is_nonsmooth() == nonsmooth);
-    kinds.flat_map(|kind: &KindInfo| {
-        kind.members.iter().map(|member| (kind.named(member).to_string(), member))
-    })
-}
-
-/// A simulation of a case, on one thread.
-pub(crate) fn simulation(text: &str, sets: &[impl AsRef<str>]) -> Simulation {
-    on_threads(text, sets, 1)
-}
-
-pub(crate) fn on_threads(text: &str, sets: &[impl AsRef<str>], threads: usize) -> Simulation {
-    carom::Setup::new(&case(text, sets)).threads(threads).start().unwrap_or_else(|p| panic!("{p:?}"))
-}
-
-/// Runs to the end.
-pub(crate) fn finish(mut sim: Simulation) -> Simulation {
-    while !sim.finished() {
-        sim.advance(&mut GridReport::default()).unwrap();
+impl Place {
+    pub(crate) fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("carom-command-{}-{name}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
     }
-    sim
+
+    pub(crate) fn file(&self, name: &str, bytes: impl AsRef<[u8]>) -> &Self {
+        std::fs::write(self.0.join(name), bytes).unwrap();
+        self
+    }
+
+    pub(crate) fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_carom"));
+        command.current_dir(&self.0).args(arguments).stdin(Stdio::null());
+        command
+    }
+
+    pub(crate) fn carom(&self, arguments: &[&str]) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
+    pub(crate) fn entries(&self) -> Vec<String> {
+        let names = std::fs::read_dir(&self.0)
+            .unwrap()
+            .map(|e| e.unwrap().file_name().to_string_lossy().into_owned());
+        let mut names: Vec<_> = names.collect();
+        names.sort();
+        names
+    }
 }
 
-/// Linear and angular momentum of the velocities `v` at the current positions.
-pub(crate) fn momenta(sim: &Simulation, v: &[f64]) -> [f64; 3] {
-    let mut p = vec![0.0; v.len()];
-    sim.model().mass.multiply_into(v, &mut p);
-    sums(&p, &sim.state().y)
+impl Drop for Place {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
 }
 
-/// Sums of vectors at the nodes `y` and of their moments.
-pub(crate) fn sums(vectors: &[f64], y: &[f64]) -> [f64; 3] {
-    let pairs = vectors.as_chunks::<2>().0.iter().zip(y.as_chunks::<2>().0);
-    pairs.fold([0.0; 3], |s, (f, y)| [s[0] + f[0], s[1] + f[1], s[2] + y[0] * f[1] - y[1] * f[0]])
-}
-
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+pub(crate) fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
 }

@@ -1,20 +1,14 @@
-//! The stepper in whole runs, in one binary, so that common helpers are written and linked once.
+//! The command line, run: one program, so that it is linked once.
 
 #![allow(clippy::unwrap_used)]
 
-mod bar;
+mod book;
+mod commands;
 mod common;
-mod energy_momentum;
-mod frequencies;
-mod impact;
-mod kernels;
-mod loads;
-mod momentum;
-mod nonsmooth;
-mod own;
-mod placed;
-mod probe;
-mod restart;
-mod reversal;
-mod statics;
-mod tangent;
+mod mesh;
+mod misspelt;
+mod new;
+#[cfg(unix)]
+mod resume;
+mod schemes;
+mod verify;

@@ -1,6 +1,6 @@
 //! Load steps without inertia: exact equilibria, stable and unstable, and unconstrained bodies.
 
-use carom::GridReport;
+use carom_run::GridReport;
 
 use super::common::{case as case_of, finish, simulation};
 use super::loads::{HELD, bar, body, time};
@@ -107,7 +107,7 @@ scheme = {{ kind = "static" }}
     // Without its contact nothing can constrain it: the case is invalid.
     let mut alone = case.clone();
     alone.contacts.clear();
-    let problems = carom::Setup::new(&alone).start().err().unwrap();
+    let problems = carom_run::Setup::new(&alone).start().err().unwrap();
     assert!(problems[0].what.starts_with("body \"disc\" is free to"), "{problems:?}");
     // With a gap it falls: reported by name, with a suggestion.
     let stopped =

@@ -19,7 +19,7 @@ use crate::summary::short;
 use crate::{console, directory, out};
 
 /// The cases as they were when the program was built.
-static CASES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../cases");
+static CASES: Dir = include_dir!("$CAROM_CASES");
 
 /// Run every case that carries expectations and report which are met
 #[derive(clap::Args)]

@@ -1,7 +1,7 @@
 //! Frozen tangents, with and without their accelerations, and the full tangent give the same
 //! history.
 
-use carom::{GridReport, Simulation, State};
+use carom_run::{GridReport, Simulation, State};
 
 use super::common::simulation;
 

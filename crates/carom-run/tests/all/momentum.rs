@@ -5,9 +5,9 @@
 
 use std::path::{Path, PathBuf};
 
-use carom::case::Case;
-use carom::model::{BodyInstance, Model};
-use carom::{Setup, Simulation, State};
+use carom_run::case::Case;
+use carom_run::model::{BodyInstance, Model};
+use carom_run::{Setup, Simulation, State};
 
 use super::common::schemes;
 

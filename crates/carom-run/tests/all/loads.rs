@@ -1,6 +1,6 @@
 //! Loads and moving supports against exact solutions: waves, oscillators, equilibria.
 
-use carom::{GridReport, Simulation};
+use carom_run::{GridReport, Simulation};
 
 use super::common::{self, finish};
 
@@ -249,7 +249,7 @@ tolerance = 1e-13
     assert!((moment + load_moment).abs() < 1e-12 * size);
     // Dead loads by hand: 3 × 2 × ½ on the top and 0.3 × ∫X = 0.3 × 2 × ½ in the volume; the
     // pressure follows the sides.
-    let mut dead = carom::model::LoadsAt::default();
+    let mut dead = carom_run::model::LoadsAt::default();
     let mut force = vec![0.0; model.dofs()];
     model.loads_into(1.0, &model.reference, &mut dead, &mut force).unwrap();
     let total = force.as_chunks::<2>().0.iter().fold([0.0, 0.0], |s, f| [s[0] + f[0], s[1] + f[1]]);

@@ -13,7 +13,7 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 /// Every file of cases/ and of the templates, with its text.
 fn shipped() -> Vec<(PathBuf, String)> {
     let mut found = Vec::new();
-    let mut folders = vec![Path::new(ROOT).join("cases"), Path::new(ROOT).join("crates/carom-cli/templates")];
+    let mut folders = vec![Path::new(ROOT).join("cases"), Path::new(ROOT).join("crates/carom/templates")];
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();

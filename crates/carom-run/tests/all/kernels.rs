@@ -1,6 +1,6 @@
 //! Kernels in the real stepper: their maps, orders, recorded impulse and memory.
 
-use carom::{GridReport, Means, Previous, State};
+use carom_run::{GridReport, Means, Previous, State};
 use carom_time::map;
 
 use super::common::{case, change, finish, restored, schemes, simulation};

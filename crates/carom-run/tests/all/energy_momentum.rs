@@ -1,7 +1,7 @@
 //! Free flight of a spinning, straining and vibrating soft body: quantities that the discrete
 //! gradient conserves to round-off, and other schemes do not.
 
-use carom::{GridReport, Simulation};
+use carom_run::{GridReport, Simulation};
 
 use super::common::{change, momenta, simulation};
 

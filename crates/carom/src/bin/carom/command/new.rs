@@ -36,9 +36,9 @@ enum Template {
 impl Template {
     fn case(self) -> &'static str {
         match self {
-            Self::Impact2d => include_str!("../../templates/impact-2d.toml"),
-            Self::Bar1d => include_str!("../../templates/bar-1d.toml"),
-            Self::Gmsh => include_str!("../../templates/gmsh.toml"),
+            Self::Impact2d => include_str!("../../../../templates/impact-2d.toml"),
+            Self::Bar1d => include_str!("../../../../templates/bar-1d.toml"),
+            Self::Gmsh => include_str!("../../../../templates/gmsh.toml"),
         }
     }
 
@@ -46,8 +46,8 @@ impl Template {
     fn files(self) -> &'static [(&'static str, &'static [u8])] {
         match self {
             Self::Gmsh => &[
-                ("mesh.geo", include_bytes!("../../templates/mesh.geo")),
-                ("mesh.msh", include_bytes!("../../templates/mesh.msh")),
+                ("mesh.geo", include_bytes!("../../../../templates/mesh.geo")),
+                ("mesh.msh", include_bytes!("../../../../templates/mesh.msh")),
             ],
             _ => &[],
         }

@@ -1,14 +1,14 @@
 //! Natural frequencies of bars, and of a spring on a node, against closed forms.
 
-use carom::frequencies::{frequencies, spring};
-use carom::model::Model;
+use carom_run::frequencies::{frequencies, spring};
+use carom_run::model::Model;
 
 use super::common::case;
 
 const BAR: &str = include_str!("../../../../cases/bar/single.toml");
 
 fn model(sets: &[&str]) -> Model {
-    carom::Setup::new(&case(BAR, sets)).build().unwrap()
+    carom_run::Setup::new(&case(BAR, sets)).build().unwrap()
 }
 
 /// The end of a bar of linear cells with lumped mass ρAh/2, on a spring of `stiffness` times its

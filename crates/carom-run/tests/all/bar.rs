@@ -2,7 +2,7 @@
 //! from the formulas alone), to its digits. (a) one impact at v₀ = −10; (b) bouncing under gravity
 //! for three periods.
 
-use carom::GridReport;
+use carom_run::GridReport;
 
 use super::common::simulation;
 

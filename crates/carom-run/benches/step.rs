@@ -1,15 +1,15 @@
 //! The components of a step, on the jobs of `cases/perf/` in mid-contact: cells, detection, gaps,
 //! assembly and factor, solve, whole steps.
 //!
-//!     cargo bench -p carom                    times
+//!     cargo bench -p carom-run                    times
 //!     bench/instructions.py carom             instructions
 
 use std::collections::BTreeSet;
 use std::hint::black_box;
 use std::sync::Arc;
 
-use carom::case::{Case, Document, read};
-use carom::{GridReport, Simulation, State};
+use carom_run::case::{Case, Document, read};
+use carom_run::{GridReport, Simulation, State};
 use carom_algebra::{Condensed, Elimination, Pattern, Precision};
 use carom_contact::{Pair, Pairing, Rows};
 use divan::{Bencher, counter::ItemsCount};
@@ -49,7 +49,7 @@ fn at_start(job: Job) -> Simulation {
         Job::Small => SMALL,
         Job::Large => LARGE,
     };
-    carom::Setup::new(&case_of(text)).start().expect("valid")
+    carom_run::Setup::new(&case_of(text)).start().expect("valid")
 }
 
 fn restored(mut simulation: Simulation, state: State) -> Simulation {
@@ -203,7 +203,7 @@ fn ten_steps(bencher: Bencher, job: Job) {
 #[divan::bench(sample_count = 10, sample_size = 1)]
 fn thousand_steps_of_a_bar(bencher: Bencher) {
     let case = case_of(BAR);
-    bencher.with_inputs(|| carom::Setup::new(&case).start().expect("valid")).bench_local_values(|mut sim| {
+    bencher.with_inputs(|| carom_run::Setup::new(&case).start().expect("valid")).bench_local_values(|mut sim| {
         for _ in 0..1000 {
             black_box(sim.advance(&mut GridReport::default()).is_ok());
         }

@@ -18,6 +18,7 @@ use crate::initial::{before, given};
 /// your own in place of the case's.
 ///
 /// ```
+/// # extern crate carom_run as carom;
 /// use carom::{Setup, case::Case};
 /// let case = Case::from_text(
 ///     r#"

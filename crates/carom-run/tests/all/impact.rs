@@ -1,7 +1,7 @@
 //! The impact of cases/impact, step by step: identities that hold to round-off in every step.
 
-use carom::case::Case;
-use carom::{GridReport, Simulation, State};
+use carom_run::case::Case;
+use carom_run::{GridReport, Simulation, State};
 use carom_contact::Rows;
 
 use super::common::{DISCS, case, dot, momenta, schemes, simulation, sums};
@@ -72,7 +72,7 @@ fn ledger_balance_and_gaps_hold_under_loads() {
 
 fn ledger_balance_and_gaps_hold(case: &Case, least: usize) {
     let scheme = case.time.scheme.integrator().unwrap().alpha().unwrap();
-    let mut sim = carom::Setup::new(case).start().unwrap();
+    let mut sim = carom_run::Setup::new(case).start().unwrap();
     let (mut worst_ledger, mut touched) = (0.0_f64, 0);
     while !sim.finished() {
         let before = sim.state().clone();

@@ -1,7 +1,7 @@
 //! The trapezoidal rule is symmetric in time: from a later state with reversed velocities it
 //! returns to the initial state.
 
-use carom::GridReport;
+use carom_run::GridReport;
 
 use super::common::{restored, simulation};
 

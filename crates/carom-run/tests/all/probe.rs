@@ -1,6 +1,6 @@
 //! Probes at points where cells are strongly distorted.
 
-use carom::model::Probe;
+use carom_run::model::Probe;
 
 use super::common::simulation;
 

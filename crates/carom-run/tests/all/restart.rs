@@ -1,6 +1,6 @@
 //! Resumed runs, and runs that start where another ended.
 
-use carom::GridReport;
+use carom_run::GridReport;
 
 use super::common::{case as case_of, finish, simulation};
 use super::loads::time;
@@ -45,7 +45,7 @@ energy_guard = false
         if !scheme.is_empty() {
             case.time.scheme.forces = carom_time::ForceRule::AverageState;
         }
-        let mut whole = carom::Setup::new(&case).start().unwrap();
+        let mut whole = carom_run::Setup::new(&case).start().unwrap();
         let mut checkpoint = None;
         while !whole.finished() {
             if whole.state().step == 23 {
@@ -54,7 +54,7 @@ energy_guard = false
             whole.advance(&mut GridReport::default()).unwrap();
         }
         let state = postcard::from_bytes(&checkpoint.unwrap()).unwrap();
-        let resumed = finish(carom::Setup::new(&case).threads(2).resume(state).unwrap());
+        let resumed = finish(carom_run::Setup::new(&case).threads(2).resume(state).unwrap());
         assert_eq!(resumed.state(), whole.state());
     }
 }
@@ -95,11 +95,11 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
     let statics = text(&time(1.0, 0.25, r#"{ kind = "static" }"#), "", "-0.1*t");
     let case = case_of(&statics, &[""; 0]);
     let source = carom_record::Source { text: statics.clone(), sets: Vec::new() };
-    let options = carom::recording::Options { threads: 1 };
+    let options = carom_run::recording::Options { threads: 1 };
     let stop = std::sync::atomic::AtomicBool::new(false);
     let preload = folder.path().join("preload");
-    carom::recording::run(&case, source, &preload, options, &mut |_| {}, &stop).unwrap();
-    let pressed = finish(carom::Setup::new(&case).start().unwrap());
+    carom_run::recording::run(&case, source, &preload, options, &mut |_| {}, &stop).unwrap();
+    let pressed = finish(carom_run::Setup::new(&case).start().unwrap());
 
     let initial = format!("[initial]\nfrom = {:?}\n", preload.display().to_string());
     let again = |motion: &str| {
@@ -126,7 +126,7 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
         (again("-0.1").replace("cells = [3, 3]", "cells = [3, 4]"), "body \"block\" has another mesh in"),
         (again("-0.1").replace("/preload", "/nowhere"), "cannot be started from"),
     ] {
-        let problems = carom::Setup::new(&case_of(&text, &[""; 0])).start().err().unwrap();
+        let problems = carom_run::Setup::new(&case_of(&text, &[""; 0])).start().err().unwrap();
         assert!(problems[0].what.contains(expected), "{problems:?}");
     }
 }

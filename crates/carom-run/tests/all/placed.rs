@@ -77,7 +77,7 @@ fn positions_that_only_turn_a_body_leave_it_unstrained() {
 fn bodies_must_not_overlap_where_they_start() {
     const LOWER: &str = "body.tube.position=[\"X\", \"Y - 0.05\"]";
     let problems = |sets: &[&str]| {
-        carom::Setup::new(&case(DROP, sets))
+        carom_run::Setup::new(&case(DROP, sets))
             .start()
             .err()
             .unwrap_or_default()

@@ -1,8 +1,8 @@
 //! Explicit and impulse steppers in the plane: identities that hold to round-off, their order, and
 //! the impact of cases/impact.
 
-use carom::stability::{SAFETY, stable_step};
-use carom::{GridReport, State};
+use carom_run::stability::{SAFETY, stable_step};
+use carom_run::{GridReport, State};
 use carom_time::{Integrator, Nonsmooth};
 
 use super::common::{DISCS, case, dot, finish, momenta, on_threads, restored, schemes, simulation};
@@ -210,13 +210,13 @@ fn the_stable_step_is_where_central_differences_blow_up() {
         IMPACT,
         &[&COARSE[..], &["time.scheme={ kind = \"central-difference\" }", "time.step=3e-4"]].concat(),
     );
-    let sim = carom::Setup::new(&coarse).start().unwrap();
+    let sim = carom_run::Setup::new(&coarse).start().unwrap();
     let stable = stable_step(&sim.model()).unwrap();
     assert!(stable.cell <= stable.power && stable.power < 3.0 * stable.cell, "{stable:?}");
     let step = format!("time.step={:e}", 0.75 / (0.75 / (0.99 * stable.power)).floor());
     let long =
         case(IMPACT, &[&COARSE[..], &["time.scheme={ kind = \"central-difference\" }", &step]].concat());
-    let refused = carom::Setup::new(&long).start().err().unwrap();
+    let refused = carom_run::Setup::new(&long).start().err().unwrap();
     assert!(refused.len() == 1 && refused[0].path == "time.step", "{refused:?}");
     assert!(refused[0].what.contains(&format!("{:.4e}", SAFETY * stable.power)), "{refused:?}");
 }

@@ -1,0 +1,16 @@
+//! Simulations built from cases, run step by step in memory or into a run directory. Users import
+//! the crate `carom`, which re-exports this one.
+
+mod build;
+mod initial;
+pub mod recording;
+mod setup;
+
+pub use build::overlaps;
+pub use carom_case as case;
+pub use carom_mechanics::{
+    Accepted, Before, Bisection, Explicit, FrozenTangent, Grid, GridReport, HalfStepVelocity, Implicit,
+    Impulsive, Ledger, LogEvent, Means, OtherModel, Point, Previous, Rejected, Settings, Simulation, State,
+    StepReport, Stepper, Stopped, Tangent, Timings, Workspace, frequencies, model, stability,
+};
+pub use setup::{Setup, too_long};

@@ -1,0 +1,20 @@
+//! The stepper in whole runs, in one binary, so that common helpers are written and linked once.
+
+#![allow(clippy::unwrap_used)]
+
+mod bar;
+mod common;
+mod energy_momentum;
+mod frequencies;
+mod impact;
+mod kernels;
+mod loads;
+mod momentum;
+mod nonsmooth;
+mod own;
+mod placed;
+mod probe;
+mod restart;
+mod reversal;
+mod statics;
+mod tangent;
