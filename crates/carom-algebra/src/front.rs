@@ -280,12 +280,12 @@ fn eliminate<T: Entry>(
         let trailing_columns = columns - start - width;
         let (_, trailing) = after.rb_mut().split_at_row_mut(width);
         threads.for_each(column_blocks(trailing), |k, target| {
-            subtract_product(target, [lower, other], k * BLOCK)
+            subtract_product(target, [lower, other], k * BLOCK);
         });
         if square.nrows() > 0 {
             let rows = [lower, other].map(|lower| lower.subrows(trailing_columns, square.nrows()));
             threads.for_each(column_blocks(square.rb_mut()), |k, target| {
-                subtract_product(target, rows, k * BLOCK)
+                subtract_product(target, rows, k * BLOCK);
             });
         }
     }

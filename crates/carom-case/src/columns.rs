@@ -62,7 +62,7 @@ pub(super) fn of(
     let axes = &["x", "y"][..dimension.clamp(1, 2)];
     let mut columns: Vec<String> = SCALARS.iter().map(ToString::to_string).collect();
     let vector = |columns: &mut Vec<String>, name: &str| {
-        columns.extend(axes.iter().map(|axis| format!("{name}_{axis}")))
+        columns.extend(axes.iter().map(|axis| format!("{name}_{axis}")));
     };
     vector(&mut columns, "momentum");
     if dimension == 2 {

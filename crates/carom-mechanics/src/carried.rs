@@ -11,35 +11,7 @@
 //! the part of q that is due to contact obeys the first one with the mean contact force; it is what
 //! is kept here, as a resultant on each secondary side.
 
-use serde::{Deserialize, Serialize};
-
 use crate::state::State;
-
-/// Contact's part of the algorithmic accelerations.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Carried {
-    /// Step with which it counts; 0 before the first one.
-    dt: f64,
-    /// Contact's part of Σ M a on each secondary side.
-    pub(crate) forces: Vec<[f64; 3]>,
-}
-
-impl Carried {
-    /// At the start, where accelerations satisfy the balance.
-    pub(crate) fn at_start(forces: &[[f64; 3]]) -> Self {
-        Self { dt: 0.0, forces: forces.to_vec() }
-    }
-
-    /// The last step that was taken, a bisected one too; none before the first.
-    pub fn dt(&self) -> Option<f64> {
-        (self.dt > 0.0).then_some(self.dt)
-    }
-
-    pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.dt = other.dt;
-        self.forces.clone_from(&other.forces);
-    }
-}
 
 /// Books a change of the step to `dt`; `factor`: c.
 pub(crate) fn change_step(state: &mut State, factor: f64, dt: f64) {

@@ -2,34 +2,7 @@
 //! minimum, so that what was lost before does not hide it. It is judged against the largest energy
 //! that was there or was supplied, max (kinetic + strain, Σ |ΔW_ext|).
 
-use serde::{Deserialize, Serialize};
-
 use crate::state::Ledger;
-
-/// The running minimum of E, and what rose above it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Created {
-    lowest: f64,
-    /// [`Ledger::open`] at that minimum.
-    open: f64,
-    /// Largest rise so far.
-    most: f64,
-    /// Σ |ΔW_ext| so far, and W_ext at its last term.
-    worked: f64,
-    work: f64,
-}
-
-impl Created {
-    /// Of the energies at the start.
-    pub(crate) fn at_start(ledger: &Ledger) -> Self {
-        Self { lowest: ledger.total(), ..Self::default() }
-    }
-
-    /// Largest rise so far.
-    pub fn most(&self) -> f64 {
-        self.most
-    }
-}
 
 impl Ledger {
     /// Rise of total − external work above its running minimum.

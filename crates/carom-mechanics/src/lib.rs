@@ -35,15 +35,13 @@ mod testing;
 mod timings;
 mod workspace;
 
-pub use carried::Carried;
-pub use created::Created;
 pub use ledger::secondary_force;
 pub use rejected::Rejected;
 pub use renewal::{FrozenTangent, Point};
 pub use settings::{Settings, Tangent};
 pub use simulation::{Grid, GridReport, LogEvent, OtherModel, Simulation, Stopped};
 pub use start::Before;
-pub use state::{Bisection, HalfStepVelocity, Ledger, Means, Previous, State};
+pub use state::{Bisection, Carried, Created, HalfStepVelocity, Ledger, Means, Previous, State};
 pub use stepper::{Accepted, Explicit, Implicit, Impulsive, StepReport, Stepper};
 pub use sums::dot;
 pub use timings::Timings;

@@ -10,14 +10,12 @@
 
 use carom_contact::{Pair, Point, Rows};
 
-use crate::carried::Carried;
 use crate::constraints::{Constraints, independent_rows};
-use crate::created::Created;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::{LoadsAt, Model};
 use crate::persistency::{averaged_contact_into, drive, measure_all, pressing, take_accelerations};
 use crate::rejected::Rejected;
-use crate::state::State;
+use crate::state::{Carried, Created, State};
 use crate::system::System;
 
 /// The start of a run, if not the initial positions.

@@ -3,8 +3,6 @@
 use carom_contact::{Pair, Pairing};
 use serde::{Deserialize, Serialize};
 
-use crate::carried::Carried;
-use crate::created::Created;
 use crate::renewal::FrozenTangent;
 
 /// Energies and works, design.md §5: cumulative from the start of the run.
@@ -51,6 +49,57 @@ impl Ledger {
     /// Change of the energy since the start beyond the work of loads and supports.
     pub fn drift(&self) -> f64 {
         self.total() - self.total_at_start - self.external_work
+    }
+}
+
+/// The running minimum of E, and what rose above it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Created {
+    pub(crate) lowest: f64,
+    /// [`Ledger::open`] at that minimum.
+    pub(crate) open: f64,
+    /// Largest rise so far.
+    pub(crate) most: f64,
+    /// Σ |ΔW_ext| so far, and W_ext at its last term.
+    pub(crate) worked: f64,
+    pub(crate) work: f64,
+}
+
+impl Created {
+    /// Of the energies at the start.
+    pub(crate) fn at_start(ledger: &Ledger) -> Self {
+        Self { lowest: ledger.total(), ..Self::default() }
+    }
+
+    /// Largest rise so far.
+    pub fn most(&self) -> f64 {
+        self.most
+    }
+}
+
+/// Contact's part of the algorithmic accelerations.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Carried {
+    /// Step with which it counts; 0 before the first one.
+    pub(crate) dt: f64,
+    /// Contact's part of Σ M a on each secondary side.
+    pub(crate) forces: Vec<[f64; 3]>,
+}
+
+impl Carried {
+    /// At the start, where accelerations satisfy the balance.
+    pub(crate) fn at_start(forces: &[[f64; 3]]) -> Self {
+        Self { dt: 0.0, forces: forces.to_vec() }
+    }
+
+    /// The last step that was taken, a bisected one too; none before the first.
+    pub fn dt(&self) -> Option<f64> {
+        (self.dt > 0.0).then_some(self.dt)
+    }
+
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.dt = other.dt;
+        self.forces.clone_from(&other.forces);
     }
 }
 

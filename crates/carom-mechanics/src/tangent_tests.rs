@@ -115,7 +115,7 @@ fn the_whole_tangent_with_contact_is_the_derivative_of_the_residual() {
         while sim.state().time < 0.1 {
             sim.advance(&mut GridReport::default()).unwrap();
         }
-        let equations = equations(&sim.model(), &sim.state(), &scheme, sim.dt(), sim.state().time + sim.dt());
+        let equations = equations(sim.model(), sim.state(), &scheme, sim.dt(), sim.state().time + sim.dt());
         let mut tangent = Tangent::new(&equations, 1e-3);
         assert!(tangent.rows.len() > 3);
         let (u, w) = (tangent.direction(0.1), tangent.direction(0.7));
@@ -156,7 +156,7 @@ fn the_tangent_under_pressure_is_the_derivative_of_the_residual() {
     {
         let sim = simulation(pressed(on, pressure), scheme, 0.1);
         // Without inertia and with soft springs the pressure dominates the tangent.
-        let equations = equations(&sim.model(), &sim.state(), &scheme, 1e3, 0.1);
+        let equations = equations(sim.model(), sim.state(), &scheme, 1e3, 0.1);
         let mut tangent = Tangent::new(&equations, 1e-2);
         let (u, w) = (tangent.direction(0.1), tangent.direction(0.7));
         let (ku, kw) = (tangent.product(&u), tangent.product(&w));

@@ -8,10 +8,10 @@ use std::collections::BTreeSet;
 use std::hint::black_box;
 use std::sync::Arc;
 
-use carom_run::case::{Case, Document, read};
-use carom_run::{GridReport, Simulation, State};
 use carom_algebra::{Condensed, Elimination, Pattern, Precision};
 use carom_contact::{Pair, Pairing, Rows};
+use carom_run::case::{Case, Document, read};
+use carom_run::{GridReport, Simulation, State};
 use divan::{Bencher, counter::ItemsCount};
 
 fn main() {
@@ -203,9 +203,11 @@ fn ten_steps(bencher: Bencher, job: Job) {
 #[divan::bench(sample_count = 10, sample_size = 1)]
 fn thousand_steps_of_a_bar(bencher: Bencher) {
     let case = case_of(BAR);
-    bencher.with_inputs(|| carom_run::Setup::new(&case).start().expect("valid")).bench_local_values(|mut sim| {
-        for _ in 0..1000 {
-            black_box(sim.advance(&mut GridReport::default()).is_ok());
-        }
-    });
+    bencher.with_inputs(|| carom_run::Setup::new(&case).start().expect("valid")).bench_local_values(
+        |mut sim| {
+            for _ in 0..1000 {
+                black_box(sim.advance(&mut GridReport::default()).is_ok());
+            }
+        },
+    );
 }

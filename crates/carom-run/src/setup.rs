@@ -1,7 +1,5 @@
 //! Builds the simulation of a case: the model with a stepper, on the grid of times.
 
-use std::collections::BTreeMap;
-
 use carom_case::{Case, NewtonSpec, Problem, Problems, TangentRule};
 use carom_mechanics::model::Model;
 use carom_mechanics::stability::{SAFETY, stable_step};
@@ -11,7 +9,7 @@ use carom_mechanics::{
 use carom_solid::Constitutive;
 use carom_time::{Integrator, Kernel, Nonsmooth};
 
-use crate::build::{build, overlaps};
+use crate::build::{Materials, build, overlaps};
 use crate::initial::{before, given};
 
 /// A case on its way to a simulation: with how many threads, and with laws and a time integrator of
@@ -53,9 +51,6 @@ pub struct Setup<'a> {
     materials: Materials,
     kernel: Option<Box<dyn Kernel>>,
 }
-
-/// Laws given in place of those of materials, by the material's name.
-pub(crate) type Materials = BTreeMap<String, Box<dyn Constitutive>>;
 
 impl<'a> Setup<'a> {
     /// The case as it is, on one thread.

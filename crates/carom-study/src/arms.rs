@@ -1,8 +1,8 @@
 //! Arms of a study: those written down, then the product of the grid; and an arm's problems, shown
 //! where the arm was written.
 
-use carom_run::case::{Diagnostic, Document, Problem};
 use carom_record::study::design::{Kind, Role};
+use carom_run::case::{Diagnostic, Document, Problem};
 use toml_edit::Value;
 
 use crate::file::{FINE_NAME, StudyFile};

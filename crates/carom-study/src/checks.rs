@@ -10,11 +10,11 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use carom_run::case::Case;
-use carom_run::recording::{self, End, Options, Progress};
 use carom_record::study::checks::{Checks, fingerprint};
 use carom_record::study::{Arm, StudyManifest};
 use carom_record::{Manifest, RecordError, Status};
+use carom_run::case::Case;
+use carom_run::recording::{self, End, Options, Progress};
 
 use crate::error::StudyError;
 

@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
+use carom_record::study::StudyManifest;
 use carom_run::case::Case;
 use carom_run::recording::{self, Options, Progress};
-use carom_record::study::StudyManifest;
 
 use crate::error::StudyError;
 use crate::jobs::Ended;

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use carom_run::recording::RunError;
 use carom_record::RecordError;
+use carom_run::recording::RunError;
 
 /// Why a study cannot go on.
 #[derive(Debug, thiserror::Error)]

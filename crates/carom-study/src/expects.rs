@@ -1,9 +1,9 @@
 //! Expectations of a study must be in the records of its arms: names of arms, columns and metrics,
 //! keys that are numbers.
 
-use carom_run::case::{Case, Problem, history_columns};
 use carom_record::question::{Asked, Quantity, Question, Series, column_metric_names, metric_names};
 use carom_record::{Expect, Expression, OrderOf};
+use carom_run::case::{Case, Problem, history_columns};
 
 /// Adds what is wrong with a study's expectations.
 pub(crate) fn check(expects: &[Expect], arms: &[(&str, &Case)], problems: &mut Vec<Problem>) {

@@ -1,9 +1,9 @@
 //! The study file as written: its keys, their types, and where each of them stands. A path names a
 //! place as in [`carom_run::case::Problem`]: `arm[0].set."time.step"`.
 
-use carom_run::case::{Asked, Document, Problem, read_expects};
 use carom_record::Expect;
 use carom_record::study::design::{Goal, Kind};
+use carom_run::case::{Asked, Document, Problem, read_expects};
 use toml_edit::{Item, TableLike, Value};
 
 pub(crate) const KEYS: [&str; 14] = [
@@ -176,7 +176,7 @@ fn comparison(root: &dyn TableLike, file: &mut StudyFile, problems: &mut Vec<Pro
             .map(|l| l.iter().map(|v| positive(&Item::Value(v.clone()))).collect::<Option<Vec<_>>>());
         match list {
             Some(Some(steps)) if !steps.is_empty() && steps.windows(2).all(|h| h[0] > h[1]) => {
-                file.steps = steps
+                file.steps = steps;
             }
             _ => problems.push(not("steps", "a list of falling positive numbers", "steps = [1e-3, 5e-4]")),
         }
@@ -304,7 +304,7 @@ fn flatten(table: &dyn TableLike, before: &str, out: &mut Vec<(String, Value)>) 
         let key = format!("{before}{key}");
         match item {
             Item::Value(Value::InlineTable(inner)) if inner.is_dotted() => {
-                flatten(inner, &format!("{key}."), out)
+                flatten(inner, &format!("{key}."), out);
             }
             Item::Table(inner) => flatten(inner, &format!("{key}."), out),
             Item::Value(value) => out.push((key, value.clone())),

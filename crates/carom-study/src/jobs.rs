@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, mpsc};
 
-use carom_run::recording::{self, End, Progress};
 use carom_record::Status;
+use carom_run::recording::{self, End, Progress};
 
 /// What happens to an arm, told by its number.
 #[derive(Clone, Debug)]

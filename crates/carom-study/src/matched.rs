@@ -23,10 +23,10 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
-use carom_run::case::Case;
-use carom_run::recording::{self, Options, Progress};
 use carom_record::study::{Arm, StudyManifest};
 use carom_record::{Manifest, RecordError, Status};
+use carom_run::case::Case;
+use carom_run::recording::{self, Options, Progress};
 use serde::{Deserialize, Serialize};
 
 use crate::compute::compute;

@@ -4,11 +4,11 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 
-use carom_run::Setup;
-use carom_run::case::{Case, CaseError, Diagnostic, Document, Problem, read};
 use carom_record::study::design::{Design, Goal};
 use carom_record::study::{Arm, Comparison, StudyManifest, StudySource};
 use carom_record::{Machine, Source, Status, now};
+use carom_run::Setup;
+use carom_run::case::{Case, CaseError, Diagnostic, Document, Problem, read};
 
 use crate::arms::{self, Draft};
 use crate::{expects, file};

@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use carom_run::recording::Progress;
 use carom_record::study::{Study, StudyManifest};
 use carom_record::{RecordError, Status};
+use carom_run::recording::Progress;
 
 use crate::compute::compute;
 use crate::error::StudyError;

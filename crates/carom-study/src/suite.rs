@@ -3,8 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use carom_run::case::{Case, CaseError, Diagnostic, Document};
 use carom_record::{Expect, Source};
+use carom_run::case::{Case, CaseError, Diagnostic, Document};
 
 use crate::Plan;
 use crate::plan::resolved;

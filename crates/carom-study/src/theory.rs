@@ -5,10 +5,10 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use carom_record::RecordError;
 use carom_run::Setup;
 use carom_run::case::{Case, Enforcement, SchemeSpec};
 use carom_run::frequencies::{Frequencies, frequencies, spring};
-use carom_record::RecordError;
 use carom_time::Integrator;
 
 use crate::Plan;

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use carom_run::case::Case;
-use carom_run::recording::{self, Options, Progress};
 use carom_record::question::Question;
 use carom_record::study::{Study, StudyManifest};
 use carom_record::verification::{Row, SetUp, Verification};
 use carom_record::{Expect, Expectation, Machine, RecordError, Run, Source, Status, judge, now};
+use carom_run::case::Case;
+use carom_run::recording::{self, Options, Progress};
 
 use crate::error::StudyError;
 use crate::jobs::{Ended, Event, side_by_side};

@@ -19,6 +19,7 @@ step = 1e-3
 scheme = { kind = "chung-hulbert", rho_inf = 0.6 }
 "#;
 
+#[allow(clippy::print_stdout)]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("speed  impulse / (2 m v)  duration  rebound");
     for speed in [5.0, 10.0, 20.0] {

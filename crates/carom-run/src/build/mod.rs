@@ -7,17 +7,21 @@ mod motions;
 mod refusals;
 mod side;
 
+use std::collections::BTreeMap;
+
 use carom_algebra::Threads;
 use carom_case::{Case, FormulaSpec, MassKind, PrimarySpec, Problem};
 use carom_mechanics::model::{
     BodyInstance, Mass, Model, Probe, Quantity, Support, free_motions, redistribute, value,
 };
-use carom_solid::{Law, SolidError};
+use carom_solid::{Constitutive, Law, SolidError};
 
-use crate::setup::Materials;
 use side::side;
 
 pub use contacts::overlaps;
+
+/// Laws given in place of those of materials, by the material's name.
+pub(crate) type Materials = BTreeMap<String, Box<dyn Constitutive>>;
 
 /// Builds the model of a case; `materials`: laws in place of the case's.
 ///

@@ -56,8 +56,8 @@ pub fn run(
     let resolved = serde_json::to_value(case).map_err(|e| RunError::Incompatible { what: e.to_string() })?;
     let version = env!("CARGO_PKG_VERSION");
     let mut manifest =
-        Manifest::new(version, resolved, source, columns(case, &simulation.model()), options.threads);
-    manifest.sides = sides(&simulation.model());
+        Manifest::new(version, resolved, source, columns(case, simulation.model()), options.threads);
+    manifest.sides = sides(simulation.model());
     manifest.warnings = case.warnings();
     let writer = RunWriter::create(
         directory,
@@ -141,7 +141,7 @@ impl<'a> Session<'a> {
         writer.field_format(case.output.format);
         let at = |time: &f64| (time / simulation.dt()).round() as u64;
         let field_steps = case.output.at_times.iter().map(at).collect();
-        let weights = center_weights(&simulation.model());
+        let weights = center_weights(simulation.model());
         let first_step = simulation.state().step;
         let stressed = stressed(&simulation);
         let began = Instant::now();
@@ -193,7 +193,7 @@ impl<'a> Session<'a> {
             self.cpu += busy.seconds();
             let step = self.simulation.state().step + u64::from(advanced.is_err());
             for event in &report.events {
-                self.writer.log(&entry(&self.simulation.model(), step, event))?;
+                self.writer.log(&entry(self.simulation.model(), step, event))?;
             }
             self.count(&report);
             if let Err(stopped) = advanced {

@@ -1,8 +1,8 @@
 //! The impact of cases/impact, step by step: identities that hold to round-off in every step.
 
+use carom_contact::Rows;
 use carom_run::case::Case;
 use carom_run::{GridReport, Simulation, State};
-use carom_contact::Rows;
 
 use super::common::{DISCS, case, dot, momenta, schemes, simulation, sums};
 

@@ -113,7 +113,7 @@ fn the_booked_impulse_is_the_change_of_momentum() {
             sim.model().mass.multiply_into(&state.v, &mut p);
             p.iter().sum::<f64>()
         };
-        let start = momentum(&sim.state());
+        let start = momentum(sim.state());
         let end = finish(simulation(BAR, &sets)).into_state();
         let error = momentum(&end) - start - end.impulse()[0];
         assert!(

@@ -149,7 +149,6 @@ fn every_scheme_law_and_enforcement() {
             // Not every scheme has every law.
             let Ok(case) = Case::from_text(BAR, &sets) else { continue };
             if let Some(worst) = worst(&case, u64::MAX) {
-                println!("{scheme} {law:?}: {worst:.1e}");
                 checked += 1;
                 // The force of a conserving spring is a quotient of differences: it is known, and
                 // the balance of a step solved, to fewer digits.
@@ -187,7 +186,6 @@ fn every_case_of_the_repository() {
             continue;
         }
         if let Some(worst) = worst(&case, 600) {
-            println!("{}: {worst:.1e}", path.display());
             checked += 1;
             assert!(worst < 1e-12, "{}: {worst:e}", path.display());
         }

@@ -211,7 +211,7 @@ fn the_stable_step_is_where_central_differences_blow_up() {
         &[&COARSE[..], &["time.scheme={ kind = \"central-difference\" }", "time.step=3e-4"]].concat(),
     );
     let sim = carom_run::Setup::new(&coarse).start().unwrap();
-    let stable = stable_step(&sim.model()).unwrap();
+    let stable = stable_step(sim.model()).unwrap();
     assert!(stable.cell <= stable.power && stable.power < 3.0 * stable.cell, "{stable:?}");
     let step = format!("time.step={:e}", 0.75 / (0.75 / (0.99 * stable.power)).floor());
     let long =

@@ -1,9 +1,9 @@
 //! A law and a kernel from outside the crates: a St. Venant–Kirchhoff law that only delegates, so
 //! that plane stress is solved by the default method, and the trapezoidal rule written anew.
 
+use carom_algebra::{Mat, Vector};
 use carom_run::Setup;
 use carom_run::case::Case;
-use carom_algebra::{Mat, Vector};
 use carom_solid::material::{Material, NotPositive, SaintVenantKirchhoff, Thickness};
 use carom_time::{Kernel, Memory, Stage};
 

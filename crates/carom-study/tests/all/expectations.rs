@@ -5,8 +5,8 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
-use carom_run::case::{CaseError, Diagnostic};
 use carom_record::study::Study;
+use carom_run::case::{CaseError, Diagnostic};
 use carom_study::{Plan, start};
 
 /// A point-like bar in free fall, and one that is struck: exact for every scheme of second order

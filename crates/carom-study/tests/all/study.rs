@@ -5,9 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use carom_run::case::{CaseError, Diagnostic};
 use carom_record::Status;
 use carom_record::study::checks::fingerprint;
+use carom_run::case::{CaseError, Diagnostic};
 use carom_study::{Event, Plan, resume, start};
 
 const CASE: &str = r#"

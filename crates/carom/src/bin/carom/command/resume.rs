@@ -17,6 +17,7 @@ use crate::{out, summary};
 Examples:
   carom resume runs/impact
   carom resume runs/fair --jobs 2")]
+#[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
     /// The directory of the run or study
     directory: PathBuf,

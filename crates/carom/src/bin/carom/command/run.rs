@@ -18,6 +18,7 @@ Examples:
   sed s/0.25/0.5/ impact.toml | carom run - --out runs/dense
   carom run impact.toml --set time.step=1e-3 --set body.cylinder.element=T6
   carom run impact.toml --set 'time.scheme={ kind = \"hu\" }' --out runs/hu")]
+#[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
     /// The case file, or - for standard input
     case: PathBuf,
