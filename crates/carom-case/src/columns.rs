@@ -1,4 +1,4 @@
-//! The columns history.csv will have, in the order of the run directory's contract.
+//! The columns of history.csv, in the order that the run directory specifies.
 
 use super::{BodySpec, Case, ContactSpec, ProbeSpec, Quantity, SupportSpec};
 
@@ -19,7 +19,7 @@ const COUNTS: [&str; 7] =
 
 const ERRORS: [&str; 2] = ["error_l2", "error_h1"];
 
-/// Name of a quantity in columns.
+/// Name of a quantity in column names.
 pub(super) fn quantity(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Ux => "ux",
@@ -36,7 +36,7 @@ pub(super) fn quantity(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Names of the columns of the history a case makes, in their order.
+/// Names of the columns of history.csv of a case, in their order.
 pub fn history_columns(case: &Case) -> Vec<String> {
     of(
         case.dimension,
@@ -60,7 +60,7 @@ pub(super) fn of(
     let axes = &["x", "y"][..dimension.clamp(1, 2)];
     let mut columns: Vec<String> = SCALARS.iter().map(ToString::to_string).collect();
     let vector = |columns: &mut Vec<String>, name: &str| {
-        columns.extend(axes.iter().map(|axis| format!("{name}_{axis}")))
+        columns.extend(axes.iter().map(|axis| format!("{name}_{axis}")));
     };
     vector(&mut columns, "momentum");
     if dimension == 2 {
