@@ -1,5 +1,5 @@
-//! The functions and constants a formula may name, and their derivatives. A new one is one line in
-//! [`Function::NAMES`] and one in each `match`.
+//! Functions and constants of formulas, with the derivatives of the functions. A new function is
+//! one line in [`Function::NAMES`] and one in each `match`.
 
 use crate::jet::Number;
 
@@ -29,7 +29,7 @@ pub(crate) enum Function {
     If,
 }
 
-/// π, the only constant with a name.
+/// Named constants.
 pub(crate) const CONSTANTS: [(&str, f64); 1] = [("pi", std::f64::consts::PI)];
 
 impl Function {
@@ -91,7 +91,7 @@ impl Function {
             Self::Sign if x == 0.0 => jumps(0.0),
             Self::Sign => jumps(x.signum()),
             Self::Floor => jumps(x.floor()),
-            // Functions of more arguments never come here: the parser counts them.
+            // Unreachable: the parser checks the number of arguments.
             Self::Abs | Self::Min | Self::Max | Self::Mod | Self::Atan2 | Self::If => argument,
         }
     }
@@ -115,8 +115,8 @@ fn inverse_sine(x: f64) -> [f64; 2] {
     [s, x * s * s * s]
 }
 
-/// The angle of (x, y): away from the axis at hand it differs by a constant from an arctangent,
-/// which has the derivatives.
+/// The angle of (x, y). Its derivatives are those of the arctangent of y/x or −x/y, from which it
+/// differs by a constant; the one with the smaller argument is used.
 fn angle<N: Number>(y: N, x: N) -> N {
     let value = y.value().atan2(x.value());
     let branch =

@@ -59,7 +59,7 @@ fn refuse_deep(text: &str) -> Result<(), FormulaError> {
             _ => {}
         }
         if depth > DEEPEST {
-            return Err(wrong(format!("more than {DEEPEST} parentheses within each other"), at..at + 1));
+            return Err(wrong(format!("more than {DEEPEST} nested parentheses"), at..at + 1));
         }
     }
     Ok(())
@@ -172,7 +172,7 @@ fn call(pair: Pair<Rule>, variables: &[&str]) -> Result<Tree, FormulaError> {
         }
         let names: Vec<&str> = Function::NAMES.iter().map(|(name, ..)| *name).collect();
         let hint = nearest(name, &names).map_or_else(
-            || format!("known are {}", names.join(", ")),
+            || format!("the functions are {}", names.join(", ")),
             |near| format!("did you mean `{near}`?"),
         );
         return Err(wrong(format!("there is no function `{name}`: {hint}"), at));

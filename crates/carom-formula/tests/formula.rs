@@ -1,4 +1,5 @@
-//! Values and derivatives against hand results and differences; every mistake with its place.
+//! Values and derivatives against hand calculations and finite differences; errors with their
+//! place.
 
 #![allow(clippy::unwrap_used)]
 
@@ -36,7 +37,7 @@ fn arithmetic_is_read_as_in_print() {
         assert_eq!(value(text), expected, "{text}");
     }
     let near = |text: &str, expected: f64| {
-        assert!((value(text) - expected).abs() < 1e-15, "{text}: {}", value(text))
+        assert!((value(text) - expected).abs() < 1e-15, "{text}: {}", value(text));
     };
     near("sin(pi/6)", 0.5);
     near("cos(pi/3)", 0.5);
