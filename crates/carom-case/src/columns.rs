@@ -1,4 +1,4 @@
-//! The columns history.csv will have, in the order of the run directory's contract.
+//! The columns of history.csv, in the order that the run directory specifies.
 
 use super::{BodySpec, Case, ContactSpec, ProbeSpec, Quantity, SupportSpec};
 
@@ -21,7 +21,7 @@ const COUNTS: [&str; 7] =
 
 const ERRORS: [&str; 2] = ["error_l2", "error_h1"];
 
-/// Name of a quantity in columns.
+/// Name of a quantity in column names.
 pub(super) fn quantity(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Ux => "ux",
@@ -38,7 +38,7 @@ pub(super) fn quantity(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Names of the columns of the history a case makes, in their order.
+/// Names of the columns of history.csv of a case, in their order.
 pub fn history_columns(case: &Case) -> Vec<String> {
     of(
         case.dimension,

@@ -1,5 +1,5 @@
-//! Every key and value of a document against the tables of keys: unknown, missing, of the wrong
-//! type, out of range.
+//! Checks every key and value of a document against the tables of keys: unknown, missing, of the
+//! wrong type, out of range.
 
 use super::document::{Document, joined};
 use super::example::Names;
@@ -8,7 +8,7 @@ use super::problem::Problem;
 use super::suggest;
 use super::tree::{Node, Table, Value};
 
-/// All that is wrong with the keys and values taken one by one.
+/// All problems of single keys and values.
 pub(super) fn problems(document: &Document) -> Vec<Problem> {
     let dimension = document.root().get("dimension").and_then(Node::count).filter(|d| (1..=2).contains(d));
     let mut check = Check { dimension, names: Names::of(document.root()), problems: Vec::new() };
@@ -67,8 +67,8 @@ impl Check {
             if let Some(key) = spec.keys.iter().find(|k| k.name == entry.key) {
                 self.value(&entry.node, key, &here);
             } else if spec.later.contains(&entry.key.as_str()) {
-                let what = format!("this version does not have `{}` yet", entry.key);
-                let why = format!("`{}` of {} belongs to a later version of Carom", entry.key, spec.name);
+                let what = format!("`{}` is not supported yet", entry.key);
+                let why = format!("`{}` of {} is planned for a later version of Carom", entry.key, spec.name);
                 self.problems.push(Problem::new(here, what, why, "leave it out").at_key());
             } else if spec.tag != Some(entry.key.as_str()) {
                 let (problem, near) = unknown(&entry.key, table, spec, here);
@@ -188,10 +188,10 @@ impl Check {
         let tag = variants.tag;
         let later = variants.later_keys.to_vec();
         if let Some(entry) = table.0.iter().find(|e| later.contains(&e.key.as_str())) {
-            let what = format!("this version does not have `{}` of {} yet", entry.key, variants.name);
+            let what = format!("`{}` of {} is not supported yet", entry.key, variants.name);
             let here = joined(path, &entry.key);
             let why =
-                format!("it belongs to a later version of Carom; {} is one of {}", tag, words(variants));
+                format!("it is planned for a later version of Carom; {} is one of {}", tag, words(variants));
             return self.problems.push(Problem::new(here, what, why, "leave it out").at_key());
         }
         if let Some(spec) =
@@ -222,7 +222,7 @@ impl Check {
                 self.choice(word, tag, &now, variants.later, variants.doc, &here);
             }
             Some(Err(node)) => {
-                let what = format!("`{tag}` must be a text in quotes, not {}", node.described());
+                let what = format!("`{tag}` must be a string in quotes, not {}", node.described());
                 self.add(&here, what, variants.doc.to_owned(), format!("use one of: {}", words(variants)));
             }
             None if self.problems[before..]
@@ -244,20 +244,20 @@ impl Check {
             return;
         }
         if later.contains(&word) {
-            let what = format!("this version does not have `{key} = \"{word}\"` yet");
-            let why = format!("\"{word}\" belongs to a later version of Carom");
+            let what = format!("`{key} = \"{word}\"` is not supported yet");
+            let why = format!("\"{word}\" is planned for a later version of Carom");
             return self.add(path, what, why, format!("use one of: {}", suggest::list(now.iter().copied())));
         }
         let what = format!("`{key}` cannot be \"{word}\"");
-        let why = format!("{meaning} It is one of: {}", suggest::list(now.iter().copied()));
+        let why = format!("{meaning} Allowed values: {}", suggest::list(now.iter().copied()));
         self.add(path, what, why, suggest::help(word, now.iter().copied()));
     }
 
     fn name(&mut self, name: &str, key: &Key, path: &str) {
         let bad = |c: char| c.is_whitespace() || c.is_control() || "./\\,\"'[]".contains(c);
         if name.is_empty() || name.contains(bad) {
-            let what = format!("{name:?} cannot be a name");
-            let why = "names make columns and sides (`name.side`), so they have no dots, blanks, slashes, commas, quotes or brackets";
+            let what = format!("{name:?} is not a valid name");
+            let why = "names are part of the names of columns and sides (`name.side`), so they may not contain dots, blanks, slashes, commas, quotes or brackets";
             let good: String = name.chars().map(|c| if bad(c) { '_' } else { c }).collect();
             let good = if good.is_empty() { key.example.to_owned() } else { format!("\"{good}\"") };
             self.add(path, what, why.to_owned(), format!("write `{} = {good}`", key.name));
@@ -268,7 +268,7 @@ impl Check {
         let Some(x) = node.number() else { return };
         if !x.is_finite() {
             let what = format!("`{}` is {x}", key.name);
-            let why = format!("every number of a case is finite. {}", meaning(key));
+            let why = format!("all numbers of a case must be finite. {}", meaning(key));
             self.add(path, what, why, format!("write {}", key.kind.described(self.dimension)));
         } else if !range.contains(x) {
             let what = format!("`{}` must be {}, not {x}", key.name, range.described());
@@ -299,7 +299,11 @@ impl Check {
                 let variables = keys::variables(variables, self.dimension.unwrap_or(2));
                 if let Err(error) = carom_formula::Formula::parse(text, &variables) {
                     let what = format!("the formula of `{}`: {}", key.name, error.message);
-                    let why = format!("{} It is a formula in {}.", meaning(key), variables.join(", "));
+                    let why = format!(
+                        "{} It is a formula in the variables {}.",
+                        meaning(key),
+                        variables.join(", ")
+                    );
                     let help = format!("write for example `{} = {}`", key.name, self.names.example(key));
                     self.problems.push(Problem::new(path, what, why, help).within(error.at));
                 }
@@ -312,7 +316,7 @@ impl Check {
         if usize::try_from(n).is_ok_and(|n| n >= least) {
             return;
         }
-        let what = format!("`{}` must be a whole number ≥ {least}, not {}", key.name, node.described());
+        let what = format!("`{}` must be an integer ≥ {least}, not {}", key.name, node.described());
         self.add(
             path,
             what,
@@ -328,10 +332,10 @@ impl Check {
         let mut what = format!("`{}` must be {wanted}, not {}", key.name, node.described());
         let mut why = meaning(key);
         if later {
-            why = format!("{why} A later version of Carom will also take {}", key.later);
+            why = format!("{why} A later version of Carom will also accept {}", key.later);
         }
         if matches!(key.kind, Kind::Tables(_)) && matches!(node.value, Value::Table(_)) {
-            what = format!("`{}` is one table, but there may be several", key.name);
+            what = format!("`{}` must be a list of tables, not a single table", key.name);
         }
         let help = match key.kind {
             Kind::Tables(table) => format!("write its header in double brackets: {}", table.name),
@@ -344,7 +348,7 @@ impl Check {
     }
 }
 
-/// Whether a problem says that this key was probably meant.
+/// Whether a problem suggests that this key was meant.
 fn meant(problem: &Problem, key: &str) -> bool {
     problem.help.contains(&format!("`{key}`"))
 }
@@ -361,7 +365,7 @@ fn words(variants: &Variants) -> String {
 /// An unknown key, and the key of this table that was probably meant.
 fn unknown<'a>(word: &str, table: &Table, spec: &Spec<'a>, path: String) -> (Problem, Option<&'a str>) {
     let all = || spec.tag.into_iter().chain(spec.keys.iter().map(|k| k.name));
-    // A key that is there already is hardly meant, unless there may be several.
+    // A key that is present already is not a likely suggestion, unless it may occur several times.
     let several = |name: &str| spec.keys.iter().any(|k| k.name == name && matches!(k.kind, Kind::Tables(_)));
     let free = all().filter(|k| table.get(k).is_none() || several(k)).chain(spec.later.iter().copied());
     let mut homes = homes(word);
@@ -373,7 +377,7 @@ fn unknown<'a>(word: &str, table: &Table, spec: &Spec<'a>, path: String) -> (Pro
         (Some(near), true) => format!("did you mean `{near}`?"),
         (Some(near), false) => format!("did you mean `{near}`? ({elsewhere})"),
         (None, false) => elsewhere,
-        (None, true) => "leave it out, or see `carom schema` for every key".to_owned(),
+        (None, true) => "leave it out, or list all keys with `carom schema`".to_owned(),
     };
     let mut keys: Vec<_> = all().collect();
     let mut seen = std::collections::HashSet::new();
@@ -382,7 +386,7 @@ fn unknown<'a>(word: &str, table: &Table, spec: &Spec<'a>, path: String) -> (Pro
     (Problem::new(path, format!("unknown key `{word}` in {}", spec.name), why, help).at_key(), near)
 }
 
-/// The tables that do have a key.
+/// The tables that have this key.
 fn homes(word: &str) -> Vec<&'static str> {
     fn visit(table: &'static keys::Table, word: &str, found: &mut Vec<&'static str>) {
         if table.key(word).is_some() {

@@ -1,5 +1,5 @@
-//! A case file as text: parsed, overridden by `--set`, and able to say where any key path was
-//! written.
+//! A case file as text: parsed, with the overrides of `--set` applied, and with the place of every
+//! key path.
 
 use std::io::Read;
 use std::ops::Range;
@@ -9,7 +9,7 @@ use super::overrides;
 use super::problem::{CaseError, Diagnostic, Problem};
 use super::tree::{self, Node, Origin, Table, Value};
 
-/// Larger files are no case files.
+/// Largest size of a case file in bytes.
 const LARGEST: u64 = 10_000_000;
 
 /// A parsed case file with its overrides applied.
@@ -27,28 +27,28 @@ impl Document {
         let wrong = |what: &str, why: &str, help: &str| {
             CaseError::Wrong(vec![Diagnostic::of_file(&name, what, why, help)])
         };
-        let refused = |source: std::io::Error| match source.kind() {
+        let unreadable = |source: std::io::Error| match source.kind() {
             std::io::ErrorKind::NotFound => wrong(
                 "there is no such file",
-                "a case is one TOML file",
+                "a case is a single TOML file",
                 "check the path and the working directory",
             ),
             _ => CaseError::Refused { path: name.clone(), source },
         };
-        let facts = std::fs::metadata(path).map_err(refused)?;
+        let facts = std::fs::metadata(path).map_err(unreadable)?;
         if facts.is_dir() {
             return Err(wrong(
                 "this is a directory",
-                "a case is one TOML file",
-                "name the .toml file inside it",
+                "a case is a single TOML file",
+                "give the path of the .toml file inside it",
             ));
         }
-        let file = std::fs::File::open(path).map_err(refused)?;
+        let file = std::fs::File::open(path).map_err(unreadable)?;
         Self::read_from(&name, file, sets)
     }
 
     /// Reads a stream (`name` stands for the file in messages) and applies overrides `key=value`,
-    /// in their order. A stream that never ends is refused.
+    /// in their order. A stream without an end is an error.
     pub fn read_from(name: &str, stream: impl Read, sets: &[String]) -> Result<Self, CaseError> {
         let wrong = |what: &str, why: &str, help: &str| {
             CaseError::Wrong(vec![Diagnostic::of_file(name, what, why, help)])
@@ -58,12 +58,20 @@ impl Document {
         read.map_err(|source| CaseError::Refused { path: name.to_owned(), source })?;
         if bytes.len() as u64 > LARGEST {
             let why = format!("a case file has at most {LARGEST} bytes");
-            return Err(wrong("the file is too large to be a case", &why, "name the .toml file of the case"));
+            return Err(wrong(
+                "the file is too large to be a case",
+                &why,
+                "give the path of the .toml file of the case",
+            ));
         }
         let text = String::from_utf8(bytes).map_err(|e| {
             let at = e.utf8_error().valid_up_to();
-            let why = format!("byte {} is not UTF-8, and TOML is UTF-8 text", at + 1);
-            wrong("the file is not text", &why, "name the .toml file of the case, or save it as UTF-8")
+            let why = format!("byte {} is not valid UTF-8, and TOML files are UTF-8 text", at + 1);
+            wrong(
+                "the file is not text",
+                &why,
+                "give the path of the .toml file of the case, or save it as UTF-8",
+            )
         })?;
         Self::parse(name, &text, sets)
     }
@@ -76,8 +84,10 @@ impl Document {
         let parsed =
             toml_edit::Document::parse(text).map_err(|e| wrong(Diagnostic::of_syntax(name, text, &e)))?;
         if parsed.as_table().is_empty() && sets.is_empty() {
-            let (what, why) =
-                ("the case is empty", "a case names at least its dimension, a material, a body and [time]");
+            let (what, why) = (
+                "the case is empty",
+                "a case needs at least `dimension`, a [[material]], a [[body]] and [time]",
+            );
             return Err(wrong(Diagnostic::of_file(name, what, why, "start from a template: carom new")));
         }
         let root = tree::node(parsed.as_item(), 0, 0, &(0..0));
@@ -90,7 +100,7 @@ impl Document {
         Ok(document)
     }
 
-    /// The file's name as it was given.
+    /// Name of the file as given.
     pub fn name(&self) -> &str {
         &self.sources[0].0
     }
@@ -110,7 +120,7 @@ impl Document {
         self.root.table().unwrap_or(EMPTY)
     }
 
-    /// Whether it is a study, many runs of one case, by its keys.
+    /// Whether its keys are those of a study (many runs of one case).
     pub fn is_study(&self) -> bool {
         self.study_key().is_some()
     }
@@ -120,8 +130,8 @@ impl Document {
         ["case", "arm", "grid"].into_iter().find(|key| self.root().get(key).is_some())
     }
 
-    /// Finds the line a problem is about; a key that was not written is shown at its nearest
-    /// parent.
+    /// Finds the line that a problem is about; a key that was not written is reported at its
+    /// nearest parent.
     pub fn diagnose(&self, problem: &Problem) -> Diagnostic {
         let message = [problem.what.clone(), problem.why.clone(), problem.help.clone()];
         match self.origin(&problem.path, problem.at_key) {
@@ -137,7 +147,7 @@ impl Document {
         }
     }
 
-    /// All of them, in the order of the file.
+    /// The same for all problems, in the order of the file.
     pub fn diagnose_all(&self, problems: &[Problem]) -> CaseError {
         let mut found: Vec<_> = problems.iter().map(|p| self.diagnose(p)).collect();
         found.sort_by_key(|d| (d.file != self.name(), d.line, d.column));
@@ -161,7 +171,7 @@ impl Document {
             let (next, place) = match (&node.value, segment) {
                 (Value::Table(table), Segment::Key(key)) => {
                     let Some(entry) = table.entry(&key) else { break };
-                    // The span of a table of its own is its header.
+                    // The span of a table with a header is that header.
                     (&entry.node, if at_key { &entry.origin } else { &entry.node.origin })
                 }
                 (Value::List(list), Segment::Index(i)) => {
@@ -177,8 +187,8 @@ impl Document {
     }
 }
 
-/// Where bytes of a text value stand in the source that holds it, quotes and all; all of it where
-/// escapes may have moved them.
+/// Span in the source of some bytes of a string value; `value` is the span of the string with its
+/// quotes. The whole string where escapes may have moved the bytes.
 fn part_of_text(source: &str, value: &Range<usize>, bytes: &Range<usize>) -> Range<usize> {
     let raw = source.get(value.clone()).unwrap_or_default();
     if raw.contains('\\') || raw.starts_with("\"\"\"") || raw.starts_with("'''") {
@@ -194,25 +204,25 @@ enum Segment {
     Index(usize),
 }
 
-/// `body[0].mesh."odd key"` in pieces.
+/// The segments of a path such as `body[0].mesh."odd key"`.
 fn segments(path: &str) -> Vec<Segment> {
     let mut found = Vec::new();
-    let mut rest = path;
-    while !rest.is_empty() {
-        if let Some(after) = rest.strip_prefix('[') {
+    let mut remaining = path;
+    while !remaining.is_empty() {
+        if let Some(after) = remaining.strip_prefix('[') {
             let (index, after) = after.split_once(']').unwrap_or((after, ""));
             found.extend(index.parse().map(Segment::Index));
-            rest = after;
-        } else if let Some(after) = rest.strip_prefix('"') {
+            remaining = after;
+        } else if let Some(after) = remaining.strip_prefix('"') {
             let (key, after) = after.split_once('"').unwrap_or((after, ""));
             found.push(Segment::Key(key.to_owned()));
-            rest = after;
+            remaining = after;
         } else {
-            let end = rest.find(['.', '[']).unwrap_or(rest.len());
-            found.push(Segment::Key(rest[..end].to_owned()));
-            rest = &rest[end..];
+            let end = remaining.find(['.', '[']).unwrap_or(remaining.len());
+            found.push(Segment::Key(remaining[..end].to_owned()));
+            remaining = &remaining[end..];
         }
-        rest = rest.strip_prefix('.').unwrap_or(rest);
+        remaining = remaining.strip_prefix('.').unwrap_or(remaining);
     }
     found
 }

@@ -1,10 +1,11 @@
-//! A case half read: what `read` makes of the tables and `check` holds against each other.
+//! A case while it is being read: the tables as `read` resolves them one by one, for `check` to
+//! compare.
 
 use std::collections::BTreeMap;
 
 use super::{BodySpec, ContactSpec, ExpectSpec, LoadSpec, MaterialSpec, ProbeSpec, SupportSpec, TimeSpec};
 
-/// Tables read so far: `None` where one of them could not be.
+/// The tables; `None` for one that could not be read.
 pub(super) struct Draft {
     pub(super) dimension: Option<usize>,
     pub(super) materials: Vec<Option<MaterialSpec>>,

@@ -1,15 +1,15 @@
-//! Examples in messages: a key that names a body, a material or a side is shown with one that the
-//! case has.
+//! Examples in messages: a key that names a body, a material or a side is shown with a name from
+//! the case.
 
 use super::keys::{Key, Kind};
 use super::tree::{Node, Table};
 
-/// Names that a case gives to its parts.
+/// Names defined in a case.
 #[derive(Default)]
 pub(super) struct Names {
     bodies: Vec<String>,
     materials: Vec<String>,
-    /// `body.side`, by body; none where a mesh file has to say.
+    /// `body.side`, by body; only built-in shapes, since the sides of mesh files are not known yet.
     sides: Vec<Vec<String>>,
 }
 
@@ -55,7 +55,7 @@ impl Names {
     }
 }
 
-/// Sides of the built-in shapes, the one that contact is likely on first.
+/// Sides of the built-in shapes; first the one most likely to be in contact.
 fn sides_of(shape: &str) -> &'static [&'static str] {
     match shape {
         "interval" => &["left", "right"],
@@ -74,7 +74,7 @@ mod tests {
     use crate::keys::shapes;
     use crate::{Document, read};
 
-    /// Every built-in shape has its sides here, as its documentation names them.
+    /// Every built-in shape is listed here, with the sides that its documentation names.
     #[test]
     fn sides_are_those_of_the_shapes() {
         for (shape, table) in shapes().tables {
@@ -100,8 +100,11 @@ primary = 3
 on = "floor"
 "#;
         let document = Document::parse("case", case, &[]).unwrap();
-        let told = document.diagnose_all(&read(&document).unwrap_err()).to_string();
-        assert!(told.contains("primary = \"ball.arc\"") && told.contains("on = [\"ball.arc\"]"), "{told}");
-        assert!(!told.contains("prism") && !told.contains("cylinder"), "{told}");
+        let message = document.diagnose_all(&read(&document).unwrap_err()).to_string();
+        assert!(
+            message.contains("primary = \"ball.arc\"") && message.contains("on = [\"ball.arc\"]"),
+            "{message}"
+        );
+        assert!(!message.contains("prism") && !message.contains("cylinder"), "{message}");
     }
 }

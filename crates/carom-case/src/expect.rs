@@ -1,4 +1,4 @@
-//! `[[expect]]` of a case, of an arm and of a study: what is asked, and the one bound on it.
+//! `[[expect]]` of a case, of an arm and of a study: a quantity and one bound on it.
 
 use std::collections::BTreeMap;
 
@@ -14,12 +14,12 @@ use super::problem::Problem;
 use super::tree::Node;
 use super::view::View;
 
-/// Whose numbers are asked for.
+/// Where the quantity of an expectation comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
-    /// Those of one run.
+    /// One run.
     OfARun,
-    /// Those of the arms of a study: every one names its arm; and orders of convergence.
+    /// The arms of a study: every quantity names its arm; orders of convergence are allowed too.
     OfArms,
 }
 
@@ -28,14 +28,13 @@ pub enum Asked {
 pub(super) enum Exact<'a> {
     /// These formulas by column.
     Of(&'a BTreeMap<String, String>),
-    /// Known when the case is, to which the expectation will belong; or the arms, for an order.
+    /// The formulas of a case that is not known yet; for an order, of the cases of the arms.
     Later,
-    /// Nothing.
+    /// Nothing: there is no such formula.
     Nobody,
 }
 
-/// The expectations of the list `NAME` of the table at `path` (the file's own: empty) in a study
-/// file.
+/// The expectations of the list at `path` in a study file.
 pub fn read_expects(
     document: &Document,
     path: &str,
@@ -49,7 +48,7 @@ pub fn read_expects(
         let Some(table) = node.table() else {
             problems.push(Problem::new(
                 &path,
-                "this is no table",
+                "this is not a table",
                 "an expectation is a table",
                 "write `{ what = \"…\", value = …, tolerance = … }`",
             ));
@@ -64,7 +63,7 @@ pub fn read_expects(
     found
 }
 
-/// One expectation; `None` when it cannot be read, which is then among the problems.
+/// One expectation; `None` if it cannot be read, which is then added to the problems.
 pub(super) fn one(
     v: View,
     path: &str,
@@ -80,7 +79,7 @@ pub(super) fn one(
     let name = |part: &str| format!("{path}.{part}");
     let parsed = match (&order, &deviation) {
         (Some(order), Some(_)) => Series::parse(&order.of).map(drop).map_err(|e| (name("of"), e)),
-        // A word is a metric or a column.
+        // A single word is a metric or a column.
         (Some(order), None) => Question::parse(&order.of).map(drop).map_err(|e| (name("of"), e)),
         (None, Some(_)) => Series::parse(&what).map(drop).map_err(|e| (name("what"), e)),
         (None, None) => Question::parse(&what)
@@ -90,7 +89,7 @@ pub(super) fn one(
     if let Err((path, why)) = parsed {
         let wrong = if path.ends_with("of") { order.map_or(what, |o| o.of) } else { what };
         let help = "write for example \"last total / first total\"";
-        problems.push(Problem::new(path, format!("{wrong:?} is not a quantity to expect"), why, help));
+        problems.push(Problem::new(path, format!("{wrong:?} is not a valid quantity"), why, help));
         return None;
     }
     Some(Expect {
@@ -106,49 +105,49 @@ pub(super) fn one(
     })
 }
 
-/// Has told what is wrong.
-struct Told;
+/// The problem has been reported.
+struct Reported;
 
-/// The order that is asked for, if one is.
+/// The order of convergence that is expected, if any.
 fn order(
     v: View,
     what: &str,
     path: &str,
     asked: Asked,
     problems: &mut Vec<Problem>,
-) -> Result<Option<OrderOf>, Told> {
+) -> Result<Option<OrderOf>, Reported> {
     let given: Vec<_> = ["of", "against", "where", "exact"].into_iter().filter(|k| v.has(k)).collect();
     let mut wrong =
         |what: String, why: &str, help: &str| problems.push(Problem::new(path, what, why, help).at_key());
     match (what == "order", asked, given.as_slice()) {
         (false, _, []) => Ok(None),
         (false, _, [first, ..]) => {
-            wrong(format!("`{first}` without an order"), "it belongs to what = \"order\"", "leave it out");
-            Err(Told)
+            wrong(
+                format!("`{first}` without what = \"order\""),
+                "it describes an order of convergence",
+                "leave it out",
+            );
+            Err(Reported)
         }
         (true, Asked::OfARun, _) => {
-            let why = "it is seen in runs with several steps";
-            wrong(
-                "an order of convergence is no number of one run".into(),
-                why,
-                "ask for it in the [[expect]] of a study",
-            );
-            Err(Told)
+            let why = "it is observed over several runs, for example with different time steps";
+            wrong("one run has no order of convergence".into(), why, "move it to the [[expect]] of a study");
+            Err(Reported)
         }
         (true, Asked::OfArms, ["of", "against", ..]) => Ok(Some(OrderOf {
-            of: v.text("of").ok_or(Told)?,
-            against: v.text("against").ok_or(Told)?,
+            of: v.text("of").ok_or(Reported)?,
+            against: v.text("against").ok_or(Reported)?,
             arms: v.text("where"),
             exact: v.number("exact"),
         })),
         (true, Asked::OfArms, _) => {
             let help = "write `what = \"order\", of = \"last A.uy\", against = \"time.step\"`";
             wrong(
-                "the order lacks `of` or `against`".into(),
-                "it is the order of a number or column in a key of the case",
+                "the order has no `of` or no `against`".into(),
+                "an order is that of a quantity or column (`of`) with respect to a key of the case (`against`)",
                 help,
             );
-            Err(Told)
+            Err(Reported)
         }
     }
 }
@@ -160,12 +159,12 @@ fn deviation(
     exact: Exact,
     path: &str,
     problems: &mut Vec<Problem>,
-) -> Result<Option<Deviation>, Told> {
+) -> Result<Option<Deviation>, Reported> {
     if !v.has("formula") {
         if let Some(key) = ["norm", "scale"].into_iter().find(|k| v.has(k) && !(*k == "norm" && v.has("of")))
         {
             let (why, help) = (
-                "it says how the deviation from a formula is measured",
+                "it defines how the deviation from a formula is measured",
                 "add `formula = \"…\"` or leave it out",
             );
             problems.push(
@@ -175,25 +174,30 @@ fn deviation(
         }
         return Ok(None);
     }
-    let (formula, scale) = (v.text("formula").ok_or(Told)?, v.number("scale").ok_or(Told)?);
+    let (formula, scale) = (v.text("formula").ok_or(Reported)?, v.number("scale").ok_or(Reported)?);
     let mut wrong = |what: String, why: &str, help: &str, at| {
         let problem = Problem::new(format!("{path}.formula"), what, why, help);
         problems.push(if let Some(at) = at { problem.within(at) } else { problem });
-        Err(Told)
+        Err(Reported)
     };
     if formula == "exact" {
         let column = v.text("what").unwrap_or_default();
         let found = match exact {
             Exact::Later => None,
             Exact::Nobody => {
-                let why = "arms may have different ones; what is asked of several arms has none";
-                return wrong("there is no exact formula here".into(), why, "write the formula", None);
+                let why = "an exact formula belongs to one case, and this expectation is about several arms, which may differ in it";
+                return wrong(
+                    "formula = \"exact\" cannot be used here".into(),
+                    why,
+                    "write the formula itself",
+                    None,
+                );
             }
             Exact::Of(formulas) => {
                 let Some(formula) = formulas.get(&column) else {
-                    let what = format!("the case has no exact formula of `{column}`");
+                    let what = format!("the case has no exact formula for `{column}`");
                     let help = format!("add `\"{column}\" = \"…\"` to [exact]");
-                    return wrong(what, "[exact] says what columns should be", &help, None);
+                    return wrong(what, "formula = \"exact\" refers to a formula in [exact]", &help, None);
                 };
                 Some(formula.clone())
             }
@@ -201,7 +205,8 @@ fn deviation(
         return Ok(Some(Deviation { formula, exact: found, norm, scale }));
     }
     if let Err(error) = Formula::parse(&formula, &["t"]) {
-        let help = "write for example \"-0.5*9.81*t^2\"; \"exact\" stands for the case's own, in [exact]";
+        let help =
+            "write for example \"-0.5*9.81*t^2\"; \"exact\" refers to the formula of the column in [exact]";
         return wrong(error.message, "it is a formula in the time t", help, Some(error.at));
     }
     Ok(Some(Deviation { formula, exact: None, norm, scale }))
@@ -223,7 +228,7 @@ fn bound(v: View, deviation: bool, path: &str, problems: &mut Vec<Problem>) -> O
         _ => {
             let misspelt = v.table.0.iter().any(|e| !v.keys.iter().any(|k| k.name == e.key));
             if !misspelt {
-                let what = "the expectation does not set one bound";
+                let what = "the expectation needs exactly one bound";
                 let why =
                     format!("it has {}", if given.is_empty() { "none".into() } else { given.join(", ") });
                 let help = "give `value` and `tolerance`, or `value` and `relative`, or `at_most`, or `at_least`; with a formula `tolerance` is enough";

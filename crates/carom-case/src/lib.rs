@@ -1,6 +1,6 @@
-//! A case file read, checked and resolved: text to numbers, every default filled in, every name
-//! still a name, every mistake with its place. What `manifest.json` records and `resume` reads
-//! back. Knows nothing of mechanics.
+//! Reads, checks and resolves case files: text to numbers, with every default filled in, names
+//! still as names, and the place of every error. The resolved case is what `manifest.json` records
+//! and `resume` reads back. No mechanics here.
 
 mod check;
 mod columns;

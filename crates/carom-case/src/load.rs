@@ -1,4 +1,4 @@
-//! How loads, motions of supports and velocities of bodies are read.
+//! Reads loads, motions of supports and initial velocities of bodies.
 
 use std::path::Path;
 
@@ -15,18 +15,18 @@ pub(super) fn read(v: View, folder: &Path, path: &str, problems: &mut Vec<Proble
     let place = if given == ["body_force"] { "body" } else { "on" };
     let other = if place == "body" { "on" } else { "body" };
     if given.len() != 1 || !v.has(place) || v.has(other) {
-        // A misspelt key is reported as such, not as a missing one as well.
+        // A misspelt key is reported once, not as a missing key too.
         if !v.table.0.iter().any(|e| !v.keys.iter().any(|k| k.name == e.key)) {
             let had = if given.is_empty() { "no force".to_owned() } else { given.join(", ") };
             let places: Vec<_> = ["on", "body"].into_iter().filter(|k| v.has(k)).collect();
             let where_ = if places.is_empty() { "no place".to_owned() } else { places.join(", ") };
-            let what = format!("the load does not say one force and its place: it has {had} and {where_}");
+            let what = format!("the load needs exactly one force and its place; it has {had} and {where_}");
             let help = "give `on` with `traction` or `pressure`, or `body` with `body_force`";
             problems.push(
                 Problem::new(
                     path,
                     what,
-                    "a traction and a pressure act on sides, a body force in a body",
+                    "tractions and pressures act on sides, a body force acts in a body",
                     help,
                 )
                 .at_key(),
@@ -44,7 +44,7 @@ pub(super) fn read(v: View, folder: &Path, path: &str, problems: &mut Vec<Proble
             Ok(table) => Some(table),
             Err(why) => {
                 let what = format!("the table \"{file}\" cannot be used");
-                let help = "a table is a CSV file that begins with the line t,value; its path counts from the folder of the case";
+                let help = "a table is a CSV file whose first line is t,value; its path is relative to the folder of the case";
                 problems.push(Problem::new(format!("{path}.table"), what, why, help));
                 return None;
             }
@@ -62,7 +62,7 @@ pub(super) fn motion(v: &View) -> Option<Vec<(usize, FormulaSpec)>> {
     ["x", "y"].into_iter().enumerate().filter_map(axis).collect()
 }
 
-/// Reads a body's initial velocity; a rigid motion becomes formulas.
+/// Reads a body's initial velocity; a rigid-body motion is converted to formulas.
 pub(super) fn velocity(
     v: &View,
     dimension: usize,
@@ -86,9 +86,9 @@ pub(super) fn velocity(
     }
     if dimension == 1 || table.get("about").is_none() {
         let (key, what, why, help) = if dimension == 1 {
-            ("angular", "a bar cannot turn", "the case has dimension = 1", "leave `angular` out")
+            ("angular", "a bar cannot rotate", "the case has dimension = 1", "leave `angular` out")
         } else {
-            ("angular", "the rotation has no centre", "a body turns about a point", "add `about = [x, y]`")
+            ("angular", "the rotation has no centre", "a body rotates about a point", "add `about = [x, y]`")
         };
         problems.push(Problem::new(format!("{path}.velocity.{key}"), what, why, help));
         return None;

@@ -1,19 +1,19 @@
-//! A table of amplitudes: a CSV file with the columns `t` and `value`, others ignored. Every
-//! mistake is told with its file and line.
+//! A table of amplitudes: a CSV file with the columns `t` and `value`; others are ignored. Every
+//! error is reported with file and line.
 
 use std::path::Path;
 
 use super::TableSpec;
 
-/// More lines than this are no amplitude: the resolved case holds them all.
+/// Largest number of lines; the resolved case stores them all.
 const MOST_LINES: usize = 1_000_000;
 
 /// Reads the file at `path`, called `name` in messages.
 ///
 /// # Errors
-/// In words, with the file's name and line.
+/// A message with the file's name and line.
 pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, String> {
-    let refused = |error: csv::Error| {
+    let unreadable = |error: csv::Error| {
         let line = error.position().map_or(String::new(), |p| format!(":{}", p.line()));
         match error.kind() {
             csv::ErrorKind::Io(io) if io.kind() == std::io::ErrorKind::NotFound => {
@@ -29,8 +29,8 @@ pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, String> {
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
         .from_path(path)
-        .map_err(refused)?;
-    let headers = reader.headers().map_err(refused)?.clone();
+        .map_err(unreadable)?;
+    let headers = reader.headers().map_err(unreadable)?.clone();
     let column = |wanted: &str| {
         headers.iter().position(|h| h == wanted).ok_or_else(|| {
             let found = headers.iter().collect::<Vec<_>>().join(", ");
@@ -40,7 +40,7 @@ pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, String> {
     let columns = [column("t")?, column("value")?];
     let mut table = TableSpec { file: name.to_owned(), times: Vec::new(), values: Vec::new() };
     for record in reader.records() {
-        let record = record.map_err(refused)?;
+        let record = record.map_err(unreadable)?;
         let line = record.position().map_or(0, csv::Position::line);
         let number = |k: usize| {
             let text = record.get(columns[k]).unwrap_or_default();
@@ -49,7 +49,7 @@ pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, String> {
         };
         let (time, value) = (number(0)?, number(1)?);
         if let Some(before) = table.times.last().filter(|before| **before >= time) {
-            return Err(format!("{name}:{line}: the time {time} does not come after {before}"));
+            return Err(format!("{name}:{line}: times must increase, but {time} follows {before}"));
         }
         if table.times.len() == MOST_LINES {
             return Err(format!("{name}:{line}: more than {MOST_LINES} lines"));
@@ -58,7 +58,7 @@ pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, String> {
         table.values.push(value);
     }
     if table.times.len() < 2 {
-        return Err(format!("{name}: {} lines of numbers; at least two are needed", table.times.len()));
+        return Err(format!("{name}: at least two lines of numbers are needed, not {}", table.times.len()));
     }
     Ok(table)
 }
@@ -83,14 +83,14 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_name_file_and_line() {
+    fn errors_name_file_and_line() {
         for (text, message) in [
             ("t,force\n0,1\n", "a.csv:1: there is no column `value`; the columns are: t, force"),
             ("t,value\n0,1\n1,x\n", "a.csv:3: `value` is not a finite number: \"x\""),
             ("t,value\n0,1\n1,nan\n", "a.csv:3: `value` is not a finite number: \"nan\""),
-            ("t,value\n0,1\n0,2\n", "a.csv:3: the time 0 does not come after 0"),
+            ("t,value\n0,1\n0,2\n", "a.csv:3: times must increase, but 0 follows 0"),
             ("t,value\n0,1\n1\n", "a.csv:3: 1 values, but the first line has 2"),
-            ("t,value\n0,1\n", "a.csv: 1 lines of numbers; at least two are needed"),
+            ("t,value\n0,1\n", "a.csv: at least two lines of numbers are needed, not 1"),
         ] {
             assert_eq!(table(text).unwrap_err(), message);
         }

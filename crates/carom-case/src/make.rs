@@ -1,5 +1,5 @@
-//! The mesh of a body: made by its shape or read from its file, and put where the case has it. A
-//! new built-in shape is one line here.
+//! The mesh of a body: generated from its shape or read from its file, then placed. A new built-in
+//! shape is one line here.
 
 use carom_solid::Mesh;
 use carom_solid::generate::{self, Refinement};
@@ -11,7 +11,7 @@ impl BodySpec {
     /// The mesh in a case of this dimension.
     ///
     /// # Errors
-    /// Why there is none, in words.
+    /// Why it cannot be made.
     pub fn make_mesh(&self, dimension: usize) -> Result<Mesh, String> {
         let mut mesh = match self.mesh {
             MeshSpec::File { ref file, ref surface, ref hash, .. } => {
@@ -21,24 +21,24 @@ impl BodySpec {
                 return Err("shape \"interval\" needs dimension = 1".into());
             }
             MeshSpec::Interval { min, max, cells } => {
-                said(generate::interval(self.element, min, max, cells))?
+                message(generate::interval(self.element, min, max, cells))?
             }
             _ if dimension != 2 => return Err("this shape needs dimension = 2".into()),
             MeshSpec::Rectangle { min, max, cells } => {
-                said(generate::rectangle(self.element, min, max, cells))?
+                message(generate::rectangle(self.element, min, max, cells))?
             }
             MeshSpec::Disc { radius, center, size } => {
-                said(generate::disc(self.element, radius, center, size))?
+                message(generate::disc(self.element, radius, center, size))?
             }
             MeshSpec::HalfDisc { radius, center, size } => {
-                said(generate::half_disc(self.element, radius, center, size))?
+                message(generate::half_disc(self.element, radius, center, size))?
             }
             MeshSpec::Ring { inner, outer, center, size } => {
-                said(generate::ring(self.element, inner, outer, center, size))?
+                message(generate::ring(self.element, inner, outer, center, size))?
             }
             MeshSpec::Polygon { ref points, size, ref refine } => {
                 let place = |r: &RefineSpec| Refinement { near: r.near, radius: r.radius, size: r.size };
-                said(generate::polygon(
+                message(generate::polygon(
                     self.element,
                     points,
                     size,
@@ -53,6 +53,6 @@ impl BodySpec {
     }
 }
 
-fn said(made: Result<Mesh, generate::MeshError>) -> Result<Mesh, String> {
+fn message(made: Result<Mesh, generate::MeshError>) -> Result<Mesh, String> {
     made.map_err(|error| error.to_string())
 }

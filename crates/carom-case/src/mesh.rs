@@ -1,4 +1,4 @@
-//! How the table of a mesh is read: a built-in shape, or a file.
+//! Reads the table of a mesh: a built-in shape, or a file.
 
 use std::path::Path;
 
@@ -29,7 +29,7 @@ pub(super) fn read(
     let v = View { table, keys: keys::shapes().table(shape)?.keys, preset };
     let wanted = if shape == "interval" { 1 } else { 2 };
     if wanted != dimension {
-        let what = format!("the shape \"{shape}\" is of dimension {wanted}");
+        let what = format!("the shape \"{shape}\" has dimension {wanted}");
         let why = format!("the case has dimension = {dimension}");
         let help =
             if dimension == 1 { "use shape = \"interval\"" } else { "use for example shape = \"rectangle\"" };
@@ -73,7 +73,7 @@ pub(super) fn read(
     }
 }
 
-/// A polygon whose outline can be filled.
+/// Reads a polygon; its outline must be simple.
 fn polygon(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<MeshSpec> {
     let pair =
         |node: &Node| node.list()?.iter().map(Node::number).collect::<Option<Vec<_>>>()?.try_into().ok();
@@ -87,7 +87,7 @@ fn polygon(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<MeshSpec>
     });
     let refine = refine.collect::<Option<_>>()?;
     if let Err(error) = generate::outline(&points) {
-        let why = "a polygon is one closed line that does not meet itself";
+        let why = "the outline of a polygon must not touch or intersect itself";
         problems.push(Problem::new(
             format!("{path}.points"),
             error.to_string(),
@@ -127,7 +127,7 @@ fn rectangle_cells(
                 problems.push(Problem::new(
                     path,
                     what,
-                    "they both say how fine the mesh is",
+                    "each of them sets the size of the cells",
                     "write for example `cells = [8, 4]`",
                 ));
             }
@@ -136,12 +136,12 @@ fn rectangle_cells(
     }
 }
 
-/// Refuses cells that are meant to be larger than their body.
+/// Reports cells that are larger than their body.
 fn fitting(size: f64, (extent, length): (&str, f64), path: &str, problems: &mut Vec<Problem>) -> Option<()> {
-    // What is not positive has a message of its own.
+    // A value that is not positive is reported elsewhere.
     if size > length && length > 0.0 {
         let what = format!("`size` = {size} is larger than the {extent}, {}", rounded(length));
-        let why = "it is the length of the cells, and none would fit";
+        let why = "it is the edge length of the cells, and none would fit";
         let help = format!("give size ≤ {}, for example size = {}", rounded(length), rounded(length / 5.0));
         problems.push(Problem::new(format!("{path}.size"), what, why, help));
         return None;

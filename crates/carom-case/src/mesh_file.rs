@@ -1,6 +1,6 @@
-//! A mesh from a .msh file. It is read when the case is, so that what is wrong with it stands under
-//! the key that named it; the resolved case keeps its hash, so that a run never goes on with
-//! another mesh than it began with.
+//! A mesh from a .msh file. It is read together with the case, so that its errors are reported at
+//! the key that names it. The resolved case stores its hash, so that a run is never resumed with a
+//! different mesh.
 
 use std::path::Path;
 
@@ -10,15 +10,15 @@ use super::MeshSpec;
 use super::problem::Problem;
 use super::view::View;
 
-/// The named part of a file as a mesh of a dimension: a physical curve or surface.
-fn part(file: &gmsh::MshFile, dimension: usize, name: &str) -> Result<Mesh, gmsh::MshError> {
+/// The named physical group of a file as a mesh: a curve in dimension 1, a surface in dimension 2.
+fn group(file: &gmsh::MshFile, dimension: usize, name: &str) -> Result<Mesh, gmsh::MshError> {
     match dimension {
         1 => file.bar(name),
         _ => file.body(name),
     }
 }
 
-/// What is known of a mesh without keeping it.
+/// What the resolved case stores of a mesh.
 struct Facts {
     element: Element,
     nodes: usize,
@@ -40,7 +40,7 @@ impl From<Mesh> for Facts {
     }
 }
 
-/// Reads the table of a mesh from a file; its path counts from the folder of the case.
+/// Reads the table of a mesh from a file; its path is relative to the folder of the case.
 pub(super) fn read(
     v: View,
     dimension: usize,
@@ -63,11 +63,11 @@ pub(super) fn read(
                 "file",
                 format!("the mesh \"{name}\" cannot be read"),
                 why,
-                "check the path; it counts from the folder of the case",
+                "check the path; it is relative to the folder of the case",
             );
         }
     };
-    let facts = |file: gmsh::MshFile| part(&file, dimension, &surface).map(Facts::from);
+    let facts = |file: gmsh::MshFile| group(&file, dimension, &surface).map(Facts::from);
     let facts = match gmsh::read(&bytes).and_then(facts) {
         Ok(facts) => facts,
         Err(error) => {
@@ -82,14 +82,14 @@ pub(super) fn read(
             facts.element,
             element.degree()
         );
-        return wrong("surface", what, "the element of a body is that of its mesh".into(), &help);
+        return wrong("surface", what, "the element of a body must be that of its mesh".into(), &help);
     }
     let hash = blake3::hash(&bytes).to_hex().to_string();
     let Facts { nodes, cells, sides, repairs, .. } = facts;
     Some(MeshSpec::File { file, surface, hash, nodes, cells, sides, repairs })
 }
 
-/// The file's bytes, or why there are none.
+/// The file's bytes, or why it cannot be read.
 fn bytes(file: &Path) -> Result<Vec<u8>, String> {
     let facts = std::fs::metadata(file).map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound => format!("there is no file {}", file.display()),
@@ -104,11 +104,11 @@ fn bytes(file: &Path) -> Result<Vec<u8>, String> {
 /// The mesh of a resolved case, if its file is still the one the case was resolved with.
 ///
 /// # Errors
-/// In words, with the file's name.
+/// A message with the file's name.
 pub(crate) fn mesh(file: &Path, dimension: usize, surface: &str, hash: &str) -> Result<Mesh, String> {
     let bytes = unchanged(file, hash)?;
-    let told = |e: gmsh::MshError| format!("{}: {e}; {}", file.display(), e.why());
-    gmsh::read(&bytes).and_then(|f| part(&f, dimension, surface)).map_err(told)
+    let message = |e: gmsh::MshError| format!("{}: {e}; {}", file.display(), e.why());
+    gmsh::read(&bytes).and_then(|f| group(&f, dimension, surface)).map_err(message)
 }
 
 fn unchanged(file: &Path, hash: &str) -> Result<Vec<u8>, String> {
@@ -118,7 +118,7 @@ fn unchanged(file: &Path, hash: &str) -> Result<Vec<u8>, String> {
     }
     let file = file.display();
     Err(format!(
-        "the mesh file {file} has changed since the run began (BLAKE3 was {hash}): restore it, or run the case anew"
+        "the mesh file {file} has changed since the run began (BLAKE3 was {hash}): restore it, or run the case again"
     ))
 }
 
@@ -127,7 +127,7 @@ impl MeshSpec {
     /// unchanged.
     ///
     /// # Errors
-    /// In words, with the file's name.
+    /// A message with the file's name.
     pub fn verify(&self) -> Result<(), String> {
         match self {
             Self::File { file, hash, .. } => unchanged(file, hash).map(|_| ()),

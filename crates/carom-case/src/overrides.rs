@@ -1,26 +1,26 @@
-//! `--set key=value`: one value of the case replaced before it is read. Keys are dotted paths; a
-//! table of a list is addressed by its name (`body.cylinder.element=T6`); values are TOML, and a
-//! bare word that is no TOML is a text.
+//! `--set key=value`: replaces one value of the case before it is read. Keys are dotted paths; a
+//! table of a list is addressed by its name (`body.cylinder.element=T6`). Values are TOML; a bare
+//! word that is not TOML is a string.
 
 use super::example::Names;
 use super::problem::Diagnostic;
 use super::suggest;
 use super::tree::{self, Node, Origin, Value};
 
-/// Applies the override `set`, the document's source number `source`.
+/// Applies the override `set`, which is source number `source` of the document.
 pub(super) fn apply(root: &mut Node, set: &str, source: usize) -> Result<(), Box<Diagnostic>> {
     let wrong = |span: std::ops::Range<usize>, what: String, why: String, help: String| {
         Box::new(Diagnostic::at("--set", set, span, [what, why, help]))
     };
     let example = root.table().map_or_else(String::new, |case| Names::of(case).override_example());
     let Some((key, value)) = set.split_once('=') else {
-        let why = "an override is key=value".to_owned();
+        let why = "an override has the form key=value".to_owned();
         return Err(wrong(0..set.len(), "there is no `=`".to_owned(), why, example));
     };
     let keys = toml_edit::Key::parse(key).map_err(|e| {
         wrong(
             0..key.len(),
-            "this is not a key".to_owned(),
+            "this is not a valid key".to_owned(),
             e.message().trim().replace('\n', "; "),
             example.clone(),
         )
@@ -46,7 +46,7 @@ pub(super) fn apply(root: &mut Node, set: &str, source: usize) -> Result<(), Box
                         if names.is_empty() { "none".into() } else { names.join(", ") }
                     );
                     let help = suggest::nearest(key, names.iter().map(String::as_str)).map_or_else(
-                        || "name one of them".to_owned(),
+                        || "use one of them".to_owned(),
                         |name| format!("did you mean `{list}.{name}`?"),
                     );
                     wrong(here.span.clone(), format!("no `{list}` is named `{key}`"), why, help)
@@ -55,7 +55,7 @@ pub(super) fn apply(root: &mut Node, set: &str, source: usize) -> Result<(), Box
             _ => {
                 let before = keys[..depth].iter().map(toml_edit::Key::get).collect::<Vec<_>>().join(".");
                 let why = format!("`{before}` is {described}");
-                let help = format!("replace it whole: --set {before}=…");
+                let help = format!("replace it as a whole: --set {before}=…");
                 return Err(wrong(here.span, format!("`{before}` has no key `{key}`"), why, help));
             }
         };

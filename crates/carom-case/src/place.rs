@@ -1,5 +1,5 @@
-//! Where a body is put: x ↦ about + R(x − about) + shift, read from `place` and applied to the mesh
-//! before anything else sees it.
+//! Placement of a body: x ↦ about + R(x − about) + shift, read from `place` and applied to the mesh
+//! before anything else.
 
 use carom_solid::Mesh;
 
@@ -11,7 +11,7 @@ use super::view::View;
 pub(super) fn read(v: View, dimension: usize, path: &str, problems: &mut Vec<Problem>) -> Option<PlaceSpec> {
     let rotate = v.number("rotate")?;
     if dimension == 1 && rotate != 0.0 {
-        let (what, why) = ("a bar cannot be turned", "the case has dimension = 1");
+        let (what, why) = ("a bar cannot be rotated", "the case has dimension = 1");
         problems.push(Problem::new(
             format!("{path}.rotate"),
             what,
@@ -29,20 +29,20 @@ impl PlaceSpec {
     pub fn apply(&self, mesh: &mut Mesh) {
         let (sin, cos) = sine_and_cosine(self.rotate);
         for x in &mut mesh.nodes {
-            let mut turned: Vec<f64> = x.iter().zip(&self.about).map(|(x, about)| x - about).collect();
-            if let [a, b] = turned[..] {
-                turned = vec![cos * a - sin * b, sin * a + cos * b];
+            let mut rotated: Vec<f64> = x.iter().zip(&self.about).map(|(x, about)| x - about).collect();
+            if let [a, b] = rotated[..] {
+                rotated = vec![cos * a - sin * b, sin * a + cos * b];
             }
             for i in 0..x.len() {
-                // Unturned, a coordinate is not taken through about − about.
-                let at = if self.rotate == 0.0 { x[i] } else { self.about[i] + turned[i] };
+                // Without a rotation, (x − about) + about would add round-off.
+                let at = if self.rotate == 0.0 { x[i] } else { self.about[i] + rotated[i] };
                 x[i] = at + self.shift[i];
             }
         }
     }
 }
 
-/// Of an angle in degrees; exact at right angles.
+/// Sine and cosine of an angle in degrees; exact at multiples of 90°.
 fn sine_and_cosine(degrees: f64) -> (f64, f64) {
     let turn = degrees.rem_euclid(360.0);
     match turn {
@@ -59,7 +59,7 @@ mod tests {
     use super::*;
     use carom_solid::{Element, generate};
 
-    /// The centre goes where the motion takes it, arc nodes stay on the circle, lengths stay.
+    /// Arc nodes lie on the circle about the moved centre, and distances are unchanged.
     #[test]
     fn a_placed_disc_is_the_disc_elsewhere() {
         let made = generate::disc(Element::T10, 0.5, [1.0, 2.0], 0.2).unwrap();

@@ -1,15 +1,15 @@
-//! What is wrong with a case: found by key path, shown with the line it stands on.
+//! Problems of a case: found by key path, shown with their line in the file.
 
 use std::fmt;
 
-/// Something wrong, named by the path of the key it concerns: `body[0].mesh.size`.
+/// A problem, located by the path of its key: `body[0].mesh.size`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// Key path; tables of a list by their number. Empty: the whole case.
+    /// Key path; tables of a list by index. Empty for the whole case.
     pub path: String,
-    /// Whether the key itself is meant rather than its value.
+    /// Whether the problem is the key itself rather than its value.
     pub at_key: bool,
-    /// Bytes of the value's text that are meant, where it is a formula.
+    /// Bytes of the value's text to point at, if it is a formula.
     pub within: Option<Box<std::ops::Range<usize>>>,
     /// What is wrong.
     pub what: String,
@@ -82,7 +82,7 @@ fn one_by_one(problems: &[Problem]) -> String {
 /// A problem with its place in a source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// The case file as it was named, or `--set`.
+    /// The case file as given, or `--set`.
     pub file: String,
     /// Line from 1; 0 if the file has no such place.
     pub line: usize,
@@ -90,7 +90,7 @@ pub struct Diagnostic {
     pub column: usize,
     /// The line as written.
     pub quoted: String,
-    /// Characters of the line that are meant, ≥ 1.
+    /// Number of characters marked, ≥ 1.
     pub length: usize,
     /// What is wrong.
     pub what: String,
@@ -134,7 +134,8 @@ impl Diagnostic {
     /// A diagnostic for text that is not TOML.
     pub(super) fn of_syntax(file: &str, text: &str, error: &toml_edit::TomlError) -> Self {
         let cause = error.message().trim().replace('\n', "; ");
-        let help = "see https://toml.io for how TOML is written: text in quotes, lists in [ ], tables in { } on one line";
+        let help =
+            "see https://toml.io for the syntax: strings in quotes, lists in [ ], tables in { } on one line";
         let message = ["this is not TOML".to_owned(), cause, help.to_owned()];
         Self::at(file, text, error.span().unwrap_or(0..0), message)
     }
@@ -150,7 +151,7 @@ impl fmt::Display for Diagnostic {
         if self.line == 0 {
             write!(f, "{}: {}", self.file, self.what)?;
         } else {
-            // Tabs keep their width under the caret.
+            // Tabs are repeated, so that the caret stays below its column.
             let pad: String = self
                 .quoted
                 .chars()
@@ -170,18 +171,18 @@ impl fmt::Display for Diagnostic {
     }
 }
 
-/// Why no case came out of a file.
+/// Why a case file could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum CaseError {
     /// The case is wrong: every problem that could be found.
     #[error("{}", joined(.0))]
     Wrong(Vec<Diagnostic>),
-    /// The machine did not let the file be read.
+    /// Input/output or system error.
     #[error("{path}: cannot be read: {source}")]
     Refused {
-        /// The file as it was named.
+        /// The file as given.
         path: String,
-        /// The machine's reason.
+        /// The error of the system.
         source: std::io::Error,
     },
 }
@@ -190,7 +191,7 @@ fn joined(diagnostics: &[Diagnostic]) -> String {
     diagnostics.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n")
 }
 
-/// A computed number for a message: ten digits at most, so that 0.1 + 0.2 reads 0.3.
+/// A computed number for a message: at most ten digits, so that 0.1 + 0.2 reads 0.3.
 pub(super) fn rounded(x: f64) -> f64 {
     format!("{x:.9e}").parse().unwrap_or(x)
 }

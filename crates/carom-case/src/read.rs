@@ -1,5 +1,5 @@
-//! Document → case: every table read with its defaults; what concerns one table alone is checked
-//! here, the rest in `check`.
+//! Document → case: reads every table with its defaults. Checks that concern a single table are
+//! here, the others in `check`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -57,8 +57,8 @@ fn owned(sets: &[&str]) -> Vec<String> {
 /// These problems.
 pub fn read(document: &Document) -> Result<Case, Problems> {
     if let Some(key) = document.study_key() {
-        let why = "`case`, `arm` and `grid` are keys of a study: many runs of one case";
-        let help = "carom study runs it, carom check reads it";
+        let why = "`case`, `arm` and `grid` are keys of a study, which runs one case many times";
+        let help = "run it with carom study, or check it with carom check";
         return Err(vec![Problem::new(key, "this is a study, not a case", why, help).at_key()].into());
     }
     let reader = Reader::of(document);
@@ -86,9 +86,14 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
         return Err(problems.into());
     }
     reader.case(document, draft, folder).ok_or_else(|| {
-        let why = "its keys passed every check, but one of them could not be taken over";
-        vec![Problem::new("", "the case cannot be read", why, "please report this file as a bug of Carom")]
-            .into()
+        let why = "all keys passed the checks, but one of them could not be read";
+        vec![Problem::new(
+            "",
+            "internal error: the case cannot be read",
+            why,
+            "please report this as a bug, with the file",
+        )]
+        .into()
     })
 }
 
@@ -114,7 +119,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A table; empty if it was not given, so that its defaults are read.
+    /// A table; an empty one with all defaults if it is not given.
     fn one(&self, name: &str) -> Option<View<'a>> {
         const EMPTY: &Table = &Table(Vec::new());
         let table = self.root.table.get(name).map_or(Some(EMPTY), Node::table)?;
@@ -156,7 +161,7 @@ impl<'a> Reader<'a> {
         for contact in &mut contacts {
             contact.law.get_or_insert(time.scheme.contact_law());
             if time.scheme.nonsmooth().is_some() {
-                // Nothing is left to project: the law of the scheme itself makes velocities agree.
+                // Nothing to project: the contact law of the scheme makes velocities compatible.
                 contact.persistency = Persistency::None;
             }
         }
@@ -206,11 +211,11 @@ fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<Material
             (young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson)))
         }
         given => {
-            // A misspelt key is reported as such, not as a missing one as well.
+            // A misspelt key is reported once, not as a missing key too.
             let misspelt = v.table.0.iter().any(|e| !v.keys.iter().any(|k| k.name == e.key));
             if !misspelt || given.len() > 2 {
-                let had = if given.is_empty() { "none of them".to_owned() } else { given.join(", ") };
-                let what = format!("the elastic constants are not one pair: {had}");
+                let had = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
+                let what = format!("the elastic constants are not a valid pair: {had}");
                 let help = "give `lambda` and `mu`, or `young` and `poisson`";
                 problems.push(
                     Problem::new(path, what, "an isotropic material has two elastic constants", help)

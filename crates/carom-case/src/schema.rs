@@ -1,4 +1,4 @@
-//! JSON Schema (draft 2020-12) of the case file, for editors: made from the table of keys.
+//! JSON Schema (draft 2020-12) of the case file, for editors, generated from the table of keys.
 
 use serde_json::{Map, Value, json};
 
@@ -12,14 +12,14 @@ pub fn schema() -> Value {
     Value::Object(schema)
 }
 
-/// Schemas of the values that an override may set, by a pattern of its key: `time.step`,
+/// Schemas of the values that an override may set, by a pattern for the key: `time.step`,
 /// `body.NAME.element`.
 pub fn changes() -> Map<String, Value> {
     let mut found = Vec::new();
     paths(&CASE, "^", &mut found);
     let mut schemas = Map::new();
     for (pattern, schema) in found {
-        // A key that means different things in different variants takes what any of them takes.
+        // A key with different meanings in different variants takes the values of all of them.
         let known = schemas.entry(pattern).or_insert_with(|| json!({ "anyOf": [] }));
         if let Some(list) = known["anyOf"].as_array_mut().filter(|list| !list.contains(&schema)) {
             list.push(schema);
@@ -28,7 +28,7 @@ pub fn changes() -> Map<String, Value> {
     schemas
 }
 
-/// Every key at every depth, behind the pattern of what is before it.
+/// Every key at every depth; `before` is the pattern of its parents.
 fn paths(spec: &Table, before: &str, found: &mut Vec<(String, Value)>) {
     for key in spec.keys {
         let name = format!("{before}{}", key.name);
@@ -181,7 +181,7 @@ mod tests {
     use super::super::keys::Variants;
     use super::*;
 
-    /// Every key of every table, visited once per place.
+    /// Calls `see` for every key of every table, once per place.
     fn visit(spec: &'static Table, see: &mut dyn FnMut(&'static Table, &'static Key)) {
         for key in spec.keys {
             see(spec, key);

@@ -1,5 +1,5 @@
-//! A scheme by its name in the case: a kernel of implicit stages, or a scheme with a contact law of
-//! its own.
+//! A scheme by its name in the case: a kernel of implicit stages, or a scheme with its own contact
+//! law.
 
 use carom_time::{Integrator, Kernel, Nonsmooth, STATIC, SchemeError};
 
@@ -9,7 +9,7 @@ use crate::{ContactLaw, SchemeSpec};
 const ENERGY_MOMENTUM: &str = "energy-momentum";
 
 impl SchemeSpec {
-    /// Whether it is equilibrium without inertia, with t as the load parameter.
+    /// Whether it is static: equilibrium without inertia, with t as the load parameter.
     pub fn is_static(&self) -> bool {
         self.kind == STATIC
     }
@@ -22,7 +22,7 @@ impl SchemeSpec {
         carom_time::scheme(&self.kind, &self.parameters, self.forces)
     }
 
-    /// The scheme with a contact law of its own; `None` where the kind is none of these.
+    /// The scheme, if it has its own contact law.
     pub fn nonsmooth(&self) -> Option<Nonsmooth> {
         match self.integrator() {
             Ok(Integrator::Nonsmooth(scheme, _)) => Some(scheme),
@@ -35,13 +35,13 @@ impl SchemeSpec {
         self.integrator().is_ok_and(|integrator| integrator.alpha().is_some())
     }
 
-    /// Whether its internal forces are a discrete gradient that conserves energy: springs of
-    /// contact then do so too.
+    /// Whether its internal forces are a discrete gradient that conserves energy; contact springs
+    /// then conserve energy too.
     pub fn conserves(&self) -> bool {
         self.kind == ENERGY_MOMENTUM
     }
 
-    /// What contact holds under this scheme unless the case says otherwise.
+    /// What contact constrains under this scheme, unless the case sets `law`.
     pub fn contact_law(&self) -> ContactLaw {
         match self.nonsmooth() {
             Some(Nonsmooth::Impulse(_)) => ContactLaw::Velocity,
@@ -49,13 +49,13 @@ impl SchemeSpec {
         }
     }
 
-    /// Whether no system is solved, so that the mass must be diagonal and the step short.
+    /// Whether no linear system is solved, so that the mass must be diagonal and the step short.
     pub fn is_explicit(&self) -> bool {
         matches!(self.nonsmooth(), Some(Nonsmooth::Explicit(_)))
     }
 
-    /// The scheme as a list of implicit stages; `None` where it cannot be used or contact is not a
-    /// force in their balance.
+    /// The scheme as a list of implicit stages; `None` if its parameters are invalid, or if contact
+    /// is not a force in the balance of the stages.
     pub fn kernel(&self) -> Option<Box<dyn Kernel>> {
         self.integrator().ok()?.into_kernel()
     }

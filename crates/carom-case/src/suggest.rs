@@ -1,6 +1,6 @@
-//! Did you mean: the candidate nearest to a misspelt word.
+//! "Did you mean": the candidate nearest to a misspelt word.
 
-/// The nearest candidate, if it is near enough to be meant: at most a third of the letters differ.
+/// The nearest candidate, if at most a third of the letters differ.
 pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let plain = |s: &str| s.to_lowercase().replace(['-', ' '], "_");
     let word = plain(word);
@@ -13,13 +13,13 @@ pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
     candidates.into_iter().filter_map(|c| Some((distance(c)?, c))).min_by_key(|(d, _)| *d).map(|(_, c)| c)
 }
 
-/// `did you mean …?`, or the list of what there is.
+/// `did you mean …?`, or the list of all candidates.
 pub(super) fn help<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> String {
     nearest(word, candidates.clone())
         .map_or_else(|| format!("use one of: {}", list(candidates)), |c| format!("did you mean `{c}`?"))
 }
 
-/// Names in a row; `none` if there are none.
+/// A list of names; `none` if it is empty.
 pub(super) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let names: Vec<_> = names.into_iter().collect();
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }

@@ -1,4 +1,4 @@
-//! The shipped cases, defaults and presets, overrides, and what messages say.
+//! The shipped cases, defaults and presets, overrides, and messages.
 
 mod mesh_file;
 mod messages;
@@ -10,7 +10,7 @@ use super::*;
 const IMPACT: &str = include_str!("../../../cases/impact/impact.toml");
 const REBOUND: &str = include_str!("../../../cases/impact/rebound.toml");
 
-/// Two bars in a row, everything that dimension 1 and a second contact may have.
+/// Two bars in a row, with everything that dimension 1 and a second contact can have.
 const BARS: &str = r#"
 dimension = 1
 thickness = 2e-2
@@ -180,14 +180,14 @@ fn later_problems_are_placed() {
     };
     assert_eq!(place("probe[1].at[1]").1, "0.0");
     assert_eq!(place("body[0].mesh.size").1, "0.1");
-    // A key that was left out: its table, then the header of the table around it.
+    // An omitted key is reported at its table, or at the header of the table around it.
     assert!(place("body[1].mesh.size").1.starts_with("{ shape = \"rectangle\""));
     assert_eq!(place("contact[0].force").1, "[[contact]]");
     assert_eq!(place("newton.tolerance").0, 0);
 }
 
-/// A member as `explain` and cases name it is read as that member, and the example of each key is a
-/// value it takes.
+/// Every member is read under the name that `explain` and cases use, and the example of each key is
+/// an admissible value.
 #[test]
 fn every_member_of_every_kind_is_read() {
     for kind in carom_time::KINDS {
@@ -209,8 +209,8 @@ fn every_member_of_every_kind_is_read() {
     }
 }
 
-/// Keys and constructors have the same ranges: each end is taken or refused as the table says, and
-/// what is just outside is refused, by both.
+/// Keys and constructors have the same ranges: both accept or refuse each end as the table states,
+/// and both refuse the next number outside.
 #[test]
 fn ranges_are_those_of_the_constructors() {
     use std::ops::{Bound, RangeBounds};

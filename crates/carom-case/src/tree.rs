@@ -1,11 +1,10 @@
-//! A TOML value that knows where each of its parts was written: byte spans into one of the
-//! document's sources.
+//! TOML values, each with its place in the source: byte spans into one of the document's sources.
 
 use std::ops::Range;
 
 use toml_edit::{Item, TableLike};
 
-/// Where a part was written: in the case file (source 0) or in the n-th override (source n).
+/// Where a value was written: in the case file (source 0) or in the n-th override (source n).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Origin {
     pub(super) source: usize,
@@ -81,7 +80,7 @@ impl Node {
         if let Value::Text(text) = &self.value { Some(text) } else { None }
     }
 
-    /// A number, whole or not.
+    /// A number, integer or not.
     pub(super) fn number(&self) -> Option<f64> {
         match self.value {
             Value::Float(x) => Some(x),
@@ -94,12 +93,12 @@ impl Node {
         if let Value::Integer(n) = self.value { usize::try_from(n).ok() } else { None }
     }
 
-    /// What a message calls it.
+    /// Description for messages.
     pub(super) fn described(&self) -> String {
         match &self.value {
-            Value::Text(text) if text.chars().count() <= 40 => format!("the text {text:?}"),
-            Value::Text(_) => "a text".to_owned(),
-            Value::Integer(n) => format!("the whole number {n}"),
+            Value::Text(text) if text.chars().count() <= 40 => format!("the string {text:?}"),
+            Value::Text(_) => "a string".to_owned(),
+            Value::Integer(n) => format!("the integer {n}"),
             Value::Float(x) => format!("the number {x}"),
             Value::Flag(flag) => format!("`{flag}`"),
             Value::Date(date) => format!("the date {date}"),
@@ -109,8 +108,8 @@ impl Node {
     }
 }
 
-/// Takes over what `toml_edit` parsed; `shift` is subtracted from its spans (text put in front of
-/// an override's value).
+/// Converts what `toml_edit` parsed; `shift` is subtracted from its spans (the text in front of an
+/// override's value).
 pub(super) fn node(item: &Item, source: usize, shift: isize, fallback: &Range<usize>) -> Node {
     let span = item.span().map_or_else(|| fallback.clone(), |span| shifted(&span, shift));
     let value = match item {

@@ -1,5 +1,5 @@
-//! Typed values of one table, its defaults filled in. A value that is absent or of the wrong type
-//! is `None`: `conform` has said so.
+//! Typed values of one table, with its defaults. A value that is absent or of the wrong type is
+//! `None`; `conform` has reported it.
 
 use std::borrow::Cow;
 
@@ -9,7 +9,7 @@ use super::keys::{Default, Key};
 use super::tree::{self, Node, Table};
 use super::{FormulaSpec, Preset};
 
-/// A table with the keys that go with it.
+/// A table with the description of its keys.
 #[derive(Clone, Copy)]
 pub(super) struct View<'a> {
     pub(super) table: &'a Table,
@@ -18,7 +18,7 @@ pub(super) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// A value as given, or its default.
+    /// The given value, or its default.
     pub(super) fn value(&self, name: &str) -> Option<Cow<'a, Node>> {
         if let Some(node) = self.table.get(name) {
             return Some(Cow::Borrowed(node));
@@ -45,7 +45,7 @@ impl<'a> View<'a> {
         self.value(name)?.text().map(str::to_owned)
     }
 
-    /// A word of a `Choice`: the words are the names the enum is serialised with.
+    /// A word of a `Choice`, read as the enum variant that is serialised as this word.
     pub(super) fn choice<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
         word(self.value(name)?.text()?)
     }
@@ -76,7 +76,7 @@ pub(super) fn word<T: DeserializeOwned>(word: &str) -> Option<T> {
     serde_json::from_value(serde_json::Value::String(word.to_owned())).ok()
 }
 
-/// A number or a text as a formula.
+/// A number or a string as a formula.
 pub(super) fn formula(node: &Node) -> Option<FormulaSpec> {
     node.number()
         .map(FormulaSpec::Number)

@@ -1,5 +1,5 @@
-//! What a case may do but is seldom meant: said by `check` and `run`, in the manifest, in the log
-//! and on the page; nothing is refused.
+//! Warnings about valid but unusual input. They are shown by `check` and `run`, in the manifest, in
+//! the log and on the page; none of them stops a run.
 
 use carom_solid::Element;
 
@@ -10,20 +10,20 @@ use super::{Case, Plane};
 const LOCKING: f64 = 0.45;
 
 impl Case {
-    /// Warnings, one sentence of what and why each, and what to try.
+    /// The warnings: what, why, and what to try.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
-        // In plane stress the thickness gives way.
+        // In plane stress the thickness changes freely, so nothing locks.
         if self.dimension != 2 || self.plane != Plane::Strain {
             return warnings;
         }
         for body in self.bodies.iter().filter(|b| b.element == Element::T3) {
             let Some(material) = self.materials.iter().find(|m| m.name == body.material) else { continue };
             let poisson = material.lambda / (2.0 * (material.lambda + material.mu));
-            // A ratio typed as 0.45 comes back from Λ and μ with its last digits changed.
+            // A ratio given as 0.45 and recomputed from Λ and μ differs in its last digits.
             if poisson > LOCKING + 1e-9 {
                 warnings.push(format!(
-                    "body \"{}\" is nearly incompressible (Poisson's ratio {}) and made of T3 in plane strain, which lock: it will be too \
+                    "body \"{}\" is nearly incompressible (Poisson's ratio {}), and T3 elements lock in plane strain: the response will be too \
                      stiff; try element = \"T6\" or \"T10\"",
                     body.name,
                     (poisson * 1e4).round() / 1e4

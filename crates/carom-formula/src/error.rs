@@ -5,9 +5,9 @@ use std::ops::Range;
 /// What is wrong with a formula, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FormulaError {
-    /// In words, with what to try.
+    /// What is wrong, and what to try.
     pub message: String,
-    /// Bytes of the text it is about; empty where something is missing.
+    /// Bytes of the text that are wrong; empty where something is missing.
     pub at: Range<usize>,
 }
 

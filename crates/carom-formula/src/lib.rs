@@ -1,4 +1,4 @@
-//! Formulas in named variables: what a case file may say where a number depends on place or time.
+//! Formulas in named variables, for values of a case file that depend on place or time.
 //!
 //! ```
 //! use carom_formula::Formula;
@@ -15,11 +15,11 @@
 //! Operators, weakest first: `||`, `&&`, `< <= > >= == !=` (1 if true, 0 if not), `+ -`, `* /`,
 //! signs, `^` (from the right: `-2^2` is −4, `2^-1` is ½). Functions: sin cos tan asin acos atan
 //! sinh cosh tanh exp ln sqrt abs sign floor, `min(a, b)`, `max(a, b)`, `mod(a, b)` = a − b⌊a/b⌋,
-//! `atan2(y, x)`, `if(condition, then, else)`, of which only the branch taken is evaluated.
+//! `atan2(y, x)`, and `if(condition, then, else)`, which evaluates only the branch taken.
 //! Constant: `pi`.
 //!
-//! A value may be infinite or not a number (`1/t` at 0): whoever evaluates knows the place and the
-//! time, and refuses it with them.
+//! A value may be infinite or not a number (`1/t` at 0). The caller checks for this, because it
+//! can report place and time.
 
 mod error;
 mod function;
@@ -33,7 +33,7 @@ pub use error::FormulaError;
 use jet::Jet;
 use tree::Tree;
 
-/// A formula that was read. Two are equal if their texts and variables are.
+/// A parsed formula. Two are equal if their texts and variables are.
 #[derive(Clone, Debug)]
 pub struct Formula {
     text: String,
@@ -42,11 +42,10 @@ pub struct Formula {
 }
 
 impl Formula {
-    /// Reads a formula in these variables.
+    /// Parses a formula in these variables.
     ///
     /// # Errors
-    /// Anything that is no formula, unknown names, wrong numbers of arguments: with the place in
-    /// the text.
+    /// Syntax errors, unknown names, wrong numbers of arguments, each with its place in the text.
     pub fn parse(text: &str, variables: &[&str]) -> Result<Self, FormulaError> {
         let tree = parse::tree(text, variables)?;
         Ok(Self { text: text.to_owned(), variables: variables.iter().map(|&v| v.to_owned()).collect(), tree })
@@ -119,7 +118,7 @@ impl PartialEq for Formula {
     }
 }
 
-/// As its text; who reads it back knows the variables.
+/// Serialised as its text, without the variables.
 impl Serialize for Formula {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(&self.text)

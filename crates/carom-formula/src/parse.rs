@@ -134,7 +134,7 @@ fn open(input: &mut Input) -> ModalResult<(), FormulaError> {
     let at = preceded(multispace0, '('.span()).parse_next(input)?;
     input.state.open += 1;
     if input.state.open > DEEPEST {
-        return refuse(format!("more than {DEEPEST} parentheses within each other"), at);
+        return refuse(format!("more than {DEEPEST} nested parentheses"), at);
     }
     Ok(())
 }

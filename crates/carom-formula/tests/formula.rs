@@ -1,4 +1,5 @@
-//! Values and derivatives against hand results and differences; every mistake with its place.
+//! Values and derivatives against hand calculations and finite differences; errors with their
+//! place.
 
 #![allow(clippy::unwrap_used)]
 

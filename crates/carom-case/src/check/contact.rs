@@ -1,11 +1,11 @@
-//! Contacts: two different bodies, each pair once, mass where the projection needs it, laws that go
-//! together and with the scheme.
+//! Checks of contacts: two different bodies, each pair once, mass where the projection needs it,
+//! laws that are compatible with each other and with the scheme.
 
 use super::super::{ContactLaw, ContactSpec, Enforcement, Persistency, PrimarySpec};
 use super::Check;
 
 impl Check<'_> {
-    /// Laws and ways to keep them that have no meaning together, or not with the scheme.
+    /// Laws and enforcements that cannot be combined with each other or with the scheme.
     fn law(&mut self, i: usize, contact: &ContactSpec) {
         let path = |key: &str| format!("contact[{i}].{key}");
         let (predictor, penalty) =
@@ -14,14 +14,15 @@ impl Check<'_> {
         let given = |key: &str| tables.get(i).and_then(|n| n.table()?.get(key)).is_some();
         if contact.persistency == Persistency::Project && given("persistency") && (predictor || penalty) {
             let by = if penalty { "enforcement = \"penalty\"" } else { "law = \"predictor\"" };
-            let why = format!("with {by} nothing is left to project where contact begins");
-            self.add(path("persistency"), "this projection has no meaning", why, "leave persistency out");
+            let why = format!("with {by} there is nothing to project where contact begins");
+            let what = "persistency = \"project\" cannot be used here";
+            self.add(path("persistency"), what, why, "leave persistency out");
         }
         if !penalty && given("stiffness") {
-            let why = "a multiplier keeps the constraint exactly; only enforcement = \"penalty\" has springs";
+            let why = "a multiplier enforces the constraint exactly; only enforcement = \"penalty\" has a stiffness";
             self.add(
                 path("stiffness"),
-                "this stiffness has no meaning",
+                "`stiffness` is given without a penalty",
                 why,
                 "leave it out, or give enforcement = \"penalty\"",
             );
@@ -30,30 +31,30 @@ impl Check<'_> {
             return;
         }
         if penalty {
-            let why = "the predictor is projected on a constraint, and a spring is none";
+            let why = "the predictor is projected onto constraints, and a penalty spring is not a constraint";
             self.add(
                 path("law"),
-                "a penalty has no predictor to project",
+                "law = \"predictor\" cannot be used with a penalty",
                 why,
-                "law = \"position\", or enforcement = \"multiplier\"",
+                "use law = \"position\", or enforcement = \"multiplier\"",
             );
         }
         if self.draft.contacts.iter().flatten().any(|other| other.law != contact.law) {
             let why =
-                "the predictor is one of the whole system: it is projected for all contacts or for none";
-            self.add(path("law"), "contacts have different laws", why, "give all contacts one law");
+                "the predictor belongs to the whole system, so it is projected for all contacts or for none";
+            self.add(path("law"), "the contacts have different laws", why, "give all contacts the same law");
         }
         let Some(scheme) = self.draft.time.as_ref().map(|time| &time.scheme) else { return };
         if let Some(kernel) = scheme.kernel()
             && !kernel.has_predictor()
         {
             let what = format!("scheme `{}` has no predictor to project", scheme.kind);
-            let why = "law = \"predictor\" replaces y + Δt v in Newmark's formula, and this scheme is of two steps, of several stages, or without inertia";
+            let why = "law = \"predictor\" replaces y + Δt v in Newmark's formula, and this scheme has two steps, several stages or no inertia";
             self.add(
                 path("law"),
                 what,
                 why,
-                "law = \"position\", or a scheme such as energy-momentum or chung-hulbert",
+                "use law = \"position\", or a scheme such as energy-momentum or chung-hulbert",
             );
         }
     }
@@ -73,15 +74,15 @@ impl Check<'_> {
                     {
                         let what =
                             format!("both sides of `{}` belong to the body `{}`", contact.name, a.name);
-                        let why = "a body in contact with itself belongs to a later version of Carom";
-                        self.add(path("primary"), what, why, "name a side of another body");
+                        let why = "self-contact is planned for a later version of Carom";
+                        self.add(path("primary"), what, why, "give a side of another body");
                         continue;
                     }
                     primary
                 }
                 PrimarySpec::Plane { normal, .. } => {
                     if normal.iter().all(|n| *n == 0.0) {
-                        let why = "it points out of the half-space, so it must have a length > 0";
+                        let why = "it is the direction out of the half-space, so its length must be > 0";
                         self.add(
                             path("primary.plane.normal"),
                             "the normal is zero",
@@ -98,9 +99,8 @@ impl Check<'_> {
                 && (rigid || primary.is_some_and(|p| self.massless(p)))
                 && contact.persistency == Persistency::Project
             {
-                let what = format!("nothing that touches in `{}` has mass", contact.name);
-                let why = "persistency = \"project\" projects velocities with the mass matrix, and a contact between massless \
-                           nodes has no row in it";
+                let what = format!("no node in contact `{}` has mass", contact.name);
+                let why = "persistency = \"project\" projects velocities with the mass matrix, which is zero for these nodes";
                 self.add(
                     path("secondary"),
                     what,
@@ -111,8 +111,9 @@ impl Check<'_> {
             if let Some(j) =
                 contacts[..i].iter().position(|c| c.as_ref().is_some_and(|c| same_pair(c, contact)))
             {
-                let what = "these two sides are a contact already";
-                let why = format!("contact number {} has the same pair; each would add its own force", j + 1);
+                let what = "this pair of sides is already a contact";
+                let why =
+                    format!("contact number {} has the same pair, and each would add its own force", j + 1);
                 self.add(path("secondary"), what, why, "leave one of them out");
             }
         }

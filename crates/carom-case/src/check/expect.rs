@@ -1,4 +1,4 @@
-//! What expectations ask for must be in the record: columns, metrics, times of the run.
+//! Checks that the quantities of expectations exist: columns, metrics, times within the run.
 
 use carom_record::question::{Form, Quantity, Question, Series, column_metric_names, metric_names};
 
@@ -9,8 +9,8 @@ use super::{Check, columns};
 impl Check<'_> {
     pub(super) fn expects(&mut self) {
         let draft = self.draft;
-        // Columns come from names: with a key unknown or missing somewhere, an unknown column
-        // proves nothing.
+        // Columns are named after bodies, contacts and probes. If one of these could not be read,
+        // an unknown column is not necessarily an error.
         let complete = !self.problems.iter().any(|p| p.at_key)
             && draft.probes.iter().all(Option::is_some)
             && draft.bodies.iter().all(Option::is_some)
@@ -38,7 +38,7 @@ impl Check<'_> {
             };
             let mut wanted: Vec<String> = Vec::new();
             let mut arms = Vec::new();
-            // What cannot be parsed was told when it was read.
+            // Parse errors were reported when the expectation was read.
             for quantity in quantities.unwrap_or_default() {
                 match quantity {
                     Quantity::Reduced(form, columns) => {
@@ -46,7 +46,7 @@ impl Check<'_> {
                             && !(0.0..=end).contains(&time)
                         {
                             let why = format!("the run goes from 0 to {end}");
-                            let what = format!("`{time}` is not a time of this run");
+                            let what = format!("the time {time} is outside the run");
                             self.add(path.clone(), what, why, "write for example \"at 0.5 A.uy\"");
                         }
                         arms.extend(columns.columns.quantities().iter().filter_map(|a| a.arm.clone()));
@@ -80,7 +80,7 @@ impl Check<'_> {
     }
 
     fn no_column(&mut self, path: String, column: &str, known: &[String]) {
-        let why = "columns are those of history.csv; probes add name.quantity";
+        let why = "a column is one of history.csv; each probe adds columns name.quantity";
         let help = suggest::nearest(column, known.iter().map(String::as_str)).map_or_else(
             || format!("use one of: {}", known.join(", ")),
             |near| format!("did you mean `{near}`?"),
@@ -93,7 +93,7 @@ impl Check<'_> {
         if names.contains(&name) {
             return;
         }
-        let why = "it is FORM COLUMN with min, max, first, last, at TIME, time of min, time of max, range, drift, peak or rms, or a metric";
+        let why = "a quantity is FORM COLUMN, where FORM is min, max, first, last, at TIME, time of min, time of max, range, drift, peak or rms, or the name of a metric";
         let help = if columns.iter().any(|c| c == name) {
             format!("`{name}` is a column: write for example `last {name}`, or add a `formula`")
         } else {

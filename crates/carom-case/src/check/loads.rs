@@ -1,5 +1,5 @@
-//! Loads and moving supports against the rest of the case: their sides and bodies, the time their
-//! tables cover, what a static run can have.
+//! Checks of loads, supports and initial states against the rest of the case: their sides and
+//! bodies, the time that tables cover, what a static run may have.
 
 use super::super::tree::Node;
 use super::Check;
@@ -22,17 +22,12 @@ impl Check<'_> {
         for (i, load) in draft.loads.iter().enumerate() {
             let Some(table) = load.as_ref().and_then(|l| l.table.as_ref()) else { continue };
             let (first, last) = (table.times[0], table.times[table.times.len() - 1]);
-            // Times of the grid carry the rounding of n·Δt.
+            // The times n·Δt of the grid are rounded.
             if first > 0.0 || last < end * (1.0 - 1e-12) {
                 let what = format!("the table \"{}\" does not cover the run", table.file);
                 let lines = format!("its first line is t = {first}, its last t = {last}");
                 let why = format!("{}: {lines}; the run goes from 0 to {end}", table.file);
-                self.add(
-                    format!("load[{i}].table"),
-                    what,
-                    why,
-                    "add lines to the table, or end the run earlier",
-                );
+                self.add(format!("load[{i}].table"), what, why, "extend the table, or end the run earlier");
             }
         }
     }
@@ -51,8 +46,8 @@ impl Check<'_> {
                 && moved.is_none_or(|m| m.0.is_empty())
                 && table.get("move").is_none_or(|m| m.table().is_some())
             {
-                let what = "the support neither holds nor moves";
-                let why = "a support names directions in `fix`, in `move`, or in both";
+                let what = "the support has neither `fix` nor `move`";
+                let why = "a support needs directions in `fix`, in `move`, or in both";
                 self.problems.push(
                     super::Problem::new(format!("support[{i}]"), what, why, "add `fix = [\"x\", \"y\"]`")
                         .at_key(),
@@ -65,8 +60,8 @@ impl Check<'_> {
                     self.add(
                         path,
                         what,
-                        "`fix` holds it, `move` gives its displacement",
-                        "leave it out of `fix`",
+                        "a direction is either fixed or has a prescribed displacement",
+                        "remove it from `fix`",
                     );
                 } else if entry.key == "y" && self.draft.dimension == Some(1) {
                     self.add(
@@ -80,13 +75,14 @@ impl Check<'_> {
         }
     }
 
-    /// A motion that is given leaves no place for others' forces, supports and starts.
+    /// A manufactured solution excludes other loads, supports, contacts and initial states.
     pub(super) fn manufactured(&mut self) {
         let root = self.document.root();
         if root.get("manufactured").is_none() {
             return;
         }
-        let why = "[manufactured] gives the motion; load, boundary and start follow from it";
+        let why =
+            "[manufactured] prescribes the motion; load, boundary motion and initial state follow from it";
         for (key, path) in [
             ("support", "support[0]"),
             ("load", "load[0]"),
@@ -94,7 +90,7 @@ impl Check<'_> {
             ("initial", "initial"),
         ] {
             if root.get(key).is_some() {
-                self.add(path, format!("a manufactured motion has no {key} of its own"), why, "leave it out");
+                self.add(path, format!("`{key}` cannot be used with [manufactured]"), why, "leave it out");
             }
         }
         for (i, body) in self.draft.bodies.iter().enumerate() {
@@ -102,31 +98,31 @@ impl Check<'_> {
             if body.gravity.iter().any(|g| *g != 0.0) {
                 self.add(
                     format!("body[{i}].gravity"),
-                    "a manufactured motion has no gravity of its own",
+                    "`gravity` cannot be used with [manufactured]",
                     why,
                     "leave it out",
                 );
             }
             if !body.velocity.iter().all(super::super::FormulaSpec::is_zero) {
-                let what = "a manufactured motion has no initial velocity of its own";
+                let what = "`velocity` cannot be used with [manufactured]";
                 self.add(format!("body[{i}].velocity"), what, why, "leave it out");
             }
             if body.position.is_some() {
-                let what = "a manufactured motion has no initial position of its own";
+                let what = "`position` cannot be used with [manufactured]";
                 self.add(format!("body[{i}].position"), what, why, "leave it out");
             }
         }
     }
 
-    /// Initial velocities where there is no inertia, or where another run has given them, and
-    /// positions where it has.
+    /// Reports initial velocities without inertia, and initial velocities or positions where
+    /// [initial] takes them from another run.
     pub(super) fn starts(&mut self) {
         let draft = self.draft;
         let is_static = draft.time.as_ref().is_some_and(|t| t.scheme.is_static());
         let initial = self.document.root().get("initial").is_some();
         let why = match (is_static, initial) {
             (true, _) => "the scheme \"static\" has no velocities",
-            (false, true) => "[initial] says what the velocities are",
+            (false, true) => "[initial] sets the velocities",
             (false, false) => return,
         };
         for (i, body) in draft.bodies.iter().enumerate() {
@@ -139,7 +135,7 @@ impl Check<'_> {
                 );
             }
             if initial && body.as_ref().is_some_and(|b| b.position.is_some()) {
-                let why = "[initial] says where the bodies are";
+                let why = "[initial] sets the positions";
                 self.add(
                     format!("body[{i}].position"),
                     "the body has an initial position",

@@ -1,4 +1,4 @@
-//! Whether the model fits into memory, estimated before anything is allocated.
+//! Checks that the model fits into memory, by an estimate made before anything is allocated.
 //!
 //! Per node of degree-k cells in dimension D, with c nodes coupled to it (mean over a large mesh:
 //! 3, 4, 5 for L2 L3 L4; 7, 12, 19 for T3 T6 T10): half the matrix with 8-byte values and indices,
@@ -10,10 +10,10 @@ use carom_solid::Element;
 use super::Check;
 use crate::{BodySpec, MeshSpec};
 
-/// Taken where the machine does not tell.
+/// Assumed where the system does not report its memory.
 const ASSUMED: f64 = 8.0 * 1024.0 * 1024.0 * 1024.0;
 
-/// Bytes a body of n nodes will need.
+/// Bytes that a body of n nodes needs.
 fn bytes(element: Element, nodes: f64) -> f64 {
     let coupled = match element {
         Element::L2 => 3.0,
@@ -28,7 +28,7 @@ fn bytes(element: Element, nodes: f64) -> f64 {
     nodes * (16.0 * d * d * coupled * (0.5 + levels) + 12.0 * 8.0 * d)
 }
 
-/// Memory the machine can give now, in bytes.
+/// Memory available now, in bytes.
 fn available() -> f64 {
     let facts = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
     let line = facts.lines().find_map(|line| line.strip_prefix("MemAvailable:"));
@@ -51,7 +51,7 @@ impl Check<'_> {
             _ => "size",
         };
         let what = format!(
-            "the mesh of `{}` is too big for the memory: {nodes:.3e} nodes in {cells:.3e} cells",
+            "the mesh of `{}` is too large for the memory: {nodes:.3e} nodes in {cells:.3e} cells",
             body.name
         );
         let why =

@@ -1,4 +1,4 @@
-//! What concerns several tables: names and references, sides, dimensions, steps, memory.
+//! Checks across tables: names and references, sides, dimensions, steps, memory.
 
 mod contact;
 mod expect;
@@ -16,7 +16,7 @@ use super::suggest;
 use super::tree::Node;
 use super::{BodySpec, Quantity};
 
-/// Adds what is wrong between tables.
+/// Adds the problems found across tables.
 pub(super) fn problems(document: &Document, draft: &Draft, problems: &mut Vec<Problem>) {
     let mut check = Check { document, draft, problems };
     check.dimension();
@@ -58,8 +58,8 @@ impl<'a> Check<'a> {
         self.document.root().get(list).and_then(Node::list).unwrap_or(&[])
     }
 
-    /// Names of a list of tables; `None` if one of them cannot be read or its header is
-    /// misspelt, since a reference might mean that one.
+    /// Names of a list of tables; `None` if one of them cannot be read or its header is misspelt,
+    /// because a reference might be to that one.
     fn names(&self, list: &str) -> Option<Vec<&'a str>> {
         let tables = self.tables(list);
         let root = &self.document.root().0;
@@ -75,20 +75,15 @@ impl<'a> Check<'a> {
         let given = self.document.root().get("dimension").and_then(Node::count);
         if let Some(d) = given.filter(|d| *d > 2) {
             let why = if d == 3 {
-                "three dimensions belong to a later version of Carom"
+                "three dimensions are planned for a later version of Carom"
             } else {
-                "space has 1 or 2 dimensions here"
+                "a case has 1 or 2 dimensions"
             };
-            self.add(
-                "dimension",
-                format!("this version has no dimension {d}"),
-                why,
-                "use dimension = 1 or 2",
-            );
+            self.add("dimension", format!("dimension {d} is not supported"), why, "use dimension = 1 or 2");
         }
         let plane = self.document.root().get("plane").and_then(Node::text);
         if given == Some(1) && plane == Some("stress") {
-            let why = "a bar has no plane; it is strained along x alone";
+            let why = "a bar has no plane state; its only strain is along x";
             self.add("plane", "plane = \"stress\" needs dimension = 2", why, "leave it out");
         }
     }
@@ -98,10 +93,8 @@ impl<'a> Check<'a> {
         for (i, name) in names.iter().enumerate() {
             if let Some(first) = name.and_then(|_| names[..i].iter().position(|n| n == name)) {
                 let name = name.unwrap_or_default();
-                let why = format!(
-                    "{list} number {} has this name already, and everything is referred to by name",
-                    first + 1
-                );
+                let why =
+                    format!("{list} number {} already has this name, and names must be unique", first + 1);
                 self.add(
                     format!("{list}[{i}].name"),
                     format!("two tables [[{list}]] are named `{name}`"),
@@ -112,10 +105,10 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Reports a reference to a name that is not there.
+    /// Reports a reference to a name that does not exist.
     fn reference(&mut self, list: &str, name: &str, path: String) {
         let Some(names) = self.names(list).filter(|names| !names.contains(&name)) else { return };
-        let why = format!("each {list} is a table [[{list}]] with a name; there are: {}", names.join(", "));
+        let why = format!("it must be the name of a table [[{list}]]; the names are: {}", names.join(", "));
         self.add(
             path,
             format!("there is no {list} `{name}`"),
@@ -124,7 +117,7 @@ impl<'a> Check<'a> {
         );
     }
 
-    /// The body a side belongs to; reports a side that is not there.
+    /// The body that a side belongs to; reports a side that does not exist.
     fn side(&mut self, side: &str, path: String) -> Option<&'a BodySpec> {
         let bodies = self.names("body")?;
         let Some((name, part)) = side.split_once('.') else {
@@ -141,12 +134,7 @@ impl<'a> Check<'a> {
                 || format!("the bodies are: {}", bodies.join(", ")),
                 |near| format!("did you mean `{near}.{part}`?"),
             );
-            self.add(
-                path,
-                format!("there is no body `{name}`"),
-                format!("the side `{side}` is one of a body"),
-                help,
-            );
+            self.add(path, format!("there is no body `{name}`"), "a side is written body.side", help);
             return None;
         }
         let body = self.body(name)?;
@@ -183,7 +171,7 @@ impl<'a> Check<'a> {
                 && element.dimension() != d
             {
                 let help = if d == 1 { "use L2, L3 or L4" } else { "use T3, T6 or T10" };
-                let what = format!("the element {element:?} is of dimension {}", element.dimension());
+                let what = format!("the element {element:?} has dimension {}", element.dimension());
                 self.add(format!("body[{i}].element"), what, format!("the case has dimension = {d}"), help);
             }
         }

@@ -1,4 +1,4 @@
-//! What a scheme asks of masses and contacts: combinations without meaning, each with its reason.
+//! Requirements of a scheme on masses, supports and contacts.
 
 use carom_time::Nonsmooth;
 
@@ -11,11 +11,11 @@ impl Check<'_> {
         let Some(spec) = draft.time.as_ref().map(|time| &time.scheme) else { return };
         if let Some(scheme) = spec.nonsmooth() {
             self.masses(spec);
-            self.still_supports(spec);
+            self.fixed_supports(spec);
             self.rules_of_stages(spec);
             self.restitutions(spec, &scheme);
         } else if spec.integrator().is_ok() {
-            self.no_restitution(spec, "the balance at the end of a step holds positions");
+            self.no_restitution(spec, "its contact law constrains positions at the end of a step");
         }
         for (i, contact) in draft.contacts.iter().enumerate() {
             let Some(law) = contact.as_ref().and_then(|c| c.law).filter(|law| *law != spec.contact_law())
@@ -23,12 +23,12 @@ impl Check<'_> {
                 continue;
             };
             if law == ContactLaw::Predictor && spec.nonsmooth().is_none() {
-                // Whether an implicit scheme has a predictor is asked with the contacts.
+                // Whether an implicit scheme has a predictor is checked with the contacts.
                 continue;
             }
             let (what, why, help) = match law {
                 ContactLaw::Velocity => (
-                    "law = \"velocity\" holds velocities by impulses",
+                    "law = \"velocity\" constrains velocities by impulses",
                     format!("the unknowns of {} are positions and forces", spec.kind),
                     "leave law out, or use scheme moreau-jean or nonsmooth-generalized-alpha",
                 ),
@@ -38,7 +38,7 @@ impl Check<'_> {
                     "leave law out, or use a scheme such as energy-momentum or chung-hulbert",
                 ),
                 ContactLaw::Position => (
-                    "law = \"position\" holds positions",
+                    "law = \"position\" constrains positions",
                     format!("the unknowns of {} are velocities and impulses", spec.kind),
                     "leave law out, or use another scheme (carom explain lists them)",
                 ),
@@ -53,25 +53,25 @@ impl Check<'_> {
             let Some(body) = body else { continue };
             if self.massless(body) {
                 let what = format!("body `{}` has no mass, and {} divides by it", body.name, spec.kind);
-                let why = "its unknown is what forces and impulses do to velocities";
+                let why = "it computes velocities from forces or impulses divided by the mass of each node";
                 self.add(
                     format!("body[{i}].material"),
                     what,
                     why,
-                    "a density > 0, or an implicit scheme of the α family",
+                    "give a density > 0, or use an implicit scheme of the α family",
                 );
             } else if body.mass.is_redistributed() {
                 let what =
                     format!("body `{}` has nodes without mass, and {} divides by it", body.name, spec.kind);
-                let why = "its unknown is what forces and impulses do to velocities";
-                self.add(format!("body[{i}].mass"), what, why, "mass = \"lumped\"");
+                let why = "it computes velocities from forces or impulses divided by the mass of each node";
+                self.add(format!("body[{i}].mass"), what, why, "use mass = \"lumped\"");
             } else if spec.is_explicit() && body.mass == MassKind::Consistent {
                 let what = format!(
-                    "{} needs a lumped mass, and that of body `{}` is consistent",
+                    "{} needs a lumped mass, but that of body `{}` is consistent",
                     spec.kind, body.name
                 );
-                let why = "an explicit step divides each force by the mass of its node; a consistent mass couples nodes and would \
-                           be a system to solve in every step";
+                let why = "an explicit step divides each force by the mass of its node; a consistent mass couples the nodes and would \
+                           require solving a linear system in every step";
                 let path = format!("body[{i}]");
                 let given = self.tables("body").get(i).and_then(|b| b.table()?.get("mass")).is_some();
                 let path = if given { format!("{path}.mass") } else { path };
@@ -80,58 +80,62 @@ impl Check<'_> {
         }
     }
 
-    /// These schemes hold positions at rest only.
-    fn still_supports(&mut self, spec: &SchemeSpec) {
+    /// These schemes have fixed supports only.
+    fn fixed_supports(&mut self, spec: &SchemeSpec) {
         for (i, support) in self.draft.supports.iter().enumerate() {
             if support.as_ref().is_some_and(|s| !s.moves.is_empty()) {
-                let what = format!("{} has no supports that move", spec.kind);
-                let why = "the work and the impulse of a support are booked for implicit schemes only as yet";
-                let help = "fix it, push with a [[load]], or use an implicit scheme such as chung-hulbert";
+                let what = format!("moving supports are not available with {}", spec.kind);
+                let why =
+                    "the work and the impulse of a moving support are implemented for implicit schemes only";
+                let help =
+                    "fix the side, apply a [[load]] instead, or use an implicit scheme such as chung-hulbert";
                 self.add(format!("support[{i}].move"), what, why, help);
             }
         }
     }
 
-    /// Rules about averages and projections, where they are given and there is nothing they could
-    /// mean.
+    /// Reports keys about averages and projections that do not apply to the scheme.
     fn rules_of_stages(&mut self, spec: &SchemeSpec) {
         for (i, contact) in self.tables("contact").iter().enumerate() {
             let word = |key| contact.table().and_then(|t| t.get(key)?.text());
             if word("force") == Some("end") {
-                let why = format!("{} averages no forces: there is one per step, or one impulse", spec.kind);
+                let why = format!(
+                    "{} does not average contact forces: a step has one force or one impulse",
+                    spec.kind
+                );
                 self.add(
                     format!("contact[{i}].force"),
-                    "force = \"end\" has no meaning here",
+                    "force = \"end\" cannot be used with this scheme",
                     why,
                     "leave it out",
                 );
             }
             if word("enforcement") == Some("penalty") {
                 let why = format!(
-                    "{} has its own rule for contact, by forces or impulses without springs",
+                    "{} has its own rule for contact, with forces or impulses instead of springs",
                     spec.kind
                 );
-                let what = "enforcement = \"penalty\" has no meaning here";
+                let what = "enforcement = \"penalty\" cannot be used with this scheme";
                 self.add(format!("contact[{i}].enforcement"), what, why, "leave it out");
             }
             if word("persistency") == Some("project") {
                 let why = format!("{} has its own rule for velocities where contact begins", spec.kind);
-                let what = "persistency = \"project\" has no meaning here";
-                self.add(format!("contact[{i}].persistency"), what, why, "leave it out, or \"none\"");
+                let what = "persistency = \"project\" cannot be used with this scheme";
+                self.add(format!("contact[{i}].persistency"), what, why, "leave it out, or use \"none\"");
             }
         }
     }
 
     fn restitutions(&mut self, spec: &SchemeSpec, scheme: &Nonsmooth) {
         if matches!(scheme, Nonsmooth::Explicit(scheme) if !scheme.restitution) {
-            self.no_restitution(spec, "its force keeps the next positions out of contact, and no more");
+            self.no_restitution(spec, "its contact force only prevents penetration at the next positions");
         }
     }
 
     fn no_restitution(&mut self, spec: &SchemeSpec, why: &str) {
         for (i, contact) in self.draft.contacts.iter().enumerate() {
             if let Some(e) = contact.as_ref().map(|c| c.restitution).filter(|e| *e != 0.0) {
-                let what = format!("{} has no restitution, and e = {e} was given", spec.kind);
+                let what = format!("{} has no restitution, but e = {e} is given", spec.kind);
                 let help = "leave restitution out, or use scheme moreau-jean, nonsmooth-generalized-alpha or paoli-schatzman";
                 self.add(format!("contact[{i}].restitution"), what, why, help);
             }

@@ -1,16 +1,16 @@
-//! The grid of times n·Δt: it must end at `end`.
+//! Checks of the times n·Δt: the last one must be `end`.
 
 use super::super::TimeSpec;
 use super::super::problem::rounded;
 use super::Check;
 
-/// More steps than any run will take: 10⁹ of a microsecond each are a quarter of an hour, of a
+/// More steps than any run takes: 10⁹ steps of a microsecond take a quarter of an hour, of a
 /// millisecond twelve days.
 const MOST_STEPS: f64 = 1e9;
 
 impl TimeSpec {
-    /// Number of steps to the end; the reader has checked that `end` is a multiple of `step` within
-    /// 10⁻⁶ of a step's share.
+    /// Number of steps to the end; the reader has checked that `end` is a multiple of `step`, up to
+    /// a relative error of 10⁻⁶.
     pub fn steps(&self) -> usize {
         (self.end / self.step).round() as usize
     }
@@ -25,7 +25,7 @@ impl Check<'_> {
         }
         let steps = (end / step).round();
         if end < step * (1.0 - 1e-6) {
-            let why = format!("the run ends at {end} and would not take one step");
+            let why = format!("the run ends at {end}, before the end of its first step");
             self.add(
                 "time.step",
                 format!("the step {step} is longer than the run"),
@@ -33,7 +33,8 @@ impl Check<'_> {
                 "choose step ≤ end",
             );
         } else if steps > MOST_STEPS {
-            let why = format!("end / step = {:.3e}; at most {MOST_STEPS:e} steps are taken", end / step);
+            let why =
+                format!("end / step = {:.3e}, and at most {MOST_STEPS:e} steps are allowed", end / step);
             self.add(
                 "time.step",
                 "the run has too many steps",
@@ -42,7 +43,7 @@ impl Check<'_> {
             );
         } else if (end / step - steps).abs() > 1e-6 * steps {
             let (below, above) = ((end / step).floor(), (end / step).ceil());
-            let why = format!("times are n·step, and end / step = {}", rounded(end / step));
+            let why = format!("a run has a whole number of steps, and end / step = {}", rounded(end / step));
             let help = format!(
                 "try step = {} or step = {}, or end = {} or end = {}",
                 rounded(end / above),
@@ -60,7 +61,7 @@ impl Check<'_> {
             .unwrap_or(&[]);
         for (i, t) in times.iter().enumerate() {
             if let Some(t) = t.number().filter(|t| t.is_finite() && !(0.0..=end).contains(t)) {
-                let what = format!("{t} is not a time of this run");
+                let what = format!("the time {t} is outside the run");
                 self.add(
                     format!("output.at_times[{i}]"),
                     what,

@@ -1,5 +1,5 @@
-//! The keys of a case file, once: what the reader accepts, what the schema and the documentation
-//! say.
+//! The keys of a case file, declared once: the reader, the schema and the documentation use the
+//! same tables.
 
 mod schemes;
 mod shapes;
@@ -9,60 +9,60 @@ pub use schemes::schemes;
 pub use shapes::shapes;
 pub use tables::{CASE, EXPECT};
 
-/// A table of the case file: its keys, and those of later versions.
+/// A table of the case file: its keys, and those planned for later versions.
 #[derive(Debug)]
 pub struct Table {
-    /// How messages call it: `[[body]]`.
+    /// Name in messages: `[[body]]`.
     pub name: &'static str,
-    /// What it is.
+    /// Its meaning.
     pub doc: &'static str,
     /// Its keys, in the order of the documentation.
     pub keys: &'static [Key],
-    /// Keys a later version will have.
+    /// Keys planned for a later version.
     pub later: &'static [&'static str],
 }
 
 /// One key.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
-    /// As written.
+    /// Name in the file.
     pub name: &'static str,
-    /// What values it takes.
+    /// The values it takes.
     pub kind: Kind,
     /// Physical unit, in the case's own labels; empty if none.
     pub unit: &'static str,
-    /// Whether and how it may be left out.
+    /// Whether it is required, and its default value.
     pub default: Default,
     /// Default under `preset = "paper"`, as TOML, where it differs.
     pub paper: Option<&'static str>,
-    /// What it means.
+    /// Its meaning.
     pub doc: &'static str,
-    /// A value, as TOML.
+    /// An example value, as TOML.
     pub example: &'static str,
-    /// Other kinds of value a later version will take: a table, a text.
+    /// Other kinds of value planned for a later version: a table, a string.
     pub later: &'static str,
 }
 
-/// What happens when a key is left out.
+/// What happens when a key is omitted.
 #[derive(Clone, Copy, Debug)]
 pub enum Default {
-    /// It must be given.
+    /// An error: it must be given.
     Required,
-    /// Nothing takes its place, or something computed (the documentation says what).
+    /// There is no default value, or a computed one (stated in the documentation).
     Absent,
-    /// This TOML value takes its place.
+    /// This TOML value is the default.
     Is(&'static str),
 }
 
 /// Values a key takes.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
-    /// Any text.
+    /// Any string.
     Text,
-    /// A name: no dots, blanks, slashes, commas or quotes, since columns and sides are made from
-    /// it.
+    /// A name: no dots, blanks, slashes, commas or quotes, because names of columns and sides
+    /// contain it.
     Name,
-    /// One of these words; a later version also takes the second list.
+    /// One of these words; the second list is planned for a later version.
     Choice(&'static [&'static str], &'static [&'static str]),
     /// A finite number in a range.
     Number(Range),
@@ -70,25 +70,25 @@ pub enum Kind {
     NumberOrFalse(Range),
     /// `true` or `false`.
     Truth,
-    /// A whole number of at least this.
+    /// An integer of at least this.
     Count(usize),
-    /// A whole number in dimension 1, a pair in dimension 2.
+    /// An integer in dimension 1, a pair in dimension 2.
     Counts(usize),
     /// One finite number per dimension.
     Vector,
     /// Any number of finite numbers.
     Numbers,
-    /// Points of the plane, at least so many.
+    /// At least this many points of the plane.
     Points(usize),
-    /// A finite number, or a formula in these variables (`Y` only where there is one).
+    /// A finite number, or a formula in these variables (`Y` in dimension 2 only).
     Formula(&'static [&'static str]),
-    /// As many of them as dimensions.
+    /// One number or formula per dimension.
     Formulas(&'static [&'static str]),
-    /// As many of them as dimensions, or this table.
+    /// One number or formula per dimension, or this table.
     FormulasOr(&'static [&'static str], &'static Table),
-    /// A table of formulas in t by the name of a column.
+    /// A table of formulas in t, with names of columns as keys.
     ByColumn,
-    /// A list of words out of these, at least one.
+    /// A list of at least one of these words.
     Choices(&'static [&'static str]),
     /// A side `body.side`.
     Side,
@@ -104,31 +104,31 @@ pub enum Kind {
     Variant(fn() -> &'static Variants),
 }
 
-/// Tables told apart by the value of the key `tag`.
+/// Tables distinguished by the value of the key `tag`.
 #[derive(Debug)]
 pub struct Variants {
-    /// How messages call it.
+    /// Name in messages.
     pub name: &'static str,
-    /// The key that tells.
+    /// The key whose value selects the table.
     pub tag: &'static str,
-    /// Its meaning.
+    /// Meaning of the tag.
     pub doc: &'static str,
-    /// Values of the key with the keys that go with it.
+    /// Values of the tag, each with its table.
     pub tables: &'static [(&'static str, Table)],
-    /// Keys of the table without the tag, told by the first of them.
+    /// A table without the tag, recognised by its first key.
     pub or: Option<&'static Table>,
-    /// Values a later version will take.
+    /// Values planned for a later version.
     pub later: &'static [&'static str],
-    /// Keys a later version will have, whatever the value.
+    /// Keys planned for a later version, for any value.
     pub later_keys: &'static [&'static str],
 }
 
 /// An interval of numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Range {
-    /// Lower end and whether it belongs to it.
+    /// Lower end, and whether it is included.
     pub low: Option<(f64, bool)>,
-    /// Upper end and whether it belongs to it.
+    /// Upper end, and whether it is included.
     pub high: Option<(f64, bool)>,
 }
 
@@ -160,12 +160,12 @@ impl Range {
     }
 }
 
-/// Reference place and time.
+/// Reference position and time.
 pub const IN_SPACE_AND_TIME: &[&str] = &["X", "Y", "t"];
-/// Reference place.
+/// Reference position.
 pub const IN_SPACE: &[&str] = &["X", "Y"];
 
-/// The variables of a formula in a space of this dimension: there is no `Y` on a line.
+/// The variables of a formula in a space of this dimension: no `Y` in dimension 1.
 pub fn variables(all: &'static [&'static str], dimension: usize) -> Vec<&'static str> {
     all.iter().copied().filter(|name| dimension > 1 || *name != "Y").collect()
 }
@@ -178,14 +178,14 @@ impl Table {
 }
 
 impl Variants {
-    /// The keys that go with a value of the tag.
+    /// The table that belongs to a value of the tag.
     pub fn table(&self, tag: &str) -> Option<&Table> {
         self.tables.iter().find(|(value, _)| *value == tag).map(|(_, table)| table)
     }
 }
 
 impl Kind {
-    /// What a message asks for.
+    /// Description of an admissible value, for messages.
     pub fn described(&self, dimension: Option<usize>) -> String {
         let several = |n: Option<usize>| {
             n.map_or_else(
@@ -195,15 +195,15 @@ impl Kind {
         };
         let words = |words: &[&str]| words.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(", ");
         match self {
-            Self::Text => "a text in quotes".into(),
+            Self::Text => "a string in quotes".into(),
             Self::Name => "a name in quotes".into(),
             Self::Choice(choices, _) => format!("one of {}", words(choices)),
             Self::Number(range) => range.described(),
             Self::NumberOrFalse(range) => format!("{}, or false", range.described()),
             Self::Truth => "true or false".into(),
-            Self::Count(least) => format!("a whole number ≥ {least}"),
-            Self::Counts(least) if dimension == Some(1) => format!("a whole number ≥ {least}"),
-            Self::Counts(least) => format!("a list of 2 whole numbers ≥ {least}"),
+            Self::Count(least) => format!("an integer ≥ {least}"),
+            Self::Counts(least) if dimension == Some(1) => format!("an integer ≥ {least}"),
+            Self::Counts(least) => format!("a list of 2 integers ≥ {least}"),
             Self::Vector => several(dimension),
             Self::Numbers => "a list of numbers".into(),
             Self::Points(least) => format!("a list of at least {least} points [x, y]"),
@@ -211,12 +211,12 @@ impl Kind {
             Self::Formulas(_) => format!("{} or formulas in quotes", several(dimension)),
             Self::FormulasOr(..) => format!("{} or formulas in quotes, or a table", several(dimension)),
             Self::ByColumn => "a table of formulas by column".into(),
-            Self::Choices(choices) => format!("a list out of {}", words(choices)),
+            Self::Choices(choices) => format!("a list of values from {}", words(choices)),
             Self::Side => "a side \"body.side\"".into(),
             Self::Sides => "a list of sides [\"body.side\"]".into(),
-            Self::SideOr(_) => "a side \"body.side\", or a rigid { plane = { point, normal } }".into(),
+            Self::SideOr(_) => "a side \"body.side\" or a rigid plane { plane = { point, normal } }".into(),
             Self::Table(_) => "a table { key = value }".into(),
-            Self::Tables(table) => format!("tables written {}", table.name),
+            Self::Tables(table) => format!("a list of tables {}", table.name),
             Self::Variant(variants) => format!("a table {{ {} = \"…\", … }}", variants().tag),
         }
     }

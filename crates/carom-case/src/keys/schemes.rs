@@ -1,5 +1,5 @@
-//! Kinds of schemes, made from the table of `carom-time`: a scheme declares its parameters beside
-//! its formula.
+//! Kinds of schemes, built from the table of `carom-time`, where each scheme declares its
+//! parameters next to its formula.
 
 use std::ops::Bound;
 use std::sync::LazyLock;
@@ -12,13 +12,13 @@ use super::{Key, Range, Table, Variants, key};
 const FORCES: Key = key(
     "forces",
     Choice(&["average-forces", "average-state"], &[]),
-    "What is averaged over the step with α_f: the forces (eq. 15), or the state they are evaluated at.",
+    "What is averaged over the step with α_f: the forces (eq. 15), or the state at which they are evaluated.",
 )
 .default("\"average-forces\"");
 
 /// Time integrators.
 pub fn schemes() -> &'static Variants {
-    // Made once, for the life of the process.
+    // Built once per process, so it may be leaked.
     static SCHEMES: LazyLock<Variants> = LazyLock::new(|| Variants {
         name: "scheme",
         tag: "kind",

@@ -1,4 +1,4 @@
-//! Shapes of meshes.
+//! Keys of meshes: built-in shapes and files.
 
 use super::Kind::{Count, Counts, Number, Points, Tables, Text, Vector};
 use super::{ANY, Key, NOT_NEGATIVE, POSITIVE, Table, Variants, key};
@@ -34,10 +34,10 @@ const SHAPES: Variants = Variants {
                 keys: &[
                     key("min", Vector, "Lower left corner.").unit("length").example("[0.0, 0.0]"),
                     key("max", Vector, "Upper right corner.").unit("length").example("[1.0, 1.0]"),
-                    key("cells", Counts(1), "Squares along x and y, each cut into two triangles; or size.")
+                    key("cells", Counts(1), "Number of squares along x and y, each split into two triangles; or give `size`.")
                         .optional()
                         .example("[8, 4]"),
-                    key("size", Number(POSITIVE), "Largest side of the squares; or cells.")
+                    key("size", Number(POSITIVE), "Largest side length of the squares; or give `cells`.")
                         .unit("length")
                         .optional()
                         .example("0.1"),
@@ -50,7 +50,7 @@ const SHAPES: Variants = Variants {
             "half-disc",
             Table {
                 name: "mesh of shape \"half-disc\"",
-                doc: "The half of a disc right of its centre; sides arc, axis.",
+                doc: "The half of a disc to the right of its centre; sides arc, axis.",
                 keys: ROUND,
                 later: &[],
             },
@@ -59,7 +59,7 @@ const SHAPES: Variants = Variants {
             "ring",
             Table {
                 name: "mesh of shape \"ring\"",
-                doc: "What lies between two concentric circles; sides inner, outer.",
+                doc: "The region between two concentric circles; sides inner, outer.",
                 keys: &[
                     key("inner", Number(POSITIVE), "Radius of the inner circle.").unit("length").example("0.4"),
                     key("outer", Number(POSITIVE), "Radius of the outer circle.").unit("length").example("0.5"),
@@ -67,7 +67,7 @@ const SHAPES: Variants = Variants {
                     key(
                         "size",
                         Number(POSITIVE),
-                        "Length of a cell's edge; shorter where the ring is thinner than that or the inner circle needs twelve.",
+                        "Edge length of the cells; smaller where the ring is thinner than that, or where the inner circle would have fewer than twelve edges.",
                     )
                     .unit("length")
                     .example("0.05"),
@@ -81,13 +81,13 @@ const SHAPES: Variants = Variants {
                 name: "mesh of shape \"polygon\"",
                 doc: "Any simple polygon, convex or not; sides side1 (from the first point to the second), side2, ….",
                 keys: &[
-                    key("points", Points(3), "Corners in order, either way round.")
+                    key("points", Points(3), "Corners in order, clockwise or counter-clockwise.")
                         .unit("length")
                         .example("[[0.0, 0.0], [48.0, 44.0], [48.0, 60.0], [0.0, 44.0]]"),
-                    key("size", Number(POSITIVE), "Length of a cell's edge; shorter where the outline asks for it.")
+                    key("size", Number(POSITIVE), "Edge length of the cells; smaller where the outline requires it.")
                         .unit("length")
                         .example("0.1"),
-                    key("refine", Tables(&REFINE), "Places with finer cells.")
+                    key("refine", Tables(&REFINE), "Regions of local refinement.")
                         .optional()
                         .example("[{ near = [48.0, 60.0], radius = 2.0, size = 0.02 }]"),
                 ],
@@ -102,22 +102,22 @@ const SHAPES: Variants = Variants {
 
 const REFINE: Table = Table {
     name: "refine",
-    doc: "A place with finer cells; from its radius on, edges grow by 3/10 of the distance to the mesh's size.",
+    doc: "A region of local refinement; outside its radius, the edge length grows by 3/10 of the distance, up to the size of the mesh.",
     keys: &[
-        key("near", Vector, "Its centre.").unit("length").example("[48.0, 60.0]"),
-        key("radius", Number(NOT_NEGATIVE), "Edges have the size up to this distance from the centre.")
+        key("near", Vector, "Centre of the region.").unit("length").example("[48.0, 60.0]"),
+        key("radius", Number(NOT_NEGATIVE), "Radius of the region.").unit("length").default("0.0"),
+        key("size", Number(POSITIVE), "Edge length of the cells in the region.")
             .unit("length")
-            .default("0.0"),
-        key("size", Number(POSITIVE), "Length of a cell's edge there.").unit("length").example("0.02"),
+            .example("0.02"),
     ],
     later: &[],
 };
 
 const MESH_FILE: Table = Table {
     name: "mesh from a file",
-    doc: "A body of a Gmsh file; its sides are the named physical curves (dimension 1: points) on its boundary.",
+    doc: "A body from a Gmsh file; its sides are the named physical curves (dimension 1: points) on its boundary.",
     keys: &[
-        key("file", Text, "Path of a .msh file of version 4.1 or 2.2, from the folder of the case.")
+        key("file", Text, "Path of a .msh file of version 4.1 or 2.2, relative to the folder of the case.")
             .example("\"impact.msh\""),
         key("surface", Text, "Name of the physical surface (dimension 1: curve) that is the body.")
             .example("\"cylinder\""),
@@ -128,5 +128,5 @@ const MESH_FILE: Table = Table {
 const ROUND: &[Key] = &[
     key("radius", Number(POSITIVE), "Radius.").unit("length").example("0.5"),
     key("center", Vector, "Centre.").unit("length").example("[0.0, 1.0]"),
-    key("size", Number(POSITIVE), "Length of a cell's edge.").unit("length").example("0.1"),
+    key("size", Number(POSITIVE), "Edge length of the cells.").unit("length").example("0.1"),
 ];

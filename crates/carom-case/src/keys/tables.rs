@@ -13,80 +13,80 @@ pub const CASE: Table = Table {
     name: "the case",
     doc: "One simulation of impact or contact of deformable bodies.",
     keys: &[
-        key("title", Text, "Title for figures and pages; the file's name if left out.")
+        key("title", Text, "Title of figures and report pages. Default: the name of the file.")
             .optional()
             .example("\"Two bars\""),
         key("dimension", Kind::Count(1), "Space dimension: 1 (bars) or 2.").example("2"),
         key(
             "plane",
             Choice(&["strain", "stress"], &["axisymmetric"]),
-            "Plane state in dimension 2: no strain across the plane, or no stress (the thickness is that of the undeformed sheet).",
+            "Plane strain or plane stress, in dimension 2. In plane stress, `thickness` is that of the undeformed sheet.",
         )
             .default("\"strain\""),
-        key("thickness", Number(POSITIVE), "Out-of-plane thickness; in dimension 1 the area of the cross-section.")
+        key("thickness", Number(POSITIVE), "Out-of-plane thickness; in dimension 1, the area of the cross-section.")
             .unit("length, or length² in dimension 1")
             .default("1.0"),
-        key("units", Kind::Table(&UNITS), "Labels for figures and columns; nothing is converted.")
+        key("units", Kind::Table(&UNITS), "Unit labels in figures and columns; values are not converted.")
             .optional()
             .example("{ length = \"m\", time = \"s\", mass = \"kg\" }"),
-        key("preset", Choice(&["default", "paper"], &[]), "Set of defaults; keys that are given still win.")
+        key("preset", Choice(&["default", "paper"], &[]), "Set of default values; keys given explicitly take precedence.")
             .default("\"default\""),
-        key("material", Tables(&MATERIAL), "A material bodies refer to by name."),
+        key("material", Tables(&MATERIAL), "A material; bodies refer to it by name."),
         key("body", Tables(&BODY), "A deformable body."),
-        key("support", Tables(&SUPPORT), "Sides held or moved in some directions.").optional(),
-        key("load", Tables(&LOAD), "Forces on a side or in a body.").optional(),
+        key("support", Tables(&SUPPORT), "Displacement boundary condition: sides fixed or moved in given directions.").optional(),
+        key("load", Tables(&LOAD), "A load: traction or pressure on sides, or body force in a body.").optional(),
         key(
             "initial",
             Kind::Table(&INITIAL),
-            "Where the bodies are at the start, if not in their reference positions.",
+            "Start from the final state of another run instead of the reference positions.",
         )
         .optional(),
         key(
             "manufactured",
             Kind::Table(&MANUFACTURED),
-            "A motion whose load, boundary and start are derived from it, to measure errors against.",
+            "A manufactured solution: load, boundary motion and initial state are derived from it, and errors are measured against it.",
         )
         .optional(),
-        key("contact", Tables(&CONTACT), "Two sides that may touch.").optional(),
-        key("time", Kind::Table(&TIME), "Time interval, step and scheme."),
-        key("newton", Kind::Table(&NEWTON), "Newton's method.").optional(),
-        key("probe", Tables(&PROBE), "A point whose quantities become columns of history.csv.").optional(),
-        key("output", Kind::Table(&OUTPUT), "What is written, and when.").optional(),
+        key("contact", Tables(&CONTACT), "A contact pair: two sides that may come into contact.").optional(),
+        key("time", Kind::Table(&TIME), "Time interval, time step and time integrator."),
+        key("newton", Kind::Table(&NEWTON), "Settings of Newton's method.").optional(),
+        key("probe", Tables(&PROBE), "A material point whose quantities are recorded as columns of history.csv.").optional(),
+        key("output", Kind::Table(&OUTPUT), "What is written, and how often.").optional(),
         key(
             "exact",
             Kind::ByColumn,
-            "What columns should be, as formulas in t: for `formula = \"exact\"` in [[expect]], and a study's `reference = \"exact\"`.",
+            "Exact solution by column, as formulas in t: used by `formula = \"exact\"` in [[expect]] and by `reference = \"exact\"` in a study.",
         )
         .optional()
         .example("{ \"A.uy\" = \"-0.5*9.81*t^2\" }"),
-        key("expect", Tables(&EXPECT), "An expected value: makes the case a test.").optional(),
+        key("expect", Tables(&EXPECT), "An expected value; a case that has one is also a test.").optional(),
     ],
     later: &[],
 };
 
 const UNITS: Table = Table {
     name: "units",
-    doc: "Labels for figures and columns; nothing is converted.",
+    doc: "Unit labels in figures and columns; values are not converted.",
     keys: &[
-        key("length", Text, "Label of lengths.").default("\"m\""),
-        key("time", Text, "Label of times.").default("\"s\""),
-        key("mass", Text, "Label of masses.").default("\"kg\""),
+        key("length", Text, "Unit label of length.").default("\"m\""),
+        key("time", Text, "Unit label of time.").default("\"s\""),
+        key("mass", Text, "Unit label of mass.").default("\"kg\""),
     ],
     later: &[],
 };
 
 const MATERIAL: Table = Table {
     name: "[[material]]",
-    doc: "A hyperelastic material: lambda and mu, or young and poisson.",
+    doc: "A hyperelastic material, given by lambda and mu or by young and poisson.",
     keys: &[
-        key("name", Name, "Name bodies refer to.").example("\"rubber\""),
+        key("name", Name, "Name by which bodies refer to it.").example("\"rubber\""),
         key(
             "law",
             Choice(&["neo-hookean", "saint-venant-kirchhoff", "linear-elastic"], &[]),
             "Constitutive law.",
         )
         .example("\"neo-hookean\""),
-        key("density", Number(NOT_NEGATIVE), "Mass per reference volume; 0: massless.")
+        key("density", Number(NOT_NEGATIVE), "Mass per reference volume; 0 for a massless body.")
             .unit("mass/length³")
             .example("0.25"),
         key("lambda", Number(ANY), "First Lamé constant Λ; 3Λ + 2μ > 0.")
@@ -114,9 +114,9 @@ const MATERIAL: Table = Table {
 
 const BODY: Table = Table {
     name: "[[body]]",
-    doc: "A deformable body; its sides are called name.side.",
+    doc: "A deformable body; its sides are written name.side.",
     keys: &[
-        key("name", Name, "Name; sides are called name.side.").example("\"cylinder\""),
+        key("name", Name, "Name; its sides are written name.side.").example("\"cylinder\""),
         key("material", Name, "Name of its material.").example("\"rubber\""),
         key(
             "element",
@@ -124,23 +124,23 @@ const BODY: Table = Table {
             "Cell type: L2 L3 L4 in dimension 1, T3 T6 T10 in dimension 2.",
         )
         .example("\"T6\""),
-        key("mesh", Variant(shapes), "Shape and fineness.")
+        key("mesh", Variant(shapes), "Mesh: a built-in shape with its mesh size, or a body of a Gmsh file.")
             .example("{ shape = \"rectangle\", min = [0.0, 0.0], max = [1.0, 1.0], cells = [8, 8] }"),
-        key("place", Kind::Table(&PLACE), "Turns and moves the mesh before anything else sees it.")
+        key("place", Kind::Table(&PLACE), "Rotation and translation of the mesh, applied before anything else.")
             .optional()
             .example("{ rotate = 30.0, about = [0.0, 0.0], shift = [0.0, 1.0] }"),
-        key("position", Formulas(IN_SPACE), "Positions at t = 0 of the places X, Y: the body starts strained; X, Y if left out.")
+        key("position", Formulas(IN_SPACE), "Positions at t = 0 as formulas in X, Y, for a body that starts deformed. Default: X, Y.")
             .unit("length")
             .optional()
             .example("[\"X + 0.1*X*Y\", \"Y\"]"),
-        key("gravity", Vector, "Acceleration by gravity; zero if left out.")
+        key("gravity", Vector, "Gravitational acceleration. Default: zero.")
             .unit("length/time²")
             .optional()
             .example("[0.0, -9.81]"),
         key(
             "velocity",
             FormulasOr(IN_SPACE, &VELOCITY),
-            "Initial velocity, uniform or formulas in X, Y; zero if left out.",
+            "Initial velocity: numbers or formulas in X, Y, or the table of a rigid-body motion. Default: zero.",
         )
         .unit("length/time")
         .optional()
@@ -148,8 +148,9 @@ const BODY: Table = Table {
         key(
             "mass",
             Choice(&["consistent", "lumped", "redistributed", "redistributed-nearest"], &[]),
-            "Mass matrix: consistent, diagonal by scaling (HRZ), or without mass on the nodes of contacts: total, centre and second moments kept by the \
-             least change of the other nodes, or the lost mass given to the next nodes.",
+            "Mass matrix: consistent; lumped (diagonal, by HRZ scaling); redistributed: no mass on contact nodes, the smallest change of the other \
+             nodes preserves total mass, centre of mass and second moments; or redistributed-nearest: no mass on contact nodes, their mass is \
+             added to the nearest other nodes.",
         )
         .default("\"consistent\""),
     ],
@@ -158,16 +159,16 @@ const BODY: Table = Table {
 
 const VELOCITY: Table = Table {
     name: "velocity",
-    doc: "Initial velocity of a rigid motion: linear + angular × (X − about).",
+    doc: "Initial velocity of a rigid-body motion: linear + angular × (X − about).",
     keys: &[
-        key("linear", Vector, "Velocity of the point `about`; zero if left out.")
+        key("linear", Vector, "Velocity of the point `about`. Default: zero.")
             .unit("length/time")
             .optional()
             .example("[0.0, -1.0]"),
-        key("angular", Number(ANY), "Angular velocity, anticlockwise, in dimension 2.")
+        key("angular", Number(ANY), "Angular velocity, counter-clockwise; dimension 2.")
             .unit("1/time")
             .default("0.0"),
-        key("about", Vector, "Centre of the rotation, needed with angular.")
+        key("about", Vector, "Centre of the rotation; required with `angular`.")
             .unit("length")
             .optional()
             .example("[0.0, 1.0]"),
@@ -177,32 +178,31 @@ const VELOCITY: Table = Table {
 
 const PLACE: Table = Table {
     name: "place",
-    doc: "Turns and moves a mesh, built in or from a file: first the rotation, then the shift.",
+    doc: "Rotation, then translation of a mesh, built in or from a file.",
     keys: &[
-        key("rotate", Number(ANY), "Angle counter-clockwise; dimension 2.").unit("degrees").default("0.0"),
-        key("about", Vector, "Point it turns about; the origin if left out.")
+        key("rotate", Number(ANY), "Angle of rotation, counter-clockwise; dimension 2.")
+            .unit("degrees")
+            .default("0.0"),
+        key("about", Vector, "Centre of rotation. Default: the origin.")
             .unit("length")
             .optional()
             .example("[0.0, 0.0]"),
-        key("shift", Vector, "Distance it is moved by; zero if left out.")
-            .unit("length")
-            .optional()
-            .example("[0.0, 1.0]"),
+        key("shift", Vector, "Translation. Default: zero.").unit("length").optional().example("[0.0, 1.0]"),
     ],
     later: &[],
 };
 
 const SUPPORT: Table = Table {
     name: "[[support]]",
-    doc: "Sides held in some directions with fix, or moved with move.",
+    doc: "Displacement boundary condition: sides fixed in some directions with `fix`, or moved with `move`.",
     keys: &[
-        key("name", Name, "A named support records its reactions.").optional().example("\"floor\""),
-        key("on", Sides, "Sides that are held.").example("[\"prism.bottom\"]"),
-        key("fix", Choices(&["x", "y"]), "Directions that are held.").optional().example("[\"x\", \"y\"]"),
+        key("name", Name, "Name; the reaction forces of a named support are recorded.").optional().example("\"floor\""),
+        key("on", Sides, "Sides that are constrained.").example("[\"prism.bottom\"]"),
+        key("fix", Choices(&["x", "y"]), "Directions that are fixed.").optional().example("[\"x\", \"y\"]"),
         key(
             "move",
             Kind::Table(&MOVE),
-            "Directions that are moved: displacements, zero at t = 0; velocity and acceleration are the formula's own.",
+            "Prescribed displacements by direction, zero at t = 0; velocity and acceleration are the time derivatives of the formula.",
         )
         .optional()
         .example("{ y = \"-0.1*t\" }"),
@@ -228,33 +228,33 @@ const MOVE: Table = Table {
 
 const LOAD: Table = Table {
     name: "[[load]]",
-    doc: "Forces on sides (on, with traction or pressure) or in a body (body, with body_force). Formulas in X, Y (reference place) and t.",
+    doc: "A load on sides (`on` with `traction` or `pressure`) or in a body (`body` with `body_force`). Formulas are in the reference position X, Y and the time t.",
     keys: &[
-        key("name", Name, "Name in messages.").optional().example("\"press\""),
-        key("on", Sides, "Sides that are loaded, with traction or pressure.")
+        key("name", Name, "Name used in messages.").optional().example("\"press\""),
+        key("on", Sides, "Loaded sides, with `traction` or `pressure`.")
             .optional()
             .example("[\"prism.top\"]"),
-        key("body", Name, "Body that is loaded, with body_force.").optional().example("\"prism\""),
-        key("traction", Formulas(IN_SPACE_AND_TIME), "Dead force per reference area.")
+        key("body", Name, "Loaded body, with `body_force`.").optional().example("\"prism\""),
+        key("traction", Formulas(IN_SPACE_AND_TIME), "Dead load per reference area.")
             .unit("mass/(length·time²)")
             .optional()
             .example("[\"0\", \"-5*min(t/0.1, 1)\"]"),
         key(
             "pressure",
             Formula(IN_SPACE_AND_TIME),
-            "Follower force per current area, against the outward normal.",
+            "Follower load per current area, acting against the outward normal.",
         )
         .unit("mass/(length·time²)")
         .optional()
         .example("\"2*t\""),
-        key("body_force", Formulas(IN_SPACE_AND_TIME), "Dead force per reference volume.")
+        key("body_force", Formulas(IN_SPACE_AND_TIME), "Dead load per reference volume.")
             .unit("mass/(length²·time²)")
             .optional()
             .example("[\"0\", \"-3*X\"]"),
         key(
             "table",
             Text,
-            "CSV file with columns t, value: a factor, linear between its lines, on the load.",
+            "CSV file with the columns t and value: a factor on the load, linearly interpolated in time.",
         )
         .optional()
         .example("\"amplitude.csv\""),
@@ -264,11 +264,11 @@ const LOAD: Table = Table {
 
 const INITIAL: Table = Table {
     name: "[initial]",
-    doc: "Start from the end of another run of the same meshes; time begins at 0 anew.",
+    doc: "Start from the final state of another run with the same meshes; time starts at 0 again.",
     keys: &[
-        key("from", Text, "Directory of the finished run, from the folder of the case.")
+        key("from", Text, "Directory of the finished run, relative to the folder of the case.")
             .example("\"runs/preload\""),
-        key("velocities", Choice(&["keep", "zero"], &[]), "Whether its velocities are taken over.")
+        key("velocities", Choice(&["keep", "zero"], &[]), "Initial velocities: those of that run, or zero.")
             .default("\"keep\""),
     ],
     later: &[],
@@ -276,8 +276,8 @@ const INITIAL: Table = Table {
 
 const MANUFACTURED: Table = Table {
     name: "[manufactured]",
-    doc: "A motion of all bodies: the load is ρÿ − Div P, the nodes of the boundary move with it, and history.csv gets error_l2 and error_h1.",
-    keys: &[key("y", Formulas(IN_SPACE_AND_TIME), "Positions at the time t of the places X, Y.")
+    doc: "A manufactured solution for all bodies: the load is ρÿ − Div P, boundary nodes follow the given motion, and history.csv has the columns error_l2 and error_h1.",
+    keys: &[key("y", Formulas(IN_SPACE_AND_TIME), "Current positions as formulas in X, Y and t.")
         .unit("length")
         .example("[\"X + 0.1*sin(X + 2*Y)*t\", \"Y - 0.1*cos(X*Y)*t\"]")],
     later: &[],
@@ -285,60 +285,60 @@ const MANUFACTURED: Table = Table {
 
 const CONTACT: Table = Table {
     name: "[[contact]]",
-    doc: "Two sides that may touch.",
+    doc: "A contact pair: two sides that may come into contact.",
     keys: &[
-        key("name", Name, "Name in records and messages.").example("\"strike\""),
-        key("secondary", Side, "Side whose nodes are kept out of the primary.").example("\"cylinder.arc\""),
-        key("primary", SideOr(&RIGID), "Side, or rigid plane, they are kept out of.").example("\"prism.top\""),
+        key("name", Name, "Name used in records and messages.").example("\"strike\""),
+        key("secondary", Side, "Secondary (slave) side: its nodes may not penetrate the primary.").example("\"cylinder.arc\""),
+        key("primary", SideOr(&RIGID), "Primary (master) side, or a rigid plane.").example("\"prism.top\""),
         key("method", Choice(&["node-to-segment"], &["mortar"]), "Discretisation of the contact.")
             .default("\"node-to-segment\""),
         key(
             "enforcement",
             Choice(&["multiplier", "penalty"], &["augmented"]),
-            "How the constraint is kept: exactly, by a multiplier, or by springs whose energy counts as strain energy.",
+            "How the constraint is enforced: exactly by a Lagrange multiplier, or by penalty springs whose energy counts as strain energy.",
         )
         .default("\"multiplier\""),
-        key("stiffness", Number(POSITIVE), "Of a penalty: times the reference stiffness of the secondary node.")
+        key("stiffness", Number(POSITIVE), "Penalty stiffness, as a multiple of the reference stiffness of the secondary node.")
             .default("10.0"),
         key(
             "law",
             Choice(&["position", "predictor", "velocity"], &[]),
-            "What contact holds: positions at the end, those and the predictor y + Δt v (contact-stabilised), or velocities by impulses; the one of \
-             the scheme if left out.",
+            "What contact constrains: positions at the end of the step; these and the predictor y + Δt v (contact-stabilised); or velocities, \
+             by impulses. Default: the law of the scheme.",
         )
         .optional()
         .example("\"position\""),
         key(
             "force",
             Choice(&["alpha_f", "end"], &[]),
-            "When in a step the contact force acts: averaged with α_f (eq. 15), or at its end.",
+            "When the contact force acts in a step: averaged with α_f (eq. 15), or at the end of the step.",
         )
         .default("\"alpha_f\""),
         key(
             "persistency",
             Choice(&["project", "none"], &[]),
-            "Velocities and accelerations where contact begins: projected on the constraints, or left.",
+            "Velocities and accelerations at activation: projected onto the constraints, so that they are compatible with them, or left unchanged.",
         )
         .default("\"project\"")
         .paper("\"none\""),
         key(
             "active_set",
             Choice(&["within", "after"], &[]),
-            "The active set may change within Newton's method, or after it converged.",
+            "When the active set is updated: within Newton's method, or after it has converged.",
         )
         .default("\"within\"")
         .paper("\"after\""),
         key(
             "detection",
             Choice(&["closest-point", "trajectory"], &[]),
-            "Which gap decides: at the closest point, or at the trajectory's ξ (eq. 8 as printed).",
+            "Gap that decides about activation: at the closest point, or at the ξ of the trajectory crossing (eq. 8 as printed).",
         )
         .default("\"closest-point\"")
         .paper("\"trajectory\""),
         key(
             "restitution",
             Number(RESTITUTION),
-            "Newton's e of a contact that holds velocities; of paoli-schatzman the share of the old position.",
+            "Newton's coefficient of restitution e, for contact laws on velocities; with paoli-schatzman, the weight of the previous position.",
         )
         .default("0.0"),
     ],
@@ -349,7 +349,7 @@ const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true
 
 const RIGID: Table = Table {
     name: "a rigid primary",
-    doc: "A primary that does not deform.",
+    doc: "A primary surface that does not deform.",
     keys: &[key("plane", Kind::Table(&PLANE), "A rigid half-space.")
         .example("{ point = [0.0, 0.0], normal = [0.0, 1.0] }")],
     later: &["circle", "motion"],
@@ -359,17 +359,17 @@ const PLANE: Table = Table {
     name: "plane",
     doc: "A rigid half-space.",
     keys: &[
-        key("point", Vector, "A point of its boundary.").unit("length").example("[0.0, 0.0]"),
-        key("normal", Vector, "Direction out of it, of any length > 0.").example("[0.0, 1.0]"),
+        key("point", Vector, "A point on its boundary.").unit("length").example("[0.0, 0.0]"),
+        key("normal", Vector, "Outward normal, of any length > 0.").example("[0.0, 1.0]"),
     ],
     later: &[],
 };
 
 const TIME: Table = Table {
     name: "[time]",
-    doc: "Time interval, step and scheme.",
+    doc: "Time interval, time step and time integrator.",
     keys: &[
-        key("end", Number(POSITIVE), "End time, a multiple of the step.").unit("time").example("0.75"),
+        key("end", Number(POSITIVE), "End time, a multiple of the time step.").unit("time").example("0.75"),
         key("step", Number(POSITIVE), "Time step.")
             .unit("time")
             .example("1.875e-3")
@@ -389,25 +389,25 @@ const TIME: Table = Table {
 
 const NEWTON: Table = Table {
     name: "[newton]",
-    doc: "Newton's method.",
+    doc: "Settings of Newton's method.",
     keys: &[
         key(
             "tolerance",
             Number(Range { low: Some((0.0, false)), high: Some((1.0, false)) }),
-            "‖Δy‖∞/L and ‖r‖/Σ‖f‖ at convergence.",
+            "Convergence tolerance on ‖Δy‖∞/L and ‖r‖/Σ‖f‖.",
         )
         .default("1e-9"),
-        key("max_iterations", Count(1), "Iterations before a step is rejected.").default("20"),
+        key("max_iterations", Count(1), "Largest number of iterations before a step is rejected.").default("20"),
         key(
             "tangent",
             Choice(&["frozen", "frozen-double", "full"], &[]),
-            "A factored tangent is kept over iterations and steps as a preconditioner while that pays (factors of 10 000 unknowns and more in single precision where that is enough, or all in double), or the tangent is formed and factored in every iteration.",
+            "When the tangent is factorised. frozen: the factorisation is reused over iterations and steps as a preconditioner as long as that pays; from 10 000 unknowns on it is in single precision where that suffices. frozen-double: the same, always in double precision. full: in every iteration.",
         )
         .default("\"frozen\""),
         key(
             "mixing",
             Count(0),
-            "Earlier corrections with the kept factor that the next one is improved by: the restart length of the Krylov method; 0 switches it off.",
+            "Number of earlier corrections with the same factorisation that improve the next one (the restart length of the Krylov method); 0 disables it.",
         )
         .default("4"),
     ],
@@ -416,15 +416,15 @@ const NEWTON: Table = Table {
 
 const PROBE: Table = Table {
     name: "[[probe]]",
-    doc: "A point whose quantities become columns name.quantity.",
+    doc: "A material point whose quantities are recorded as columns name.quantity.",
     keys: &[
-        key("name", Name, "Name; columns are name.quantity.").example("\"A\""),
-        key("at", Vector, "Reference point of the body.").unit("length").example("[0.0, 1.5]"),
+        key("name", Name, "Name; its columns are name.quantity.").example("\"A\""),
+        key("at", Vector, "Reference position of the point.").unit("length").example("[0.0, 1.5]"),
         key("body", Name, "Body it belongs to.").example("\"cylinder\""),
         key(
             "record",
             Choices(QUANTITIES),
-            "Displacement, velocity, acceleration, Cauchy stress, volume ratio.",
+            "Recorded quantities: displacement, velocity, acceleration, Cauchy stress, von Mises stress, volume ratio.",
         )
         .example("[\"uy\", \"sigma_yy\"]"),
     ],
@@ -436,24 +436,26 @@ const QUANTITIES: &[&str] =
 
 const OUTPUT: Table = Table {
     name: "[output]",
-    doc: "What is written, and when.",
+    doc: "What is written, and how often.",
     keys: &[
         key(
             "fields_every",
             Count(0),
-            "Fields every so many steps, 0: none; 20 if left out, or 0 if at_times is given.",
+            "Steps between two outputs of the fields; 0: none. Default: 20, or 0 if at_times is given.",
         )
         .optional()
         .example("20"),
         key(
             "format",
             Choice(&["vtu", "vtkhdf"], &[]),
-            "Fields as a VTU file each with fields.pvd, or in one file, fields.vtkhdf.",
+            "Field format: one VTU file per output, listed in fields.pvd, or a single file, fields.vtkhdf.",
         )
         .default("\"vtu\""),
-        key("at_times", Numbers, "Fields at the steps nearest to these times.").unit("time").default("[]"),
-        key("history_every", Count(1), "Rows of history.csv every so many steps.").default("1"),
-        key("checkpoint_every", Count(1), "Checkpoints every so many steps.").default("50"),
+        key("at_times", Numbers, "Fields are also written at the steps nearest to these times.")
+            .unit("time")
+            .default("[]"),
+        key("history_every", Count(1), "Steps between two rows of history.csv.").default("1"),
+        key("checkpoint_every", Count(1), "Steps between two checkpoints.").default("50"),
     ],
     later: &[],
 };
@@ -461,43 +463,43 @@ const OUTPUT: Table = Table {
 /// One expected value, of a case, an arm or a study.
 pub const EXPECT: Table = Table {
     name: "[[expect]]",
-    doc: "An expected value with value and tolerance, value and relative, at_most, or at_least; with a formula, tolerance alone is enough.",
+    doc: "An expected value with one bound: value and tolerance, value and relative, at_most, or at_least. With a formula, tolerance alone is enough.",
     keys: &[
         key(
             "what",
             Text,
-            "min | max | first | last | at T | time of min | time of max | range | drift | peak | rms of a column or of [ columns with + - * / ], a \
-             metric by name, `stopped`, or an expression of these; blanks around every sign.",
+            "Quantity: min | max | first | last | at T | time of min | time of max | range | drift | peak | rms of a column or of [ columns with + - * / ]; \
+             the name of a metric; `stopped`; or an expression of these. Operators need blanks on both sides.",
         )
         .example("\"min A.uy\""),
-        key("formula", Text, "What the column `what` should be, in t: its largest (norm) deviation from it is what is bounded.")
+        key("formula", Text, "Expected values of the column `what`, as a formula in t; the bound is on the norm of the deviation from it.")
             .optional()
             .example("\"-0.5*9.81*t^2\""),
         key(
             "norm",
             Choice(&["max", "rms"], &[]),
-            "How a deviation is measured: largest value, or root of the mean square over the rows; max if left out, rms for an order.",
+            "Norm of the deviation: largest absolute value, or root mean square over the rows. Default: max; for an order, rms.",
         )
         .optional()
         .example("\"rms\""),
-        key("scale", Number(POSITIVE), "What divides the deviation.").default("1.0"),
-        key("after", Number(ANY), "Only rows after this time, strictly, count.").unit("time").optional().example("0.52"),
-        key("before", Number(ANY), "Only rows before this time, strictly, count.").unit("time").optional().example("1.147"),
+        key("scale", Number(POSITIVE), "Number that divides the deviation.").default("1.0"),
+        key("after", Number(ANY), "Only rows strictly after this time are used.").unit("time").optional().example("0.52"),
+        key("before", Number(ANY), "Only rows strictly before this time are used.").unit("time").optional().example("1.147"),
         key("value", Number(ANY), "Expected value.").optional().example("-0.7827"),
         key("tolerance", Number(NOT_NEGATIVE), "Absolute tolerance.").optional().example("4e-3"),
         key("relative", Number(NOT_NEGATIVE), "Relative tolerance.").optional().example("0.01"),
         key("at_most", Number(ANY), "Upper bound.").optional().example("0.0"),
         key("at_least", Number(ANY), "Lower bound.").optional().example("0.0"),
         key("source", Text, "Where the expected value comes from.").optional().example("\"exact solution\""),
-        key("of", Text, "In a study, with what = \"order\": the question, or column, whose order of convergence is observed.")
+        key("of", Text, "In a study, with what = \"order\": the quantity or column whose order of convergence is observed.")
             .optional()
             .example("\"last A.uy\""),
-        key("against", Text, "With what = \"order\": the key of the case the arms differ in.")
+        key("against", Text, "With what = \"order\": the key of the case that is refined from arm to arm.")
             .optional()
             .example("\"time.step\""),
         key("where", Text, "With what = \"order\": only arms whose names contain these whole words.").optional().example("\"hu\""),
-        key("exact", Number(ANY), "With what = \"order\": the exact value, from which errors are taken.").optional().example("1.0"),
-        key("slow", Truth, "Left out by `carom verify --fast`.").default("false"),
+        key("exact", Number(ANY), "With what = \"order\": the exact value that errors are computed against.").optional().example("1.0"),
+        key("slow", Truth, "Skipped by `carom verify --fast`.").default("false"),
     ],
     later: &[],
 };

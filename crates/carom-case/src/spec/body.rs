@@ -1,4 +1,4 @@
-//! Bodies: what they are made of, where they are put, how they begin.
+//! Bodies: material, mesh, placement, initial state.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use super::mesh::MeshSpec;
 /// A hyperelastic material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MaterialSpec {
-    /// Name bodies refer to.
+    /// Name by which bodies refer to it.
     pub name: String,
     /// Law.
     pub law: Law,
@@ -43,13 +43,13 @@ pub struct BodySpec {
     pub element: carom_solid::Element,
     /// Where its mesh comes from.
     pub mesh: MeshSpec,
-    /// Where the mesh is put; as it is made, if left out.
+    /// Placement of the mesh; none: as generated or read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place: Option<PlaceSpec>,
-    /// Positions at t = 0, formulas in X, Y; the reference positions, if left out.
+    /// Positions at t = 0, formulas in X, Y; none: the reference positions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub position: Option<Vec<FormulaSpec>>,
-    /// Acceleration by gravity, one component per dimension.
+    /// Gravitational acceleration, one component per dimension.
     pub gravity: Vec<f64>,
     /// Initial velocity, formulas in X, Y.
     pub velocity: Vec<FormulaSpec>,
@@ -62,9 +62,9 @@ pub struct BodySpec {
 pub struct PlaceSpec {
     /// Angle in degrees, counter-clockwise; 0 in dimension 1.
     pub rotate: f64,
-    /// Point it turns about.
+    /// Centre of rotation.
     pub about: Vec<f64>,
-    /// Distance it is moved by.
+    /// Translation.
     pub shift: Vec<f64>,
 }
 
@@ -76,16 +76,16 @@ pub enum MassKind {
     Consistent,
     /// Diagonal scaling (HRZ).
     Lumped,
-    /// None on the nodes of contacts; total, centre and second moments kept by the least change of
-    /// the others.
+    /// No mass on contact nodes; the smallest change of the other nodes preserves total mass,
+    /// centre of mass and second moments.
     Redistributed,
-    /// None on the nodes of contacts; what they lose goes to the next nodes, and the centre is not
-    /// kept.
+    /// No mass on contact nodes; their mass is added to the nearest other nodes, which does not
+    /// preserve the centre of mass.
     RedistributedNearest,
 }
 
 impl MassKind {
-    /// Whether nodes of contacts carry no mass.
+    /// Whether contact nodes have no mass.
     pub fn is_redistributed(self) -> bool {
         matches!(self, Self::Redistributed | Self::RedistributedNearest)
     }

@@ -1,4 +1,4 @@
-//! The case as a whole, what concerns all of it, and where it starts from.
+//! The case as a whole: its tables, units, preset and initial state.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -24,23 +24,24 @@ pub struct Case {
     pub plane: Plane,
     /// Out-of-plane thickness; in dimension 1 the area of the cross-section.
     pub thickness: f64,
-    /// Labels for figures and columns; nothing is converted.
+    /// Unit labels in figures and columns; values are not converted.
     pub units: Units,
-    /// Set of defaults the case was resolved with.
+    /// Set of default values that the case was resolved with.
     pub preset: Preset,
     /// Materials by name.
     pub materials: Vec<MaterialSpec>,
     /// Deformable bodies.
     pub bodies: Vec<BodySpec>,
-    /// Sides held or moved.
+    /// Sides fixed or moved.
     pub supports: Vec<SupportSpec>,
     /// Forces on sides and in bodies.
     #[serde(default)]
     pub loads: Vec<LoadSpec>,
-    /// The run whose end is the start; none: the reference positions.
+    /// The run whose final state is the initial state; none: the reference positions.
     #[serde(default)]
     pub initial: Option<InitialSpec>,
-    /// The motion that loads, boundary and start are derived from: positions, formulas in X, Y, t.
+    /// Manufactured solution, from which load, boundary motion and initial state are derived:
+    /// current positions, formulas in X, Y, t.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub manufactured: Option<Vec<FormulaSpec>>,
     /// Contact pairs of sides.
@@ -49,19 +50,19 @@ pub struct Case {
     pub time: TimeSpec,
     /// Newton's method.
     pub newton: NewtonSpec,
-    /// Points whose quantities become columns.
+    /// Points whose quantities are recorded as columns.
     pub probes: Vec<ProbeSpec>,
-    /// What is written, and when.
+    /// What is written, and how often.
     pub output: OutputSpec,
-    /// What columns should be, as formulas in t.
+    /// Exact solution by column, as formulas in t.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub exact: BTreeMap<String, String>,
-    /// Expected values that make the case a test.
+    /// Expected values.
     pub expects: Vec<ExpectSpec>,
 }
 
 impl Case {
-    /// A measure of the work it is, to put long runs before short ones: steps × nodes.
+    /// An estimate of the work, steps × nodes, used to start long runs before short ones.
     pub fn work(&self) -> f64 {
         let nodes: f64 = self.bodies.iter().map(|body| body.mesh.estimate(body.element).1).sum();
         self.time.steps() as f64 * nodes
@@ -78,7 +79,7 @@ pub enum Plane {
     Stress,
 }
 
-/// Labels of the units the case's numbers are in.
+/// Unit labels of the numbers of a case.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Units {
     /// Length, `m` by default.
@@ -89,31 +90,31 @@ pub struct Units {
     pub mass: String,
 }
 
-/// Which column of the table of defaults a case starts from (explicit keys win).
+/// Set of default values; keys given explicitly take precedence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Preset {
     /// Carom's defaults.
     Default,
-    /// The paper as printed, where a switch exists for it.
+    /// The paper as printed, where a key exists for it.
     Paper,
 }
 
-/// A start from the end of another run.
+/// Start from the final state of another run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InitialSpec {
     /// Absolute path of its directory.
     pub from: PathBuf,
-    /// Whether its velocities are taken over.
+    /// Initial velocities.
     pub velocities: Velocities,
 }
 
-/// What becomes of the velocities of the run a case starts from.
+/// Initial velocities of a case that starts from another run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Velocities {
-    /// They are taken over.
+    /// Those of the other run.
     Keep,
-    /// All bodies begin at rest.
+    /// Zero: all bodies start at rest.
     Zero,
 }

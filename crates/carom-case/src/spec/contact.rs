@@ -1,31 +1,31 @@
-//! Contacts: which sides may touch, and by what rules.
+//! Contacts: pairs of sides, with their laws.
 
 use serde::{Deserialize, Serialize};
 
-/// Two sides that may touch.
+/// A contact pair: two sides that may come into contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactSpec {
-    /// Name in records and messages.
+    /// Name used in records and messages.
     pub name: String,
-    /// Side whose nodes are kept out of the primary.
+    /// Secondary (slave) side: its nodes may not penetrate the primary.
     pub secondary: String,
-    /// What they are kept out of.
+    /// Primary (master) side, or a rigid plane.
     pub primary: PrimarySpec,
-    /// How the constraint is kept.
+    /// How the constraint is enforced.
     pub enforcement: Enforcement,
-    /// Stiffness of a penalty, in units of the secondary node's own.
+    /// Penalty stiffness, as a multiple of the reference stiffness of the secondary node.
     pub stiffness: f64,
-    /// When during a step the contact force acts.
+    /// When the contact force acts in a step.
     pub force: ForceTime,
-    /// What happens to velocities where contact begins.
+    /// What happens to velocities and accelerations at activation.
     pub persistency: Persistency,
-    /// When the active set may change.
+    /// When the active set is updated.
     pub active_set: ActiveSetRule,
-    /// Which gap decides activation.
+    /// Which gap decides about activation.
     pub detection: Detection,
-    /// What contact holds: that of the scheme once resolved.
+    /// What contact constrains; once resolved, the default is the law of the scheme.
     pub law: Option<ContactLaw>,
-    /// Newton's e, 0 … 1.
+    /// Newton's coefficient of restitution e, 0 … 1.
     pub restitution: f64,
 }
 
@@ -37,20 +37,20 @@ pub enum PrimarySpec {
     Side(String),
     /// A rigid half-space.
     Plane {
-        /// A point of its boundary.
+        /// A point on its boundary.
         point: Vec<f64>,
-        /// Direction out of the half-space, of any length > 0.
+        /// Outward normal, of any length > 0.
         normal: Vec<f64>,
     },
 }
 
-/// How a contact's constraint is kept.
+/// How the contact constraint is enforced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Enforcement {
     /// Exactly, by a Lagrange multiplier.
     Multiplier,
-    /// By springs of potential k/2 min(g, 0)².
+    /// By penalty springs of potential k/2 min(g, 0)².
     Penalty,
 }
 
@@ -62,11 +62,11 @@ pub enum ContactLaw {
     Position,
     /// The predictor y + Δt v, and positions at the end of the step.
     Predictor,
-    /// Velocities, by impulses: 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0 where the gap is predicted closed.
+    /// Velocities, by impulses: 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0 where the predicted gap is closed.
     Velocity,
 }
 
-/// When during a step the contact force acts.
+/// When the contact force acts in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ForceTime {
@@ -76,32 +76,32 @@ pub enum ForceTime {
     End,
 }
 
-/// What happens to velocities and accelerations where contact begins.
+/// What happens to velocities and accelerations at activation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Persistency {
-    /// v and a are projected on the active constraints.
+    /// v and a are projected onto the active constraints.
     Project,
-    /// Nothing, as in the paper.
+    /// They are left unchanged, as in the paper.
     None,
 }
 
-/// When the active set may change.
+/// When the active set is updated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ActiveSetRule {
     /// In every Newton iteration (primal–dual).
     Within,
-    /// After Newton converged, as in the paper.
+    /// After Newton's method has converged, as in the paper.
     After,
 }
 
-/// Which gap decides activation.
+/// Which gap decides about activation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Detection {
-    /// The gap at the closest point; trajectories give candidates.
+    /// The gap at the closest point; trajectories only find candidates.
     ClosestPoint,
-    /// The gap at the trajectory's ξ, eq. (8) as printed.
+    /// The gap at the ξ of the trajectory crossing, eq. (8) as printed.
     Trajectory,
 }

@@ -1,4 +1,4 @@
-//! Numbers that may vary in space and time.
+//! Values that may vary in space and time.
 
 use carom_formula::{Formula, FormulaError};
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum FormulaSpec {
-    /// The same everywhere and always.
+    /// Constant in space and time.
     Number(f64),
     /// A formula.
     Text(String),
@@ -17,7 +17,7 @@ impl FormulaSpec {
     /// The formula in these variables.
     ///
     /// # Errors
-    /// A text that is none.
+    /// The text is not a formula.
     pub fn formula(&self, variables: &[&str]) -> Result<Formula, FormulaError> {
         match self {
             Self::Number(value) => Ok(Formula::constant(*value)),

@@ -1,20 +1,19 @@
-//! What acts on bodies from outside: supports that hold or move them, forces on sides and in
-//! bodies.
+//! Boundary conditions and loads: fixed and moving supports, forces on sides and in bodies.
 
 use serde::{Deserialize, Serialize};
 
 use super::formula::FormulaSpec;
 
-/// Sides held or moved in some directions.
+/// Sides fixed or moved in some directions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SupportSpec {
-    /// A named support records its reactions.
+    /// Name; the reaction forces of a named support are recorded.
     pub name: Option<String>,
     /// Sides, `body.side`.
     pub on: Vec<String>,
-    /// Directions held: 0 is x, 1 is y.
+    /// Fixed directions: 0 is x, 1 is y.
     pub fix: Vec<usize>,
-    /// Directions moved, with their displacements: formulas in X, Y, t.
+    /// Prescribed displacements by direction: formulas in X, Y, t.
     #[serde(rename = "move", default)]
     pub moves: Vec<(usize, FormulaSpec)>,
 }
@@ -22,9 +21,9 @@ pub struct SupportSpec {
 /// Forces on sides or in a body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoadSpec {
-    /// Name in messages.
+    /// Name used in messages.
     pub name: Option<String>,
-    /// What acts where.
+    /// The force, and where it acts.
     pub kind: LoadKind,
     /// Factor over time.
     pub table: Option<TableSpec>,
@@ -39,7 +38,7 @@ impl LoadSpec {
         }
     }
 
-    /// How messages call it.
+    /// Description for messages.
     pub fn label(&self) -> String {
         match (&self.name, &self.kind) {
             (Some(name), _) => name.clone(),
@@ -51,25 +50,25 @@ impl LoadSpec {
     }
 }
 
-/// What acts where.
+/// A force, and where it acts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LoadKind {
-    /// Dead force per reference area.
+    /// Dead load per reference area.
     Traction {
         /// Sides, `body.side`.
         on: Vec<String>,
         /// Components, formulas in X, Y, t.
         value: Vec<FormulaSpec>,
     },
-    /// Follower force per current area, against the outward normal.
+    /// Follower load per current area, acting against the outward normal.
     Pressure {
         /// Sides, `body.side`.
         on: Vec<String>,
         /// Formula in X, Y, t.
         value: FormulaSpec,
     },
-    /// Dead force per reference volume.
+    /// Dead load per reference volume.
     BodyForce {
         /// Body.
         body: String,
@@ -78,11 +77,11 @@ pub enum LoadKind {
     },
 }
 
-/// A factor over time, linear between its lines; kept whole, so that a run goes on without the
-/// file.
+/// A factor over time, linearly interpolated. It is stored completely, so that a run can be resumed
+/// without the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TableSpec {
-    /// The file, as it was named.
+    /// The file, as given.
     pub file: String,
     /// Times, ascending, at least two.
     pub times: Vec<f64>,

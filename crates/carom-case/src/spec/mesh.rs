@@ -1,4 +1,5 @@
-//! Meshes: shapes and files, their sides by name, their size estimated before they are made.
+//! Meshes: shapes and files, the names of their sides, and an estimate of their size before they
+//! are generated.
 
 use std::f64::consts::PI;
 use std::path::PathBuf;
@@ -25,7 +26,7 @@ pub enum MeshSpec {
         min: [f64; 2],
         /// Upper right corner.
         max: [f64; 2],
-        /// Squares along x and y, each cut into two triangles.
+        /// Number of squares along x and y, each split into two triangles.
         cells: [usize; 2],
     },
     /// Whole disc, side `arc`.
@@ -34,7 +35,7 @@ pub enum MeshSpec {
         radius: f64,
         /// Centre.
         center: [f64; 2],
-        /// Length of a cell's edge.
+        /// Edge length of the cells.
         size: f64,
     },
     /// The half x ≥ centre of a disc, sides `arc axis`.
@@ -43,7 +44,7 @@ pub enum MeshSpec {
         radius: f64,
         /// Centre.
         center: [f64; 2],
-        /// Length of a cell's edge.
+        /// Edge length of the cells.
         size: f64,
     },
     /// Between two circles, sides `inner outer`.
@@ -54,16 +55,16 @@ pub enum MeshSpec {
         outer: f64,
         /// Centre.
         center: [f64; 2],
-        /// Length of a cell's edge.
+        /// Edge length of the cells.
         size: f64,
     },
     /// Any simple polygon, sides `side1`, `side2`, ….
     Polygon {
-        /// Corners in order, either way round.
+        /// Corners in order, clockwise or counter-clockwise.
         points: Vec<[f64; 2]>,
-        /// Length of a cell's edge.
+        /// Edge length of the cells.
         size: f64,
-        /// Places with finer cells.
+        /// Regions of local refinement.
         refine: Vec<RefineSpec>,
     },
     /// A named physical surface (dimension 1: curve) of a .msh file; sides are its named physical
@@ -73,7 +74,7 @@ pub enum MeshSpec {
         file: PathBuf,
         /// Name of the physical group.
         surface: String,
-        /// BLAKE3 of the file when the case was read.
+        /// BLAKE3 hash of the file when the case was read.
         hash: String,
         /// Nodes of the mesh.
         nodes: usize,
@@ -81,13 +82,13 @@ pub enum MeshSpec {
         cells: usize,
         /// Sides of the mesh.
         sides: Vec<String>,
-        /// What was put right when the mesh was read.
+        /// What was repaired when the mesh was read.
         repairs: Vec<String>,
     },
 }
 
 impl MeshSpec {
-    /// Names of the shape's sides, in the order in which its boundary is walked.
+    /// Names of the sides, in order along the boundary.
     pub fn sides(&self) -> Vec<String> {
         let words: &[&str] = match self {
             Self::File { sides, .. } => return sides.clone(),
@@ -101,7 +102,8 @@ impl MeshSpec {
         words.iter().map(ToString::to_string).collect()
     }
 
-    /// Roughly how many cells and nodes the mesh will have, in floating point: nothing overflows.
+    /// Estimated numbers of cells and nodes of the mesh, in floating point so that nothing
+    /// overflows.
     pub fn estimate(&self, element: Element) -> (f64, f64) {
         let k = element.degree() as f64;
         let rings = |radius: f64, size: f64| (radius / size).ceil().max(1.0);
@@ -111,7 +113,7 @@ impl MeshSpec {
         match *self {
             Self::Ring { inner, outer, size, .. } => {
                 let h = size.min(outer - inner);
-                // Twelve to the circle near a small inner one.
+                // At least twelve edges on a small inner circle.
                 let growing = 24.0 * (outer / inner).ln().max(1.0);
                 nodes(filled(PI * (outer * outer - inner * inner), h) + growing)
             }
@@ -140,13 +142,13 @@ impl MeshSpec {
     }
 }
 
-/// A place with finer cells.
+/// A region of local refinement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RefineSpec {
-    /// Its centre.
+    /// Centre of the region.
     pub near: [f64; 2],
-    /// Edges have the size up to this distance.
+    /// Radius of the region.
     pub radius: f64,
-    /// Length of a cell's edge there.
+    /// Edge length of the cells in the region.
     pub size: f64,
 }

@@ -1,4 +1,4 @@
-//! A case as data: one type for each of its tables, without any way to read it.
+//! A case as data: one type per table. Reading them is done elsewhere.
 
 mod body;
 mod case;

@@ -1,22 +1,22 @@
-//! What a run records: probes, rows of the history, fields, checkpoints.
+//! What a run records: probes, rows of history.csv, fields, checkpoints.
 
 use carom_record::FieldFormat;
 use serde::{Deserialize, Serialize};
 
-/// A point whose quantities become columns.
+/// A material point whose quantities are recorded as columns.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbeSpec {
     /// Name; columns are `name.quantity`.
     pub name: String,
-    /// Reference point.
+    /// Reference position.
     pub at: Vec<f64>,
     /// Body it belongs to.
     pub body: String,
-    /// Quantities.
+    /// Recorded quantities.
     pub record: Vec<Quantity>,
 }
 
-/// What a probe may record.
+/// Quantities that a probe can record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs)]
@@ -34,18 +34,18 @@ pub enum Quantity {
     DetF,
 }
 
-/// What is written, and when.
+/// What is written, and how often.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutputSpec {
-    /// Fields every so many steps; 0: none.
+    /// Steps between two outputs of the fields; 0: none.
     pub fields_every: usize,
-    /// How fields are written.
+    /// Format of the fields.
     #[serde(default)]
     pub format: FieldFormat,
-    /// Fields at the steps nearest to these times, besides.
+    /// Fields are also written at the steps nearest to these times.
     pub at_times: Vec<f64>,
-    /// History rows every so many steps.
+    /// Steps between two rows of history.csv.
     pub history_every: usize,
-    /// Checkpoints every so many steps.
+    /// Steps between two checkpoints.
     pub checkpoint_every: usize,
 }

@@ -1,4 +1,4 @@
-//! How time is stepped through: the interval, the scheme, the method that solves a step.
+//! Time integration: the interval, the step, the scheme, and Newton's method.
 
 use std::collections::BTreeMap;
 
@@ -13,8 +13,8 @@ pub struct TimeSpec {
     pub step: f64,
     /// Time integrator as given.
     pub scheme: SchemeSpec,
-    /// Fraction of the largest energy so far that may be created before the run stops; none:
-    /// reported only.
+    /// Fraction of the largest energy so far that may be created before the run stops; none: the
+    /// energy is recorded only.
     pub energy_guard: Option<f64>,
 }
 
@@ -30,30 +30,30 @@ pub struct SchemeSpec {
     pub forces: carom_time::ForceRule,
 }
 
-/// Newton's method.
+/// Settings of Newton's method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NewtonSpec {
-    /// ‖Δy‖∞/L and ‖r‖/Σ‖f‖ at convergence.
+    /// Convergence tolerance on ‖Δy‖∞/L and ‖r‖/Σ‖f‖.
     pub tolerance: f64,
-    /// Iterations before a step is rejected.
+    /// Largest number of iterations before a step is rejected.
     pub max_iterations: usize,
-    /// Whether factors are kept over iterations and steps.
+    /// When the tangent is factorised.
     #[serde(default)]
     pub tangent: TangentRule,
-    /// Earlier iterations with the same factor that each correction is improved by. Runs of
-    /// versions without this had none.
+    /// Number of earlier corrections with the same factorisation that improve the next one; 0 in
+    /// records written before this key existed.
     #[serde(default)]
     pub mixing: usize,
 }
 
-/// When the tangent is formed and factored.
+/// When the tangent is assembled and factorised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TangentRule {
-    /// When the kept one no longer pays; large factors in single precision.
+    /// When reusing the factorisation no longer pays; large factors in single precision.
     #[default]
     Frozen,
-    /// The same, every factor in double precision.
+    /// The same, with every factor in double precision.
     FrozenDouble,
     /// In every iteration.
     Full,

@@ -1,23 +1,23 @@
-//! Meshes from files: found from the case's folder, known by their hash, their faults placed under
-//! the key that named them.
+//! Meshes from files: paths relative to the folder of the case, hashes, and errors reported at the
+//! key that names the file.
 
 use super::*;
 
 const GMSH: &str = include_str!("../../../../cases/gmsh/gmsh.toml");
 
-/// As if it stood beside its meshes.
+/// Reads a case as if it were in the folder of its meshes.
 fn resolved(text: &str, sets: &[&str]) -> Result<Case, Vec<Diagnostic>> {
     resolved_as(concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/gmsh/gmsh.toml"), text, sets)
 }
 
-fn told(set: &str) -> Diagnostic {
+fn problem(set: &str) -> Diagnostic {
     let mut problems = resolved(GMSH, &[set]).expect_err(set);
     assert_eq!(problems.len(), 1, "{problems:#?}");
     problems.remove(0)
 }
 
 #[test]
-fn the_shipped_case_knows_its_meshes() {
+fn the_shipped_case_stores_its_meshes() {
     let case = resolved(GMSH, &[]).unwrap();
     let MeshSpec::File { file, surface, hash, sides, repairs, .. } = &case.bodies[1].mesh else { panic!() };
     assert!(file.is_absolute() && file.ends_with("impact.msh"));
@@ -30,21 +30,21 @@ fn the_shipped_case_knows_its_meshes() {
 }
 
 #[test]
-fn what_is_wrong_stands_under_its_key() {
-    let missing = told("body.prism.mesh.file=nowhere.msh");
+fn errors_are_reported_at_their_key() {
+    let missing = problem("body.prism.mesh.file=nowhere.msh");
     assert!(
         missing.what.contains("\"nowhere.msh\" cannot be read") && missing.why.contains("there is no file")
     );
-    assert!(told("body.prism.mesh.file=../gmsh").why.contains("is not a file"));
-    assert!(told("body.prism.mesh.file=gmsh.toml").what.contains("this is no Gmsh mesh"));
-    let name = told("body.prism.mesh.surface=prisma");
+    assert!(problem("body.prism.mesh.file=../gmsh").why.contains("is not a file"));
+    assert!(problem("body.prism.mesh.file=gmsh.toml").what.contains("this is no Gmsh mesh"));
+    let name = problem("body.prism.mesh.surface=prisma");
     assert!(name.what.contains("\"prisma\"") && name.why.contains("cylinder, prism"), "{name}");
-    assert!(told("body.prism.element=T6").help.contains("element = \"T10\""));
-    let side = told("contact.strike.primary=prism.tob");
+    assert!(problem("body.prism.element=T6").help.contains("element = \"T10\""));
+    let side = problem("contact.strike.primary=prism.tob");
     assert!(side.help.contains("`prism.top`"), "{side}");
-    assert!(told("body.prism.mesh={ file = \"impact.msh\" }").what.contains("no `surface`"));
-    assert!(told("body.prism.mesh={ surface = \"prism\" }").help.contains("or give `file`"));
-    let both = told("body.prism.mesh={ file = \"impact.msh\", surface = \"prism\", shape = \"disc\" }");
+    assert!(problem("body.prism.mesh={ file = \"impact.msh\" }").what.contains("no `surface`"));
+    assert!(problem("body.prism.mesh={ surface = \"prism\" }").help.contains("or give `file`"));
+    let both = problem("body.prism.mesh={ file = \"impact.msh\", surface = \"prism\", shape = \"disc\" }");
     assert!(both.what.contains("unknown key `shape` in mesh from a file"), "{both}");
 }
 

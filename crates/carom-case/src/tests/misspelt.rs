@@ -1,5 +1,5 @@
-//! Every key of every shipped case, misspelt in three ways: one error, whose help names the key
-//! that was meant.
+//! Every key of every shipped case, misspelt in three ways: each gives one error, whose help
+//! suggests the right key.
 
 use super::super::Document;
 use super::{BARS, resolved_as};
@@ -9,7 +9,7 @@ use crate::tree::{Node, Table, Value};
 fn keys(table: &Table, found: &mut Vec<(std::ops::Range<usize>, String)>) {
     for entry in &table.0 {
         found.push((entry.origin.span.clone(), entry.key.clone()));
-        // Its keys are columns.
+        // The keys of [exact] are names of columns.
         if entry.key != "exact" {
             values(&entry.node, found);
         }
@@ -24,8 +24,7 @@ fn values(node: &Node, found: &mut Vec<(std::ops::Range<usize>, String)>) {
     }
 }
 
-/// Every case of a directory and those inside it; files of several runs have an `[[arm]]` or a
-/// `[grid]` and are none.
+/// Every case of a directory and its subdirectories, without studies.
 fn shipped(directory: &std::path::Path) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(directory).unwrap() {
@@ -52,7 +51,7 @@ fn every_misspelt_key_is_recognised() {
         keys(document.root(), &mut found);
         for (span, key) in found {
             let doubled = format!("{key}{}", &key[key.len() - 1..]);
-            // Keys of one letter, `x` and `y`, have nothing to swap.
+            // Keys of one letter, `x` and `y`, have no letters to swap.
             let swapped = key
                 .get(1..2)
                 .map_or_else(|| doubled.clone(), |second| format!("{second}{}{}", &key[..1], &key[2..]));
@@ -60,12 +59,11 @@ fn every_misspelt_key_is_recognised() {
             for wrong in [doubled, swapped, capital].into_iter().filter(|wrong| *wrong != key) {
                 let text = format!("{}{wrong}{}", &text[..span.start], &text[span.end..]);
                 let problems = resolved_as(name, &text, &[]).expect_err(&wrong);
-                // A header of a list that is misspelt leaves the others of the list: one problem
-                // all the same.
-                let told: Vec<_> = problems.iter().map(|p| format!("{} / {}", p.what, p.help)).collect();
-                assert_eq!(problems.len(), 1, "{wrong} for {key}: {told:#?}");
-                assert!(problems[0].what.starts_with(&format!("unknown key `{wrong}`")), "{told:?}");
-                assert!(problems[0].help.contains(&format!("`{key}`")), "{told:?}");
+                // Also where a misspelt header leaves other tables of the same list.
+                let found: Vec<_> = problems.iter().map(|p| format!("{} / {}", p.what, p.help)).collect();
+                assert_eq!(problems.len(), 1, "{wrong} for {key}: {found:#?}");
+                assert!(problems[0].what.starts_with(&format!("unknown key `{wrong}`")), "{found:?}");
+                assert!(problems[0].help.contains(&format!("`{key}`")), "{found:?}");
                 assert!(problems[0].quoted.contains(&wrong));
                 checked += 1;
             }

@@ -1,4 +1,4 @@
-//! Rings, polygons with refined places, and bodies that are put somewhere.
+//! Rings, polygons with local refinement, and placed bodies.
 
 use super::super::*;
 use super::{BARS, IMPACT, resolved};
@@ -21,40 +21,42 @@ fn shapes_are_resolved_and_survive_json() {
         assert_eq!(case.bodies[1].mesh.sides(), sides);
         let written = serde_json::to_string(&case).unwrap();
         assert_eq!(serde_json::from_str::<Case>(&written).unwrap(), case);
-        // The estimate made before the mesh is good to a factor of three: places refined at a
-        // corner have fewer cells.
+        // The estimate is good to a factor of three: a region refined at a corner has fewer cells.
         let mesh = case.bodies[1].make_mesh(2).unwrap();
         let (cells, nodes) = case.bodies[1].mesh.estimate(mesh.element);
-        for (guess, made) in [(cells, mesh.cell_count()), (nodes, mesh.nodes.len())] {
-            assert!((0.5..3.0).contains(&(guess / made as f64)), "{guess} for {made}");
+        for (estimate, actual) in [(cells, mesh.cell_count()), (nodes, mesh.nodes.len())] {
+            assert!((0.5..3.0).contains(&(estimate / actual as f64)), "{estimate} for {actual}");
         }
     }
 }
 
 #[test]
-fn bodies_are_put_somewhere() {
+fn bodies_are_placed() {
     let case = resolved(IMPACT, &["body.cylinder.place={ rotate = 30, shift = [0.0, 1.0] }"]).unwrap();
     let place = case.bodies[0].place.clone().unwrap();
     assert_eq!(place, PlaceSpec { rotate: 30.0, about: vec![0.0; 2], shift: vec![0.0, 1.0] });
     let bar = resolved(BARS, &["body.left.place={ shift = [-0.5] }"]).unwrap();
     assert_eq!(bar.bodies[0].place.as_ref().unwrap().shift, [-0.5]);
-    let told = resolved(BARS, &["body.left.place={ rotate = 30 }"]).unwrap_err();
-    assert!(told[0].what.contains("cannot be turned"), "{}", told[0]);
+    let problems = resolved(BARS, &["body.left.place={ rotate = 30 }"]).unwrap_err();
+    assert!(problems[0].what.contains("cannot be rotated"), "{}", problems[0]);
 }
 
 #[test]
-fn nearly_incompressible_t3_are_warned_of() {
+fn nearly_incompressible_t3_give_a_warning() {
     let warned = |sets: &[&str]| resolved(IMPACT, sets).unwrap().warnings();
     let soft = "material.rubber.lambda=100.0";
     assert!(warned(&[]).is_empty());
     assert!(warned(&["body.prism.element=T3", soft]).is_empty());
-    let told = warned(&["body.prism.element=T3"]);
-    assert!(told.len() == 1 && told[0].contains("\"prism\"") && told[0].contains("0.4651"), "{told:?}");
+    let warnings = warned(&["body.prism.element=T3"]);
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("\"prism\"") && warnings[0].contains("0.4651"),
+        "{warnings:?}"
+    );
     assert!(warned(&["body.prism.element=T3", "plane=stress"]).is_empty());
 }
 
 #[test]
-fn plane_stress_is_of_dimension_two() {
+fn plane_stress_needs_dimension_two() {
     assert_eq!(resolved(IMPACT, &["plane=stress"]).unwrap().plane, Plane::Stress);
     assert!(resolved(BARS, &["plane=stress"]).unwrap_err()[0].what.contains("needs dimension = 2"));
 }

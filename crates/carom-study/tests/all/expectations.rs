@@ -275,7 +275,7 @@ fn wrong_expectations_are_shown_where_they_stand() {
     assert_eq!(found.line, 4);
     let found = arm("{ what = \"A.ux\", formula = \"t +\", at_most = 1 }");
     assert_eq!((found.line, found.column), (5, 32), "{found:?}");
-    assert!(arm("{ what = \"last A.ux\" }").what.contains("does not set one bound"));
+    assert!(arm("{ what = \"last A.ux\" }").what.contains("needs exactly one bound"));
     let of =
         |expect: &str| wrong(&format!("case = \"fall.toml\"\n[[arm]]\nname = \"a\"\n[[expect]]\n{expect}\n"));
     let found = of("what = \"last A.ux\"\nat_most = 1");

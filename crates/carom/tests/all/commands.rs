@@ -31,7 +31,7 @@ fn wrong_cases_exit_2_say_where_and_write_nothing() {
             &["in [0, 1], not 1.2", "case.toml:44:46"],
         ),
         ("nan", IMPACT.replace("1.875e-3", "nan").into(), &["`step` is NaN", "case.toml:43:8"]),
-        ("memory", IMPACT.replace("[8, 4]", "[10000000000, 1]").into(), &["too big for the memory", "GiB"]),
+        ("memory", IMPACT.replace("[8, 4]", "[10000000000, 1]").into(), &["too large for the memory", "GiB"]),
         ("empty", Vec::new(), &["the case is empty", "case.toml"]),
         ("binary", b"\x7fELF\x02\xff\xfe".to_vec(), &["not text", "byte 6", "UTF-8"]),
         ("syntax", IMPACT.replace("dimension = 2", "dimension 2").into(), &["not TOML", "case.toml:5:"]),
