@@ -35,6 +35,8 @@ fn bounce() -> History {
         ("active", map(|t| f64::from((1.0..2.0).contains(&t) && t != 1.25))),
         ("contact_force_x", zero.clone()),
         ("contact_force_y", map(|t| 54.0 * (t - 1.0).clamp(0.0, 1.0) * (2.0 - t).clamp(0.0, 1.0))),
+        ("energy_created", map(|t| f64::from(t >= 1.5))),
+        ("energy_scale", map(|t| if t < 1.5 { 8.0 } else { 10.0 })),
         ("contact_impulse_x", zero.clone()),
         (
             "contact_impulse_y",
