@@ -95,8 +95,8 @@ fn own_law() {
         let other = Own(SaintVenantKirchhoff { lambda: spec.lambda, mu: 0.5 * spec.mu });
         let other = finish(Setup::new(&case).material("sheet", other).start().unwrap()).into_state();
         assert!(apart(&other.y, &built_in.y) > 1e-2, "the law is used");
-        let error = Setup::new(&case).material("sheat", own()).start().err().unwrap();
-        assert!(error.to_string().contains("no material \"sheat\""), "{error}");
+        let error = Setup::new(&case).material("plate", own()).start().err().unwrap();
+        assert!(error.to_string().contains("no material \"plate\""), "{error}");
     }
 }
 
