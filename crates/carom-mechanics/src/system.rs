@@ -16,6 +16,7 @@ use crate::equations::Equations;
 use crate::model::{LoadsAt, Model};
 use crate::rejected::Rejected;
 use crate::renewal::Point;
+use crate::sums::max_abs;
 use crate::tangent_factor::TangentFactor;
 
 /// Slot of an entry that is not stored: of a constrained dof, or in a facet's upper triangle.
@@ -143,10 +144,12 @@ impl System {
         mass.iter().zip(stiffness).map(move |(m, k)| mass_factor * m + stiffness_factor * k)
     }
 
-    /// Round-off of the residual due to that of the positions.
+    /// Round-off of the residual due to that of the positions: a body far from the origin knows
+    /// them to fewer digits than its size suggests.
     pub(crate) fn round_off(&self, equations: &Equations) -> f64 {
         let diagonal = self.diagonal(equations.mass_factor(), equations.stiffness_factor());
-        16.0 * f64::EPSILON * equations.model.scale * diagonal.map(|d| d * d).sum::<f64>().sqrt()
+        let reach = equations.model.scale.max(max_abs(&equations.state.y));
+        16.0 * f64::EPSILON * reach * diagonal.map(|d| d * d).sum::<f64>().sqrt()
     }
 
     /// Mean diagonal of the tangent: makes a gap comparable with a multiplier.
