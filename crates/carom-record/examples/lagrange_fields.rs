@@ -1,12 +1,12 @@
-//! Writes fields of one cell of every kind with a cubic sampled at its nodes, for
-//! `tests/vtk_reads.py` to read with VTK itself: as `cells.vtu`, and twenty instants of it, growing
-//! with time, as `run/fields.vtkhdf`.
+//! Writes fields of one cell of every kind, with a cubic sampled at its nodes, for
+//! `tests/vtk_reads.py` to read with VTK: one instant as `cells.vtu`, and twenty instants that grow
+//! with time as `run/fields.vtkhdf`.
 
 use std::path::Path;
 
 use carom_record::{Block, Cell, FieldFormat, FieldSet, Manifest, PointArray, RunWriter, Source};
 
-/// A cubic in both coordinates; the script knows the same one.
+/// A cubic in both coordinates; the script uses the same one.
 fn cubic(x: f64, y: f64) -> f64 {
     1.0 + 2.0 * x - y + 0.5 * x * y + x * x * x - 3.0 * x * y * y + 0.25 * y * y * y
 }

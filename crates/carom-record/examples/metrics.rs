@@ -1,4 +1,4 @@
-//! Prints the table of metrics as the book shows it.
+//! Prints the table of metrics for the book.
 
 #![allow(clippy::print_stdout)]
 

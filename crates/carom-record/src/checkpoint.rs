@@ -1,12 +1,11 @@
-//! Two generations of a checkpoint, written in turn, so that one of them is whole whenever the
-//! machine stops.
+//! Two generations of a checkpoint, written in turn, so that one of them is always complete.
 //!
 //! ```text
 //! "CAROMCKP" | version u32 | header length u32 | header (postcard) | payload | blake3 of all before (32 bytes)
 //! ```
 //!
-//! The header holds what the other files of the directory were when the payload was taken: their
-//! lengths, and the field files.
+//! The header describes the other files of the directory at the checkpoint: the lengths of the row
+//! files, and the list of field files.
 
 use std::path::{Path, PathBuf};
 
@@ -15,16 +14,16 @@ use serde::{Deserialize, Serialize};
 use crate::{FieldEntry, RecordError, files};
 
 const MAGIC: &[u8; 8] = b"CAROMCKP";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HASH: usize = blake3::OUT_LEN;
 
 /// The record at a checkpoint.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Header {
-    /// Which of two checkpoints is newer.
+    /// Number of the checkpoint: of two, the one with the larger number is newer.
     pub(crate) sequence: u64,
     pub(crate) step: u64,
-    /// Rows in `history.csv`, the header not counted.
+    /// Rows in `history.csv`, without the header.
     pub(crate) rows: u64,
     /// Bytes in `history.csv`, `contact.csv`, `log.jsonl`.
     pub(crate) lengths: [u64; 3],
@@ -61,7 +60,7 @@ pub(crate) fn read(directory: &Path, generation: usize) -> Result<(Header, Vec<u
     let mut bytes = std::fs::read(&path).map_err(RecordError::io("read", &path))?;
     let damaged = |what: &str| RecordError::corrupt(&path, None, what, "run the case again");
     if !bytes.starts_with(MAGIC) {
-        return Err(damaged("it does not begin like a checkpoint"));
+        return Err(damaged("it is not a checkpoint file"));
     }
     let body = bytes.len().checked_sub(HASH).ok_or_else(|| damaged("it is too short"))?;
     if blake3::hash(&bytes[..body]).as_bytes()[..] != bytes[body..] {
@@ -70,14 +69,14 @@ pub(crate) fn read(directory: &Path, generation: usize) -> Result<(Header, Vec<u
     let word = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
     if word(8) != Some(VERSION) {
         let hint = "resume with the version of Carom that wrote it";
-        return Err(RecordError::corrupt(&path, None, "its format is of another version", hint));
+        return Err(RecordError::corrupt(&path, None, "its format has another version", hint));
     }
     let start = 16 + word(12).ok_or_else(|| damaged("it is too short"))? as usize;
     let header: Header = bytes
         .get(16..start)
         .and_then(|b| postcard::from_bytes(b).ok())
         .filter(|h: &Header| start as u64 + h.payload == body as u64)
-        .ok_or_else(|| damaged("its header does not fit its length"))?;
+        .ok_or_else(|| damaged("its header does not match its length"))?;
     bytes.truncate(body);
     bytes.drain(..start);
     Ok((header, bytes))

@@ -1,20 +1,20 @@
-//! What can go wrong with a run directory: the machine refused, the record is damaged, or the
-//! directory is not what it should be.
+//! Errors of run directories: input/output or system errors, damaged records, and directories that
+//! cannot be used.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// An error of a run directory; `exit_code` says whose fault it is.
+/// An error of a run directory; `exit_code` separates system errors from all others.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
-    /// The operating system refused.
+    /// Input/output or system error.
     #[error("cannot {action} {}: {source}", path.display())]
     Io {
-        /// What was tried.
+        /// The operation.
         action: &'static str,
-        /// On which path.
+        /// Its path.
         path: PathBuf,
-        /// Its answer.
+        /// The error of the system.
         source: io::Error,
     },
     /// A run directory is never overwritten.
@@ -23,7 +23,7 @@ pub enum RecordError {
         /// The directory.
         path: PathBuf,
     },
-    /// Another process writes this run.
+    /// Another process is writing this run.
     #[error("{} is being written by another process; wait for it or stop it first", path.display())]
     Busy {
         /// The directory.
@@ -35,20 +35,20 @@ pub enum RecordError {
         /// The directory.
         path: PathBuf,
     },
-    /// A file of the record cannot be understood.
+    /// A file of the record is damaged.
     #[error("{}{} is damaged: {what}; {hint}", path.display(), line.map(|l| format!(":{l}")).unwrap_or_default())]
     Corrupt {
         /// The file.
         path: PathBuf,
-        /// Line, counted from 1, where there are lines.
+        /// Line, counted from 1, in files that have lines.
         line: Option<u64>,
         /// What is wrong.
         what: String,
         /// What to try.
         hint: &'static str,
     },
-    /// A row does not fit the columns the manifest names.
-    #[error("a history row has {got} values, but the manifest names {expected} columns")]
+    /// A row does not match the columns of the manifest.
+    #[error("a history row has {got} values, but the manifest has {expected} columns")]
     Width {
         /// Values in the row.
         got: usize,
@@ -58,13 +58,13 @@ pub enum RecordError {
     /// Lengths inside a field set contradict each other.
     #[error("field set: {what}")]
     Field {
-        /// Which, with numbers.
+        /// Which ones, with numbers.
         what: String,
     },
 }
 
 impl RecordError {
-    /// Exit code of the command line: 4 when the machine refused, 2 otherwise.
+    /// Exit code of the command line: 4 for input/output or system errors, 2 otherwise.
     pub fn exit_code(&self) -> u8 {
         if matches!(self, Self::Io { .. }) { 4 } else { 2 }
     }

@@ -1,4 +1,4 @@
-//! An expected value, and a record held against it.
+//! Expected values, and the comparison of a record with them.
 //!
 //! ```text
 //! got = question                                                 without `formula`
@@ -15,70 +15,70 @@ use crate::{Expectation, Run, Status};
 /// An expected value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Expect {
-    /// What is asked: [`crate::question`].
+    /// The quantity: [`crate::question`].
     pub what: String,
     /// Bound on the value.
     pub bound: Bound,
     /// Where the expected value comes from.
     pub source: Option<String>,
-    /// What the column should be; then the deviation from it is what is bounded.
+    /// Expected values of the column; the bound is then on the deviation from them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deviation: Option<Deviation>,
-    /// Only rows after this time count.
+    /// Only rows after this time are used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<f64>,
-    /// Only rows before this time count.
+    /// Only rows before this time are used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub before: Option<f64>,
-    /// The order of convergence that is asked for, in a study.
+    /// The order of convergence, in a study.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub order: Option<OrderOf>,
-    /// How deviations are measured, if that was said.
+    /// Norm of deviations, if given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub norm: Option<Norm>,
-    /// Left out by `carom verify --fast`.
+    /// Skipped by `carom verify --fast`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub slow: bool,
 }
 
-/// Which order of convergence is asked for.
+/// An order of convergence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OrderOf {
-    /// A question, or a column.
+    /// A quantity, or a column.
     pub of: String,
     /// Key of the case that is refined.
     pub against: String,
     /// Only arms whose names contain this.
     pub arms: Option<String>,
-    /// The exact value of a question.
+    /// The exact value of the quantity.
     pub exact: Option<f64>,
 }
 
 /// A column's deviation from a formula.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Deviation {
-    /// Formula in `t`, or `exact`: the one its case has for the column.
+    /// Formula in `t`, or `exact`: the formula of the case for the column.
     pub formula: String,
-    /// What `exact` stands for.
+    /// The formula that `exact` refers to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub exact: Option<String>,
-    /// How the deviation is measured.
+    /// Norm of the deviation.
     pub norm: Norm,
-    /// What divides it.
+    /// Number that divides it.
     pub scale: f64,
 }
 
-/// Size of a function of time.
+/// Norm of a function of time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Norm {
     /// Largest absolute value.
     Max,
-    /// Root of the mean of the squares over the rows.
+    /// Root mean square over the rows.
     Rms,
 }
 
-/// Bound an expectation sets.
+/// Bound of an expectation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Bound {
@@ -103,7 +103,7 @@ pub enum Bound {
 }
 
 impl Bound {
-    /// What is asked for, in words.
+    /// The bound in words: `-0.7827 ± 0.004`.
     pub fn words(self) -> String {
         match self {
             Self::Near { value, tolerance } => format!("{} ± {}", plain(value), plain(tolerance)),
@@ -115,7 +115,7 @@ impl Bound {
         }
     }
 
-    /// Whether a number keeps it.
+    /// Whether a number satisfies the bound.
     pub fn holds(self, got: f64) -> bool {
         match self {
             Self::Near { value, tolerance } => (got - value).abs() <= tolerance,
@@ -125,7 +125,7 @@ impl Bound {
         }
     }
 
-    /// The expected value; that of a bound is the bound.
+    /// The expected value; for an upper or lower bound, the bound itself.
     pub fn value(self) -> f64 {
         match self {
             Self::Near { value, .. }
@@ -135,7 +135,7 @@ impl Bound {
         }
     }
 
-    /// How far from the expected value a number may be, as an absolute number; none for a bound.
+    /// Absolute tolerance about the expected value; none for an upper or lower bound.
     pub fn tolerance(self) -> Option<f64> {
         match self {
             Self::Near { tolerance, .. } => Some(tolerance),
@@ -145,7 +145,7 @@ impl Bound {
     }
 }
 
-/// A number as one writes it: small ones with an exponent.
+/// A number for messages: small ones with an exponent.
 fn plain(x: f64) -> String {
     if x != 0.0 && x.abs() < 1e-4 { format!("{x:e}") } else { x.to_string() }
 }
@@ -156,7 +156,7 @@ fn short_percent(share: f64) -> f64 {
 }
 
 impl Norm {
-    /// Size of a column; 0 without rows.
+    /// Norm of a column; 0 without rows.
     pub fn of(self, values: &[f64]) -> f64 {
         match self {
             Self::Max => values.iter().fold(0.0, |most, x| f64::max(most, x.abs())),
@@ -170,7 +170,7 @@ impl Deviation {
     /// Deviation of a column.
     ///
     /// # Errors
-    /// A formula that is none, or not a number at a time of a row.
+    /// The formula is invalid, or its value at the time of a row is not finite.
     pub fn of(&self, times: &[f64], values: &[f64]) -> Result<f64, String> {
         let text = self.exact.as_ref().unwrap_or(&self.formula);
         let formula = Formula::parse(text, &["t"]).map_err(|e| format!("`{text}`: {e}"))?;
@@ -188,18 +188,18 @@ impl Deviation {
 }
 
 impl Expect {
-    /// Rows it sees.
+    /// The rows that are used.
     pub fn window(&self) -> Window {
         Window { after: self.after, before: self.before }
     }
 
-    /// The number it is about.
+    /// The value in a record.
     ///
     /// # Errors
-    /// In words, why there is none.
+    /// Why there is none.
     pub fn got(&self, records: &dyn Records) -> Result<f64, String> {
         match &self.deviation {
-            _ if self.order.is_some() => Err("an order of convergence is asked of a study".to_owned()),
+            _ if self.order.is_some() => Err("an order of convergence needs a study".to_owned()),
             None => Question::parse(&self.what)?.answer(records, self.window()),
             Some(deviation) => {
                 let (times, values) = Series::parse(&self.what)?.rows(records, self.window())?;
@@ -208,7 +208,7 @@ impl Expect {
         }
     }
 
-    /// What it is about, in words.
+    /// The quantity in words.
     pub fn words(&self) -> String {
         let mut words = match &self.deviation {
             None => self.what.clone(),
@@ -227,7 +227,7 @@ impl Expect {
         words
     }
 
-    /// The verdict on a number, or on the lack of one.
+    /// The outcome for a value, or for a missing one.
     pub fn verdict(&self, got: Result<f64, String>) -> Expectation {
         let (got, why) = match got {
             Ok(got) => (Some(got), None),
@@ -246,18 +246,18 @@ impl Expect {
         }
     }
 
-    /// Whether it asks if the run stopped.
+    /// Whether it depends on `stopped`.
     pub fn asks_whether_stopped(&self) -> bool {
         self.deviation.is_none() && Question::parse(&self.what).is_ok_and(|q| q.asks_whether_stopped())
     }
 }
 
-/// A record held against expectations. Half a run is judged only where one of them asks whether it
-/// stopped.
+/// Compares a record with expectations. A run that did not finish is judged only if one of them
+/// depends on `stopped`.
 pub fn judge(run: &Run, expects: &[Expect]) -> Vec<Expectation> {
-    let whole = run.manifest.status == Status::Finished || expects.iter().any(Expect::asks_whether_stopped);
-    let reason = || run.manifest.reason.clone().unwrap_or_else(|| "it has not ended".to_owned());
-    let got = |e: &Expect| if whole { e.got(run) } else { Err(format!("the run stopped: {}", reason())) };
+    let judged = run.manifest.status == Status::Finished || expects.iter().any(Expect::asks_whether_stopped);
+    let reason = || run.manifest.reason.clone().unwrap_or_else(|| "it has not finished".to_owned());
+    let got = |e: &Expect| if judged { e.got(run) } else { Err(format!("the run stopped: {}", reason())) };
     expects.iter().map(|e| e.verdict(got(e))).collect()
 }
 

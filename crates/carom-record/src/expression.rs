@@ -1,12 +1,12 @@
-//! Arithmetic of quantities written in words.
+//! Arithmetic expressions in quantities.
 //!
 //! ```text
 //! sum     := product { ( + | - ) product }        product := factor { ( * | / ) factor }
-//! factor  := NUMBER | QUANTITY | ( sum )          blanks around every sign and bracket, since names may contain them
+//! factor  := NUMBER | QUANTITY | ( sum )          blanks around operators and brackets, because names may contain them
 //! ```
 //!
-//! A quantity is a row of words, of texts in quotes (names of arms) and of what stands in square
-//! brackets, which may hold signs. What it means is its own business: [`crate::question`].
+//! A quantity is a sequence of words, quoted strings (names of arms) and groups in square brackets,
+//! which may contain operators. [`crate::question`] defines its meaning.
 
 /// An expression in quantities `Q`.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,11 +15,11 @@ pub enum Expression<Q> {
     Number(f64),
     /// A quantity.
     Quantity(Q),
-    /// Two expressions and the sign between them.
+    /// Two expressions and the operator between them.
     Binary(Sign, Box<[Expression<Q>; 2]>),
 }
 
-/// A sign of arithmetic.
+/// An arithmetic operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
     /// `+`
@@ -54,7 +54,7 @@ impl Sign {
 }
 
 impl<Q> Expression<Q> {
-    /// The same expression in other quantities.
+    /// The same expression with its quantities replaced.
     pub(crate) fn map<R>(&self, of: &dyn Fn(&Q) -> R) -> Expression<R> {
         match self {
             Self::Number(value) => Expression::Number(*value),
@@ -65,10 +65,10 @@ impl<Q> Expression<Q> {
         }
     }
 
-    /// Its value, given those of its quantities.
+    /// Its value, given the values of its quantities.
     ///
     /// # Errors
-    /// The first of those of its quantities.
+    /// The first error of a quantity.
     pub fn value<E>(&self, of: &mut dyn FnMut(&Q) -> Result<f64, E>) -> Result<f64, E> {
         match self {
             Self::Number(value) => Ok(*value),
@@ -90,7 +90,7 @@ impl<Q> Expression<Q> {
     }
 }
 
-/// A word, or a text in quotes.
+/// A word, or a quoted string.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Token {
     Word(String),
@@ -107,41 +107,42 @@ impl Token {
     }
 }
 
-/// Words and quoted texts of a line.
+/// Words and quoted strings of a text.
 pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, String> {
     let mut found = Vec::new();
-    let mut rest = text.trim_start();
-    while let Some(first) = rest.chars().next() {
+    let mut remaining = text.trim_start();
+    while let Some(first) = remaining.chars().next() {
         let end = if matches!(first, '"' | '\'') {
-            let inside = &rest[1..];
-            let length = inside.find(first).ok_or_else(|| format!("the quote at `{rest}` is not closed"))?;
+            let inside = &remaining[1..];
+            let length =
+                inside.find(first).ok_or_else(|| format!("the quote at `{remaining}` is not closed"))?;
             found.push(Token::Quoted(inside[..length].to_owned()));
             length + 2
         } else {
-            let length = rest.find(char::is_whitespace).unwrap_or(rest.len());
-            found.push(Token::Word(rest[..length].to_owned()));
+            let length = remaining.find(char::is_whitespace).unwrap_or(remaining.len());
+            found.push(Token::Word(remaining[..length].to_owned()));
             length
         };
-        rest = rest[end..].trim_start();
+        remaining = remaining[end..].trim_start();
     }
     Ok(found)
 }
 
-/// Parses a row of tokens; `quantity` makes a quantity of those that belong to one.
+/// Parses a sequence of tokens; `quantity` parses the tokens of one quantity.
 pub(crate) fn parse<Q>(
     tokens: &[Token],
     quantity: &dyn Fn(&[Token]) -> Result<Q, String>,
 ) -> Result<Expression<Q>, String> {
-    let mut parser = Parser { rest: tokens, quantity };
+    let mut parser = Parser { remaining: tokens, quantity };
     let expression = parser.sum()?;
-    match parser.rest.first() {
+    match parser.remaining.first() {
         None => Ok(expression),
         Some(_) => Err("a bracket `)` was not opened".to_owned()),
     }
 }
 
 struct Parser<'a, Q> {
-    rest: &'a [Token],
+    remaining: &'a [Token],
     quantity: &'a dyn Fn(&[Token]) -> Result<Q, String>,
 }
 
@@ -161,22 +162,23 @@ impl<Q> Parser<'_, Q> {
     ) -> Result<Expression<Q>, String> {
         let mut left = part(self)?;
         while let Some(sign) = self.sign().filter(|s| signs.contains(s)) {
-            self.rest = &self.rest[1..];
+            self.remaining = &self.remaining[1..];
             left = Expression::Binary(sign, Box::new([left, part(self)?]));
         }
         Ok(left)
     }
 
     fn sign(&self) -> Option<Sign> {
-        Sign::of(self.rest.first()?.word()?)
+        Sign::of(self.remaining.first()?.word()?)
     }
 
     fn factor(&mut self) -> Result<Expression<Q>, String> {
-        if self.rest.first().is_some_and(|t| t.is("(")) {
-            self.rest = &self.rest[1..];
+        if self.remaining.first().is_some_and(|t| t.is("(")) {
+            self.remaining = &self.remaining[1..];
             let inside = self.sum()?;
-            let closed = self.rest.first().is_some_and(|t| t.is(")"));
-            self.rest = self.rest.get(1..).filter(|_| closed).ok_or("a bracket `(` is not closed")?;
+            let closed = self.remaining.first().is_some_and(|t| t.is(")"));
+            self.remaining =
+                self.remaining.get(1..).filter(|_| closed).ok_or("a bracket `(` is not closed")?;
             return Ok(inside);
         }
         let mut depth = 0_i32;
@@ -184,13 +186,13 @@ impl<Q> Parser<'_, Q> {
             depth += i32::from(token.is("[")) - i32::from(token.is("]"));
             depth == 0 && token.word().is_some_and(|w| Sign::of(w).is_some() || w == ")" || w == "(")
         };
-        let length = self.rest.iter().position(ends).unwrap_or(self.rest.len());
-        let (mine, rest) = self.rest.split_at(length);
-        self.rest = rest;
-        match mine {
+        let length = self.remaining.iter().position(ends).unwrap_or(self.remaining.len());
+        let (operand, remaining) = self.remaining.split_at(length);
+        self.remaining = remaining;
+        match operand {
             [] => Err("a value is missing".to_owned()),
             [Token::Word(word)] if let Ok(number) = word.parse::<f64>() => Ok(Expression::Number(number)),
-            mine => (self.quantity)(mine).map(Expression::Quantity),
+            operand => (self.quantity)(operand).map(Expression::Quantity),
         }
     }
 }
@@ -199,7 +201,7 @@ impl<Q> Parser<'_, Q> {
 mod tests {
     use super::*;
 
-    /// Quantities are `x` = 2 and anything in brackets = 10.
+    /// The quantities are `x` = 2, and anything in brackets = 10.
     fn value(text: &str) -> Result<f64, String> {
         let name = |words: &[Token]| Ok(words[0].word().unwrap_or_default().to_owned());
         let parsed = parse(&tokens(text)?, &name)?;
@@ -226,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said() {
+    fn errors_say_what_is_wrong() {
         for (text, part) in [
             ("", "missing"),
             ("x +", "missing"),

@@ -1,5 +1,5 @@
-//! Files that are either the old ones or the new ones, never half of both: write beside, rename; and
-//! flush to the disk where a power cut must not undo it.
+//! Atomic replacement of files: write a temporary file, rename it, and flush it to the disk where
+//! it must survive a power failure.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 
 use crate::RecordError;
 
-/// Replaces `path` by the given parts, one after the other. After a crash the file is the old one
-/// or the new one.
+/// Replaces `path` by the concatenated parts. After a crash the file is either the old or the new
+/// one.
 pub(crate) fn write_atomically(path: &Path, parts: &[&[u8]]) -> Result<(), RecordError> {
     replace(path, |file| parts.iter().try_for_each(|part| file.write_all(part)))
 }
 
-/// Replaces `path` by what is written into an empty file open for reading and writing.
+/// Replaces `path` by what `write` writes to an empty file, opened for reading and writing.
 pub(crate) fn replace(
     path: &Path,
     write: impl FnOnce(&mut File) -> io::Result<()>,
@@ -22,15 +22,19 @@ pub(crate) fn replace(
     sync_directory(path.parent().unwrap_or(Path::new(".")))
 }
 
-/// Replaces `path` without waiting for the disk. A killed process leaves the old file or the new
-/// one; a power cut may leave an empty one until [`sync`] has been called.
+/// Replaces `path` without flushing it to the disk. A killed process leaves the old or the new
+/// file; until [`sync`] is called, a power failure may leave an empty one.
 pub(crate) fn write_unsynced(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
     rename_after(path, |file| file.write_all(bytes))
 }
 
-/// Waits until a file written before is on the disk.
+/// Flushes a file written earlier to the disk.
 pub(crate) fn sync(path: &Path) -> Result<(), RecordError> {
-    File::open(path).and_then(|file| file.sync_all()).map_err(RecordError::io("write", path))
+    File::options()
+        .write(true)
+        .open(path)
+        .and_then(|file| file.sync_all())
+        .map_err(RecordError::io("write", path))
 }
 
 fn rename_after(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> Result<(), RecordError> {
@@ -42,8 +46,8 @@ fn rename_after(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) ->
     fs::rename(&partial, path).map_err(RecordError::io("replace", path))
 }
 
-/// What a file is written to before it is whole. A fixed name: what a kill leaves behind is
-/// overwritten by the next write instead of piling up.
+/// Temporary file for writing `path`. Its name is fixed, so that the next write overwrites what a
+/// killed process left behind.
 pub(crate) fn partial(path: &Path) -> PathBuf {
     let mut name = std::ffi::OsString::from(".");
     name.push(path.file_name().unwrap_or_default());
@@ -51,7 +55,7 @@ pub(crate) fn partial(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Makes renames inside a directory survive a power cut. Only Unix can and needs to.
+/// Makes renames in a directory survive a power failure; needed, and possible, on Unix only.
 pub(crate) fn sync_directory(directory: &Path) -> Result<(), RecordError> {
     // The parent of a bare name is the empty path.
     let directory = if directory.as_os_str().is_empty() { Path::new(".") } else { directory };

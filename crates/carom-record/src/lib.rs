@@ -1,17 +1,16 @@
-//! The run directory of a Carom simulation, written and read, and metrics as pure functions of what
-//! was read.
+//! Writing and reading of run directories, and metrics as pure functions of the record.
 //!
 //! ```text
-//! runs/impact/manifest.json          what was run, with which result
+//! runs/impact/manifest.json          what was run, and its result
 //!             history.csv            one row per recorded step
 //!             contact.csv            one row per active contact node of a recorded step
 //!             log.jsonl              one event per line
 //!             fields.pvd fields/     VTK files of the bodies, or all of them in fields.vtkhdf
-//!             checkpoint/            two generations of what a run needs to go on
+//!             checkpoint/            two generations of the state needed to resume
 //! ```
 //!
-//! This crate knows no model and no solver. A run that produces the same numbers produces the same
-//! bytes, and a run that is killed and reopened continues to the same bytes as one that was not.
+//! This crate knows no model and no solver. Equal numbers give equal bytes, and a run that is
+//! killed and resumed writes the same bytes as an uninterrupted one.
 
 mod checkpoint;
 mod error;

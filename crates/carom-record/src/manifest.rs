@@ -1,4 +1,4 @@
-//! `manifest.json`: what was run, on what, and how it ended.
+//! `manifest.json`: what was run, on which machine, and how it ended.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,17 +8,17 @@ use serde::{Deserialize, Serialize};
 
 use crate::{RecordError, files};
 
-/// How far a run has come.
+/// Status of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
-    /// Being computed, or killed: resumable.
+    /// Being computed, or killed; resumable.
     Running,
     /// Reached its end time.
     Finished,
-    /// Interrupted by the user: resumable.
+    /// Interrupted by the user; resumable.
     Stopped,
-    /// Could not go on; the reason says why.
+    /// Could not continue, for the given reason.
     Failed,
 }
 
@@ -29,14 +29,14 @@ pub struct Column {
     pub name: String,
     /// Unit label; empty for counts and ratios.
     pub unit: String,
-    /// What it is, in a few words.
+    /// Short description.
     pub description: String,
     /// Written without a decimal point.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub integer: bool,
 }
 
-/// What the user gave, to reproduce the run.
+/// The input, to reproduce the run.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Source {
     /// Text of the case file.
@@ -46,8 +46,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// blake3 of the case text and the options, in hexadecimal. Every part carries its length, so
-    /// none runs into the next.
+    /// BLAKE3 hash of the case text and the options, in hexadecimal. Each part is preceded by its
+    /// length, so that the parts cannot be confused.
     pub fn hash(&self) -> String {
         let mut hasher = blake3::Hasher::new();
         for part in std::iter::once(&self.text).chain(&self.sets) {
@@ -60,7 +60,7 @@ impl Source {
 /// The computer, as far as it matters to a result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Machine {
-    /// Cores this process may use.
+    /// Cores available to this process.
     pub cpus: usize,
     /// Operating system.
     pub os: String,
@@ -69,7 +69,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// The one this runs on.
+    /// The machine of this process.
     pub fn current() -> Self {
         Self {
             cpus: std::thread::available_parallelism().map_or(1, usize::from),
@@ -84,24 +84,24 @@ impl Machine {
 pub struct Expectation {
     /// As in the case file: `min A.uy`.
     pub what: String,
-    /// What was asked for, in words: `-0.7827 ± 0.004`.
+    /// The bound in words: `-0.7827 ± 0.004`.
     pub expected: String,
-    /// The expected value, or the bound.
+    /// The expected value, or the upper or lower bound.
     #[serde(default)]
     pub value: Option<f64>,
-    /// How far from it the number may be, absolute; none for a bound.
+    /// Absolute tolerance about it; none for an upper or lower bound.
     #[serde(default)]
     pub tolerance: Option<f64>,
-    /// What the record gives; none when it cannot be evaluated.
+    /// The value in the record; none if it cannot be evaluated.
     pub got: Option<f64>,
-    /// Whether it holds.
+    /// Whether the bound is satisfied.
     pub pass: bool,
-    /// Why there is no number.
+    /// Why there is no value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
     /// Where the expected value comes from.
     pub source: Option<String>,
-    /// Left out by `carom verify --fast`.
+    /// Skipped by `carom verify --fast`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub slow: bool,
 }
@@ -109,7 +109,7 @@ pub struct Expectation {
 /// The whole manifest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
-    /// How far the run has come.
+    /// Status of the run.
     pub status: Status,
     /// Why it stopped or failed.
     pub reason: Option<String>,
@@ -117,29 +117,28 @@ pub struct Manifest {
     pub version: String,
     /// Hash of `source`.
     pub input_hash: String,
-    /// When the directory was made, UTC.
+    /// When the directory was created, UTC.
     pub created: String,
-    /// When the process now (or last) writing it began, UTC.
+    /// When the last process that wrote it started, UTC.
     pub started: String,
-    /// Where it ran.
+    /// The machine it ran on.
     pub machine: Machine,
     /// Threads used.
     pub threads: usize,
     /// Columns of `history.csv`, in order.
     pub columns: Vec<Column>,
-    /// Named sides, `body.side`: chains of point numbers of the field files in the order in which
-    /// the boundary is walked, facet after facet with the facets' interior points between their
-    /// ends.
+    /// Named sides, `body.side`: chains of point numbers of the field files in order along the
+    /// boundary, facet by facet, with interior points between the end points of a facet.
     #[serde(default)]
     pub sides: BTreeMap<String, Vec<Vec<usize>>>,
-    /// What was said about the case before it ran, as sentences.
+    /// Warnings about the case.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// Wall seconds per phase.
     pub timings: BTreeMap<String, f64>,
     /// Counts: steps, newton, factorisations, rejected, …
     pub counters: BTreeMap<String, u64>,
-    /// Outcome of the expectations, once the run has finished.
+    /// Outcomes of the expectations, once the run has finished.
     pub expectations: Vec<Expectation>,
     /// The case as resolved.
     pub case: serde_json::Value,
@@ -147,17 +146,17 @@ pub struct Manifest {
     pub source: Source,
 }
 
-/// Phases of a run whose wall seconds `timings` holds, in the order of a step, with what they are.
+/// Phases of a run whose wall seconds are in `timings`, in the order of a step, with descriptions.
 pub const PHASES: [(&str, &str); 5] = [
     ("assembly", "forces and tangents of cells"),
     ("contact", "detection, gaps and their derivatives"),
-    ("factor", "filling, ordering and factoring the linear system"),
-    ("solve", "solving with the factors"),
+    ("factor", "filling, ordering and factorising the linear system"),
+    ("solve", "solving with the factorisation"),
     ("output", "writing the record"),
 ];
 
 impl Manifest {
-    /// A manifest of a run that starts now on this machine.
+    /// The manifest of a run that starts now on this machine.
     pub fn new(
         version: &str,
         case: serde_json::Value,
@@ -186,14 +185,14 @@ impl Manifest {
         }
     }
 
-    /// Wall seconds of each phase that was measured and what it is; the last is the rest of the
-    /// total. Empty before a run has ended.
+    /// Name, description and wall seconds of each measured phase; the last one is the remainder of
+    /// the total. Empty before a run has ended.
     pub fn phases(&self) -> Vec<(&'static str, &'static str, f64)> {
         let Some(total) = self.timings.get("total") else { return Vec::new() };
         let known = PHASES.iter().filter_map(|&(name, what)| Some((name, what, *self.timings.get(name)?)));
         let mut phases: Vec<_> = known.collect();
-        let rest = total - phases.iter().map(|(.., seconds)| seconds).sum::<f64>();
-        phases.push(("rest", "sums, energies, projections, decisions", rest.max(0.0)));
+        let remainder = total - phases.iter().map(|(.., seconds)| seconds).sum::<f64>();
+        phases.push(("rest", "sums, energies, projections, decisions", remainder.max(0.0)));
         phases
     }
 
@@ -217,10 +216,10 @@ impl Manifest {
         })
     }
 
-    /// Replaces `manifest.json` of a run directory that no writer holds.
+    /// Replaces `manifest.json` of a run directory that no writer has open.
     ///
     /// # Errors
-    /// What the machine refused.
+    /// Input/output or system error.
     pub fn replace(&self, directory: &Path) -> Result<(), RecordError> {
         self.write(directory)
     }
@@ -235,7 +234,7 @@ impl Manifest {
     }
 }
 
-/// The time now, UTC, to the second: `2026-03-01T12:00:00Z`.
+/// The current time, UTC, to the second: `2026-03-01T12:00:00Z`.
 pub fn now() -> String {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs() as i64);
     timestamp(seconds)
@@ -269,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn hash_sees_where_parts_end() {
+    fn hash_depends_on_where_parts_end() {
         let source = |text: &str, sets: &[&str]| Source {
             text: text.into(),
             sets: sets.iter().map(ToString::to_string).collect(),

@@ -1,12 +1,12 @@
 //! Metrics of a run, as functions of its history alone.
 //!
-//! An *episode* of contact is a span of rows with `active` > 0; gaps in it shorter than `bridge` (2
-//! % of the recorded time by default) do not end it. Its start is the first row with contact, its
-//! end the first row without: both are ends of steps, so a time is late by at most one step. The
-//! *striker* is the body whose centre moves fastest in the row before the first episode, so that
-//! swapping secondary and primary changes no metric. An impulse is a difference of the recorded
-//! `contact_impulse`, which the time integrator accumulated; a mean force over a window w is [P(t +
-//! w) − P(t)]/w, not a mean of samples.
+//! A contact *episode* is a span of rows with `active` > 0; interruptions shorter than `bridge` (by
+//! default 2 % of the recorded time) do not end it. It starts with the first row in contact and
+//! ends with the first row without contact. Both are ends of steps, so a time is late by at most
+//! one step. The *striker* is the body whose centre moves fastest in the row before the first
+//! episode; with this definition, swapping secondary and primary changes no metric. An impulse is a
+//! difference of the recorded `contact_impulse`, which the time integrator accumulates; a mean
+//! force over a window w is [P(t + w) − P(t)]/w, not a mean of samples.
 
 mod book;
 mod column;

@@ -1,4 +1,4 @@
-//! Orders of convergence that are observed, and the limit they point to.
+//! Observed orders of convergence, and extrapolation to step zero.
 //!
 //! ```text
 //! f(h) = f₀ + C hᵖ:   (f₁ − f₂)/(f₂ − f₃) = (h₁ᵖ − h₂ᵖ)/(h₂ᵖ − h₃ᵖ)        p from three steps h₁ > h₂ > h₃
@@ -6,45 +6,45 @@
 //!                     f₀ = f₃ − (f₂ − f₃)·h₃ᵖ/(h₂ᵖ − h₃ᵖ)                  Richardson; band 1.25·|f₃ − f₀|
 //! ```
 //!
-//! The band is Roache's grid convergence index with the safety factor 1.25 of studies with more
+//! The band is Roache's grid convergence index with the safety factor 1.25, for studies with more
 //! than two grids (P. J. Roache, "Perspective: a method for uniform reporting of grid refinement
-//! studies", J. Fluids Eng. 116, 1994). An order counts as established when the estimates of two
-//! successive triples of steps agree within [`MARGIN`].
+//! studies", J. Fluids Eng. 116, 1994). An order is established if the estimates of two successive
+//! triples of steps agree within [`MARGIN`].
 
-/// Two successive estimates of an order that is established differ by at most this.
+/// Largest difference of two successive estimates of an established order.
 pub const MARGIN: f64 = 0.3;
 
 /// A difference below this fraction of the values is round-off.
 const ROUND_OFF: f64 = 1e-12;
 
-/// An order that is established, and where it leads.
+/// An established order, and the extrapolated value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extrapolation {
     /// Order from the three finest steps.
     pub order: f64,
     /// Value at step zero.
     pub value: f64,
-    /// Half width of its band.
+    /// Half width of its uncertainty band.
     pub band: f64,
 }
 
-/// Order from the differences f₁ − f₂ and f₂ − f₃ (or their sizes) at three falling steps.
+/// Order from the differences f₁ − f₂ and f₂ − f₃ (or their norms) at three decreasing steps.
 ///
 /// # Errors
-/// In words, why there is none: steps that do not fall, differences of opposite signs, a difference
-/// of zero.
+/// Why there is none: steps that do not decrease, differences of opposite signs, a difference of
+/// zero.
 pub fn from_differences(steps: [f64; 3], differences: [f64; 2]) -> Result<f64, String> {
-    falling(&steps)?;
+    decreasing(&steps)?;
     let quotient = differences[0] / differences[1];
     if differences.contains(&0.0) || !quotient.is_finite() {
         return Err(format!(
-            "the differences {:.3e} and {:.3e} have no quotient",
+            "the quotient of the differences {:.3e} and {:.3e} is not defined",
             differences[0], differences[1]
         ));
     }
     if quotient < 0.0 {
         return Err(format!(
-            "it does not approach from one side: differences {:.3e}, {:.3e}",
+            "convergence is not monotonic: the differences {:.3e} and {:.3e} have opposite signs",
             differences[0], differences[1]
         ));
     }
@@ -56,7 +56,7 @@ pub fn from_differences(steps: [f64; 3], differences: [f64; 2]) -> Result<f64, S
     let (mut low, mut high) = (-20.0, 40.0);
     if ratio(low) > quotient || ratio(high) < quotient {
         return Err(format!(
-            "the differences {:.3e} and {:.3e} fit no order",
+            "no order fits the differences {:.3e} and {:.3e}",
             differences[0], differences[1]
         ));
     }
@@ -67,21 +67,21 @@ pub fn from_differences(steps: [f64; 3], differences: [f64; 2]) -> Result<f64, S
     Ok(0.5 * (low + high))
 }
 
-/// Order from two errors at two falling steps.
+/// Order from two errors at two decreasing steps.
 ///
 /// # Errors
-/// In words, why there is none: steps that do not fall, an error of zero.
+/// Why there is none: steps that do not decrease, an error of zero.
 pub fn from_errors(steps: [f64; 2], errors: [f64; 2]) -> Result<f64, String> {
-    falling(&steps)?;
+    decreasing(&steps)?;
     let order = (errors[0] / errors[1]).abs().ln() / (steps[0] / steps[1]).ln();
     if order.is_finite() {
         Ok(order)
     } else {
-        Err(format!("the errors {:.3e} and {:.3e} have no order", errors[0], errors[1]))
+        Err(format!("no order fits the errors {:.3e} and {:.3e}", errors[0], errors[1]))
     }
 }
 
-/// Orders of successive triples of steps, each told at its finest.
+/// Orders of successive triples of steps.
 pub fn orders(steps: &[f64], values: &[f64]) -> Vec<Result<f64, String>> {
     let triples = steps.windows(3).zip(values.windows(3));
     triples.map(|(h, f)| triple([h[0], h[1], h[2]], [f[0], f[1], f[2]])).collect()
@@ -91,19 +91,19 @@ fn triple(steps: [f64; 3], values: [f64; 3]) -> Result<f64, String> {
     let differences = [values[0] - values[1], values[1] - values[2]];
     let size = values.iter().fold(0.0, |size, x| f64::max(size, x.abs()));
     if differences.iter().any(|d| d.abs() <= ROUND_OFF * size) {
-        return Err("differences of the size of round-off".to_owned());
+        return Err("the differences are round-off".to_owned());
     }
     from_differences(steps, differences)
 }
 
-/// The value at step zero, where an order is established.
+/// The value at step zero, if an order is established.
 ///
 /// # Errors
-/// In words, why there is no order.
+/// Why no order is established.
 pub fn extrapolated(steps: &[f64], values: &[f64]) -> Result<Extrapolation, String> {
-    falling(steps)?;
+    decreasing(steps)?;
     if values.len() < 4 || steps.len() != values.len() {
-        return Err(format!("{} values; two estimates of an order need four", values.len()));
+        return Err(format!("two estimates of an order need four values, not {}", values.len()));
     }
     let last = values.len() - 4;
     let [before, order] = &orders(&steps[last..], &values[last..])[..] else {
@@ -116,7 +116,7 @@ pub fn extrapolated(steps: &[f64], values: &[f64]) -> Result<Extrapolation, Stri
         ));
     }
     if order <= 0.0 {
-        return Err(format!("the differences grow as the step falls: estimate {order:.2}"));
+        return Err(format!("the differences grow as the step decreases: the estimated order is {order:.2}"));
     }
     let [.., h2, h3] = steps else { return Err("four values are needed".to_owned()) };
     let [.., f2, f3] = values else { return Err("four values are needed".to_owned()) };
@@ -124,11 +124,11 @@ pub fn extrapolated(steps: &[f64], values: &[f64]) -> Result<Extrapolation, Stri
     Ok(Extrapolation { order, value, band: 1.25 * (f3 - value).abs() })
 }
 
-fn falling(steps: &[f64]) -> Result<(), String> {
+fn decreasing(steps: &[f64]) -> Result<(), String> {
     if steps.windows(2).all(|h| h[0] > h[1]) && steps.iter().all(|h| *h > 0.0 && h.is_finite()) {
         Ok(())
     } else {
-        Err(format!("the steps {steps:?} do not fall"))
+        Err(format!("the steps {steps:?} do not decrease"))
     }
 }
 
@@ -143,7 +143,7 @@ mod tests {
         steps.iter().map(|h| f(*h)).collect()
     }
 
-    /// f = 7 − 3hᵖ: the order is p and the limit 7, whatever the steps.
+    /// f = 7 − 3hᵖ: the order is p and the limit 7 for any steps.
     #[test]
     fn powers_have_their_order() {
         for steps in [EVEN, UNEVEN] {
@@ -174,11 +174,11 @@ mod tests {
     fn no_order_says_why() {
         let why = |values: &[f64]| extrapolated(&EVEN[..values.len()], values).unwrap_err();
         assert!(why(&[1.0, 2.0, 3.0]).contains("need four"));
-        assert!(why(&[1.0, 3.0, 2.0, 2.5]).contains("one side"));
+        assert!(why(&[1.0, 3.0, 2.0, 2.5]).contains("not monotonic"));
         assert!(why(&[1.0, 1.0, 1.0, 1.0]).contains("round-off"));
         assert!(why(&[0.0, 8.0, 10.0, 11.9]).contains("differ by more"));
         assert!(why(&[0.0, 1.0, 3.0, 7.0]).contains("grow"));
-        assert!(from_differences([0.1, 0.2, 0.4], [1.0, 1.0]).unwrap_err().contains("do not fall"));
+        assert!(from_differences([0.1, 0.2, 0.4], [1.0, 1.0]).unwrap_err().contains("do not decrease"));
         assert!(from_errors([0.2, 0.1], [1.0, 0.0]).is_err());
     }
 }

@@ -1,4 +1,4 @@
-//! `fields.pvd`: the field files of a run with their times, as ParaView reads them.
+//! `fields.pvd`: the list of the field files of a run with their times, for ParaView.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -8,16 +8,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::{RecordError, files};
 
-/// An instant whose fields are on record.
+/// An instant with recorded fields.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FieldEntry {
-    /// Step it shows.
+    /// Number of the step.
     pub step: u64,
     /// Time of that step.
     pub time: f64,
 }
 
-/// How fields are written.
+/// Format of the fields.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FieldFormat {
@@ -29,7 +29,7 @@ pub enum FieldFormat {
 }
 
 impl FieldEntry {
-    /// Path of its VTU file inside the run directory, with `/`.
+    /// Path of its VTU file relative to the run directory, with `/`.
     pub fn file(&self) -> String {
         format!("fields/{:08}.vtu", self.step)
     }
@@ -38,7 +38,7 @@ impl FieldEntry {
 /// Name of the list.
 pub(crate) const FILE: &str = "fields.pvd";
 
-/// Replaces `fields.pvd`, without waiting for the disk.
+/// Replaces `fields.pvd`, without flushing it to the disk.
 pub(crate) fn write(directory: &Path, entries: &[FieldEntry]) -> Result<(), RecordError> {
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n <Collection>\n",
@@ -75,7 +75,7 @@ pub(crate) fn read(directory: &Path) -> Result<Vec<FieldEntry>, RecordError> {
                 let step = attribute("file")
                     .and_then(|f| f.strip_prefix("fields/")?.strip_suffix(".vtu")?.parse().ok());
                 let (Some(time), Some(step)) = (time, step) else {
-                    return Err(damaged("a DataSet without a time or a file of ours".into()));
+                    return Err(damaged("a DataSet has no valid time or file name".into()));
                 };
                 entries.push(FieldEntry { step, time });
             }

@@ -1,4 +1,4 @@
-//! What `[[expect]] what = "…"` and claims ask for, as numbers of records.
+//! Quantities of records, as `what = "…"` of `[[expect]]` and claims name them.
 //!
 //! ```text
 //! question := FORM column [ of "ARM" ] | FORM [ columns ] [ by step ] | NAME [ of "ARM" ]         in any expression with numbers
@@ -6,12 +6,12 @@
 //! FORM     := min · max · first · last · at T (linear between rows) · time of min · time of max
 //!             range (max − min) · drift (largest |c − c₀|) · peak (largest |c|) · rms (√ of the mean of c² over the rows)
 //! columns  := an expression in columns, each with `of "ARM"` in a study
-//! NAME     := a metric of `metrics`, COLUMN:min and the like, energy_lost:N, or `stopped` (1 if the run could not go on, 0 if it ended)
+//! NAME     := a metric of `metrics`, COLUMN:min etc., energy_lost:N, or `stopped` (1 if the run could not continue, 0 if it ended)
 //! ```
 //!
-//! An expression in columns of several arms has the rows whose times all of them recorded (to 1e-9
-//! of the span); `by step` takes rows with the same step number, where times are in other units.
-//! `after < time < before`, strictly, are the rows a question sees.
+//! An expression in columns of several arms uses the rows whose times occur in all records (to 1e-9
+//! of the span); `by step` matches rows by step number instead, for records with different units of
+//! time. Only rows with `after < time < before`, strictly, are used.
 
 use std::borrow::Cow;
 
@@ -19,22 +19,22 @@ use crate::expression::{self, Expression, Token, tokens};
 use crate::metrics::{self, COLUMNS, FREE, HISTORY, PRESSURE, WORK};
 use crate::{History, Run, Status};
 
-/// Two times are one if they differ by less than this fraction of the span of the first record.
+/// Two times are equal if they differ by less than this fraction of the span of the first record.
 const SAME_TIME: f64 = 1e-9;
 
-/// What an expectation or a side of a claim asks for.
+/// The value of an expectation, or of one side of a claim.
 pub type Question = Expression<Quantity>;
 
-/// A number asked of a record.
+/// A number computed from a record.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Quantity {
     /// A metric by its name, of an arm.
     Metric(String, Option<String>),
-    /// A number made of columns.
+    /// A reduction of columns.
     Reduced(Form, Series),
 }
 
-/// How a number is made of a column.
+/// How a column is reduced to a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub enum Form {
@@ -51,7 +51,7 @@ pub enum Form {
     Rms,
 }
 
-/// Columns put together row by row.
+/// Columns combined row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     /// The expression in columns.
@@ -80,33 +80,33 @@ pub struct Rows<'a> {
     pub values: Cow<'a, [f64]>,
 }
 
-/// Rows a question sees: those strictly between two times.
+/// The rows that are used: those strictly between two times.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Window {
-    /// Rows after this time.
+    /// Only rows after this time.
     pub after: Option<f64>,
-    /// Rows before this time.
+    /// Only rows before this time.
     pub before: Option<f64>,
 }
 
 impl Window {
-    fn has(self, time: f64) -> bool {
+    fn contains(self, time: f64) -> bool {
         self.after.is_none_or(|t| time > t) && self.before.is_none_or(|t| time < t)
     }
 }
 
-/// Where the numbers come from: one record, or the arms of a study.
+/// The source of the numbers: one record, or the arms of a study.
 pub trait Records {
     /// A metric by its name.
     ///
     /// # Errors
-    /// In words, why there is none.
+    /// Why there is none.
     fn metric(&self, name: &str, arm: Option<&str>) -> Result<f64, String>;
 
     /// A column.
     ///
     /// # Errors
-    /// In words, why there is none.
+    /// Why there is none.
     fn column(&self, asked: &Asked) -> Result<Rows<'_>, String>;
 }
 
@@ -114,7 +114,7 @@ impl Question {
     /// Parses a question.
     ///
     /// # Errors
-    /// In words, what is not as it should be.
+    /// What is wrong with the text.
     pub fn parse(text: &str) -> Result<Self, String> {
         Self::of(&tokens(text)?)
     }
@@ -126,7 +126,7 @@ impl Question {
     /// Its value in these records.
     ///
     /// # Errors
-    /// In words: what is not there, or why it cannot be told.
+    /// What is missing, or why there is no value.
     pub fn answer(&self, records: &dyn Records, window: Window) -> Result<f64, String> {
         let value = self.value(&mut |quantity| match quantity {
             Quantity::Metric(name, arm) => records.metric(name, arm.as_deref()),
@@ -138,7 +138,7 @@ impl Question {
         if value.is_finite() { Ok(value) } else { Err(format!("its value is {value}")) }
     }
 
-    /// The same of an arm, where none is named.
+    /// The same question, with this arm for quantities that name none.
     pub(crate) fn of_arm(&self, arm: &str) -> Self {
         self.map(&|quantity| match quantity {
             Quantity::Metric(name, of) => {
@@ -148,7 +148,7 @@ impl Question {
         })
     }
 
-    /// Names of the arms it speaks of; none where a quantity names no arm.
+    /// The arm of each quantity; none for a quantity without an arm.
     pub fn arms(&self) -> Vec<Option<&str>> {
         let mut arms = Vec::new();
         for quantity in self.quantities() {
@@ -162,7 +162,7 @@ impl Question {
         arms
     }
 
-    /// Whether it asks if a run stopped, so that what was recorded until then counts.
+    /// Whether it depends on `stopped`, so that an unfinished record is used too.
     pub fn asks_whether_stopped(&self) -> bool {
         self.quantities().iter().any(|q| matches!(q, Quantity::Metric(name, _) if name == "stopped"))
     }
@@ -172,21 +172,21 @@ impl Series {
     /// Parses a column, or an expression in columns.
     ///
     /// # Errors
-    /// In words, what is not as it should be.
+    /// What is wrong with the text.
     pub fn parse(text: &str) -> Result<Self, String> {
         series(&tokens(text)?)
     }
 
-    /// Times and values of the rows it has.
+    /// Times and values of its rows.
     ///
     /// # Errors
-    /// In words: what is not there.
+    /// What is missing.
     pub fn rows(&self, records: &dyn Records, window: Window) -> Result<(Vec<f64>, Vec<f64>), String> {
         let (times, mut values) = common(std::slice::from_ref(self), records, window)?;
         Ok((times, values.swap_remove(0)))
     }
 
-    /// The same of an arm, where none is named.
+    /// The same series, with this arm for columns that name none.
     pub(crate) fn of_arm(&self, arm: &str) -> Self {
         let named = |a: &Asked| Asked {
             column: a.column.clone(),
@@ -196,28 +196,28 @@ impl Series {
     }
 }
 
-/// Times, and values of each series, of the rows that all their columns have. Rows are matched by
-/// step if the first series says so.
+/// Times, and values of each series, for the rows that all columns have in common. Rows are matched
+/// by step if one of the series requires it.
 ///
 /// # Errors
-/// In words: what is not there.
+/// What is missing.
 pub fn common(
     series: &[Series],
     records: &dyn Records,
     window: Window,
 ) -> Result<(Vec<f64>, Vec<Vec<f64>>), String> {
-    let asked: Vec<&Asked> = series.iter().flat_map(|s| s.columns.quantities()).collect();
-    let columns = asked.iter().map(|a| records.column(a)).collect::<Result<Vec<_>, _>>()?;
+    let names: Vec<&Asked> = series.iter().flat_map(|s| s.columns.quantities()).collect();
+    let columns = names.iter().map(|a| records.column(a)).collect::<Result<Vec<_>, _>>()?;
     let Some(first) = columns.first() else { return Err("no column is named".to_owned()) };
     let by_step = series.iter().any(|s| s.by_step);
     let keys: Vec<&[f64]> = columns.iter().map(|c| if by_step { &*c.steps } else { &*c.times }).collect();
     let span = keys[0].last().unwrap_or(&0.0) - keys[0].first().unwrap_or(&0.0);
     let (mut times, mut values) = (Vec::new(), vec![Vec::new(); series.len()]);
     for (row, (time, here)) in first.times.iter().zip(keys[0]).enumerate() {
-        if !window.has(*time) {
+        if !window.contains(*time) {
             continue;
         }
-        // The same row of the same record, or the row at the same time of another.
+        // The same row number for the same record, otherwise the row at the same time.
         let near = |keys: &[f64]| {
             let i = keys.partition_point(|k| *k < here - SAME_TIME * span);
             keys.get(i).filter(|k| (*k - here).abs() <= SAME_TIME * span).map(|_| i)
@@ -247,10 +247,10 @@ pub fn common(
 }
 
 impl Form {
-    /// The number it makes of a column that has rows.
+    /// The reduction of a column.
     ///
     /// # Errors
-    /// A time that was not recorded.
+    /// The column has no rows, or the time was not recorded.
     pub fn of(self, times: &[f64], values: &[f64]) -> Result<f64, String> {
         let none = || "the history has no rows".to_owned();
         let least = metrics::extreme(values, f64::lt).ok_or_else(none)?;
@@ -273,7 +273,7 @@ impl Form {
     }
 }
 
-/// Form, and what follows it.
+/// The form at the start of a sequence of tokens, and the tokens after it.
 fn form(tokens: &[Token]) -> Result<Option<(Form, &[Token])>, String> {
     let words: Vec<&str> = tokens.iter().map_while(Token::word).take(3).collect();
     let (form, length) = match words[..] {
@@ -300,15 +300,16 @@ fn quantity(tokens: &[Token]) -> Result<Quantity, String> {
         (Some("rms"), Some("difference")) => return difference(Form::Rms, &tokens[2..]),
         _ => {}
     }
-    if let Some((form, rest)) = form(tokens)? {
-        return Ok(Quantity::Reduced(form, series(rest).map_err(|e| format!("{e} in `{}`", said(tokens)))?));
+    if let Some((form, columns)) = form(tokens)? {
+        let series = series(columns).map_err(|e| format!("{e} in `{}`", joined(tokens)))?;
+        return Ok(Quantity::Reduced(form, series));
     }
     match tokens {
         [Token::Word(name)] => Ok(Quantity::Metric(name.clone(), None)),
         [Token::Word(name), Token::Word(of), Token::Quoted(arm)] if of == "of" => {
             Ok(Quantity::Metric(name.clone(), Some(arm.clone())))
         }
-        _ => Err(unknown(&said(tokens))),
+        _ => Err(unknown(&joined(tokens))),
     }
 }
 
@@ -321,19 +322,19 @@ fn series(tokens: &[Token]) -> Result<Series, String> {
             (inside, true)
         }
         [open, inside @ .., close] if bare(open, "[") && bare(close, "]") => (inside, false),
-        _ => return asked(tokens).map(|a| Series { columns: Expression::Quantity(a), by_step: false }),
+        _ => return column(tokens).map(|a| Series { columns: Expression::Quantity(a), by_step: false }),
     };
-    Ok(Series { columns: expression::parse(inside, &asked)?, by_step })
+    Ok(Series { columns: expression::parse(inside, &column)?, by_step })
 }
 
-fn asked(tokens: &[Token]) -> Result<Asked, String> {
+fn column(tokens: &[Token]) -> Result<Asked, String> {
     match tokens {
         [Token::Word(column)] => Ok(Asked { column: column.clone(), arm: None }),
         [Token::Word(column), Token::Word(of), Token::Quoted(arm)] if of == "of" => {
             Ok(Asked { column: column.clone(), arm: Some(arm.clone()) })
         }
         [] => Err("a column is missing".to_owned()),
-        _ => Err(unknown(&said(tokens))),
+        _ => Err(unknown(&joined(tokens))),
     }
 }
 
@@ -341,17 +342,21 @@ fn difference(form: Form, tokens: &[Token]) -> Result<Quantity, String> {
     let [Token::Word(column), Token::Word(of), Token::Quoted(one), Token::Word(and), Token::Quoted(other)] =
         tokens
     else {
-        return Err(format!("`difference {}` is not difference COLUMN of \"ARM\" and \"ARM\"", said(tokens)));
+        return Err(not_a_difference(tokens));
     };
     if (of.as_str(), and.as_str()) != ("of", "and") {
-        return Err(format!("`difference {}` is not difference COLUMN of \"ARM\" and \"ARM\"", said(tokens)));
+        return Err(not_a_difference(tokens));
     }
     let side = |arm: &String| Expression::Quantity(Asked { column: column.clone(), arm: Some(arm.clone()) });
     let columns = Expression::Binary(expression::Sign::Minus, Box::new([side(one), side(other)]));
     Ok(Quantity::Reduced(form, Series { columns, by_step: false }))
 }
 
-fn said(tokens: &[Token]) -> String {
+fn not_a_difference(tokens: &[Token]) -> String {
+    format!("`difference {}` must have the form difference COLUMN of \"ARM\" and \"ARM\"", joined(tokens))
+}
+
+fn joined(tokens: &[Token]) -> String {
     let one = |token: &Token| match token {
         Token::Word(word) => word.clone(),
         Token::Quoted(text) => format!("\"{text}\""),
@@ -361,8 +366,8 @@ fn said(tokens: &[Token]) -> String {
 
 fn unknown(what: &str) -> String {
     format!(
-        "`{what}` is no number of a record: min, max, first, last, at T, time of min, time of max, range, drift, peak or rms and a column, or \
-         one of {}",
+        "`{what}` is not a valid quantity: give min, max, first, last, at T, time of min, time of max, range, drift, peak or rms and a column, or \
+         one of the metrics {}",
         metric_names().join(", ")
     )
 }
@@ -379,7 +384,7 @@ pub fn metric_names() -> Vec<&'static str> {
 }
 
 fn no_arms(arm: Option<&str>) -> Result<(), String> {
-    arm.map_or(Ok(()), |arm| Err(format!("this is one run; it has no arm \"{arm}\"")))
+    arm.map_or(Ok(()), |arm| Err(format!("this is a single run, which has no arm \"{arm}\"")))
 }
 
 /// A metric of the history, or of one of its columns.
@@ -387,21 +392,21 @@ pub(crate) fn metric(history: &History, name: &str) -> Result<f64, String> {
     if let Some(n) = name.strip_prefix("energy_lost:") {
         let n = n
             .parse()
-            .map_err(|_| format!("`{n}` is no number of an impact: energy_lost:1 is that of the first"))?;
+            .map_err(|_| format!("`{n}` is not the number of an impact; the first one is energy_lost:1"))?;
         return metrics::energy_lost_at(history, n)
-            .ok_or_else(|| format!("the record has no impact {n} that ended"));
+            .ok_or_else(|| format!("the record has no completed impact number {n}"));
     }
     if let Some((column, what)) = name.rsplit_once(':') {
         history.column(column).ok_or_else(|| no_column(column))?;
         let (_, value) = metrics::of_column(history, column, what).ok_or_else(|| {
-            format!("`{what}` is no metric of a column: {}", column_metric_names().join(", "))
+            format!("`{what}` is not a metric of a column; these are: {}", column_metric_names().join(", "))
         })?;
-        return value.ok_or_else(|| format!("the record has no {what} of `{column}`"));
+        return value.ok_or_else(|| format!("{what} of `{column}` is not defined for this record"));
     }
     match metrics::all(history).into_iter().find(|m| m.name == name) {
         Some(metric) => metric
             .value
-            .ok_or_else(|| format!("not defined for this record; it is the {}", metric.definition)),
+            .ok_or_else(|| format!("not defined for this record; definition: {}", metric.definition)),
         None => Err(unknown(name)),
     }
 }
@@ -440,7 +445,7 @@ impl Records for Run {
         }
         if let Some((_, value)) = PRESSURE.iter().find(|(pressure, _)| pressure.name == name) {
             return value(self)
-                .ok_or_else(|| format!("there is no {name}: it is of the end of a static run in contact"));
+                .ok_or_else(|| format!("{name} is defined only for static runs that end in contact"));
         }
         metric(&self.history, name)
     }

@@ -1,7 +1,7 @@
 //! Rows of `history.csv` and `contact.csv` and lines of `log.jsonl`.
 //!
-//! Numbers are the shortest decimals that read back to the same bits, with an exponent when tiny or
-//! huge.
+//! Numbers are written as the shortest decimals that read back to the same bits, with an exponent
+//! if very small or large.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -21,23 +21,23 @@ pub struct ContactRow<'a> {
     pub contact: Cow<'a, str>,
     /// Node of the secondary side.
     pub node: u64,
-    /// Where it is.
+    /// Its current position.
     pub point: [f64; 3],
-    /// Facet of the primary side it is paired with.
+    /// Facet of the primary side that it is paired with.
     pub facet: u64,
     /// Coordinate of the closest point on that facet, −1 … 1.
     pub xi: f64,
-    /// Gap, negative when penetrating.
+    /// Gap, negative for penetration.
     pub gap: f64,
-    /// Multiplier, negative when pressing.
+    /// Multiplier, negative for compression.
     pub multiplier: f64,
     /// −multiplier / consistent weight of the node.
     pub pressure: f64,
-    /// Unit normal out of the primary: the force on the node is −multiplier · normal.
+    /// Outward unit normal of the primary: the force on the node is −multiplier · normal.
     pub normal: [f64; 3],
 }
 
-/// Header of `contact.csv` with this many axes.
+/// Header of `contact.csv` for this number of axes.
 pub(crate) fn contact_columns(axes: usize) -> Vec<&'static str> {
     let (places, normals) = (&["x", "y", "z"][..axes], &["normal_x", "normal_y", "normal_z"][..axes]);
     [
@@ -49,12 +49,12 @@ pub(crate) fn contact_columns(axes: usize) -> Vec<&'static str> {
     .concat()
 }
 
-/// Axes that the rows of a case's contacts have: z in space alone.
+/// Number of axes in the rows of `contact.csv`: 3 in dimension 3, otherwise 2.
 pub(crate) fn contact_axes(case: &serde_json::Value) -> usize {
     if case["dimension"] == 3 { 3 } else { 2 }
 }
 
-/// Something worth knowing that happened in a run.
+/// An event of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
     /// Step being computed.
@@ -132,12 +132,12 @@ impl Table {
         self.end_row()
     }
 
-    /// Hands everything to the operating system.
+    /// Passes all buffered rows to the operating system.
     pub(crate) fn flush(&mut self) -> io::Result<()> {
         self.writer.flush()
     }
 
-    /// The file below, for its length and for syncing.
+    /// The underlying file, for its length and for syncing.
     pub(crate) fn file(&self) -> &File {
         self.writer.get_ref()
     }

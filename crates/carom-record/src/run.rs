@@ -1,5 +1,5 @@
-//! Reading a run directory: finished, stopped, or still being written (a row or line that is not
-//! complete yet is left out).
+//! Reading a run directory: finished, stopped, or still being written (an incomplete last row or
+//! line is ignored).
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use crate::{
     Column, ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, pvd, vtkhdf,
 };
 
-const HINT: &str = "`carom resume` goes back to the last checkpoint; or run the case again";
+const HINT: &str = "resume from the last checkpoint with `carom resume`, or run the case again";
 
 /// `history.csv` as columns.
 #[derive(Clone, Debug, Default)]
@@ -47,19 +47,19 @@ impl History {
 /// A run directory, read.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// Where it is.
+    /// Its path.
     pub directory: PathBuf,
-    /// What was run.
+    /// The manifest.
     pub manifest: Manifest,
     /// One row per recorded step.
     pub history: History,
     /// One row per active contact node of a recorded step.
     pub contact: Vec<ContactRow<'static>>,
-    /// What happened.
+    /// Events.
     pub log: Vec<Event>,
-    /// Instants whose fields are on record, in the order of time.
+    /// Instants with recorded fields, in the order of time.
     pub fields: Vec<FieldEntry>,
-    /// How these are written.
+    /// Format of the fields.
     pub field_format: FieldFormat,
 }
 
@@ -93,14 +93,13 @@ impl Run {
         self.history.times()
     }
 
-    /// Whether a contact was active in a motion: not where the time is the parameter of a static
-    /// load.
+    /// Whether a contact was active in a dynamic run; false for static runs.
     pub fn had_dynamic_contact(&self) -> bool {
         let kind = self.manifest.case.pointer("/time/scheme/kind").and_then(|k| k.as_str());
         kind != Some("static") && self.column("active").is_some_and(|active| active.iter().any(|n| *n > 0.0))
     }
 
-    /// File of an instant's fields, inside the run directory, with `/`.
+    /// File with the fields of an instant, relative to the run directory, with `/`.
     pub fn field_file(&self, entry: &FieldEntry) -> String {
         match self.field_format {
             FieldFormat::Vtu => entry.file(),
@@ -127,8 +126,7 @@ fn lines(path: &Path) -> Result<Vec<u8>, RecordError> {
     Ok(bytes)
 }
 
-/// Reads a CSV file whose header must be `names`, and hands over row after row with its line
-/// number.
+/// Reads a CSV file whose header must be `names`, and calls `each` for every row.
 fn rows(
     path: &Path,
     names: &[&str],
@@ -139,7 +137,7 @@ fn rows(
     let damaged = |line, what| Err(RecordError::corrupt(path, line, what, HINT));
     match reader.headers() {
         Ok(header) if header == names => {}
-        Ok(_) => return damaged(Some(1), "the header is not the one of this version".to_string()),
+        Ok(_) => return damaged(Some(1), "the header differs from that of this version".to_string()),
         Err(error) => return damaged(Some(1), error.to_string()),
     }
     let mut record = csv::StringRecord::new();

@@ -1,10 +1,10 @@
-//! What `carom verify` found, as its page and tables are made from.
+//! Results of `carom verify`, from which its page and tables are made.
 //!
 //! ```text
 //! verify/verify.json             what was run, and every row
 //!        verify.csv              one row per expectation
 //!        verify.html             the page
-//!        FAMILY/NAME/ …          the run, or study, directory of a set-up
+//!        FAMILY/NAME/ …          run or study directory of a set-up
 //! ```
 
 use std::path::Path;
@@ -13,29 +13,29 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Expectation, Machine, RecordError, files};
 
-/// Everything that was verified.
+/// A verification.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verification {
     /// Version of Carom.
     pub version: String,
-    /// When it began, UTC.
+    /// When it started, UTC.
     pub started: String,
-    /// Where it ran.
+    /// The machine it ran on.
     pub machine: Machine,
-    /// Runs at the same time.
+    /// Number of concurrent runs.
     pub jobs: usize,
     /// Wall seconds.
     pub wall: f64,
-    /// Whether slow expectations were left out.
+    /// Whether slow expectations were skipped.
     pub fast: bool,
-    /// What was run, family by family.
+    /// The set-ups, family by family.
     pub set_ups: Vec<SetUp>,
 }
 
 /// A case, or a study with all its arms.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SetUp {
-    /// Folder it belongs to.
+    /// Folder of its file.
     pub family: String,
     /// Name of its file without the ending.
     pub name: String,
@@ -43,43 +43,43 @@ pub struct SetUp {
     pub title: String,
     /// The file.
     pub file: String,
-    /// blake3 of what was run.
+    /// BLAKE3 hash of its input.
     pub input_hash: String,
     /// Directory of its records, relative to the verification's.
     pub directory: String,
     /// Simulations.
     pub runs: usize,
-    /// Simulations that could not go on although nothing expected it, and why.
+    /// Simulations that stopped unexpectedly, and why.
     pub stopped: Vec<String>,
-    /// Whether a contact was active in one of its motions.
+    /// Whether a contact was active in one of its dynamic runs.
     pub contact: bool,
-    /// Wall seconds of its simulations, one after the other.
+    /// Sum of the wall seconds of its simulations.
     pub wall: f64,
-    /// What was expected of it.
+    /// Its expectations.
     pub rows: Vec<Row>,
 }
 
 /// One expectation, judged.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// The arm, where it is one's.
+    /// The arm, if it is an expectation of an arm.
     pub arm: Option<String>,
-    /// Directory of the record it was judged on, relative to the verification's.
+    /// Directory of its record, relative to the verification's.
     pub directory: String,
-    /// The verdict.
+    /// The outcome.
     #[serde(flatten)]
     pub verdict: Expectation,
 }
 
 impl SetUp {
-    /// Whether an expectation was missed, or a simulation could not go on.
+    /// Whether an expectation was missed or a simulation stopped unexpectedly.
     pub fn is_bad(&self) -> bool {
         !self.stopped.is_empty() || self.rows.iter().any(|row| !row.verdict.pass)
     }
 }
 
 impl Row {
-    /// What is asked, and of which arm.
+    /// The quantity, with its arm.
     pub fn quantity(&self) -> String {
         match &self.arm {
             Some(arm) => format!("{} of \"{arm}\"", self.verdict.what),
@@ -87,7 +87,7 @@ impl Row {
         }
     }
 
-    /// got − expected; beyond a bound by how much (0 within).
+    /// got − expected; for an upper or lower bound, the excess over it (0 if it is satisfied).
     pub fn error(&self) -> Option<f64> {
         let (got, value) = (self.verdict.got?, self.verdict.value?);
         match self.verdict.tolerance {
@@ -103,17 +103,17 @@ impl Verification {
         self.set_ups.iter().flat_map(|set_up| set_up.rows.iter().map(move |row| (set_up, row)))
     }
 
-    /// Rows that were missed.
+    /// Number of missed expectations.
     pub fn missed(&self) -> usize {
         self.rows().filter(|(_, row)| !row.verdict.pass).count()
     }
 
-    /// Set-ups with a contact that was active in a motion.
+    /// Number of set-ups with dynamic contact.
     pub fn with_contact(&self) -> usize {
         self.set_ups.iter().filter(|s| s.contact).count()
     }
 
-    /// Simulations that stopped unexpectedly.
+    /// Number of simulations that stopped unexpectedly.
     pub fn stopped(&self) -> usize {
         self.set_ups.iter().map(|s| s.stopped.len()).sum()
     }
@@ -128,7 +128,7 @@ impl Verification {
     /// Reads `verify.json`.
     ///
     /// # Errors
-    /// What the machine refused, or where the file is damaged.
+    /// Input/output or system error, or a damaged file.
     pub fn read(directory: &Path) -> Result<Self, RecordError> {
         let path = directory.join("verify.json");
         let text = std::fs::read(&path).map_err(RecordError::io("read", &path))?;
@@ -145,7 +145,7 @@ impl Verification {
     /// Writes `verify.json` and `verify.csv`.
     ///
     /// # Errors
-    /// What the machine refused.
+    /// Input/output or system error.
     pub fn write(&self, directory: &Path) -> Result<(), RecordError> {
         let path = directory.join("verify.json");
         let text = serde_json::to_vec_pretty(self).map_err(|e| RecordError::io("write", &path)(e.into()))?;
@@ -157,7 +157,7 @@ impl Verification {
     /// The table, as CSV; numbers read back to the same bits.
     ///
     /// # Errors
-    /// None that memory does not have.
+    /// None in practice: it writes to memory.
     pub fn csv(&self) -> std::io::Result<Vec<u8>> {
         let number = |x: Option<f64>| x.map_or_else(String::new, |x| format!("{x:?}"));
         let mut writer = csv::Writer::from_writer(Vec::new());

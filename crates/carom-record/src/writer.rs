@@ -1,9 +1,9 @@
-//! Writing a run directory so that it can be killed at any moment and continued to the same bytes.
+//! Writing a run directory, so that a run can be killed at any time and resumed to the same bytes.
 //!
-//! A directory comes into being by one rename, with a checkpoint in it. A checkpoint first forces
-//! the row files and the field files written since the last one to the disk, then records their
-//! lengths; reopening cuts rows back to those lengths and drops later fields. Between checkpoints
-//! nothing waits for the disk: a resumed run does not need what was written there.
+//! A directory is created by one rename, with a first checkpoint in it. A checkpoint flushes the
+//! row files, and the field files written since the previous one, to the disk and then records
+//! their lengths. Reopening truncates the row files to these lengths and removes later fields.
+//! Between checkpoints nothing is flushed, because a resumed run does not need it.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, Seek, SeekFrom, Write};
@@ -17,47 +17,47 @@ use crate::{
 
 const ROW_FILES: [&str; 3] = ["history.csv", "contact.csv", "log.jsonl"];
 
-/// A run directory being written. Dropping it without `finish` leaves a run that can be reopened.
+/// A run directory being written. If it is dropped without `finish`, the run can be reopened.
 pub struct RunWriter {
     directory: PathBuf,
     /// Which history columns are integers.
     integer: Vec<bool>,
-    /// Axes of the places and normals of contact rows.
+    /// Axes of the positions and normals of contact rows.
     axes: usize,
     history: Table,
     contact: Table,
     log: BufWriter<File>,
-    /// The record now; lengths are those of the last checkpoint.
+    /// Header of the next checkpoint; its lengths are those of the last one.
     header: Header,
-    /// Generation the next checkpoint replaces.
+    /// Generation that the next checkpoint replaces.
     generation: usize,
-    /// How `fields` writes.
+    /// Format of the fields.
     field_format: FieldFormat,
     /// Field files written since the last checkpoint.
     unsynced: Vec<PathBuf>,
-    /// Held as long as this writer lives.
+    /// Locked as long as this writer exists.
     _lock: File,
 }
 
 /// A run directory reopened at a checkpoint.
 pub struct Reopened {
-    /// Appends where the checkpoint was taken.
+    /// Appends after the checkpoint.
     pub writer: RunWriter,
-    /// The manifest as it stands.
+    /// The current manifest.
     pub manifest: Manifest,
     /// The checkpoint's payload.
     pub payload: Vec<u8>,
     /// Its step.
     pub step: u64,
-    /// History rows kept; 0 when not even the initial state had been recorded.
+    /// Number of rows in the history; 0 if not even the initial state was recorded.
     pub rows: u64,
-    /// Set when the newest checkpoint was damaged and the one before was taken.
+    /// The error of the newest checkpoint, if it is damaged and the previous one was used.
     pub fallback: Option<RecordError>,
 }
 
 impl RunWriter {
-    /// Makes the directory, complete with a first checkpoint, and its parents. Refuses one that
-    /// exists.
+    /// Creates the directory with a first checkpoint, and its parents. It is an error if the
+    /// directory exists.
     pub fn create(
         directory: &Path,
         manifest: &Manifest,
@@ -72,7 +72,7 @@ impl RunWriter {
         name.push(directory.file_name().unwrap_or_default());
         name.push(format!(".partial-{}", std::process::id()));
         let partial = directory.with_file_name(name);
-        // Ours from an earlier life: a kill between here and the rename.
+        // Left behind by an earlier process that was killed before the rename.
         if partial.exists() {
             fs::remove_dir_all(&partial).map_err(RecordError::io("clear", &partial))?;
         }
@@ -101,31 +101,31 @@ impl RunWriter {
         let of_contact = contact_columns(contact_axes(&manifest.case));
         for (i, names) in [&columns[..], &of_contact, &[]].into_iter().enumerate() {
             let path = partial.join(ROW_FILES[i]);
-            let refused = |e| RecordError::io("create", &path)(e);
-            let mut table = Table::new(File::create(&path).map_err(refused)?);
+            let failed = |e| RecordError::io("create", &path)(e);
+            let mut table = Table::new(File::create(&path).map_err(failed)?);
             for name in names {
-                table.text(name).map_err(refused)?;
+                table.text(name).map_err(failed)?;
             }
             if !names.is_empty() {
-                table.end_row().map_err(refused)?;
+                table.end_row().map_err(failed)?;
             }
-            table.flush().and_then(|()| table.file().sync_all()).map_err(refused)?;
-            header.lengths[i] = table.file().metadata().map_err(refused)?.len();
+            table.flush().and_then(|()| table.file().sync_all()).map_err(failed)?;
+            header.lengths[i] = table.file().metadata().map_err(failed)?.len();
         }
         checkpoint::write(partial, 0, &header, payload)
     }
 
-    /// Goes on from the newest checkpoint that is whole.
+    /// Reopens the directory at the newest intact checkpoint.
     pub fn reopen(directory: &Path) -> Result<Reopened, RecordError> {
         let manifest = Manifest::read(directory)?;
         let lock = lock(directory)?;
         let (generation, (header, payload), fallback) = newest(directory)?;
-        // One generation only is how every run begins.
+        // A missing generation is normal: every run starts with one.
         let fallback = fallback.filter(|error| !missing(error));
         Ok(Reopened { fallback, ..Self::open(directory, manifest, lock, generation, header, payload)? })
     }
 
-    /// Goes on from the checkpoint of one generation, 0 or 1.
+    /// Reopens the directory at the checkpoint of one generation, 0 or 1.
     pub fn reopen_at(directory: &Path, generation: usize) -> Result<Reopened, RecordError> {
         let manifest = Manifest::read(directory)?;
         let lock = lock(directory)?;
@@ -144,9 +144,9 @@ impl RunWriter {
         let mut rows = Vec::new();
         for (name, length) in ROW_FILES.iter().zip(header.lengths) {
             let path = directory.join(name);
-            let refused = |e| RecordError::io("write", &path)(e);
-            let mut file = OpenOptions::new().read(true).write(true).open(&path).map_err(refused)?;
-            file.set_len(length).and_then(|()| file.seek(SeekFrom::End(0))).map_err(refused)?;
+            let failed = |e| RecordError::io("write", &path)(e);
+            let mut file = OpenOptions::new().read(true).write(true).open(&path).map_err(failed)?;
+            file.set_len(length).and_then(|()| file.seek(SeekFrom::End(0))).map_err(failed)?;
             rows.push(file);
         }
         let [history, contact, log] = rows.try_into().unwrap_or_else(|_| unreachable!("three row files"));
@@ -169,12 +169,12 @@ impl RunWriter {
         Ok(Reopened { writer, manifest, payload, step, rows, fallback: None })
     }
 
-    /// How fields are written from now on; VTU if nothing is said. One run has one format.
+    /// Sets the format of the fields; the default is VTU. A run has one format.
     pub fn field_format(&mut self, format: FieldFormat) {
         self.field_format = format;
     }
 
-    /// Where it writes.
+    /// The directory.
     pub fn directory(&self) -> &Path {
         &self.directory
     }
@@ -189,7 +189,7 @@ impl RunWriter {
             .iter()
             .zip(&self.integer)
             .try_for_each(|(&value, &integer)| {
-                // A count that is none is shown as it is rather than rounded.
+                // A value that is not a count is written as it is, not rounded.
                 if integer && value >= 0.0 && value.fract() == 0.0 {
                     table.integer(value as u64)
                 } else {
@@ -234,7 +234,7 @@ impl RunWriter {
         pvd::write(&self.directory, entries)
     }
 
-    /// Everything so far reaches the disk, then the older generation is replaced.
+    /// Flushes everything to the disk, then replaces the older generation.
     pub fn checkpoint(&mut self, step: u64, payload: &[u8]) -> Result<(), RecordError> {
         self.sync()?;
         self.header.step = step;
@@ -250,7 +250,7 @@ impl RunWriter {
         manifest.write(&self.directory)
     }
 
-    /// Everything reaches the disk, and last of all the manifest that says how it ended.
+    /// Flushes everything to the disk; last the manifest, which says how the run ended.
     pub fn finish(mut self, manifest: &Manifest) -> Result<(), RecordError> {
         self.sync()?;
         vtkhdf::finish(&self.directory)?;
@@ -279,15 +279,15 @@ impl RunWriter {
     }
 }
 
-/// Payload of the newest checkpoint that is whole; nothing is changed.
+/// Payload of the newest intact checkpoint; nothing is changed.
 ///
 /// # Errors
-/// There is none.
+/// There is no intact checkpoint.
 pub fn last_checkpoint(directory: &Path) -> Result<Vec<u8>, RecordError> {
     newest(directory).map(|(_, (_, payload), _)| payload)
 }
 
-/// The newest checkpoint that is whole: its generation, itself, and what is wrong with the other.
+/// The newest intact checkpoint: its generation, its contents, and the error of the other one.
 fn newest(directory: &Path) -> Result<(usize, (Header, Vec<u8>), Option<RecordError>), RecordError> {
     let [a, b] = [0, 1].map(|generation| verified(directory, generation));
     Ok(match (a, b) {
@@ -299,14 +299,14 @@ fn newest(directory: &Path) -> Result<(usize, (Header, Vec<u8>), Option<RecordEr
     })
 }
 
-/// A checkpoint, if it is whole and the row files reach as far as it says.
+/// A checkpoint, if it is intact and the row files are at least as long as it records.
 fn verified(directory: &Path, generation: usize) -> Result<(Header, Vec<u8>), RecordError> {
     let (header, payload) = checkpoint::read(directory, generation)?;
     for (name, length) in ROW_FILES.iter().zip(header.lengths) {
         let path = directory.join(name);
         let got = fs::metadata(&path).map_err(RecordError::io("read", &path))?.len();
         if got < length {
-            let what = format!("it has {got} bytes, but had {length} when a checkpoint was taken");
+            let what = format!("it has {got} bytes, but had {length} bytes at the checkpoint");
             return Err(RecordError::corrupt(&path, None, what, "run the case again"));
         }
     }
@@ -317,19 +317,19 @@ fn missing(error: &RecordError) -> bool {
     matches!(error, RecordError::Io { source, .. } if source.kind() == std::io::ErrorKind::NotFound)
 }
 
-/// Two processes must not append to one record. The system releases the lock when the process ends,
-/// however it ends.
+/// Prevents two processes from writing the same record. The system releases the lock when the
+/// process ends, even if it is killed.
 fn lock(directory: &Path) -> Result<File, RecordError> {
     let path = directory.join("checkpoint").join("lock");
     let file = File::create(&path).map_err(RecordError::io("open", &path))?;
     match file.try_lock() {
         Err(fs::TryLockError::WouldBlock) => Err(RecordError::Busy { path: directory.to_path_buf() }),
-        // A file system without locks must not stop a run.
+        // File systems without locks are allowed.
         Ok(()) | Err(fs::TryLockError::Error(_)) => Ok(file),
     }
 }
 
-/// Removes field files that are not in the list, and lists what stays.
+/// Removes field files that are not in the list, and writes the list to `fields.pvd`.
 fn drop_fields(directory: &Path, keep: &[FieldEntry]) -> Result<(), RecordError> {
     let folder = directory.join("fields");
     let Ok(entries) = fs::read_dir(&folder) else { return Ok(()) };
@@ -340,5 +340,6 @@ fn drop_fields(directory: &Path, keep: &[FieldEntry]) -> Result<(), RecordError>
             fs::remove_file(&path).map_err(RecordError::io("remove", &path))?;
         }
     }
-    pvd::write(directory, keep)
+    pvd::write(directory, keep)?;
+    files::sync(&directory.join(pvd::FILE))
 }

@@ -1,4 +1,4 @@
-//! A run that is killed and reopened ends in the same bytes as one that was not.
+//! A run that is killed and resumed writes the same bytes as an uninterrupted one.
 
 #![allow(clippy::unwrap_used)] // the helpers are tests too
 
@@ -37,10 +37,10 @@ fn fields(step: u64) -> FieldSet {
     }
 }
 
-/// What one step of a simulation records; the payload is the step.
+/// Records one step of a simulation; the payload is the step.
 fn record(writer: &mut RunWriter, step: u64) -> Result<(), RecordError> {
     let time = step as f64 * 0.1;
-    // Tiny to huge by an exact power of two: `powi` may differ in the last digit from call to call.
+    // From very small to very large by exact powers of two; `powi` may differ in the last digit.
     writer.history(&[step as f64, time, (time - 1.7) * f64::from_bits((step * 50 + 20) << 52)])?;
     for node in 0..step % 3 {
         let (xi, gap, multiplier) = (-0.3, 1e-17, -time);
@@ -72,7 +72,7 @@ fn record(writer: &mut RunWriter, step: u64) -> Result<(), RecordError> {
     Ok(())
 }
 
-/// Steps until `end`; the first row only if it is not there yet.
+/// Records the steps up to `end`; the first row only if it is missing.
 fn advance(mut writer: RunWriter, from: u64, rows: u64, end: u64) -> RunWriter {
     let first = if rows == 0 { 0 } else { from + 1 };
     (first..=end).for_each(|step| record(&mut writer, step).unwrap());
@@ -121,14 +121,14 @@ fn killed_anywhere(format: FieldFormat) {
             let mut writer = RunWriter::create(&directory, &manifest(), &0u64.to_le_bytes()).unwrap();
             writer.field_format(format);
             drop(advance(writer, 0, 0, kill));
-            // What is on record can be read at once, every instant of it.
+            // The record can be read at any time, with every instant.
             let run = Run::open(&directory).unwrap();
             assert_eq!(run.fields.len() as u64, kill / 5 + 1);
             run.fields.iter().for_each(|e| assert_eq!(run.field(e).unwrap(), fields(e.step)));
-            // A kill leaves torn lines and half-written files behind.
+            // A killed process leaves incomplete lines and half-written files behind.
             let path = directory.join("history.csv");
-            let torn = [fs::read(&path).unwrap(), b"17,0.3".to_vec()].concat();
-            fs::write(&path, torn).unwrap();
+            let incomplete = [fs::read(&path).unwrap(), b"17,0.3".to_vec()].concat();
+            fs::write(&path, incomplete).unwrap();
             match format {
                 FieldFormat::Vtu => fs::write(directory.join("fields/.00000099.vtu.partial"), "x").unwrap(),
                 FieldFormat::VtkHdf => fs::write(directory.join(".fields.vtkhdf.partial"), "x").unwrap(),
@@ -146,8 +146,8 @@ fn killed_anywhere(format: FieldFormat) {
             let mut got = all_bytes(&directory);
             let mut expected = expected.clone();
             if generation.is_some() {
-                // Which of the two files holds which step, and how often was counted, depends on
-                // where one went on.
+                // Which of the two files has which step, and their sequence numbers, depend on the
+                // step at which the run was reopened.
                 got.retain(|path, _| !path.starts_with("checkpoint"));
                 expected.retain(|path, _| !path.starts_with("checkpoint"));
             }
@@ -161,7 +161,7 @@ fn a_damaged_checkpoint_falls_back_to_the_one_before() {
     let scratch = tempfile::tempdir().unwrap();
     let directory = scratch.path().join("run");
     let expected = whole(&directory, FieldFormat::Vtu);
-    // 36 is the newest step; find its file and bend one byte.
+    // 36 is the newest step; find its file and change one byte.
     let newest = RunWriter::reopen(&directory).unwrap();
     assert_eq!(newest.step, 36);
     drop(newest);
@@ -189,7 +189,7 @@ fn a_damaged_checkpoint_falls_back_to_the_one_before() {
 }
 
 #[test]
-fn what_is_read_is_what_was_written() {
+fn what_is_written_is_read_back() {
     let scratch = tempfile::tempdir().unwrap();
     let directory = scratch.path().join("deep/er/run");
     let mut writer = RunWriter::create(&directory, &manifest(), b"").unwrap();
@@ -233,29 +233,29 @@ fn what_is_read_is_what_was_written() {
 }
 
 #[test]
-fn refusals_say_why() {
+fn errors_say_why() {
     let scratch = tempfile::tempdir().unwrap();
     let directory = scratch.path().join("run");
     let mut writer = RunWriter::create(&directory, &manifest(), b"0").unwrap();
-    let refused = |error: RecordError| (error.exit_code(), error.to_string());
-    let create = |path: &Path| refused(RunWriter::create(path, &manifest(), b"0").err().unwrap());
+    let shown = |error: RecordError| (error.exit_code(), error.to_string());
+    let create = |path: &Path| shown(RunWriter::create(path, &manifest(), b"0").err().unwrap());
     assert_eq!(create(&directory).0, 2);
     let empty = scratch.path().join("empty");
     fs::create_dir(&empty).unwrap();
     assert!(create(&empty).1.contains("exists already"));
     let (code, text) = create(&scratch.path().join("run/history.csv/x"));
     assert!(code == 4 && text.contains("cannot create"), "{text}");
-    assert!(refused(RunWriter::reopen(&directory).err().unwrap()).1.contains("another process"));
-    assert!(refused(RunWriter::reopen(&empty).err().unwrap()).1.contains("no manifest.json"));
+    assert!(shown(RunWriter::reopen(&directory).err().unwrap()).1.contains("another process"));
+    assert!(shown(RunWriter::reopen(&empty).err().unwrap()).1.contains("no manifest.json"));
     assert!(matches!(writer.history(&[1.0]), Err(RecordError::Width { got: 1, expected: 3 })));
     drop(writer);
     fs::write(directory.join("history.csv"), "step,time,\"A.uy, \"\"odd\"\"\"\n0,0,0\n1,x,0\n2,tor").unwrap();
-    let (code, text) = refused(Run::open(&directory).unwrap_err());
+    let (code, text) = shown(Run::open(&directory).unwrap_err());
     assert!(
         code == 2 && text.contains("history.csv:3 is damaged: `x` in column time is not a number"),
         "{text}"
     );
     fs::write(directory.join("history.csv"), "step").unwrap();
-    let text = refused(RunWriter::reopen(&directory).err().unwrap()).1;
+    let text = shown(RunWriter::reopen(&directory).err().unwrap()).1;
     assert!(text.contains("history.csv") && text.contains("4 bytes"), "{text}");
 }

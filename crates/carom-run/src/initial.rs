@@ -51,6 +51,11 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<B
     let version = |e: String| unreadable(format!("it was made by Carom {}: {e}", manifest.version));
     let old: Case = serde_json::from_value(manifest.case.clone()).map_err(|e| version(e.to_string()))?;
     let state: State = postcard::from_bytes(&payload).map_err(|e| version(e.to_string()))?;
+    let steps = old.time.steps();
+    if state.step as usize != steps {
+        let why = format!("its newest intact checkpoint is of step {} of {steps}", state.step);
+        return Err(wrong(format!("the run {directory} is damaged"), why, "run its case again"));
+    }
     let d = model.dimension;
     if old.dimension != d {
         let why = format!("it has dimension {}, the case {d}", old.dimension);

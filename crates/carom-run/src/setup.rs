@@ -1,6 +1,6 @@
 //! Builds the simulation of a case: the model with a stepper, on the grid of times.
 
-use carom_case::{Case, NewtonSpec, Problem, Problems, TangentRule};
+use carom_case::{Case, ContactLaw, NewtonSpec, Problem, Problems, TangentRule};
 use carom_mechanics::model::Model;
 use carom_mechanics::stability::{SAFETY, stable_step};
 use carom_mechanics::{
@@ -72,7 +72,7 @@ impl<'a> Setup<'a> {
         self
     }
 
-    /// Integrates with another implicit kernel than the case's scheme.
+    /// Integrates with another implicit kernel than the case's scheme, which must be implicit, too.
     #[must_use]
     pub fn kernel(self, kernel: impl Kernel + 'static) -> Self {
         Self { kernel: Some(Box::new(kernel)), ..self }
@@ -89,6 +89,23 @@ impl<'a> Setup<'a> {
             let why = "a law was given for a material that the case does not have";
             let help = "give it the name of one of the [[material]] tables";
             return Err(vec![Problem::new("material", format!("no material \"{name}\""), why, help)].into());
+        }
+        if let Some(kernel) = &self.kernel {
+            let scheme = &self.case.time.scheme;
+            if scheme.is_static() || scheme.nonsmooth().is_some() {
+                let what = format!("a kernel cannot replace the scheme {}", scheme.kind);
+                let why = "a kernel is a list of implicit stages with inertia";
+                let help = "give the case an implicit scheme such as chung-hulbert";
+                return Err(vec![Problem::new("time.scheme", what, why, help)].into());
+            }
+            if !kernel.has_predictor()
+                && let Some(k) = self.case.contacts.iter().position(|c| c.law == Some(ContactLaw::Predictor))
+            {
+                let what = "this kernel has no predictor";
+                let why = "law = \"predictor\" replaces y + Δt v in Newmark's formula";
+                let path = format!("contact[{k}].law");
+                return Err(vec![Problem::new(path, what, why, "leave `law` out")].into());
+            }
         }
         Ok(build(self.case, &self.materials)?)
     }
@@ -124,6 +141,12 @@ impl<'a> Setup<'a> {
     /// As [`Setup::build`].
     pub fn resume(self, state: State) -> Result<Simulation, Problems> {
         let model = self.build()?;
+        let sizes = [state.y.len(), state.v.len(), state.a.len()];
+        if sizes != [model.dofs(); 3] || state.pairs.len() != model.contacts.len() {
+            let what = format!("the state has {} dofs, the case {}", state.y.len(), model.dofs());
+            let why = "a run is resumed from a state of the same case";
+            return Err(vec![Problem::new("", what, why, "give a state of this case")].into());
+        }
         let stepper = stepper(self.case, &model, self.kernel)?;
         Ok(Simulation::resume(model, stepper, grid(self.case), state, self.threads))
     }

@@ -36,7 +36,7 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
         let expect = format!("expect={}", arm.expect.as_deref().unwrap_or("[]"));
         drafts.push(Draft {
             name: arm.name.clone(),
-            sets: common(file).chain(own).collect(),
+            sets: with_common(file, own.collect()),
             case: arm.case.clone(),
             expect: (expect, format!("{path}.expect")),
             path,
@@ -55,8 +55,8 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
             sets.push((assignment(key, &values[i]), format!("grid.\"{key}\"[{i}]")));
             name.push(format!("{key}={}", brief(&values[i])));
         }
-        sets.extend(common(file).collect::<Vec<_>>().into_iter().rev());
         sets.reverse();
+        let sets = with_common(file, sets);
         name.reverse();
         drafts.push(Draft {
             name: name.join(", "),
@@ -113,8 +113,7 @@ pub(crate) fn fine(file: &StudyFile, step: f64, end: f64) -> Vec<Draft> {
     let default =
         || vec![("time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.1 }".to_owned(), "fine".to_owned())];
     let run = |times: f64| {
-        let mut sets: Vec<_> =
-            common(file).chain(file.fine.iter().map(|entry| entry_at(entry, "fine"))).collect();
+        let mut sets = with_common(file, file.fine.iter().map(|entry| entry_at(entry, "fine")).collect());
         if !file.fine.iter().any(|(key, _)| key.starts_with("time.scheme")) {
             sets.extend(default());
         }
@@ -127,9 +126,15 @@ pub(crate) fn fine(file: &StudyFile, step: f64, end: f64) -> Vec<Draft> {
     [4.0, 2.0, 1.0].map(run).into()
 }
 
-/// What every arm changes, with the place where it stands.
-fn common(file: &StudyFile) -> impl Iterator<Item = (String, String)> {
-    file.set.iter().map(|entry| entry_at(entry, ""))
+/// What every arm changes, except for what this one changes itself, then its own.
+fn with_common(file: &StudyFile, own: Vec<(String, String)>) -> Vec<(String, String)> {
+    let key = |set: &str| set.split('=').next().unwrap_or_default().trim().to_owned();
+    let overridden = |set: &str| {
+        let common = key(set);
+        own.iter().any(|(own, _)| common == key(own) || common.starts_with(&format!("{}.", key(own))))
+    };
+    let common = file.set.iter().map(|entry| entry_at(entry, ""));
+    common.filter(|(set, _)| !overridden(set)).chain(own.iter().cloned()).collect()
 }
 
 fn entry_at((key, value): &(String, Value), path: &str) -> (String, String) {
@@ -192,7 +197,12 @@ pub(crate) fn placed(study: &Document, draft: &Draft, found: &Diagnostic, base: 
         line if line > 0 && found.file != "--set" => format!(" ({}:{line}:{})", found.file, found.column),
         _ => String::new(),
     };
-    let why = format!("arm \"{}\": {}{place}", draft.name, found.why);
+    // A mistake in what all arms have in common is one mistake.
+    let why = if path.starts_with("set.") {
+        format!("{}{place}", found.why)
+    } else {
+        format!("arm \"{}\": {}{place}", draft.name, found.why)
+    };
     study.diagnose(&Problem::new(path, &found.what, why, &found.help))
 }
 

@@ -34,7 +34,7 @@ fn record() -> History {
     ])
 }
 
-/// Each value by hand.
+/// Values calculated by hand.
 #[test]
 fn forms_and_arithmetic() {
     let record = record();

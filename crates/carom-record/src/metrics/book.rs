@@ -3,7 +3,7 @@
 use super::definition::Definition;
 use super::table::{COLUMNS, FREE, HISTORY, PRESSURE, WORK};
 
-/// All definitions as a table of the book, in Markdown.
+/// All definitions as a Markdown table for the book.
 pub fn book_table() -> String {
     let history = HISTORY.iter().map(|x| (String::new(), &x.0));
     let columns = COLUMNS.iter().chain(&FREE).map(|x| ("COLUMN:".to_owned(), &x.0));

@@ -1,15 +1,16 @@
 //! Metrics of a column in the first contact episode.
 //!
-//! Roughness of a column = TV/(2·range) − 1 over the first contact episode, from the row before it
-//! to the row that ends it: TV is Σ|xᵢ₊₁ − xᵢ|, range is max − min. One hump that ends where it
-//! began has 0, a monotone column −1/2, one that goes up and down k times through its whole range k
-//! − 1. It sees rows, not steps: a coarser `history_every` hides what lies between them.
+//! The roughness of a column is TV/(2·range) − 1 over the first contact episode, from the row
+//! before it to the row that ends it: TV is Σ|xᵢ₊₁ − xᵢ|, range is max − min. It is 0 for a single
+//! hump that returns to its initial value, −1/2 for a monotonic column, and k − 1 for a column that
+//! passes k times up and down through its whole range. It is computed from rows, so variation
+//! between the rows of a coarse `history_every` is not included.
 
 use super::episode::{Episode, first_episode};
 use super::samples::{extreme, peak_mean, total_variation};
 use crate::History;
 
-/// Roughness of a column in the first contact episode; none without one, or for a constant.
+/// Roughness of a column in the first contact episode; none without an episode or for a constant.
 pub fn column_roughness(history: &History, column: &str) -> Option<f64> {
     let episode = first_episode(history)?;
     let values = history.column(column)?;
@@ -19,8 +20,8 @@ pub fn column_roughness(history: &History, column: &str) -> Option<f64> {
     (range > 0.0).then(|| total_variation(values) / (2.0 * range) - 1.0)
 }
 
-/// Largest size of a column averaged over 1/16 of the first episode, by the trapezoidal rule
-/// between rows.
+/// Largest absolute mean of a column over a window of 1/16 of the first episode, with the
+/// trapezoidal rule between rows.
 pub(super) fn peak_of_means(history: &History, column: &str) -> Option<f64> {
     let (times, values) = (history.times(), history.column(column)?);
     let mut integral = Vec::with_capacity(values.len());
@@ -35,7 +36,7 @@ pub(super) fn peak_of_means(history: &History, column: &str) -> Option<f64> {
     peak_mean(times, &[&integral], (times[end?] - times[start]) / 16.0)
 }
 
-/// Rows with contact of the first episode.
+/// Values in the rows of the first episode.
 pub(super) fn in_contact<'a>(history: &'a History, column: &str) -> Option<&'a [f64]> {
     let Episode { start, end } = first_episode(history)?;
     let values = history.column(column)?;
@@ -60,8 +61,8 @@ mod tests {
         History::new(names, vec![(0..rows).map(|i| i as f64).collect(), active, probe])
     }
 
-    /// Stress −32 in every row of contact, rows 1 to 32 of 34, but 32 in the middle one: windows of
-    /// two rows. The mean over rows without it is −32; across it the trapezoids are 0.
+    /// Stress −32 in every row in contact, rows 1 to 32 of 34, except 32 in the middle row; windows
+    /// of two rows. The mean is −32 without the middle row, and 0 across it.
     #[test]
     fn mean_peaks_by_hand() {
         let mut values = vec![-32.0; 34];

@@ -1,14 +1,14 @@
-//! A column held against a reference's. The reference is taken linear between its rows; only rows
-//! within its span count.
+//! Comparison of a column with that of a reference. The reference is interpolated linearly between
+//! its rows; only rows within its span are used.
 //!
 //! ```text
 //! deviation          √( mean (c_i − r(t_i))² ) / range of r
-//! phase shift        the τ that minimises Σ (c_i − r(t_i − τ))², by Gauss and Newton; positive: late
+//! phase shift        the τ that minimises Σ (c_i − r(t_i − τ))², by the Gauss–Newton method; positive: late
 //! ```
 
 use super::samples::{at, extreme};
 
-/// Root mean square deviation over the range of the reference.
+/// Root mean square deviation, divided by the range of the reference.
 pub fn deviation(times: &[f64], values: &[f64], reference: (&[f64], &[f64])) -> Option<f64> {
     let range = extreme(reference.1, f64::gt)?.1 - extreme(reference.1, f64::lt)?.1;
     let squares = times
@@ -20,8 +20,7 @@ pub fn deviation(times: &[f64], values: &[f64], reference: (&[f64], &[f64])) -> 
     value.is_finite().then_some(value)
 }
 
-/// By how much a column is late; none where the iteration does not settle within a quarter of the
-/// span.
+/// Delay of a column; none if the iteration does not converge, or leaves a quarter of the span.
 pub fn phase_shift(times: &[f64], values: &[f64], reference: (&[f64], &[f64])) -> Option<f64> {
     let span = times.last()? - times.first()?;
     let width = 1e-3 * span;
@@ -61,9 +60,9 @@ mod tests {
         (times, values)
     }
 
-    /// A sine that is late by 0.05, and one that is early, on other rows than the reference's.
+    /// Sines with a delay and with an advance, on rows that differ from those of the reference.
     #[test]
-    fn a_late_sine_is_late() {
+    fn the_delay_of_a_sine() {
         let reference = sampled(4000, f64::sin);
         for late in [0.05, -0.2, 0.0] {
             let (t, c) = sampled(333, |t| (t - late).sin());

@@ -1,26 +1,25 @@
-//! What a metric is: its definition, its unit in those of the case, and the value a record has of
-//! it.
+//! Definition, unit and value of a metric.
 
 use std::borrow::Cow;
 
 use crate::History;
 
-/// What a metric is.
+/// Definition of a metric.
 #[derive(Clone, Copy, Debug)]
 pub struct Definition {
-    /// Name, as expectations and studies call it.
+    /// Name in expectations and studies.
     pub name: &'static str,
     /// Formula in columns of the history.
     pub formula: &'static str,
     /// Unit.
     pub unit: Unit,
-    /// Where the idea comes from.
+    /// Source of the definition.
     pub source: &'static str,
-    /// One line of words.
+    /// Meaning, in one line.
     pub meaning: &'static str,
 }
 
-/// Unit of a metric, in those of the case.
+/// Unit of a metric, in terms of the units of the case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum Unit {
@@ -32,12 +31,12 @@ pub enum Unit {
     Length,
     Stress,
     Second,
-    /// That of the column.
+    /// The unit of the column.
     Column,
 }
 
 impl Unit {
-    /// Its label in the units of a record.
+    /// Label in the units of a record.
     pub fn label(self, history: &History) -> String {
         let time = history.unit("time");
         match self {
@@ -56,7 +55,7 @@ impl Unit {
         }
     }
 
-    /// Its kind, in words.
+    /// Kind of unit, in words.
     pub fn word(self) -> &'static str {
         match self {
             Self::None => "–",
@@ -75,12 +74,12 @@ impl Unit {
 /// A metric of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Metric {
-    /// Name, as expectations and studies call it.
+    /// Name in expectations and studies.
     pub name: Cow<'static, str>,
-    /// Value; none when the record has no such thing (no contact, or it has not ended).
+    /// Value; none if it is not defined for the record (no contact, or contact has not ended).
     pub value: Option<f64>,
     /// Unit label.
     pub unit: String,
-    /// What it means.
+    /// Its meaning.
     pub definition: &'static str,
 }

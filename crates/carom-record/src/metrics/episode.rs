@@ -1,26 +1,26 @@
-//! Episodes of contact: spans of rows with `active` > 0, short gaps closed.
+//! Contact episodes: spans of rows with `active` > 0, including short interruptions.
 
 use std::ops::Range;
 
 use crate::History;
 
-/// Row numbers of an episode: the first with contact, and the first after it without, if it ended.
+/// Rows of an episode: the first one in contact, and the first one without contact after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Episode {
-    /// First row with contact.
+    /// First row in contact.
     pub start: usize,
-    /// First row without; none when contact lasts to the end of the record.
+    /// First row without contact; none if contact lasts to the end of the record.
     pub end: Option<usize>,
 }
 
 impl Episode {
-    /// Its rows, from the one before it to the one that ends it.
+    /// Its rows, from the row before it to the row that ends it.
     pub(super) fn span(self, history: &History) -> Range<usize> {
         self.start.saturating_sub(1)..self.end.map_or(history.times().len(), |end| end + 1)
     }
 }
 
-/// Episodes of contact; gaps shorter than `bridge` (in time) belong to them.
+/// Contact episodes; interruptions shorter than `bridge` (in time) do not end them.
 pub fn episodes(history: &History, bridge: f64) -> Vec<Episode> {
     let (times, active) = (history.times(), history.column("active").unwrap_or_default());
     let mut found: Vec<Episode> = Vec::new();
@@ -38,13 +38,13 @@ pub fn episodes(history: &History, bridge: f64) -> Vec<Episode> {
     found
 }
 
-/// The bridge the named metrics use: 2 % of the recorded time.
+/// The value of `bridge` for the named metrics: 2 % of the recorded time.
 pub fn default_bridge(history: &History) -> f64 {
     let times = history.times();
     0.02 * (times.last().unwrap_or(&0.0) - times.first().unwrap_or(&0.0))
 }
 
-/// First episode with the default bridge.
+/// The first episode, with the default value of `bridge`.
 pub fn first_episode(history: &History) -> Option<Episode> {
     episodes(history, default_bridge(history)).first().copied()
 }

@@ -1,5 +1,5 @@
-//! Metrics of a record: of its history, of one of its columns, and everything a study tabulates of
-//! a run.
+//! Metrics of a record: of its history, of one of its columns, and all metrics that a study
+//! tabulates for a run.
 
 use super::definition::{Definition, Metric, Unit};
 use super::episode::{default_bridge, episodes};
@@ -8,7 +8,7 @@ use super::ledger::energy_lost_at;
 use super::table::{COLUMNS, FREE, HISTORY, PRESSURE, WORK};
 use crate::{History, Run};
 
-/// Every named metric, in the order of [`HISTORY`], and the energy lost at each impact.
+/// Every named metric of a history, in the order of [`HISTORY`].
 pub fn all(history: &History) -> Vec<Metric> {
     let facts = Facts::of(history);
     let metric = |(definition, value): &(Definition, fn(&Facts) -> Option<f64>)| Metric {
@@ -20,7 +20,7 @@ pub fn all(history: &History) -> Vec<Metric> {
     HISTORY.iter().map(metric).collect()
 }
 
-/// Definition and value of a metric of a column; none where there is no such metric.
+/// Definition and value of a metric of a column; none if there is no such metric.
 pub fn of_column(history: &History, column: &str, what: &str) -> Option<(&'static Definition, Option<f64>)> {
     let (definition, value) = COLUMNS.iter().chain(&FREE).find(|(d, _)| d.name == what)?;
     Some((definition, value(history, column)))
@@ -34,18 +34,19 @@ pub fn probe_columns(run: &Run) -> Vec<&str> {
     columns.filter(|c| c.rsplit_once('.').is_some_and(|(probe, _)| names.contains(&probe))).collect()
 }
 
-/// Impacts whose energy a study tabulates one by one.
+/// Largest number of impacts whose energy loss a study tabulates one by one.
 const IMPACTS: usize = 9;
 
-/// Everything a study tabulates: [`all`], the energy lost at each of the first impacts where there
-/// are several, the pressure at the end of a static run, then the columns of the probes, then the
+/// All metrics that a study tabulates: [`all`], the energy lost in each of the first impacts if
+/// there are several, the pressure at the end of a static run, the columns of the probes, and the
 /// work.
 pub fn of_run(run: &Run) -> Vec<Metric> {
     let history = &run.history;
     let mut metrics = all(history);
     let impacts = episodes(history, default_bridge(history)).len().min(IMPACTS);
     for n in 1..=if impacts > 1 { impacts } else { 0 } {
-        let definition = "energy lost over the N-th episode of contact / largest kinetic + strain energy";
+        let definition =
+            "energy lost over the N-th contact episode, divided by the largest kinetic + strain energy";
         let value = energy_lost_at(history, n);
         metrics.push(Metric {
             name: format!("energy_lost:{n}").into(),

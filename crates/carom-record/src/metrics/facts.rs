@@ -1,16 +1,16 @@
-//! What the metrics of a history are made of: its episodes and the size of the contact force, found
-//! once.
+//! Quantities shared by the metrics of a history, computed once: its episodes and the magnitude of
+//! the contact force.
 
 use std::ops::Range;
 
 use super::episode::{Episode, default_bridge, episodes};
 use crate::History;
 
-/// What the metrics of a history are made of.
+/// Quantities shared by the metrics of a history.
 pub struct Facts<'a> {
     pub(super) history: &'a History,
     pub(super) episodes: Vec<Episode>,
-    /// Rows of the first episode, from the one before it to the one that ends it.
+    /// Rows of the first episode, from the row before it to the row that ends it.
     pub(super) rows: Option<Range<usize>>,
     pub(super) force: Vec<f64>,
 }
@@ -43,7 +43,7 @@ impl<'a> Facts<'a> {
     }
 }
 
-/// Columns `NAME_x` and `NAME_y`, as many as the dimension has.
+/// Columns `NAME_x` and, in dimension 2, `NAME_y`.
 pub(super) fn vector<'a>(history: &'a History, name: &str) -> Vec<&'a [f64]> {
     ["_x", "_y"].iter().filter_map(|axis| history.column(&format!("{name}{axis}"))).collect()
 }
@@ -53,7 +53,7 @@ pub(super) fn norms(vector: &[&[f64]]) -> Vec<f64> {
     (0..rows).map(|i| vector.iter().fold(0.0, |sum, v| f64::hypot(sum, v[i]))).collect()
 }
 
-/// Contact force of every row: its absolute value.
+/// Magnitude of the contact force in every row.
 pub fn contact_force(history: &History) -> Vec<f64> {
     norms(&vector(history, "contact_force"))
 }

@@ -1,5 +1,5 @@
-//! How smooth the contact force is, and how steady contact: numbers of the first episode, or of
-//! all.
+//! Smoothness of the contact force, and steadiness of contact, in the first episode or in all of
+//! them.
 //!
 //! ```text
 //! variation       TV = Σ |x_{n+1} − x_n|
@@ -7,17 +7,17 @@
 //! chatter         Σ (activations + releases) / (time in contact)
 //! ```
 //!
-//! N rows of the episode, taken as equally spaced in time. A force that is constant while contact
-//! lasts has no power above; nor has a smooth pulse.
+//! The N rows of the episode are assumed to be equally spaced in time. A force that is constant
+//! during contact has no power at high frequency, and a smooth pulse almost none.
 
 use super::facts::Facts;
 use super::samples::total_variation;
 
-/// Cycles per episode up to which a frequency counts as low.
+/// Largest number of cycles per episode that counts as a low frequency.
 const CYCLES: usize = 16;
 
-/// Share of the power of equally spaced samples above 16 cycles in their span; none for too few of
-/// them, or where all are zero.
+/// Fraction of the power of equally spaced samples above 16 cycles in their span; none for too few
+/// samples, or if all are zero.
 pub fn high_frequency(samples: &[f64]) -> Option<f64> {
     let n = samples.len();
     let power = samples.iter().map(|x| x * x).sum::<f64>();
@@ -25,7 +25,7 @@ pub fn high_frequency(samples: &[f64]) -> Option<f64> {
         return None;
     }
     let square = |k: usize| {
-        // The angle is reduced before the multiplication: k·n/N stays exact.
+        // k·n is reduced modulo N before the multiplication, which is exact.
         let angle = |i: usize| std::f64::consts::TAU * ((k * i) % n) as f64 / n as f64;
         let (re, im) = samples.iter().enumerate().fold((0.0, 0.0), |(re, im), (i, x)| {
             let (sin, cos) = angle(i).sin_cos();
@@ -34,7 +34,7 @@ pub fn high_frequency(samples: &[f64]) -> Option<f64> {
         re * re + im * im
     };
     let low = square(0) + 2.0 * (1..=CYCLES).map(square).sum::<f64>();
-    // Round-off alone makes it negative.
+    // Only round-off can make it negative.
     Some(f64::max(0.0, 1.0 - low / (n as f64 * power)))
 }
 
@@ -51,9 +51,9 @@ pub(super) fn chatter(facts: &Facts) -> Option<f64> {
     let [activations, releases] = ["activations", "releases"].map(|name| facts.history.column(name));
     let switches = activations?.iter().chain(releases?).sum::<f64>();
     let last = facts.history.times().len().checked_sub(1)?;
-    let lasting =
+    let duration =
         facts.episodes.iter().map(|e| facts.time(e.end.unwrap_or(last)) - facts.time(e.start)).sum::<f64>();
-    (lasting > 0.0).then(|| switches / lasting)
+    (duration > 0.0).then(|| switches / duration)
 }
 
 pub(super) fn mean_penetration(facts: &Facts) -> Option<f64> {
@@ -69,8 +69,8 @@ mod tests {
     use crate::metrics::all;
     use crate::{Column, History};
 
-    /// 1 + cos of k cycles in 128 samples has the power 128 + 64: above 16 cycles a third of it, up
-    /// to 16 none.
+    /// 1 + cos with k cycles in 128 samples has the power 128 + 64: a third of it is in the cosine,
+    /// which counts for k > 16.
     #[test]
     fn power_above_sixteen_cycles() {
         let wave = |k: f64| -> Vec<f64> {
@@ -85,8 +85,8 @@ mod tests {
         assert_eq!((high_frequency(&[1.0; 8]), high_frequency(&[0.0; 128])), (None, None));
     }
 
-    /// Contact in rows 2 to 4 and 7, Δt = 0.5: time in contact 1.5 + 0.5, three switches of each
-    /// kind. Force 0 4 1 4 0 over the first episode.
+    /// Contact in rows 2 to 4 and 7, Δt = 0.5: the time in contact is 1.5 + 0.5, with three
+    /// activations and three releases. The force in the first episode is 0 4 1 4 0.
     #[test]
     fn chatter_variation_and_depth_by_hand() {
         let column = |name: &str| Column {

@@ -1,12 +1,13 @@
-//! Where the energy went, from the ledger's columns. ΔE_i = total_i − total_0 − external_work_i is
-//! what the bodies gained beyond the work of loads and supports; it is 0 for elastic bodies. The
-//! ledger splits it (its columns are exact for the integrated equations, Krenk 2006):
+//! Energy balance, from the columns of the ledger. ΔE_i = total_i − total_0 − external_work_i is
+//! the energy that the bodies gained beyond the work of loads and supports; it is 0 for the exact
+//! motion of elastic bodies. The ledger splits it (its columns are exact for the integrated
+//! equations, Krenk 2006):
 //!
 //! ```text
-//! −ΔE = dissipation + (−contact_work)          the integrator's share, and that of contact forces and projections
+//! −ΔE = dissipation + (−contact_work)          by the integrator, and by contact forces and projections
 //! ```
 //!
-//! All are divided by the largest kinetic + strain energy of any row.
+//! All metrics are divided by the largest kinetic + strain energy of any row.
 
 use super::episode::Episode;
 use super::facts::Facts;
@@ -38,7 +39,7 @@ pub(super) fn drift(facts: &Facts) -> Option<f64> {
     Some(changes.iter().fold(0.0, |most, x| f64::max(most, x.abs())) / scale)
 }
 
-/// Last value of a cumulative column, over the scale.
+/// Last value of a cumulative column, divided by the scale.
 fn share(history: &History, column: &str) -> Option<f64> {
     Some(history.column(column)?.last()? / changes(history)?.1)
 }
@@ -62,7 +63,7 @@ pub(super) fn at_worst_impact(facts: &Facts) -> Option<f64> {
     losses.reduce(|worst, next| if next.abs() > worst.abs() { next } else { worst })
 }
 
-/// Energy lost over the n-th episode of contact, counted from 1; none where it did not end.
+/// Energy lost over the n-th contact episode, counted from 1; none if it did not end.
 pub fn energy_lost_at(history: &History, n: usize) -> Option<f64> {
     Facts::of(history).episodes.get(n.checked_sub(1)?).and_then(|e| over(history, *e))
 }
@@ -73,8 +74,8 @@ mod tests {
     use crate::Column;
     use crate::metrics::all;
 
-    /// Two impacts by hand. Energy 10 falls to 9 in rows 1 to 3, to 8.5 in flight, rises to 8.75 in
-    /// the second; the ledger says 1 of the 1.25 is the integrator's. A load did work 0 throughout;
+    /// Two impacts by hand. The energy 10 drops to 9 in rows 1 to 3 and to 8.5 in flight, and rises
+    /// to 8.75 in the second impact; the integrator dissipated 1 of the 1.25. No load does work;
     /// the largest kinetic + strain energy is 10.
     #[test]
     fn two_impacts_by_hand() {

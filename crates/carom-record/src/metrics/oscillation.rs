@@ -1,23 +1,24 @@
-//! Damping and period of a column that oscillates freely about zero, from the linear recurrence its
-//! rows follow (Prony 1795).
+//! Damping ratio and period of a column that oscillates freely about zero, from the linear
+//! recurrence of its rows (Prony 1795).
 //!
 //! ```text
 //! c_{n+1} = 2 Re z c_n − |z|² c_{n−1}         z: the principal eigenvalue of a step; both coefficients by least squares
 //! ξ = −ln|z|/arg z,   T = 2π Δt/arg z
 //! ```
 //!
-//! Only the second half of the record counts, where what the start excited besides is gone. It must
-//! hold a period, and the recurrence must explain all of its second differences but a hundredth:
-//! any other column is no free oscillation of one frequency.
+//! Only the second half of the record is used, where other modes excited at the start have decayed.
+//! It must contain a full period, and the residual of the recurrence must be at most a hundredth of
+//! the second differences; otherwise the column is not a free oscillation with one frequency.
 
 use std::f64::consts::TAU;
 
 use crate::History;
 
-/// Rows of the second half that are needed.
+/// Smallest number of rows in the second half.
 const LEAST: usize = 8;
-/// What the recurrence may leave unexplained, root mean square over that of the second differences.
-const REST: f64 = 1e-2;
+/// Largest residual of the recurrence: root mean square, relative to that of the second
+/// differences.
+const RESIDUAL: f64 = 1e-2;
 
 /// ln|z|, arg z and the step between rows.
 fn principal(history: &History, column: &str) -> Option<(f64, f64, f64)> {
@@ -36,9 +37,9 @@ fn principal(history: &History, column: &str) -> Option<(f64, f64, f64)> {
     let (ac, bc) = (of(|w| w[0] * w[2]), of(|w| w[1] * w[2]));
     let determinant = aa * bb - ab * ab;
     let (trace, square) = ((aa * bc - ab * ac) / determinant, (ab * bc - bb * ac) / determinant);
-    let rest = values.windows(3).map(|w| (w[2] - trace * w[1] + square * w[0]).powi(2)).sum::<f64>();
-    let curved = of(|w| (w[2] - 2.0 * w[1] + w[0]).powi(2));
-    if !(square > 0.0 && trace * trace < 4.0 * square && rest <= REST * REST * curved) {
+    let residual = values.windows(3).map(|w| (w[2] - trace * w[1] + square * w[0]).powi(2)).sum::<f64>();
+    let curvature = of(|w| (w[2] - 2.0 * w[1] + w[0]).powi(2));
+    if !(square > 0.0 && trace * trace < 4.0 * square && residual <= RESIDUAL * RESIDUAL * curvature) {
         return None;
     }
     let angle = (0.5 * trace / square.sqrt()).acos();
@@ -74,13 +75,13 @@ mod tests {
         )
     }
 
-    /// e^{−0.6t} cos 2t: ξ = 0.3 and T = π, whatever decays within the first half; a parabola or a
-    /// second frequency oscillates not by this rule.
+    /// e^{−0.6t} cos 2t has ξ = 0.3 and T = π, also with a second term that decays in the first
+    /// half. Columns with a parabola or a second frequency have neither.
     #[test]
-    fn a_decaying_cosine_has_the_damping_it_was_made_with() {
-        let made = history(|t| (-0.6 * t).exp() * (2.0 * t).cos() + 5.0 * (-15.0 * t).exp());
-        assert!((damping_ratio(&made, "c").unwrap() - 0.3).abs() < 1e-9);
-        assert!((period(&made, "c").unwrap() - std::f64::consts::PI).abs() < 1e-9);
+    fn damping_of_a_decaying_cosine() {
+        let decaying = history(|t| (-0.6 * t).exp() * (2.0 * t).cos() + 5.0 * (-15.0 * t).exp());
+        assert!((damping_ratio(&decaying, "c").unwrap() - 0.3).abs() < 1e-9);
+        assert!((period(&decaying, "c").unwrap() - std::f64::consts::PI).abs() < 1e-9);
         let steady = history(|t| (2.0 * t).cos());
         assert!(damping_ratio(&steady, "c").unwrap().abs() < 1e-12);
         for other in

@@ -1,29 +1,30 @@
-//! Metrics of the pressure between bodies at rest: of the last recorded step of a static run, from
-//! its rows of contact.csv.
+//! Metrics of the contact pressure at rest, from the rows of contact.csv of the last recorded step
+//! of a static run.
 //!
-//! Hertz's pressure of a line contact is half an ellipse, so that its square is a parabola in the
-//! tangential place s:
+//! Hertz's pressure in a line contact is half an ellipse, so its square is a parabola in the
+//! tangential coordinate s:
 //!
 //! ```text
 //! p² = p₀² (1 − ((s − c)/a)²)        fitted to p² at the nodes by least squares: linear in p₀², p₀²c/a², p₀²/a²
 //! ```
 //!
-//! (H. Hertz 1882; K. L. Johnson, *Contact Mechanics*, 1985, § 4.2.) Where the largest pressure is
-//! that of an outermost node the model is the half right or left of an axis of symmetry, and c is
-//! that node's place. Multipliers come as λ/weight, the mean pressure near a node. Of several
-//! contacts the one that carries most is meant.
+//! (H. Hertz 1882; K. L. Johnson, *Contact Mechanics*, 1985, § 4.2.) If the largest pressure is at
+//! an outermost node, the model is one half of a symmetric problem, and c is the coordinate of that
+//! node. Multipliers are recorded as λ/weight, the mean pressure near a node. Of several contacts,
+//! the one with the largest load is used.
 
 use super::samples::extreme;
 use crate::{ContactRow, Run};
 
-/// Peak and half-width of the ellipse closest to pressures at places.
+/// Peak and half-width of the ellipse fitted to pressures at given coordinates.
 ///
-/// Needs three different places (two in a half model); none where the best parabola has no peak.
+/// Needs three different coordinates (two in a half model); none if the fitted parabola has no
+/// maximum.
 pub fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
     let (first, last) = (places.iter().copied().reduce(f64::min)?, places.iter().copied().reduce(f64::max)?);
     let top = extreme(pressures, f64::gt).map(|(i, _)| places[i])?;
     let half = top == first || top == last;
-    // Places from −1 to 1 keep the normal equations well conditioned.
+    // Coordinates scaled to −1 … 1 keep the normal equations well conditioned.
     let (middle, scale) =
         if half { (top, last - first) } else { (0.5 * (first + last), 0.5 * (last - first)) };
     let size = pressures.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
@@ -50,7 +51,7 @@ pub fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
     (c < 0.0 && peak > 0.0).then(|| (size * peak.sqrt(), scale * (-peak / c).sqrt()))
 }
 
-/// Solution of three equations by Cramer's rule; none if singular.
+/// Solution of three linear equations by Cramer's rule; none if they are singular.
 fn solved(m: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
     let det = |m: [[f64; 3]; 3]| {
         (0..3)
@@ -72,7 +73,7 @@ fn solved(m: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
     })
 }
 
-/// The rows of the last recorded step of the contact that carries most.
+/// The rows of the last recorded step of the contact with the largest load.
 fn last_rows(run: &Run) -> Vec<&ContactRow<'static>> {
     let Some(last) = run.column("step").and_then(|s| s.last().copied()) else { return Vec::new() };
     let rows: Vec<_> = run.contact.iter().filter(|r| r.step as f64 == last).collect();
@@ -85,12 +86,12 @@ fn last_rows(run: &Run) -> Vec<&ContactRow<'static>> {
     rows.into_iter().filter(|r| r.contact == most).collect()
 }
 
-/// Places along the contact and pressures there, at the end of a static run; nothing of a motion,
-/// or without contact.
+/// Tangential coordinates and pressures at the end of a static run; none for a dynamic run, or
+/// without contact.
 fn at_rest(run: &Run) -> Option<(Vec<f64>, Vec<f64>)> {
     let kind = run.manifest.case.pointer("/time/scheme/kind").and_then(|k| k.as_str());
     let rows = if kind == Some("static") { last_rows(run) } else { Vec::new() };
-    // The tangent to the mean normal.
+    // Coordinates along the tangent that is orthogonal to the mean normal.
     let [x, y] = rows.iter().fold([0.0, 0.0], |n, r| std::array::from_fn(|i| n[i] + r.normal[i]));
     let length = f64::hypot(x, y);
     let places = rows.iter().map(|r| (y * r.point[0] - x * r.point[1]) / length).collect();
@@ -117,7 +118,7 @@ pub(crate) fn ellipse(run: &Run) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
 
-    /// Points of an ellipse give it back, wherever its middle is; so does its half.
+    /// Points of an ellipse with any centre give the ellipse, and so does a half of it.
     #[test]
     fn an_ellipse_is_found() {
         let (p0, a, c) = (0.025, 0.05, 3.0);
@@ -130,8 +131,8 @@ mod tests {
         }
     }
 
-    /// By hand: p² = 4, 3, 0 at s = 0, 1, 2 is 4 − s², so p₀ = 2 and a = 2; one place, or a valley,
-    /// is no ellipse.
+    /// By hand: p² = 4, 3, 0 at s = 0, 1, 2 is 4 − s², so p₀ = 2 and a = 2. A single point, or
+    /// constant pressure, gives no ellipse.
     #[test]
     fn few_points() {
         let (peak, half) = hertz(&[0.0, 1.0, 2.0], &[2.0, 3.0_f64.sqrt(), 0.0]).unwrap();

@@ -1,4 +1,4 @@
-//! Numbers of sampled values alone, whatever they are of.
+//! Functions of sampled values.
 //!
 //! ```text
 //! total variation    TV = Σ |xᵢ₊₁ − xᵢ|
@@ -6,7 +6,7 @@
 //! peak mean          max_t |P(t + w) − P(t)|/w
 //! ```
 
-/// Value of a column at a time, linear between rows.
+/// Value of a column at a time, linearly interpolated between rows.
 pub fn at(times: &[f64], values: &[f64], time: f64) -> Option<f64> {
     let i = times.partition_point(|&t| t < time);
     if times.get(i) == Some(&time) {
@@ -22,27 +22,27 @@ pub fn total_variation(values: &[f64]) -> f64 {
     values.windows(2).map(|w| (w[1] - w[0]).abs()).sum()
 }
 
-/// Total variation over the least a rise to the largest value and a fall needs, minus 1: 0 for a
-/// single hump. None for a constant.
+/// Total variation, divided by that of a single rise to the largest value and fall, minus 1: 0 for
+/// a single hump. None for a constant.
 pub fn roughness(values: &[f64]) -> Option<f64> {
     let top = extreme(values, f64::gt)?.1;
     let least = 2.0 * top - values.first()? - values.last()?;
     (least > 0.0).then(|| total_variation(values) / least - 1.0)
 }
 
-/// Largest mean over a window of time of the quantity whose integral is given: max |P(t + w) −
-/// P(t)|/w at recorded t, per component.
+/// Largest mean over a time window of the quantity whose integrals are given, one per component:
+/// max |P(t + w) − P(t)|/w over the recorded t.
 pub fn peak_mean(times: &[f64], integrals: &[&[f64]], window: f64) -> Option<f64> {
     let mean = |t: f64| {
         let change = |p: &&[f64]| Some((at(times, p, t + window)? - at(times, p, t)?) / window);
         integrals.iter().map(change).try_fold(0.0, |sum, f| Some(f64::hypot(sum, f?)))
     };
     let last = times.last()? - window;
-    // The window that ends with the record starts between rows.
+    // The last window, which ends with the record, may start between rows.
     times.iter().copied().filter(|&t| t <= last).chain([last]).filter_map(mean).reduce(f64::max)
 }
 
-/// Row and value that beats all others, the first of equals; NaN never wins.
+/// Row and value that beats all others, the first of equal ones; NaN is ignored.
 pub(crate) fn extreme(values: &[f64], beats: fn(&f64, &f64) -> bool) -> Option<(usize, f64)> {
     let finite = values.iter().copied().enumerate().filter(|(_, x)| !x.is_nan());
     finite.reduce(|best, next| if beats(&next.1, &best.1) { next } else { best })

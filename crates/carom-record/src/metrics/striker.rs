@@ -1,8 +1,9 @@
-//! The striker, the body whose centre moves fastest before the first contact, and how it comes off.
+//! The striker, which is the body whose centre moves fastest before the first contact, and its
+//! rebound.
 //!
 //! ```text
 //! restitution    −(v⁺·n)/(v⁻·n) of its centre; n along the impulse of the first episode
-//! apex           vertex of the parabola through the highest row of its centre and the neighbours
+//! apex           vertex of the parabola through the highest row of its centre and the adjacent rows
 //! ```
 
 use super::episode::{Episode, first_episode};
@@ -10,8 +11,8 @@ use super::facts::{Facts, norms, vector};
 use super::samples::extreme;
 use crate::History;
 
-/// Name of the body whose centre is fastest in the row before the first contact (the first row, if
-/// there is none).
+/// Name of the body whose centre moves fastest in the row before the first contact (without
+/// contact, in the first row).
 pub fn striker(history: &History) -> Option<&str> {
     let row = first_episode(history).map_or(0, |e| e.start.saturating_sub(1));
     let bodies = history.columns.iter().filter_map(|c| c.name.strip_suffix(".velocity_x"));
@@ -31,15 +32,15 @@ pub(super) fn restitution(history: &History, episode: Episode) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// Time and rise of the apex: the vertex of the parabola through the highest row and its
-/// neighbours.
+/// Time and height of the apex: the vertex of the parabola through the highest row and the adjacent
+/// rows.
 pub(super) fn apex(facts: &Facts) -> Option<(f64, f64)> {
     let history = facts.history;
     let center = *vector(history, &format!("{}.center", striker(history)?)).last()?;
     let after = facts.first()?.end?;
     let (i, top) = extreme(&center[after..], f64::gt).map(|(i, x)| (i + after, x))?;
     let (t, y) = (history.times(), center);
-    // Still rising when the record ends: the apex was not reached.
+    // The striker still rises when the record ends: the apex was not reached.
     if i + 1 == y.len() {
         return None;
     }
@@ -57,7 +58,7 @@ pub(super) fn apex(facts: &Facts) -> Option<(f64, f64)> {
 }
 
 /// Time at which the velocity of the striker's centre along the impulse of the first episode
-/// changes its sign, linear between rows.
+/// changes sign, linearly interpolated between rows.
 pub(super) fn turning_time(facts: &Facts) -> Option<f64> {
     let (history, rows) = (facts.history, facts.rows.clone()?);
     let impulse = [facts.impulse(0), facts.impulse(1)];

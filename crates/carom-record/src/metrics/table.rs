@@ -1,6 +1,5 @@
-//! The table of named metrics: name, formula, unit, source and meaning of each beside the function
-//! that computes it. Reports, studies, the book and expectations know a metric by its entry here
-//! and by nothing else.
+//! The table of named metrics: name, unit, formula, source and meaning of each, next to the
+//! function that computes it. Reports, studies, the book and expectations all use this table.
 
 use super::column::{column_roughness, in_contact, peak_of_means};
 use super::definition::{Definition, Unit};
@@ -22,7 +21,7 @@ const fn d(
 }
 
 const OWN: &str = "this project";
-const TABLES: &str = "Doyen, Ern, Piperno 2011 compare by it";
+const TABLES: &str = "used by Doyen, Ern, Piperno 2011";
 
 /// Metrics of a history.
 pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
@@ -42,21 +41,20 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             Unit::Time,
             "t_b, b the first row after the episode",
             TABLES,
-            "first recorded time without one after the first episode",
+            "first recorded time without an active contact node after the first episode",
         ),
         |f| Some(f.time(f.first()?.end?)),
     ),
-    (
-        d("contact_duration", Unit::Time, "t_b − t_a", TABLES, "from start to end of the first episode"),
-        |f| f.duration(),
-    ),
+    (d("contact_duration", Unit::Time, "t_b − t_a", TABLES, "duration of the first episode"), |f| {
+        f.duration()
+    }),
     (
         d(
             "contact_episodes",
             Unit::None,
-            "spans of rows with active > 0, gaps < 0.02 (t_last − t_0) closed",
+            "spans of rows with active > 0, interruptions < 0.02 (t_last − t_0) included",
             OWN,
-            "number of contact episodes; gaps under 2 % of the recorded time do not count",
+            "number of contact episodes; interruptions shorter than 2 % of the recorded time are ignored",
         ),
         |f| f.history.column("active").map(|_| f.episodes.len() as f64),
     ),
@@ -96,7 +94,7 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             Unit::Force,
             "max_t |P(t + w) − P(t)|/w, w = (t_b − t_a)/16",
             OWN,
-            "largest contact force averaged over 1/16 of the first episode",
+            "largest contact force averaged over a window of 1/16 of the first episode",
         ),
         |f| peak_mean(f.history.times(), &vector(f.history, "contact_impulse"), f.duration()? / 16.0),
     ),
@@ -106,7 +104,7 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             Unit::None,
             "TV(|F|)/(2 max |F| − |F|_{a−1} − |F|_b) − 1, TV = Σ |x_{n+1} − x_n|",
             "total variation: Harten 1983",
-            "total variation of the contact force over what one rise and one fall need, minus 1",
+            "total variation of the contact force in the first episode, divided by that of one rise and fall, minus 1",
         ),
         |f| roughness(f.force.get(f.rows.clone()?)?),
     ),
@@ -126,7 +124,7 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             Unit::None,
             "1 − Σ_{|k| ≤ 16} |F_k|²/(N Σ F_n²), F_k the discrete Fourier transform over the episode",
             "Parseval's identity",
-            "share of the contact force's power above 16 cycles per first episode",
+            "fraction of the power of the contact force above 16 cycles per first episode",
         ),
         force::high,
     ),
@@ -136,7 +134,7 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             Unit::PerTime,
             "Σ (activations + releases) / Σ (t_b − t_a)",
             OWN,
-            "switches of contact nodes, on and off, per time in contact",
+            "activations and releases of contact nodes, divided by the time in contact",
         ),
         force::chatter,
     ),
@@ -146,7 +144,7 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             Unit::None,
             "−(v⁺·n)/(v⁻·n), n along the impulse",
             "Newton's coefficient",
-            "velocity of the striker's centre along the impulse: after / before the first episode, sign reversed",
+            "ratio of the velocities of the striker's centre along the impulse after and before the first episode, sign reversed",
         ),
         |f| restitution(f.history, f.first()?),
     ),
@@ -156,7 +154,7 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             Unit::Time,
             "t with v(t)·n = 0, linear between rows",
             OWN,
-            "phase of the impact: time at which the striker's centre turns in the first episode",
+            "time at which the velocity of the striker's centre reverses in the first episode (phase of the impact)",
         ),
         turning_time,
     ),
@@ -166,7 +164,7 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             Unit::Length,
             "vertex of the parabola through the highest row and its neighbours, − y_0",
             OWN,
-            "highest rise of the striker's centre over its start, after the first episode",
+            "largest height of the striker's centre above its initial position, after the first episode",
         ),
         |f| apex(f).map(|a| a.1),
     ),
@@ -177,7 +175,7 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             Unit::None,
             "−ΔE_last/E*, ΔE = total − total_0 − external_work, E* = max (kinetic + strain)",
             "Krenk 2006",
-            "energy lost by the end / largest kinetic + strain energy; negative: created",
+            "energy lost by the end, divided by the largest kinetic + strain energy; negative if created",
         ),
         ledger::lost,
     ),
@@ -197,7 +195,7 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             Unit::None,
             "max |ΔE|/E*",
             "Krenk 2006",
-            "largest change of energy, up or down, at any time / largest kinetic + strain energy",
+            "largest change of energy, up or down, at any time, divided by the largest kinetic + strain energy",
         ),
         ledger::drift,
     ),
@@ -205,9 +203,9 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
         d(
             "energy_lost_impact",
             Unit::None,
-            "the ΔE(t_{a−1}) − ΔE(t_b) of largest size, over E*",
+            "the ΔE(t_{a−1}) − ΔE(t_b) of largest absolute value, over E*",
             OWN,
-            "energy lost over the impact that changes it most / largest kinetic + strain energy; energy_lost:N asks for the N-th",
+            "energy lost in the impact that changes it most, divided by the largest kinetic + strain energy; energy_lost:N is that of the N-th impact",
         ),
         ledger::at_worst_impact,
     ),
@@ -217,7 +215,7 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             Unit::None,
             "dissipation_last/E*",
             "Krenk 2006",
-            "energy the time integrator itself dissipated by the end / largest kinetic + strain energy",
+            "energy dissipated by the time integrator by the end, divided by the largest kinetic + strain energy",
         ),
         ledger::by_integrator,
     ),
@@ -227,27 +225,27 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             Unit::None,
             "−contact_work_last/E*",
             "Krenk 2006",
-            "energy that contact forces and projections took by the end / largest kinetic + strain energy",
+            "energy removed by contact forces and projections by the end, divided by the largest kinetic + strain energy",
         ),
         ledger::by_contact,
     ),
     (
-        d("penetration", Unit::Length, "max (0, −g)", TABLES, "deepest penetration of a secondary node"),
+        d("penetration", Unit::Length, "max (0, −g)", TABLES, "largest penetration of a secondary node"),
         |f| extreme(f.history.column("penetration")?, f64::gt).map(|x| x.1),
     ),
     (
         d(
             "penetration_mean",
             Unit::Length,
-            "mean of the deepest over the rows with active > 0",
+            "mean of max (0, −g) over the rows with active > 0",
             OWN,
-            "deepest penetration of a row, averaged over the rows in contact",
+            "largest penetration of a secondary node, averaged over the rows in contact",
         ),
         force::mean_penetration,
     ),
 ];
 
-/// Metrics of a probe's column `C`, called `C:min` and so on.
+/// Metrics of the column `C` of a probe, named `C:min` etc.
 pub const COLUMNS: [(Definition, fn(&History, &str) -> Option<f64>); 6] = [
     (d("min", Unit::Column, "min c", OWN, "smallest recorded value of the column"), |h, c| {
         extreme(h.column(c)?, f64::lt).map(|x| x.1)
@@ -261,7 +259,7 @@ pub const COLUMNS: [(Definition, fn(&History, &str) -> Option<f64>); 6] = [
             Unit::None,
             "TV(c)/(2 (max c − min c)) − 1",
             "total variation: Harten 1983",
-            "total variation over twice the range, minus 1, in the first contact episode: 0 for one hump",
+            "total variation divided by twice the range, minus 1, in the first contact episode; 0 for a single hump",
         ),
         column_roughness,
     ),
@@ -281,7 +279,7 @@ pub const COLUMNS: [(Definition, fn(&History, &str) -> Option<f64>); 6] = [
             Unit::Column,
             "max_t |∫ c dt|/w from t to t + w, w = (t_b − t_a)/16",
             OWN,
-            "largest size of the column averaged over 1/16 of the first contact episode",
+            "largest absolute mean of the column over a window of 1/16 of the first contact episode",
         ),
         peak_of_means,
     ),
@@ -291,14 +289,14 @@ pub const COLUMNS: [(Definition, fn(&History, &str) -> Option<f64>); 6] = [
             Unit::None,
             "1 − Σ_{|k| ≤ 16} |C_k|²/(N Σ c_n²)",
             "Parseval's identity",
-            "share of the column's power above 16 cycles per first contact episode",
+            "fraction of the power of the column above 16 cycles per first contact episode",
         ),
         |h, c| force::high_frequency(in_contact(h, c)?),
     ),
 ];
 
-/// Metrics of a column that oscillates freely, called like those of [`COLUMNS`]; none of any other
-/// column.
+/// Metrics of a column that oscillates freely, named like those of [`COLUMNS`]; not defined for
+/// other columns.
 pub const FREE: [(Definition, fn(&History, &str) -> Option<f64>); 2] = [
     (
         d(
@@ -311,12 +309,18 @@ pub const FREE: [(Definition, fn(&History, &str) -> Option<f64>); 2] = [
         oscillation::damping_ratio,
     ),
     (
-        d("period", Unit::Time, "2π Δt/arg z, z likewise", "Prony 1795", "period of that oscillation"),
+        d(
+            "period",
+            Unit::Time,
+            "2π Δt/arg z, z as for damping_ratio",
+            "Prony 1795",
+            "period of a column that oscillates freely about zero",
+        ),
         oscillation::period,
     ),
 ];
 
-/// Metrics of the pressure between bodies at the end of a static run; none of a motion.
+/// Metrics of the contact pressure at the end of a static run; not defined for dynamic runs.
 pub const PRESSURE: [(Definition, fn(&Run) -> Option<f64>); 4] = [
     (
         d(
@@ -324,7 +328,7 @@ pub const PRESSURE: [(Definition, fn(&Run) -> Option<f64>); 4] = [
             Unit::Stress,
             "min pᵢ",
             OWN,
-            "smallest pressure of the nodes in contact at the end of a static run",
+            "smallest pressure at a node in contact at the end of a static run",
         ),
         pressure::smallest,
     ),
@@ -334,7 +338,7 @@ pub const PRESSURE: [(Definition, fn(&Run) -> Option<f64>); 4] = [
             Unit::Stress,
             "max pᵢ",
             OWN,
-            "largest pressure of the nodes in contact at the end of a static run",
+            "largest pressure at a node in contact at the end of a static run",
         ),
         pressure::largest,
     ),
@@ -342,9 +346,9 @@ pub const PRESSURE: [(Definition, fn(&Run) -> Option<f64>); 4] = [
         d(
             "hertz_peak",
             Unit::Stress,
-            "p₀ of the least Σ (pᵢ² − p₀² (1 − ((sᵢ − c)/a)²))²",
+            "p₀ that minimises Σ (pᵢ² − p₀² (1 − ((sᵢ − c)/a)²))²",
             "Johnson 1985, § 4.2",
-            "peak of Hertz's ellipse through the pressures at the end of a static run",
+            "peak of Hertz's ellipse fitted to the pressures at the end of a static run",
         ),
         |r| pressure::ellipse(r).map(|fit| fit.0),
     ),
@@ -352,17 +356,17 @@ pub const PRESSURE: [(Definition, fn(&Run) -> Option<f64>); 4] = [
         d(
             "hertz_half_width",
             Unit::Length,
-            "a of that ellipse",
+            "a of the fit of hertz_peak",
             "Johnson 1985, § 4.2",
-            "half-width of that ellipse",
+            "half-width of Hertz's ellipse fitted to the pressures at the end of a static run",
         ),
         |r| pressure::ellipse(r).map(|fit| fit.1),
     ),
 ];
 
-/// Metrics of the work.
+/// Metrics of the computational work.
 pub const WORK: [(Definition, fn(&Run) -> Option<f64>); 6] = [
-    (d("steps", Unit::None, "counter steps", OWN, "time steps of the grid done"), |r| count(r, "steps")),
+    (d("steps", Unit::None, "counter steps", OWN, "completed time steps"), |r| count(r, "steps")),
     (d("newton_iterations", Unit::None, "counter newton", OWN, "Newton iterations of all steps"), |r| {
         count(r, "newton")
     }),
@@ -376,7 +380,7 @@ pub const WORK: [(Definition, fn(&Run) -> Option<f64>); 6] = [
             Unit::None,
             "counter factorisations",
             OWN,
-            "factorisations of the linear systems, of the start and of projections included",
+            "factorisations of linear systems, including those of the start and of projections",
         ),
         |r| count(r, "factorisations"),
     ),
@@ -386,7 +390,7 @@ pub const WORK: [(Definition, fn(&Run) -> Option<f64>); 6] = [
             Unit::Second,
             "timing cpu",
             OWN,
-            "processor seconds of the thread that computed the steps, output excluded",
+            "processor seconds of the thread that computed the steps, without output",
         ),
         |r| r.manifest.timings.get("cpu").copied(),
     ),
@@ -396,7 +400,7 @@ pub const WORK: [(Definition, fn(&Run) -> Option<f64>); 6] = [
             Unit::Second,
             "timing total",
             OWN,
-            "wall seconds of all processes that computed the run, output included",
+            "wall seconds of all processes that computed the run, including output",
         ),
         |r| r.manifest.timings.get("total").copied(),
     ),

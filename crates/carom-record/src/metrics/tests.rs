@@ -1,5 +1,5 @@
-//! A record whose metrics are known by hand: free fall, a parabolic force pulse of the contact,
-//! free flight.
+//! A record whose metrics are calculated by hand: free flight, a parabolic pulse of the contact
+//! force, free flight.
 
 use super::*;
 use crate::question::{Question, Window};
@@ -19,9 +19,9 @@ fn history(columns: &[(&str, Vec<f64>)]) -> History {
     History::new(columns.iter().map(describe).collect(), columns.iter().map(|(_, v)| v.clone()).collect())
 }
 
-/// Contact in 1 ≤ t < 2 of 0 ≤ t ≤ 4, Δt = 1/16. Impulse along y from 0 to 9: force 54 s(1 − s),
-/// peak 13.5 in the middle. The ball falls with −4 and leaves with +3 − 2(t − 2): apex 2.25 above
-/// where it leaves, at t = 3.5.
+/// Contact in 1 ≤ t < 2 of 0 ≤ t ≤ 4, Δt = 1/16. The impulse along y is 9, with the force 54 s(1 −
+/// s) and its peak 13.5 in the middle. The ball falls with −4 and leaves with +3 − 2(t − 2): the
+/// apex is 2.25 above the point where it leaves, at t = 3.5.
 fn bounce() -> History {
     let times: Vec<f64> = (0..=64).map(|i| f64::from(i) / 16.0).collect();
     let map = |f: fn(f64) -> f64| times.iter().map(|&t| f(t)).collect::<Vec<_>>();
@@ -65,27 +65,27 @@ fn a_bounce_by_hand() {
         ("contact_start", 1.0, 0.0),
         ("contact_end", 2.0, 0.0),
         ("contact_duration", 1.0, 0.0),
-        // The single open row at 1.25 lasts 1/16 < 2 % of 4 = 0.08.
+        // The single row without contact, at 1.25, lasts 1/16 < 2 % of 4 = 0.08.
         ("contact_episodes", 1.0, 0.0),
         ("impulse_x", 0.0, 0.0),
         ("impulse_y", 9.0, 1e-14),
         ("peak_force", 13.5, 1e-14),
-        // Window 1/16 beside the middle: [P(1.5 + 1/16) − P(1.5)]·16.
+        // A window of 1/16 next to the middle: [P(1.5 + 1/16) − P(1.5)]·16.
         ("peak_mean_force", 9.0 * 16.0 * (0.5625 * 0.5625 * 1.875 - 0.5), 1e-12),
         ("force_roughness", 0.0, 1e-14),
         ("force_variation", 27.0, 1e-13),
         ("restitution", 0.75, 0.0),
-        // −4 in the row before contact, 3 in the next.
+        // −4 in the row before contact, 3 in the next row.
         ("turning_time", 15.0 / 16.0 + 4.0 / 7.0 / 16.0, 1e-15),
         ("energy_drift", 0.15, 1e-15),
         ("energy_lost_impact", 0.15, 1e-15),
         ("apex", 2.0 + 2.25 - 7.0, 1e-13),
         ("apex_time", 3.5, 1e-13),
-        // total 8 → 6, work −0.5; scale 10 at t = 1.5. There 6 − 8 + 3 = 1 was created.
+        // total 8 → 6, work −0.5; scale 10 at t = 1.5. At this time 6 − 8 + 3 = 1 is created.
         ("energy_lost", 0.15, 1e-15),
         ("energy_created", 0.1, 1e-15),
         ("penetration", 1e-3, 0.0),
-        // One row of fifteen in contact: that at 1.25 is open.
+        // One of fifteen rows in contact; the row at 1.25 is not.
         ("penetration_mean", 1e-3 / 15.0, 1e-18),
     ];
     let metrics = all(&history);
@@ -117,7 +117,7 @@ fn no_contact_and_contact_without_an_end() {
 }
 
 #[test]
-fn roughness_counts_what_goes_up_and_down_again() {
+fn roughness_counts_additional_humps() {
     assert_eq!(roughness(&[0.0, 1.0, 3.0, 3.0, 0.0]), Some(0.0));
     assert_eq!(roughness(&[0.0, 3.0, 0.0, 3.0, 0.0]), Some(1.0));
     assert_eq!(roughness(&[0.0, 0.0]), None);
@@ -125,7 +125,7 @@ fn roughness_counts_what_goes_up_and_down_again() {
 
 #[test]
 fn the_window_may_lie_between_rows() {
-    // Force 1 on [0, 1], 3 on [1, 2], 1 on [2, 3]: impulse 0 1 4 5.
+    // Force 1 on [0, 1], 3 on [1, 2] and 1 on [2, 3]: impulses 0 1 4 5.
     let (times, impulse) = ([0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 4.0, 5.0]);
     assert_eq!(peak_mean(&times, &[&impulse], 0.5), Some(3.0));
     assert_eq!(peak_mean(&times, &[&impulse], 2.0), Some(2.0));

@@ -1,4 +1,4 @@
-//! An arm of a study: one simulation, as the manifest has it.
+//! An arm of a study: one variant that is simulated, as stored in the manifest.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,14 +12,14 @@ pub struct Arm {
     pub name: String,
     /// Its run directory, relative to the study's.
     pub directory: String,
-    /// What it changes in the case, `key=value`.
+    /// Its changes to the case, `key=value`.
     pub sets: Vec<String>,
-    /// Time steps.
+    /// Number of time steps.
     pub steps: u64,
-    /// What it is to the study.
+    /// Its role in the study.
     #[serde(default)]
     pub role: Role,
-    /// The case file it names instead of the study's.
+    /// Its case file, if it is not that of the study.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub case_path: Option<String>,
     /// The case as resolved.
@@ -27,15 +27,16 @@ pub struct Arm {
 }
 
 impl Arm {
-    /// What is expected of its record.
+    /// Its expectations.
     pub fn expects(&self) -> Vec<Expect> {
         self.case.get("expects").and_then(|e| serde_json::from_value(e.clone()).ok()).unwrap_or_default()
     }
 }
 
-/// The step of an arm: what it sets the key to, or what its case has; 1/n for a number of cells.
+/// The step of an arm: the value it sets for the key, or that of its case; 1/n for a number of
+/// cells.
 pub fn step(arm: &Arm, key: &str) -> Option<f64> {
-    let set = arm.sets.iter().find_map(|set| set.strip_prefix(key)?.trim_start().strip_prefix('='));
+    let set = arm.sets.iter().rev().find_map(|set| set.strip_prefix(key)?.trim_start().strip_prefix('='));
     let value = match set {
         Some(text) => {
             let first = text.trim().trim_start_matches('[').split([',', ']']).next()?;

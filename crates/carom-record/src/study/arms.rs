@@ -1,5 +1,5 @@
-//! What is asked of the arms of a study, gathered arm by arm, so that only one record is in memory
-//! at a time: metrics, and the columns somebody asks for.
+//! Numbers and columns of the arms that claims and expectations use, gathered arm by arm so that
+//! only one record is in memory at a time.
 
 use std::collections::BTreeMap;
 
@@ -13,11 +13,11 @@ pub struct ArmRecords {
     metrics: BTreeMap<(String, String), Result<f64, String>>,
     columns: BTreeMap<(String, String), [Vec<f64>; 3]>,
     /// Why an arm has no numbers.
-    lacking: BTreeMap<String, String>,
+    missing: BTreeMap<String, String>,
 }
 
 impl ArmRecords {
-    /// Takes what the questions and columns ask of an arm from its record.
+    /// Takes the metrics and columns of an arm that are used by questions and series.
     pub(super) fn gather(
         &mut self,
         arm: &str,
@@ -29,13 +29,13 @@ impl ArmRecords {
         let stopped = f64::from(u8::from(run.manifest.status == Status::Failed));
         self.put_metric(arm, "stopped", stopped);
         if run.manifest.status != Status::Finished {
-            let reason = run.manifest.reason.as_deref().unwrap_or("it has not ended");
-            self.lacking.insert(arm.to_owned(), format!("arm \"{arm}\" stopped: {reason}"));
+            let reason = run.manifest.reason.as_deref().unwrap_or("it has not finished");
+            self.missing.insert(arm.to_owned(), format!("arm \"{arm}\" stopped: {reason}"));
             return;
         }
         let key = |name: &str| (arm.to_owned(), name.to_owned());
         let columns = |series: &Series| series.columns.quantities().into_iter().cloned().collect::<Vec<_>>();
-        let mut asked: Vec<Asked> = series.iter().copied().flat_map(columns).collect();
+        let mut used: Vec<Asked> = series.iter().copied().flat_map(columns).collect();
         for quantity in questions.iter().flat_map(|q| q.quantities()) {
             match quantity {
                 Quantity::Metric(name, of) if of.as_deref() == Some(arm) && name != "stopped" => {
@@ -44,13 +44,13 @@ impl ArmRecords {
                     self.metrics.insert(key(name), value);
                 }
                 Quantity::Metric(..) => {}
-                Quantity::Reduced(_, series) => asked.extend(columns(series)),
+                Quantity::Reduced(_, series) => used.extend(columns(series)),
             }
         }
-        for asked in asked.iter().filter(|a| a.arm.as_deref() == Some(arm)) {
-            if let Ok(rows) = question::rows(&run.history, &asked.column) {
+        for name in used.iter().filter(|a| a.arm.as_deref() == Some(arm)).map(|a| &a.column) {
+            if let Ok(rows) = question::rows(&run.history, name) {
                 let rows = [rows.times.into_owned(), rows.steps.into_owned(), rows.values.into_owned()];
-                self.columns.insert(key(&asked.column), rows);
+                self.columns.insert(key(name), rows);
             }
         }
     }
@@ -60,20 +60,20 @@ impl ArmRecords {
     }
 
     fn none(&self, arm: &str, what: &str) -> String {
-        self.lacking.get(arm).cloned().unwrap_or_else(|| format!("arm \"{arm}\" has no {what}"))
+        self.missing.get(arm).cloned().unwrap_or_else(|| format!("arm \"{arm}\" has no {what}"))
     }
 }
 
-/// The arm a quantity names; in a study every one must.
+/// The arm of a quantity; in a study every quantity must name one.
 fn named<'a>(arm: Option<&'a str>, what: &str) -> Result<&'a str, String> {
-    arm.ok_or_else(|| format!("of which arm? write `{what} of \"ARM\"`"))
+    arm.ok_or_else(|| format!("`{what}` names no arm: write `{what} of \"ARM\"`"))
 }
 
 impl Question {
-    /// Whether every quantity names its arm.
+    /// Checks that every quantity names its arm.
     ///
     /// # Errors
-    /// In words, which does not.
+    /// A quantity that does not.
     pub fn of_arms(&self) -> Result<(), String> {
         for quantity in self.quantities() {
             match quantity {

@@ -1,5 +1,5 @@
-//! What a study tried on one of its own arms, `checks.json`, and the fingerprint of a record by
-//! which two are told to have the same bits.
+//! Repetitions of one arm of a study, `checks.json`, and the fingerprint of a record, by which two
+//! records are compared bit for bit.
 
 use std::fs;
 use std::path::Path;
@@ -8,14 +8,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::{RecordError, files};
 
-/// Tables whose every byte is a result; the others hold times of the clock.
+/// Files that contain results only; the others contain wall times.
 const TABLES: [&str; 2] = ["history.csv", "contact.csv"];
 
-/// blake3 of `history.csv` and `contact.csv` of a run directory, each with its length, in
+/// BLAKE3 hash of `history.csv` and `contact.csv` of a run directory, each with its length, in
 /// hexadecimal.
 ///
 /// # Errors
-/// What the machine refused.
+/// Input/output or system error.
 pub fn fingerprint(run: &Path) -> Result<String, RecordError> {
     let mut hasher = blake3::Hasher::new();
     for name in TABLES {
@@ -29,7 +29,7 @@ pub fn fingerprint(run: &Path) -> Result<String, RecordError> {
     Ok(hasher.finalize().to_hex().to_string())
 }
 
-/// `checks.json`: an arm computed twice more.
+/// `checks.json`: an arm that was computed two more times.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Checks {
     /// Its name.
@@ -38,18 +38,18 @@ pub struct Checks {
     pub fingerprint: String,
     /// Threads of the first repetition, and its fingerprint.
     pub threads: (usize, String),
-    /// The step after which the second repetition was stopped, to be resumed from its files, and
+    /// The step after which the second repetition was stopped and then resumed from its files, and
     /// its fingerprint.
     pub resumed: (u64, String),
-    /// Pairs that touched at that step.
+    /// Number of active pairs at that step.
     pub active_pairs: usize,
 }
 
 impl Checks {
-    /// Of a study directory; none where nothing was tried.
+    /// Reads the checks of a study directory, if there are any.
     ///
     /// # Errors
-    /// What the machine refused, or where the file is damaged.
+    /// Input/output or system error, or a damaged file.
     pub fn read(study: &Path) -> Result<Option<Self>, RecordError> {
         let path = study.join("checks.json");
         match fs::read(&path) {
@@ -61,16 +61,16 @@ impl Checks {
                     &path,
                     line,
                     error.to_string(),
-                    "delete it: it will say nothing of restarts then",
+                    "delete it; the page then shows no check of restarts",
                 )
             }),
         }
     }
 
-    /// Writes it into a study directory.
+    /// Writes the checks into a study directory.
     ///
     /// # Errors
-    /// What the machine refused.
+    /// Input/output or system error.
     pub fn write(&self, study: &Path) -> Result<(), RecordError> {
         let path = study.join("checks.json");
         let text = serde_json::to_vec_pretty(self).map_err(|e| RecordError::io("write", &path)(e.into()))?;

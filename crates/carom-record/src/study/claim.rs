@@ -1,4 +1,4 @@
-//! Claims: two expressions in numbers of the arms' records, and which of them is larger.
+//! Claims: comparisons of two expressions in numbers of the arms' records.
 //!
 //! ```text
 //! claim := question ( < | <= | > | >= ) question        as in [`crate::question`], every quantity with `of "ARM"`
@@ -22,13 +22,13 @@ pub struct Claim {
 /// A claim with its numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// What was claimed.
+    /// The claim.
     pub claim: Claim,
-    /// Value left of the comparison; none when an arm did not finish or has no such metric.
+    /// Value on the left of the comparison; none if an arm did not finish or has no such metric.
     pub left: Option<f64>,
-    /// Value right of it.
+    /// Value on the right.
     pub right: Option<f64>,
-    /// Whether it holds; none when it cannot be told.
+    /// Whether it holds; none if it cannot be decided.
     pub holds: Option<bool>,
 }
 
@@ -80,7 +80,7 @@ impl Comparison {
     /// Parses `left > right`.
     ///
     /// # Errors
-    /// In words, what is not as it should be.
+    /// What is wrong with the text.
     pub fn parse(text: &str) -> Result<Self, String> {
         let tokens = tokens(text)?;
         let operator = |token: &Token| match token.word()? {
@@ -93,7 +93,7 @@ impl Comparison {
         let found: Vec<_> = tokens.iter().enumerate().filter_map(|(i, t)| Some((i, operator(t)?))).collect();
         let [(at, operator)] = found[..] else {
             return Err(format!(
-                "it has {} comparisons (<, <=, >, >= between blanks); it needs one",
+                "it has {} comparisons (<, <=, >, >= with blanks on both sides); exactly one is needed",
                 found.len()
             ));
         };
@@ -104,7 +104,7 @@ impl Comparison {
         Ok(Self { sides, operator })
     }
 
-    /// Names of the arms it speaks of.
+    /// Names of the arms it uses.
     pub fn arms(&self) -> Vec<&str> {
         self.questions().iter().flat_map(Question::arms).flatten().collect()
     }
@@ -141,13 +141,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said() {
+    fn errors_say_what_is_wrong() {
         let wrong = |text: &str| Comparison::parse(text).unwrap_err();
         assert!(wrong("r of 'a'").contains("0 comparisons"));
-        assert!(wrong("r of 'a' > r of b").contains("no number of a record"));
-        assert!(wrong("r > 1").contains("of which arm"));
+        assert!(wrong("r of 'a' > r of b").contains("not a valid quantity"));
+        assert!(wrong("r > 1").contains("names no arm"));
         assert!(wrong("r of 'a > 1").contains("not closed"));
-        assert!(wrong("r of 'a' 2 > 1").contains("no number of a record"));
+        assert!(wrong("r of 'a' 2 > 1").contains("not a valid quantity"));
         assert!(wrong("r of 'a' > ").contains("missing"));
     }
 }

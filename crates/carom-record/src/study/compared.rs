@@ -1,5 +1,5 @@
-//! An arm held against the reference: columns by their deviation, as a whole and in the smooth
-//! phases before and after the first contact; how late it is.
+//! Comparison of an arm with the reference: deviations of columns, over all rows and in the smooth
+//! phases before and after the first contact, and its delay.
 
 use super::arm::step;
 use super::manifest::StudyManifest;
@@ -7,7 +7,7 @@ use super::reference::{FORCE, Reference, Standing, Trajectory};
 use crate::metrics::{self, phase_shift};
 use crate::order::from_errors;
 
-/// A column of an arm against the reference's, relative to the range of the reference.
+/// Deviations of a column from that of the reference, relative to the range of the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deviated {
     /// The column.
@@ -16,20 +16,20 @@ pub struct Deviated {
     pub whole: Option<f64>,
     /// Over the rows before the first contact of the reference.
     pub before: Option<f64>,
-    /// Over the rows after it.
+    /// Over the rows after the first contact.
     pub after: Option<f64>,
 }
 
-/// An arm compared.
+/// An arm compared with the reference.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Compared {
     /// Its columns.
     pub columns: Vec<Deviated>,
-    /// The column whose phase was compared, and by how much it is late.
+    /// The column whose phase was compared, and its delay.
     pub late: Option<(String, f64)>,
 }
 
-/// Whether a column tells where things are: displacements and centres.
+/// Whether a column is a displacement or the position of a centre.
 pub fn is_trajectory(column: &str) -> bool {
     column.rsplit('.').next().is_some_and(|q| ["ux", "uy", "center_x", "center_y"].contains(&q))
 }
@@ -40,7 +40,8 @@ pub fn is_stress(column: &str) -> bool {
 }
 
 impl Compared {
-    /// Holds an arm against a reference whose first contact lasts over `contact`.
+    /// Compares an arm with a reference; `contact` is the interval of the first contact of the
+    /// reference.
     pub fn of(arm: &Trajectory, reference: &Reference, contact: Option<(f64, f64)>) -> Self {
         let deviated = |(column, values): (&String, &Vec<f64>)| {
             let known = reference.column(column)?;
@@ -68,7 +69,7 @@ impl Compared {
         self.columns.iter().find(|c| c.column == name)
     }
 
-    /// Root mean square of the deviations of some columns.
+    /// Root mean square of the deviations of several columns.
     pub fn mean(&self, columns: &[&str]) -> Option<f64> {
         let squares: Option<Vec<f64>> =
             columns.iter().map(|c| Some(self.column(c)?.whole?.powi(2))).collect();
@@ -76,22 +77,22 @@ impl Compared {
     }
 }
 
-/// The orders a method shows in a column at its two finest levels: while motion is smooth before
-/// the first contact, and after it, across the impact.
+/// Orders of convergence of a method in a column at its two finest levels: in the smooth motion
+/// before the first contact, and after it, across the impact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhaseOrders {
     /// The method.
     pub method: String,
     /// The column.
     pub column: String,
-    /// Before the contact.
+    /// Before the first contact.
     pub smooth: Result<f64, String>,
-    /// After it.
+    /// After the first contact.
     pub across: Result<f64, String>,
 }
 
-/// Orders from errors against the reference; an error within three times its uncertainty gives
-/// none.
+/// Orders from errors with respect to the reference; there is none if the error is less than three
+/// times the uncertainty of the reference.
 pub fn phase_orders(
     method: &str,
     column: &str,
@@ -105,14 +106,16 @@ pub fn phase_orders(
     };
     let order = |of: fn(&Deviated) -> Option<f64>| {
         let errors = [coarse, fine].map(|c| c.column(column).and_then(of));
-        let [Some(before), Some(after)] = errors else { return Err("there are no such rows".to_owned()) };
+        let [Some(before), Some(after)] = errors else {
+            return Err("there are no rows in this phase".to_owned());
+        };
         let uncertainty = uncertainty.clone()?;
         if after <= 1e-9 {
-            return Err("exact but for round-off".to_owned());
+            return Err("exact up to round-off".to_owned());
         }
         if after <= 3.0 * uncertainty {
             return Err(format!(
-                "its error, {after:.1e}, is within three times the reference's, {uncertainty:.1e}"
+                "its error, {after:.1e}, is less than three times the uncertainty of the reference, {uncertainty:.1e}"
             ));
         }
         from_errors([*h1, *h2], [before, after])
@@ -125,7 +128,7 @@ pub fn phase_orders(
     })
 }
 
-/// Orders of every method of a design in the columns that tell where things are.
+/// Orders of every method of a design in the displacements and positions of centres.
 pub(super) fn orders_by_phase(
     manifest: &StudyManifest,
     compared: &[Option<Compared>],
@@ -145,7 +148,7 @@ pub(super) fn orders_by_phase(
     found
 }
 
-/// The columns of a reference that tell where things are and are established.
+/// The established columns of a reference of the given kind that vary.
 pub fn established(reference: &Reference, kind: fn(&str) -> bool) -> Vec<&str> {
     let known = |c: &&str| {
         *c != FORCE && kind(c) && reference.uncertainty(c).established().is_some() && varies(reference, c)
@@ -161,19 +164,19 @@ fn varies(reference: &Reference, column: &str) -> bool {
 mod tests {
     use super::*;
 
-    fn kept(n: u32, f: impl Fn(f64) -> f64) -> Trajectory {
+    fn sampled(n: u32, f: impl Fn(f64) -> f64) -> Trajectory {
         let times: Vec<f64> = (0..=n).map(|i| f64::from(i) / f64::from(n)).collect();
         let values = times.iter().map(|t| f(*t)).collect();
         Trajectory { times, columns: [("A.uy".to_owned(), values)].into(), metrics: Vec::new() }
     }
 
-    /// Errors made by hand: h² before t = 1/2, h after it; against three identical runs.
+    /// Given errors, h² before t = 1/2 and h after it, with respect to three identical runs.
     #[test]
     fn orders_of_the_phases() {
-        let exact = || kept(64, |t| t);
+        let exact = || sampled(64, |t| t);
         let reference = Reference::of_runs("r".into(), vec![exact(), exact(), exact()]);
         let arm = |h: f64| {
-            Compared::of(&kept(32, |t| t + if t < 0.5 { h * h } else { h }), &reference, Some((0.5, 0.5)))
+            Compared::of(&sampled(32, |t| t + if t < 0.5 { h * h } else { h }), &reference, Some((0.5, 0.5)))
         };
         let (coarse, fine) = (arm(0.1), arm(0.05));
         let orders = phase_orders("m", "A.uy", &[(0.1, &coarse), (0.05, &fine)], &reference).unwrap();

@@ -1,60 +1,61 @@
-//! How the arms of a study were made comparable, and what its user is after.
+//! How the arms of a study are made comparable, and by which goal they are ranked.
 
 use serde::{Deserialize, Serialize};
 
-/// What makes methods comparable.
+/// The quantity in which methods are matched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
-    /// Every method at the same steps.
+    /// Every method has the same steps.
     MatchedStep,
-    /// Every method at the step at which it costs what one of them costs.
+    /// Every method has the step at which its cost equals that of `cost_of`.
     MatchedCost,
 }
 
-/// A design: methods, and the levels at which each of them runs.
+/// A design: methods, and the levels at which each of them is run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Design {
-    /// What is equal at a level.
+    /// What is matched at a level.
     pub kind: Kind,
-    /// The method whose cost the others are given, with matched cost or by their own wish.
+    /// The method whose cost the others are matched to, in a design of matched cost or where an arm
+    /// requests it.
     pub cost_of: String,
-    /// Steps of the levels, the coarsest first; with matched cost those of `cost_of`.
+    /// Steps of the levels, the coarsest first; with matched cost, those of `cost_of`.
     pub steps: Vec<f64>,
 }
 
-/// What a study ranks by.
+/// The goal by which a study ranks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Goal {
-    /// Energy kept.
+    /// Conservation of energy.
     Energy,
-    /// Contact force as the reference has it.
+    /// Accuracy of the contact force.
     Force,
-    /// Stresses as the reference has them.
+    /// Accuracy of the stresses.
     Stress,
-    /// Displacements as the reference has them.
+    /// Accuracy of the displacements.
     Trajectory,
-    /// Least work for displacements within the accuracy.
+    /// Least work for displacements of the required accuracy.
     Cost,
 }
 
 impl Goal {
-    /// Names, as a study file writes them, with what each ranks by.
+    /// Names in study files, with the measure that each goal ranks by.
     pub const NAMES: [(&str, Goal, &str); 5] = [
         ("energy", Goal::Energy, "largest change of energy at any time"),
         (
             "force",
             Goal::Force,
-            "total variation of the contact force; power above 16 cycles per contact, mean peak and impulse stand in for it",
+            "total variation of the contact force; substitutes: power above 16 cycles per contact, mean peak, impulse",
         ),
         (
             "stress",
             Goal::Stress,
-            "total variation of the probes' stresses; their mean peaks and deviations stand in for it",
+            "total variation of the stresses of the probes; substitutes: their mean peaks, their deviations",
         ),
         ("trajectory", Goal::Trajectory, "deviation of displacements and centres"),
-        ("cost", Goal::Cost, "processor time of what keeps displacements within `accuracy`"),
+        ("cost", Goal::Cost, "processor time of arms whose displacements are within `accuracy`"),
     ];
 
     /// All goals.
@@ -62,30 +63,31 @@ impl Goal {
         Self::NAMES.iter().map(|(_, goal, _)| *goal)
     }
 
-    /// As a study file writes it.
+    /// Name in study files.
     pub fn word(self) -> &'static str {
         Self::NAMES.iter().find(|(_, goal, _)| *goal == self).map_or("", |(name, ..)| name)
     }
 
-    /// What it ranks by, in words.
+    /// The measure it ranks by, in words.
     pub fn meaning(self) -> &'static str {
         Self::NAMES.iter().find(|(_, goal, _)| *goal == self).map_or("", |(.., meaning)| meaning)
     }
 }
 
-/// What an arm is to its study.
+/// The role of an arm in its study.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Role {
-    /// The method it is, in a design.
+    /// Its method, in a design.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub method: Option<String>,
     /// Number of its level.
     #[serde(default)]
     pub level: usize,
-    /// Whether it is given the cost of `cost_of` where the others have the level's step.
+    /// Whether its cost is matched to that of `cost_of`, while the other arms have the step of the
+    /// level.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub by_cost: bool,
-    /// Its counted cost over the budget of its level, where its cost is matched.
+    /// Its counted cost divided by the budget of its level, if its cost is matched.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cost: Option<f64>,
     /// Whether it is one of the three runs of the computed reference.

@@ -1,6 +1,6 @@
-//! Numbers in sentences.
+//! Numbers in messages.
 
-/// A number in three digits.
+/// A number with three significant digits.
 pub(super) fn short(x: f64) -> String {
     if x == 0.0 {
         return "0".to_owned();

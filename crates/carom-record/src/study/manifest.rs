@@ -1,4 +1,4 @@
-//! `study.json`: what is compared, with which files it was made and how far it is.
+//! `study.json`: what is compared, the files it was made from, and the status.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,11 +15,11 @@ use crate::{Expect, Machine, Manifest, RecordError, Source, Status, files};
 pub struct StudySource {
     /// Text of the study file.
     pub study: String,
-    /// The case file as the study names it.
+    /// Path of the case file, as given in the study file.
     pub case_path: String,
     /// Text of the case file.
     pub case: String,
-    /// Texts of the case files that arms name, by the name they use.
+    /// Texts of the case files of arms, by their path as given.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub others: BTreeMap<String, String>,
 }
@@ -27,32 +27,32 @@ pub struct StudySource {
 /// `study.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StudyManifest {
-    /// Running, finished or stopped; failed arms do not fail a study.
+    /// Running, finished or stopped; a study with failed arms still finishes.
     pub status: Status,
     /// Title.
     pub title: String,
     /// Version of Carom that wrote it.
     pub version: String,
-    /// blake3 of the study file and the case file.
+    /// BLAKE3 hash of the study file and the case file.
     pub input_hash: String,
-    /// When the directory was made, UTC.
+    /// When the directory was created, UTC.
     pub created: String,
-    /// Where it ran.
+    /// The machine it ran on.
     pub machine: Machine,
-    /// Arm the others are held against, if one was named.
+    /// Arm that the others are compared with, if any.
     pub reference: Option<String>,
-    /// How the arms were made comparable.
+    /// How the arms are made comparable.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub design: Option<Design>,
-    /// What is ranked by.
+    /// The goal of the ranking.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub goal: Option<Goal>,
-    /// The error that is good enough, if it was said: see [`Self::accuracy`].
+    /// The required accuracy, if given: see [`Self::accuracy`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<f64>,
     /// The simulations.
     pub arms: Vec<Arm>,
-    /// Statements to decide.
+    /// Claims to be decided.
     pub claims: Vec<Claim>,
     /// Expected values.
     #[serde(default)]
@@ -62,7 +62,7 @@ pub struct StudyManifest {
 }
 
 impl StudyManifest {
-    /// Whether a directory is a study's.
+    /// Whether a directory is a study directory.
     pub fn is_in(directory: &Path) -> bool {
         directory.join("study.json").is_file()
     }
@@ -70,7 +70,7 @@ impl StudyManifest {
     /// Reads `study.json`.
     ///
     /// # Errors
-    /// What the machine refused, or where the file is damaged.
+    /// Input/output or system error, or a damaged file.
     pub fn read(directory: &Path) -> Result<Self, RecordError> {
         let path = directory.join("study.json");
         let text = std::fs::read(&path).map_err(RecordError::io("read", &path))?;
@@ -83,7 +83,7 @@ impl StudyManifest {
     /// Writes or replaces `study.json`.
     ///
     /// # Errors
-    /// What the machine refused.
+    /// Input/output or system error.
     pub fn write(&self, directory: &Path) -> Result<(), RecordError> {
         let path = directory.join("study.json");
         let mut text =
@@ -103,28 +103,28 @@ impl StudyManifest {
         methods
     }
 
-    /// Whether an arm gets the step at which it costs what `cost_of` does.
+    /// Whether the step of an arm is chosen such that its cost equals that of `cost_of`.
     pub fn by_cost(&self, arm: &Arm) -> bool {
         let Some(design) = &self.design else { return false };
         let other = arm.role.method.as_ref().is_some_and(|m| *m != design.cost_of);
         !arm.role.fine && other && (design.kind == Kind::MatchedCost || arm.role.by_cost)
     }
 
-    /// The error that is good enough: 0.05 if nothing was said.
+    /// The required accuracy: an error of 0.05 by default.
     pub fn accuracy(&self) -> f64 {
         self.accuracy.unwrap_or(0.05)
     }
 
-    /// The case file and the changes an arm is made of.
+    /// The case file of an arm and its changes.
     pub fn source_of(&self, arm: &Arm) -> Source {
         let other = arm.case_path.as_ref().and_then(|path| self.source.others.get(path));
         Source { text: other.unwrap_or(&self.source.case).clone(), sets: arm.sets.clone() }
     }
 
-    /// How far an arm is: none when it has not begun; the reason if it did not finish.
+    /// Status of an arm, none if it has not started; and the reason if it did not finish.
     ///
     /// # Errors
-    /// What the machine refused, or where its manifest is damaged.
+    /// Input/output or system error, or a damaged manifest.
     pub fn state(
         &self,
         directory: &Path,

@@ -1,33 +1,34 @@
-//! What a goal ranks by: its candidates in order, the first established of which ranks, and the
-//! errors of all arms by it.
+//! Measures of goals: each goal has candidates in order of preference; the first one that the
+//! reference establishes is used, with the errors of all arms.
 
 use super::compared::{Compared, established, is_stress, is_trajectory};
 use super::design::Goal;
 use super::reference::{IDEAL, Reference, Standing};
 use super::row::Row;
 
-/// What ranks.
+/// The measure of a ranking.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
-    /// Name of the metric, or of what was made of columns.
+    /// Name of the metric, or of the combination of columns.
     pub name: String,
     /// In words.
     pub words: String,
-    /// How far the errors may be off.
+    /// Uncertainty of the errors.
     pub uncertainty: f64,
-    /// Measures that stood before it, and why they do not rank.
+    /// Preferred measures that are not established, and why.
     pub passed_over: Vec<(String, String)>,
 }
 
-/// What a goal may rank by, in order.
+/// A possible measure of a goal.
 pub(super) enum Candidate {
     Metric(&'static str),
+    /// The deviation of columns.
     Columns(&'static str, fn(&str) -> bool),
     /// A metric of columns.
     OfColumns(&'static str, fn(&str) -> bool),
 }
 
-/// Those of a goal.
+/// The possible measures of a goal, in order of preference.
 pub(super) fn candidates(goal: Goal) -> Vec<Candidate> {
     match goal {
         Goal::Energy => vec![Candidate::Metric("energy_drift")],
@@ -45,7 +46,7 @@ pub(super) fn candidates(goal: Goal) -> Vec<Candidate> {
     }
 }
 
-/// What a metric is compared with.
+/// The reference value of a metric.
 pub fn standing(reference: Option<&Reference>, metric: &str) -> Standing {
     if IDEAL.contains(&metric) {
         return Standing::Established { value: 0.0, uncertainty: 0.0 };
@@ -53,12 +54,12 @@ pub fn standing(reference: Option<&Reference>, metric: &str) -> Standing {
     reference.map_or_else(|| Standing::Not("the study has no reference".to_owned()), |r| r.metric(metric))
 }
 
-/// |m − r|, relative where r is not 0.
+/// |m − r|, relative if r is not 0.
 pub fn error(value: f64, right: f64) -> f64 {
     if right == 0.0 { value.abs() } else { ((value - right) / right).abs() }
 }
 
-/// What a measure is taken from.
+/// The data that measures are computed from.
 pub(super) struct Judge<'a> {
     pub(super) rows: &'a [Row],
     pub(super) compared: &'a [Option<Compared>],
@@ -66,7 +67,7 @@ pub(super) struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// The measure a candidate gives with the errors of all arms, or why not.
+    /// The measure of a candidate with the errors of all arms, or the reason why there is none.
     pub(super) fn measured(
         &self,
         candidate: &Candidate,
@@ -104,7 +105,10 @@ impl Judge<'_> {
                 };
                 let columns = established(reference, *kind);
                 if columns.is_empty() {
-                    return Err(((*name).to_owned(), "the reference establishes no such column".to_owned()));
+                    return Err((
+                        (*name).to_owned(),
+                        "the reference has no established column of this kind".to_owned(),
+                    ));
                 }
                 let squares =
                     columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
@@ -112,7 +116,7 @@ impl Judge<'_> {
                 let errors =
                     self.compared.iter().map(|c| c.as_ref().and_then(|c| c.mean(&columns))).collect();
                 let words =
-                    format!("deviation of {} from the reference, over their range", columns.join(", "));
+                    format!("deviation of {} from the reference, relative to the range", columns.join(", "));
                 Ok((measure(&format!("deviation of {name}"), words, uncertainty), errors))
             }
             Candidate::OfColumns(what, kind) => {
@@ -127,7 +131,7 @@ impl Judge<'_> {
                     })
                     .collect();
                 if known.is_empty() {
-                    return none("the refinement of the reference does not establish it for any stress");
+                    return none("the reference does not establish it for any stress");
                 }
                 let mean = |row: &Row| {
                     let each: Option<Vec<f64>> =
@@ -151,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_are_relative_but_for_zero() {
+    fn errors_are_relative_unless_the_reference_is_zero() {
         assert_eq!((error(-0.5, 0.0), error(3.0, -2.0), error(2.0, 2.0)), (0.5, 2.5, 0.0));
     }
 }

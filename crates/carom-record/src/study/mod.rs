@@ -1,12 +1,12 @@
-//! A study directory, and its tables as functions of the records in it alone.
+//! Study directories, and their tables as functions of the records alone.
 //!
 //! ```text
-//! runs/paper/study.json              what was compared: arms with their cases, claims, the files as given
+//! runs/paper/study.json              what is compared: arms with their cases, claims, the files as given
 //!            arms/01-hu/ …           one run directory per arm
 //!            study.csv               one row per arm, one column per metric
 //!            study_tidy.csv          arm,metric,value,unit
-//!            checks.json             an arm computed again with more threads, and resumed (of a study with a goal)
-//!            claims.csv              what was claimed, both numbers, the verdict
+//!            checks.json             one arm computed again with more threads, and resumed (in a study with a goal)
+//!            claims.csv              claims with both numbers and the verdict
 //!            study.html figures/     the page
 //! ```
 
@@ -42,47 +42,48 @@ use ranking::Ranking;
 use reference::{Reference, Trajectory};
 pub use row::Row;
 
-/// A study, read.
+/// A study that has been read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
-    /// Where it is.
+    /// Its path.
     pub directory: PathBuf,
-    /// What was compared.
+    /// The manifest.
     pub manifest: StudyManifest,
     /// One per arm.
     pub rows: Vec<Row>,
     /// One per claim.
     pub verdicts: Vec<Verdict>,
-    /// What was expected of the study as a whole; an order may have one per group of arms.
+    /// Outcomes of the expectations of the study as a whole; an order may have one per group of
+    /// arms.
     pub expectations: Vec<Expectation>,
-    /// What arms were compared with, if it is finished.
+    /// The reference that arms are compared with, if it has finished.
     pub reference: Option<Reference>,
-    /// Arms held against it.
+    /// The comparison of each arm with the reference.
     pub compared: Vec<Option<Compared>>,
     /// Orders of the methods of a design, in smooth phases and across the impact.
     pub phase_orders: Vec<PhaseOrders>,
-    /// The ranking, where the study has a goal.
+    /// The ranking, if the study has a goal.
     pub ranking: Option<Ranking>,
-    /// What it would be by the other goals.
+    /// The rankings for the other goals.
     pub other_rankings: Vec<Ranking>,
-    /// What was tried on one of its arms.
+    /// Repetitions of one of its arms.
     pub checks: Option<Checks>,
 }
 
 impl Study {
-    /// Reads a study arm by arm; only one arm's record is in memory at a time. `visit` sees every
-    /// arm that has one.
+    /// Reads a study arm by arm, with only one record in memory at a time. `visit` is called for
+    /// every arm that has a record.
     ///
     /// # Errors
-    /// What the machine refused, or where a record is damaged.
+    /// Input/output or system error, or a damaged record.
     pub fn open(directory: &Path, visit: &mut dyn FnMut(usize, &Run)) -> Result<Self, RecordError> {
         let manifest = StudyManifest::read(directory)?;
         let comparisons: Vec<_> =
             manifest.claims.iter().map(|c| Comparison::parse(&c.compare).ok()).collect();
-        let (asked, series): (Vec<_>, Vec<_>) =
+        let (expected, series): (Vec<_>, Vec<_>) =
             manifest.expects.iter().map(|e| orders::needs(e, &manifest)).unzip();
         let claimed = comparisons.iter().flatten().flat_map(Comparison::questions);
-        let questions: Vec<&Question> = claimed.chain(asked.iter().flatten()).collect();
+        let questions: Vec<&Question> = claimed.chain(expected.iter().flatten()).collect();
         let series: Vec<&Series> = series.iter().flatten().collect();
         let mut records = ArmRecords::default();
         let reference = manifest.reference(directory)?;
@@ -93,27 +94,28 @@ impl Study {
         let (mut rows, mut compared) = (Vec::new(), Vec::new());
         for (i, arm) in manifest.arms.iter().enumerate() {
             let (status, reason) = manifest.state(directory, arm)?;
-            let (mut metrics, mut expectations, mut touched) = (Vec::new(), Vec::new(), false);
-            let mut held = None;
+            let (mut metrics, mut expectations, mut had_contact) = (Vec::new(), Vec::new(), false);
+            let mut comparison = None;
             if status.is_some() {
                 let run = Run::open(&directory.join(&arm.directory))?;
                 visit(i, &run);
                 if status == Some(Status::Finished) {
                     metrics = metrics::of_run(&run);
-                    held = reference.as_ref().map(|r| Compared::of(&Trajectory::of(&run, &[]), r, contact));
+                    comparison =
+                        reference.as_ref().map(|r| Compared::of(&Trajectory::of(&run, &[]), r, contact));
                 }
                 records.gather(&arm.name, &run, &metrics, &questions, &series);
                 expectations = judge(&run, &arm.expects());
-                touched = run.had_dynamic_contact();
+                had_contact = run.had_dynamic_contact();
             }
-            compared.push(held);
+            compared.push(comparison);
             rows.push(Row {
                 name: arm.name.clone(),
                 status,
                 reason,
                 metrics,
                 expectations,
-                contact: touched,
+                contact: had_contact,
             });
         }
         let verdicts = manifest
@@ -150,7 +152,7 @@ impl Study {
         })
     }
 
-    /// Every metric any arm has, in order: name, unit, definition.
+    /// Every metric that an arm has, in order: name, unit, definition.
     pub fn metrics(&self) -> Vec<&Metric> {
         let mut found: Vec<&Metric> = Vec::new();
         for metric in self.rows.iter().flat_map(|row| &row.metrics) {

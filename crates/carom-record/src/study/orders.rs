@@ -1,4 +1,4 @@
-//! Arms that differ in one key alone, and the order of convergence observed in them.
+//! Groups of arms that differ only in one key, and their observed orders of convergence.
 //!
 //! ```text
 //! of a number   p from f₁ − f₂ and f₂ − f₃ of the three finest steps; with an exact value or a reference, from the errors of the two finest
@@ -17,7 +17,7 @@ use crate::{Deviation, Expect, Expectation, Expression, Norm, OrderOf};
 /// Arms that differ in one key, the coarsest first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refinement {
-    /// What they have in common, as set.
+    /// The changes they have in common.
     pub common: String,
     /// Numbers of the arms.
     pub arms: Vec<usize>,
@@ -25,8 +25,8 @@ pub struct Refinement {
     pub steps: Vec<f64>,
 }
 
-/// Whether a name contains a text, not beginning or ending inside a word or number: `hu` is not in
-/// `chung-hulbert`, nor `0.1` in `0.15`.
+/// Whether a name contains a text as whole words or numbers: `hu` is not in `chung-hulbert`, nor
+/// `0.1` in `0.15`.
 fn has_words(name: &str, text: &str) -> bool {
     let inside = |a: Option<char>, b: Option<char>| {
         a.zip(b).is_some_and(|(a, b)| a.is_alphanumeric() && b.is_alphanumeric())
@@ -38,9 +38,9 @@ fn has_words(name: &str, text: &str) -> bool {
     })
 }
 
-/// Groups of at least two arms that differ in `key` alone, in the order of their first arms. With
-/// `name`: one group of all arms whose names contain it, whatever else they set. The reference is
-/// no member, but the three runs of a computed one are a group of their own.
+/// Groups of at least two arms that differ only in `key`, in the order of their first arms. With
+/// `name`: one group of all arms whose names contain it, with any other changes. The reference is
+/// not included, but the three runs of a computed reference are a group of their own.
 pub fn refinements(manifest: &StudyManifest, key: &str, name: Option<&str>) -> Vec<Refinement> {
     let mut groups: Vec<Refinement> = Vec::new();
     for (i, arm) in manifest.arms.iter().enumerate() {
@@ -71,7 +71,7 @@ pub fn refinements(manifest: &StudyManifest, key: &str, name: Option<&str>) -> V
     groups
 }
 
-/// What an order is asked of.
+/// The quantity of an order.
 enum Of {
     Number(Question),
     Column(Series),
@@ -80,7 +80,7 @@ enum Of {
 fn of(order: &OrderOf) -> Result<Of, String> {
     let parsed = Question::parse(&order.of);
     match parsed {
-        // A single word that is no metric is a column.
+        // A single word that is not a metric is a column.
         Ok(Expression::Quantity(Quantity::Metric(name, None)))
             if !name.contains(':') && !question::metric_names().contains(&name.as_str()) =>
         {
@@ -91,7 +91,7 @@ fn of(order: &OrderOf) -> Result<Of, String> {
     }
 }
 
-/// The questions and columns an expectation needs of the arms.
+/// The questions and columns of arms that an expectation needs.
 pub(super) fn needs(expect: &Expect, manifest: &StudyManifest) -> (Vec<Question>, Vec<Series>) {
     let Some(order) = &expect.order else {
         return (Question::parse(&expect.what).into_iter().collect(), Vec::new());
@@ -104,7 +104,7 @@ pub(super) fn needs(expect: &Expect, manifest: &StudyManifest) -> (Vec<Question>
     }
 }
 
-/// Verdicts on an order: one per group of arms.
+/// Outcomes of an expected order: one per group of arms.
 pub(super) fn judge(
     expect: &Expect,
     order: &OrderOf,
@@ -123,7 +123,7 @@ pub(super) fn judge(
     let fine = |g: &Refinement| g.arms.iter().any(|i| manifest.arms[*i].role.fine);
     let enough: Vec<&Refinement> = groups.iter().filter(|g| g.arms.len() >= least && !fine(g)).collect();
     if enough.is_empty() {
-        let why = format!("no {least} arms differ in {} alone", order.against);
+        let why = format!("there are no {least} arms that differ only in {}", order.against);
         return vec![Expectation {
             what: words(order.arms.as_deref().unwrap_or_default()),
             ..expect.verdict(Err(why))
@@ -136,8 +136,8 @@ pub(super) fn judge(
     enough.iter().map(verdict).collect()
 }
 
-/// The deviation errors are taken from: a formula, or the exact one an arm's case has for the
-/// column.
+/// The deviation that defines the errors: from a formula, or from the exact formula in the case of
+/// an arm.
 fn deviation(
     expect: &Expect,
     manifest: &StudyManifest,
@@ -154,10 +154,10 @@ fn deviation(
     }
     let column = match &series.columns {
         Expression::Quantity(asked) => &asked.column,
-        _ => return Err("only a single column has an exact formula".to_owned()),
+        _ => return Err("only a single column can have an exact formula".to_owned()),
     };
     let found = manifest.arms[arm].case.get("exact").and_then(|e| e.get(column)).and_then(|f| f.as_str());
-    let formula = found.ok_or_else(|| format!("the case has no [exact] formula of `{column}`"))?;
+    let formula = found.ok_or_else(|| format!("the case has no [exact] formula for `{column}`"))?;
     Ok(Some(Deviation { exact: Some(formula.to_owned()), ..deviation }))
 }
 
@@ -172,12 +172,12 @@ fn observed(
     let name = |i: &usize| manifest.arms[*i].name.as_str();
     let norm = expect.norm.unwrap_or(Norm::Rms);
     let window = expect.window();
-    let [.., h1, h2] = group.steps[..] else { return Err("there are not two steps".to_owned()) };
-    let [.., two, three] = &group.arms[..] else { return Err("there are not two arms".to_owned()) };
+    let [.., h1, h2] = group.steps[..] else { return Err("two steps are needed".to_owned()) };
+    let [.., two, three] = &group.arms[..] else { return Err("two arms are needed".to_owned()) };
     let triple = || {
         let n = group.steps.len();
         if n < 3 {
-            return Err("there are not three steps".to_owned());
+            return Err("three steps are needed".to_owned());
         }
         Ok(([group.steps[n - 3], h1, h2], name(&group.arms[n - 3])))
     };
@@ -221,7 +221,7 @@ fn observed(
     }
 }
 
-/// Keys in which arms differ by numbers alone, with their groups of at least `least` arms.
+/// Keys in which arms differ only by numbers, with their groups of at least `least` arms.
 pub fn numeric_keys(manifest: &StudyManifest, least: usize) -> BTreeMap<String, Vec<Refinement>> {
     let keys = manifest
         .arms

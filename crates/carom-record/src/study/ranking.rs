@@ -1,12 +1,12 @@
-//! Which arm serves the goal best, how sure that is, and what it costs and distorts.
+//! Ranking of the arms by the goal of a study, with a recommendation and its confidence.
 //!
-//! Every goal has measures, the first established of which ranks. The error of an arm is |m −
-//! r|/|r| (|m| where r = 0) of a metric, or the root mean square deviation of columns. Arms are
-//! ranked within a level only: the same step or the same cost. Methods are ordered by their mean
-//! rank over the levels; two arms of a level whose errors differ by no more than the uncertainty of
-//! the reference, or by 5 %, are not told apart. Of the methods that are not told apart from the
-//! best the cheapest is recommended; processor times within a tenth of the least are equal, and the
-//! smaller error decides between them.
+//! Every goal has measures in order of preference, and the first established one is used. The error
+//! of an arm is |m − r|/|r| (|m| if r = 0) for a metric m, or the root mean square deviation of
+//! columns. Arms are ranked within a level only, that is, at the same step or the same cost.
+//! Methods are ordered by their mean rank over the levels. Two arms of a level are not
+//! distinguished if their errors differ by no more than the uncertainty of the reference, or by
+//! 5 %. Of the methods that are not distinguished from the best, the cheapest is recommended.
+//! Processor times within 10 % of the smallest count as equal; the smaller error then decides.
 
 use super::compared::Compared;
 use super::design::{Goal, Kind};
@@ -17,35 +17,36 @@ pub use super::measure::{Measure, error, standing};
 use super::reference::Reference;
 use super::row::Row;
 
-/// Errors closer than this are not told apart.
+/// Relative difference below which errors are not distinguished.
 const ALIKE: f64 = 0.05;
-/// Processor times closer than this are equal: a measurement is not repeated to less.
+/// Relative difference below which processor times count as equal: measurements do not reproduce
+/// better than this.
 const EQUAL_COST: f64 = 0.1;
 
-/// An arm in its level.
+/// An arm in the ranking of its level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranked {
     /// Number of the arm.
     pub arm: usize,
     /// Its error.
     pub error: f64,
-    /// Place, from 1; arms not told apart share one.
+    /// Place, from 1; arms that are not distinguished share one.
     pub place: usize,
 }
 
-/// How much a verdict bears.
+/// Confidence in a recommendation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Confidence {
-    /// The order may be chance.
+    /// The ranking may be accidental.
     Low,
-    /// It holds here.
+    /// The ranking holds for this study.
     Medium,
-    /// It holds at every level, by more than all uncertainties.
+    /// The ranking holds at every level, by more than all uncertainties.
     High,
 }
 
 impl Confidence {
-    /// In a word.
+    /// As a word.
     pub fn word(self) -> &'static str {
         match self {
             Self::Low => "low",
@@ -60,26 +61,26 @@ impl Confidence {
 pub struct Verdict {
     /// The recommended arm.
     pub arm: usize,
-    /// Methods, or arms where there are none, not told apart from it.
+    /// Methods (arms in a study without methods) that are not distinguished from it.
     pub alike: Vec<String>,
-    /// Why.
+    /// Reasons for the recommendation.
     pub reasons: Vec<String>,
-    /// How sure.
+    /// Confidence in it.
     pub confidence: Confidence,
-    /// Why so.
+    /// Reasons for the confidence.
     pub confidence_reasons: Vec<String>,
 }
 
-/// A study ranked.
+/// The ranking of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranking {
-    /// By what.
+    /// The goal.
     pub goal: Goal,
-    /// The measure; or why there is none.
+    /// The measure, or why there is none.
     pub measure: Result<Measure, String>,
-    /// Per level, the best first.
+    /// Ranked arms per level, the best first.
     pub levels: Vec<Vec<Ranked>>,
-    /// None where nothing can be ranked.
+    /// The recommendation; none if nothing can be ranked.
     pub verdict: Option<Verdict>,
 }
 
@@ -111,7 +112,7 @@ impl Ranking {
         };
         let mut measure = Measure { passed_over, ..measure };
         if goal == Goal::Cost {
-            // What is accurate enough, by its work.
+            // The work of the arms that are accurate enough.
             let works = rows.iter().map(|r| r.value("cpu_time"));
             errors = errors
                 .iter()
@@ -144,7 +145,8 @@ fn alike(a: f64, b: f64, uncertainty: f64) -> bool {
     (a - b).abs() <= f64::max(uncertainty, ALIKE * f64::min(a, b))
 }
 
-/// Places: an arm shares that of the first arm of its group while it is not told apart from it.
+/// Assigns places: an arm shares the place of the first arm of its group as long as the two are not
+/// distinguished.
 fn places(ranked: &mut [Ranked], uncertainty: f64) {
     let mut first = 0;
     for i in 0..ranked.len() {
@@ -170,7 +172,7 @@ fn verdict(
             methods.push(name(ranked.arm));
         }
     }
-    // An arm that is missing at a level comes behind all that are there.
+    // A method without an arm at a level is placed after all others.
     let places = |method: &String| {
         let place = |l: &&Vec<Ranked>| {
             l.iter().find(|r| name(r.arm) == method).map_or(manifest.arms.len() + 1, |r| r.place)
@@ -189,11 +191,11 @@ fn verdict(
     let accuracy = manifest.accuracy();
     // The arm of a method that would be recommended.
     let arm_of = |method: &String| {
-        let mine: Vec<&Ranked> =
+        let arms: Vec<&Ranked> =
             full.iter().filter_map(|l| l.iter().find(|r| name(r.arm) == method)).collect();
         match goal {
-            Goal::Cost => mine.iter().min_by(|a, b| a.error.total_cmp(&b.error)).copied(),
-            _ => mine.iter().find(|r| r.error <= accuracy).or(mine.last()).copied(),
+            Goal::Cost => arms.iter().min_by(|a, b| a.error.total_cmp(&b.error)).copied(),
+            _ => arms.iter().find(|r| r.error <= accuracy).or(arms.last()).copied(),
         }
     };
     let costs: Vec<Option<f64>> =
@@ -211,34 +213,29 @@ fn verdict(
         .filter(|r| manifest.arms[r.arm].role.level == manifest.arms[chosen.arm].role.level);
     if let Some(next) = others.filter(|r| name(r.arm) != best).min_by(|a, b| a.error.total_cmp(&b.error)) {
         reasons.push(format!(
-            "the best of the others at the same level, {}: {}",
+            "best of the other methods at the same level, {}: {}",
             name(next.arm),
             short(next.error)
         ));
     }
-    reasons.push(format!("first at {first_at} of {} levels", full.len()));
+    reasons.push(format!("ranked first at {first_at} of {} levels", full.len()));
     let next = costs.iter().enumerate().filter(|(i, _)| *i != picked).filter_map(|(i, c)| Some((i, (*c)?)));
     let next = next.min_by(|a, b| a.1.total_cmp(&b.1));
-    // How many times as much the cheapest of the others costs.
-    let times = next.zip(costs[picked]).map(|((_, other), mine)| other / mine);
-    if let Some(((i, other), mine)) = next.zip(costs[picked]).filter(|_| goal != Goal::Cost) {
-        let words = if other > (1.0 + EQUAL_COST) * mine {
-            "the cheapest of those that are not told apart"
+    // Cost of the cheapest of the others, relative to that of the recommended one.
+    let times = next.zip(costs[picked]).map(|((_, other), own)| other / own);
+    if let Some(((i, other), own)) = next.zip(costs[picked]).filter(|_| goal != Goal::Cost) {
+        let words = if other > (1.0 + EQUAL_COST) * own {
+            "cheapest of the methods that are not distinguished"
         } else {
-            "of those that are not told apart none is cheaper by more than a tenth"
+            "none of the methods that are not distinguished is cheaper by more than 10 %"
         };
-        reasons.push(format!(
-            "{words}: {} s of processor time; {}: {} s",
-            short(mine),
-            tied[i],
-            short(other)
-        ));
+        reasons.push(format!("{words}: {} s of processor time; {}: {} s", short(own), tied[i], short(other)));
     }
     if goal != Goal::Cost {
         reasons.push(if chosen.error <= accuracy {
-            format!("the coarsest of its levels with an error of at most {accuracy}")
+            format!("the coarsest level at which its error is at most {accuracy}")
         } else {
-            format!("its finest level; none has an error of at most {accuracy}")
+            format!("its finest level; its error is above {accuracy} at every level")
         });
     }
     let dearer = times.is_some_and(|times| times > 1.0 + EQUAL_COST) && goal != Goal::Cost;
@@ -247,7 +244,7 @@ fn verdict(
     if goal != Goal::Cost && chosen.error > accuracy {
         confidence = Confidence::Low;
         let why = format!(
-            "the best is not good: an error of {} where {accuracy} was asked for",
+            "the error of the recommended arm, {}, is larger than the required accuracy, {accuracy}",
             short(chosen.error)
         );
         confidence_reasons.push(why);
@@ -258,25 +255,24 @@ fn verdict(
     {
         confidence = confidence.min(Confidence::Medium);
         confidence_reasons.push(format!(
-            "it is compared at the cost of {}, the others at their common step",
+            "it is compared at the cost of {}, the other methods at their common step",
             design.cost_of
         ));
     }
     Some(Verdict { arm: chosen.arm, alike: alike_ones, reasons, confidence, confidence_reasons })
 }
 
-/// Number of the first whose cost is within a tenth of the least; the first of all where no cost is
-/// known.
+/// Index of the first method whose cost is within 10 % of the smallest; 0 if no cost is known.
 fn cheapest(costs: &[Option<f64>]) -> usize {
     let least = costs.iter().flatten().copied().fold(f64::INFINITY, f64::min);
     costs.iter().position(|c| c.is_some_and(|c| c <= (1.0 + EQUAL_COST) * least)).unwrap_or(0)
 }
 
-/// What tells the recommended method from all others.
+/// Whether the recommended method is distinguished from all others.
 struct Alone {
-    /// Its errors.
+    /// By its errors.
     method: bool,
-    /// Its cost, where its errors do not.
+    /// By its cost, if not by its errors.
     by_cost: bool,
 }
 
@@ -293,32 +289,36 @@ fn confidence(
         reasons.push(why);
     };
     if !alone.method {
-        let close = format!("errors closer than {} or {} %", short(measure.uncertainty), 100.0 * ALIKE);
+        let close = format!("differences of at most {} or {} %", short(measure.uncertainty), 100.0 * ALIKE);
         if alone.by_cost {
-            let why =
-                format!("the errors of others are not told apart from its own ({close}): its cost decides");
+            let why = format!(
+                "its error is not distinguished from that of other methods ({close}); its lower cost decides"
+            );
             at_most(Confidence::Medium, why);
         } else {
             let why = format!(
-                "others are not told apart from it, neither by their errors ({close}) nor by their cost"
+                "other methods are not distinguished from it, neither by error ({close}) nor by cost"
             );
             at_most(Confidence::Low, why);
         }
     }
     if first_at < levels.len() {
-        at_most(Confidence::Low, format!("it is first at {first_at} of {} levels only", levels.len()));
+        at_most(Confidence::Low, format!("it is ranked first at only {first_at} of {} levels", levels.len()));
     }
     if levels.len() < 2 {
         at_most(
             Confidence::Medium,
-            "there is one level only: another step may order them otherwise".to_owned(),
+            "there is only one level; the ranking may be different at another step".to_owned(),
         );
     }
     if !measure.passed_over.is_empty() {
         let names: Vec<&str> = measure.passed_over.iter().map(|(name, _)| name.as_str()).collect();
         at_most(
             Confidence::Medium,
-            format!("{} would say more, and no refinement establishes it", names.join(", ")),
+            format!(
+                "preferred measures are not established by the reference: {}; a substitute is used",
+                names.join(", ")
+            ),
         );
     }
     let off = manifest
@@ -327,17 +327,21 @@ fn confidence(
         .filter(|a| a.role.cost.is_some_and(|share| (share - 1.0).abs() > EQUAL_COST))
         .count();
     if off > 0 {
-        at_most(Confidence::Medium, format!("the cost of {off} arms is off the budget by more than 10 %"));
+        at_most(
+            Confidence::Medium,
+            format!("the cost of {off} arms differs from the budget by more than 10 %"),
+        );
     }
     if manifest.design.is_none() {
         at_most(
             Confidence::Low,
-            "the arms were not made comparable: no `design` matches steps or cost".to_owned(),
+            "the arms are not matched: the study has no `design` for equal steps or equal cost".to_owned(),
         );
     }
     if reasons.is_empty() {
         reasons.push(
-            "it is first at every level, by more than the uncertainty of the reference and 5 %".to_owned(),
+            "it is ranked first at every level, by more than the uncertainty of the reference and 5 %"
+                .to_owned(),
         );
     }
     (confidence, reasons)
@@ -347,7 +351,7 @@ fn confidence(
 mod tests {
     use super::*;
 
-    /// 1.00 and 1.04 share a place, 1.2 does not; with an uncertainty of 0.3 all do.
+    /// 1.00 and 1.04 share a place, 1.2 does not; with an uncertainty of 0.3 all three do.
     #[test]
     fn places_are_shared() {
         let of = |uncertainty: f64| {
@@ -362,7 +366,7 @@ mod tests {
         assert_eq!((of(0.0), of(0.3)), (vec![1, 1, 3], vec![1, 1, 1]));
     }
 
-    /// 1.05 is equal to 1, 1.2 is not; a cost that is not known is none.
+    /// 1.05 is equal to 1, 1.2 is not; unknown costs are ignored.
     #[test]
     fn the_cheapest_within_a_tenth_is_taken_in_order() {
         assert_eq!(cheapest(&[Some(9.9), Some(1.05), Some(1.0)]), 1);

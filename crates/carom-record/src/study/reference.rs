@@ -1,15 +1,15 @@
-//! What a study holds its arms against, and how far that can be trusted.
+//! The reference that the arms of a study are compared with, and its uncertainty.
 //!
 //! ```text
 //! computed    three runs at h, 2h and 4h; value f(h), uncertainty |f(h) − f(2h)|
-//!             established where |f(h) − f(2h)| ≤ 0.7 |f(2h) − f(4h)|, or ≤ 1 % of |f(h)|
-//! an arm      the same with those arms that differ from it in the step alone; with one run there is no uncertainty, and nothing is established
-//! exact       the formulas of [exact]; of metrics, those that can be computed from columns it gives; uncertainty 0
-//! ideal       what elastic bodies do: energies changed or dissipated 0, penetration 0
+//!             established if |f(h) − f(2h)| ≤ 0.7 |f(2h) − f(4h)|, or ≤ 1 % of |f(h)|
+//! an arm      the same with the arms that differ from it only in the step; with a single run nothing is established
+//! exact       the formulas of [exact], and the metrics that can be computed from these columns; uncertainty 0
+//! ideal       the values for elastic bodies: no change or dissipation of energy, no penetration
 //! ```
 //!
-//! A column is established likewise, with the deviation of f(2h) from f(h) as its uncertainty. What
-//! is not established is never ranked on.
+//! A column is established in the same way, with the deviation of f(2h) from f(h) as its
+//! uncertainty. Only established values are used for rankings.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,12 +22,12 @@ use super::manifest::StudyManifest;
 use crate::metrics::{self, Metric};
 use crate::{Column, History, RecordError, Run, Status};
 
-/// The share by which the difference of runs must fall with the step.
+/// Largest ratio of successive differences under refinement.
 pub const FALL: f64 = 0.7;
-/// A difference that counts as none, relative to the value.
+/// Relative difference that is negligible.
 pub const SMALL: f64 = 0.01;
 
-/// Metrics whose right value is zero, whatever the case.
+/// Metrics whose exact value is zero in every case.
 pub const IDEAL: [&str; 8] = [
     "energy_lost",
     "energy_created",
@@ -39,17 +39,17 @@ pub const IDEAL: [&str; 8] = [
     "penetration_mean",
 ];
 
-/// A number to compare with, or why there is none.
+/// A reference value, or why there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Standing {
-    /// It can be ranked on.
+    /// It is established.
     Established {
         /// The value.
         value: f64,
-        /// How far it may be off.
+        /// Its uncertainty.
         uncertainty: f64,
     },
-    /// It cannot.
+    /// It is not established, for this reason.
     Not(String),
 }
 
@@ -62,7 +62,7 @@ impl Standing {
         }
     }
 
-    /// From values at falling steps, the finest last.
+    /// From values at decreasing steps, the finest last.
     pub fn of(values: &[f64]) -> Self {
         match *values {
             [.., coarse, middle, fine] => {
@@ -80,24 +80,25 @@ impl Standing {
             [middle, fine] if (fine - middle).abs() <= SMALL * fine.abs() => {
                 Self::Established { value: fine, uncertainty: (fine - middle).abs() }
             }
-            [_, _] => Self::Not("two runs differ by more than 1 %, and there is no third".to_owned()),
-            _ => Self::Not("one run says nothing of its error".to_owned()),
+            [_, _] => Self::Not("two runs differ by more than 1 %, and there is no third run".to_owned()),
+            _ => Self::Not("a single run gives no error estimate".to_owned()),
         }
     }
 }
 
-/// What of a run is kept to compare with it.
+/// The part of a run that is used for comparisons.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trajectory {
     /// Times of the rows.
     pub times: Vec<f64>,
-    /// Columns of probes and of the striker's centre, and `force`, the size of the contact force.
+    /// Columns of probes and of the striker's centre, and [`FORCE`], the magnitude of the contact
+    /// force.
     pub columns: BTreeMap<String, Vec<f64>>,
     /// The metrics.
     pub metrics: Vec<Metric>,
 }
 
-/// The name under which the contact force's size is kept.
+/// Column name of the magnitude of the contact force.
 pub const FORCE: &str = "contact force";
 
 impl Trajectory {
@@ -125,20 +126,20 @@ impl Trajectory {
 /// A reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
-    /// In words, what it is.
+    /// Description in words.
     pub what: String,
-    /// Its runs, the finest last; with exact formulas one made of them.
+    /// Its runs, the finest last; for exact formulas, one sampled from them.
     runs: Vec<Trajectory>,
     exact: bool,
 }
 
 impl Reference {
-    /// Of runs at falling steps, the finest last.
+    /// Of runs at decreasing steps, the finest last.
     pub fn of_runs(what: String, runs: Vec<Trajectory>) -> Self {
         Self { what, runs, exact: false }
     }
 
-    /// Of formulas in t by column, sampled at `rows` times from 0 to `end`.
+    /// Of formulas in t by column, sampled at `rows` + 1 times from 0 to `end`.
     pub fn of_formulas(formulas: &BTreeMap<String, String>, end: f64, rows: usize) -> Option<Self> {
         let times: Vec<f64> = (0..=rows).map(|i| end * i as f64 / rows as f64).collect();
         let mut columns = BTreeMap::new();
@@ -168,11 +169,11 @@ impl Reference {
         if history.column("contact_force_x").is_some() {
             columns.insert(FORCE.to_owned(), metrics::contact_force(&history));
         }
-        let kept = Trajectory { times, columns, metrics: known };
-        Some(Self { what: "the exact formulas of [exact]".to_owned(), runs: vec![kept], exact: true })
+        let sampled = Trajectory { times, columns, metrics: known };
+        Some(Self { what: "the exact formulas of [exact]".to_owned(), runs: vec![sampled], exact: true })
     }
 
-    /// What a metric should be.
+    /// Reference value of a metric.
     pub fn metric(&self, name: &str) -> Standing {
         let values: Vec<Option<f64>> = self.runs.iter().map(|run| run.value(name)).collect();
         if self.exact {
@@ -183,7 +184,7 @@ impl Reference {
         }
         match values.into_iter().collect::<Option<Vec<f64>>>() {
             Some(values) => Standing::of(&values),
-            None => Standing::Not("not every run of the reference has it".to_owned()),
+            None => Standing::Not("a run of the reference has no value".to_owned()),
         }
     }
 
@@ -198,7 +199,7 @@ impl Reference {
         self.runs.last().map_or_else(Vec::new, |run| run.columns.keys().map(String::as_str).collect())
     }
 
-    /// Its deviation from itself at twice the step, if the runs establish the column.
+    /// Deviation of a column from the same column at twice the step, if the runs establish it.
     pub fn uncertainty(&self, column: &str) -> Standing {
         if self.exact {
             return Standing::Established { value: 0.0, uncertainty: 0.0 };
@@ -218,12 +219,14 @@ impl Reference {
                 short(*before)
             )),
             Some([last]) if *last <= SMALL => Standing::Established { value: 0.0, uncertainty: *last },
-            Some([_]) => Standing::Not("two runs differ by more than 1 %, and there is no third".to_owned()),
-            _ => Standing::Not("one run says nothing of its error".to_owned()),
+            Some([_]) => {
+                Standing::Not("two runs differ by more than 1 %, and there is no third run".to_owned())
+            }
+            _ => Standing::Not("a single run gives no error estimate".to_owned()),
         }
     }
 
-    /// The band of a column at the times of the reference: its values and how far they may be off.
+    /// Uncertainty of a column at the times of the reference.
     pub fn band(&self, column: &str) -> Vec<f64> {
         let Some((times, values)) = self.column(column) else { return Vec::new() };
         let before = self.runs.len().checked_sub(2).and_then(|i| self.runs.get(i));
@@ -236,8 +239,8 @@ impl Reference {
 }
 
 impl StudyManifest {
-    /// Numbers of the arms the reference is made of, the finest last: the three of a computed one;
-    /// else the arm of that name, behind arms that differ from it in a longer step alone.
+    /// Indices of the arms of the reference, the finest last: the three of a computed reference, or
+    /// the named arm after those arms that differ from it only in a longer step.
     fn reference_arms(&self) -> Vec<usize> {
         let Some(named) = self.arms.iter().position(|a| self.reference.as_ref() == Some(&a.name)) else {
             return Vec::new();
@@ -259,10 +262,10 @@ impl StudyManifest {
         found.split_off(found.len().saturating_sub(3))
     }
 
-    /// What arms are compared with.
+    /// The reference that arms are compared with.
     ///
     /// # Errors
-    /// What the machine refused, or where a record is damaged.
+    /// Input/output or system error, or a damaged record.
     pub(super) fn reference(&self, directory: &Path) -> Result<Option<Reference>, RecordError> {
         if self.reference.as_deref() == Some("exact") {
             let Some(case) = self.arms.first().map(|a| &a.case) else { return Ok(None) };
@@ -281,7 +284,7 @@ impl StudyManifest {
         }
         let Some(last) = arms.last().filter(|_| runs.len() == arms.len()) else { return Ok(None) };
         let count = match runs.len() {
-            1 => "one run: its error is not known".to_owned(),
+            1 => "a single run, whose error is not known".to_owned(),
             n => format!("the finest of {n} runs whose steps double"),
         };
         Ok(Some(Reference::of_runs(format!("\"{}\", {count}", self.arms[*last].name), runs)))
@@ -292,8 +295,8 @@ impl StudyManifest {
 mod tests {
     use super::*;
 
-    /// By hand: first order falls by half and counts; noise of the size of the difference does not;
-    /// 1 % does.
+    /// By hand: differences that halve establish a value, differences that do not decrease do not,
+    /// and differences below 1 % do.
     #[test]
     fn what_a_refinement_establishes() {
         assert_eq!(
@@ -306,8 +309,8 @@ mod tests {
         assert!(matches!(Standing::of(&[1.0, 1.1]), Standing::Not(_)));
     }
 
-    /// The bar on a wall: force 300 from 0.5 to 7/6. Its variation is 600, its power all in low
-    /// frequencies, its impulse a difference of the integral.
+    /// The bar on a wall: a force of 300 from 0.5 to 7/6. Its variation is 600; its impulse is a
+    /// difference of the integral.
     #[test]
     fn metrics_of_exact_formulas() {
         let formulas = [

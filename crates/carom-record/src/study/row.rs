@@ -1,4 +1,4 @@
-//! What the record of an arm came to: a row of the tables.
+//! Results of an arm: a row of the tables.
 
 use crate::metrics::Metric;
 use crate::{Expectation, Status};
@@ -8,15 +8,16 @@ use crate::{Expectation, Status};
 pub struct Row {
     /// The arm.
     pub name: String,
-    /// How far it is; none when it has not begun.
+    /// Status; none if it has not started.
     pub status: Option<Status>,
     /// Why it did not finish.
     pub reason: Option<String>,
-    /// Metrics of a finished run; empty otherwise, since numbers of half a run mislead.
+    /// Metrics of a finished run; empty otherwise, because those of an unfinished run would be
+    /// misleading.
     pub metrics: Vec<Metric>,
-    /// What was expected of its record.
+    /// Outcomes of its expectations.
     pub expectations: Vec<Expectation>,
-    /// Whether a contact was ever active in it.
+    /// Whether it had dynamic contact.
     pub contact: bool,
 }
 

@@ -1,5 +1,5 @@
-//! `study.csv`, `study_tidy.csv` and `claims.csv`. A value that is not there is an empty cell;
-//! numbers read back to the same bits.
+//! `study.csv`, `study_tidy.csv`, `claims.csv`, `reference.csv` and `ranking.csv`. A missing value
+//! is an empty cell; numbers read back to the same bits.
 
 use super::arm::step;
 use super::measure::standing;
@@ -8,7 +8,7 @@ use super::{Study, Verdict};
 use crate::metrics::{Metric, WORK};
 use crate::{RecordError, Status, files};
 
-/// A status as tables name it.
+/// A status in the tables.
 pub(super) fn word(status: Option<Status>) -> &'static str {
     match status {
         None => "waiting",
@@ -24,10 +24,10 @@ fn cell(value: Option<f64>) -> String {
 }
 
 impl Study {
-    /// Writes the tables beside `study.json`.
+    /// Writes the tables next to `study.json`.
     ///
     /// # Errors
-    /// What the machine refused.
+    /// Input/output or system error.
     pub fn write_tables(&self) -> Result<(), RecordError> {
         let names: Vec<&str> = self.metrics().iter().map(|m| m.name.as_ref()).collect();
         let header =
@@ -63,7 +63,7 @@ impl Study {
         self.write("claims.csv", std::iter::once(header).chain(self.verdicts.iter().map(line)))
     }
 
-    /// `reference.csv`: what every metric should be and how sure that is; `ranking.csv`: level,
+    /// `reference.csv`: reference value and uncertainty of every metric; `ranking.csv`: level,
     /// place and error of every arm.
     fn write_ranking(&self) -> Result<(), RecordError> {
         if let Some(reference) = &self.reference {

@@ -1,15 +1,14 @@
-//! The small part of HDF5 that a VTKHDF file needs, written: groups, attributes, contiguous
-//! datasets.
+//! Writes the small part of HDF5 that a VTKHDF file needs: groups, attributes, contiguous datasets.
 //!
-//! Superblock and object headers of version 0 and 1 (no checksums, so that a count can be changed
-//! in place), links as messages of their group, one extent of bytes per dataset: "HDF5 File Format
-//! Specification Version 3.0", The HDF Group, sections II.A, IV.A. A dataset may own more bytes
-//! than its dimensions use.
+//! Superblock of version 0 and object headers of version 1 (without checksums, so that a count can
+//! be changed in place), links as messages of their group, one contiguous extent per dataset: "HDF5
+//! File Format Specification Version 3.0", The HDF Group, sections II.A, IV.A. More bytes may be
+//! reserved for a dataset than its dimensions use.
 
 use std::collections::BTreeMap;
 
 pub(super) const SIGNATURE: &[u8; 8] = b"\x89HDF\r\n\x1a\n";
-/// Where the superblock names the header of the root group.
+/// Offset in the superblock of the address of the root group.
 pub(super) const ROOT: usize = 64;
 const SUPERBLOCK: usize = 96;
 const NOWHERE: u64 = u64::MAX;
@@ -27,13 +26,13 @@ pub(super) const ATTRIBUTE: u16 = 12;
 /// Type of a value, little-endian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// Signed, so many bytes.
+    /// Signed integer of this many bytes.
     Integer(usize),
     /// `u8`.
     Byte,
     /// `f64`.
     Real,
-    /// UTF-8 of so many bytes, padded with zeros.
+    /// UTF-8 string of this many bytes, padded with zeros.
     Text(usize),
 }
 
@@ -48,7 +47,7 @@ impl Kind {
     }
 }
 
-/// A small array kept in the header of its object.
+/// A small array stored in the header of its object.
 #[derive(Clone, Debug)]
 pub(super) struct Attribute {
     pub(super) name: String,
@@ -58,14 +57,14 @@ pub(super) struct Attribute {
     pub(super) data: Vec<u8>,
 }
 
-/// What a file is to contain.
+/// An object to be written.
 #[derive(Clone, Debug)]
 pub(super) enum Node {
     Group {
         attributes: Vec<Attribute>,
         children: Vec<(String, Node)>,
     },
-    /// `rows`: first dimensions' worth of space, at least `dims[0]`.
+    /// `rows`: the first dimension that space is reserved for, at least `dims[0]`.
     Dataset {
         kind: Kind,
         dims: Vec<u64>,
@@ -74,23 +73,23 @@ pub(super) enum Node {
     },
 }
 
-/// Everything of a file but the values of its datasets.
+/// A file without the values of its datasets.
 #[derive(Debug)]
 pub(super) struct Image {
-    /// From the first byte of the file.
+    /// All headers, from the first byte of the file.
     pub(super) head: Vec<u8>,
-    /// Bytes of the whole file.
+    /// Length of the file in bytes.
     pub(super) length: u64,
-    /// Where values of a dataset (`/group/name`) begin, and those of an attribute (`/group@name`).
+    /// Addresses of the values of datasets (`/group/name`) and attributes (`/group@name`).
     pub(super) data: BTreeMap<String, u64>,
-    /// Where the first dimension of a dataset stands.
+    /// Addresses of the first dimensions of datasets.
     pub(super) dims: BTreeMap<String, u64>,
 }
 
 impl Image {
-    /// The file of a root group, its headers moved by `shift` bytes, a multiple of 8.
+    /// The file of a root group, with its headers moved by `shift` bytes, a multiple of 8.
     pub(super) fn new(root: &Node, shift: usize) -> Self {
-        // Once to learn how long the headers are, once more with the addresses behind them.
+        // First pass: the length of the headers. Second pass: the addresses after them.
         let data_start = Self::laid_out(root, shift, 0).head.len() as u64;
         Self::laid_out(root, shift, data_start)
     }
@@ -109,7 +108,7 @@ impl Image {
         image
     }
 
-    /// Appends the header of an object behind those of its children; where it stands.
+    /// Appends the header of an object after those of its children; returns its address.
     fn object(&mut self, path: &str, node: &Node) -> u64 {
         let mut messages = Messages::default();
         let (Node::Group { attributes, .. } | Node::Dataset { attributes, .. }) = node;
@@ -160,7 +159,7 @@ impl Image {
     }
 }
 
-/// Body of an object header, growing.
+/// Body of an object header under construction.
 #[derive(Default)]
 struct Messages {
     count: u16,
@@ -168,7 +167,7 @@ struct Messages {
 }
 
 impl Messages {
-    /// Appends a message; where its contents begin.
+    /// Appends a message; returns the offset of its contents.
     fn add(&mut self, kind: u16, contents: &[u8]) -> usize {
         self.count += 1;
         self.bytes.extend(kind.to_le_bytes());
@@ -180,7 +179,7 @@ impl Messages {
         at
     }
 
-    /// Appends an attribute; where its values begin.
+    /// Appends an attribute; returns the offset of its values.
     fn attribute(&mut self, attribute: &Attribute) -> usize {
         let name = [attribute.name.as_bytes(), &[0]].concat();
         let (kind, space) = (datatype(attribute.kind), dataspace(&attribute.dims));
@@ -204,7 +203,7 @@ fn dataspace(dims: &[u64]) -> Vec<u8> {
     bytes
 }
 
-/// Class and version, three bytes of flags, size, and for numbers where their bits lie.
+/// Class and version, three bytes of flags, size, and for numbers the positions of their bits.
 pub(super) fn datatype(kind: Kind) -> Vec<u8> {
     let (class_and_flags, properties): ([u8; 4], Vec<u8>) = match kind {
         Kind::Integer(bytes) => ([0x10, 0x08, 0, 0], vec![0, 0, bytes as u8 * 8, 0]),

@@ -1,9 +1,10 @@
-//! Where everything stands in a VTKHDF file, as a function of sizes and names only.
+//! Layout of a VTKHDF file, as a function of sizes and names only.
 //!
-//! One unstructured grid, transient, of a mesh that does not move: every step has the offsets of
-//! the first one, and its own part of every point array ("VTKHDF File Format", version 2.2,
-//! docs.vtk.org). There is space for `capacity` steps, of which `NSteps` and the length of
-//! `Steps/Values` count. These two numbers lie in one sector, so that one write changes both.
+//! One transient unstructured grid with a fixed mesh: all steps have the mesh offsets of the first
+//! one, and each has its own part of every point array ("VTKHDF File Format", version 2.2,
+//! docs.vtk.org). There is space for `capacity` steps; the number of valid ones is stored in
+//! `NSteps` and as the length of `Steps/Values`. Both numbers lie in one sector, so that a single
+//! write changes both.
 
 use super::hdf5::{Attribute, Image, Kind, Node};
 use super::read::Contents;
@@ -21,14 +22,14 @@ const SECTOR: u64 = 512;
 pub(super) struct Layout {
     pub(super) points: u64,
     pub(super) cells: u64,
-    /// Point numbers of all cells together.
+    /// Number of point numbers of all cells.
     pub(super) connectivity: u64,
     pub(super) bodies: Vec<String>,
     /// Point arrays without values.
     pub(super) arrays: Vec<PointArray>,
-    /// Steps there are.
+    /// Number of steps.
     pub(super) count: u64,
-    /// Steps there is space for.
+    /// Number of steps there is space for.
     pub(super) capacity: u64,
 }
 
@@ -65,7 +66,7 @@ pub(super) fn path_of(array: &PointArray) -> String {
 }
 
 impl Layout {
-    /// For fields like these.
+    /// The layout for such fields.
     pub(super) fn of(fields: &FieldSet, count: u64, capacity: u64) -> Self {
         Self {
             points: fields.points.len() as u64,
@@ -78,7 +79,7 @@ impl Layout {
         }
     }
 
-    /// As it stands in a file.
+    /// The layout of an existing file.
     pub(super) fn found(contents: &Contents) -> Result<Self, String> {
         let rows = |path: &str, kind| {
             Ok::<_, String>(contents.dataset(path, kind)?.dims.first().copied().unwrap_or(0))
@@ -107,12 +108,14 @@ impl Layout {
         let steps = rows(TIMES, Kind::Real)?;
         if steps != layout.count || steps > layout.capacity {
             let (count, capacity) = (layout.count, layout.capacity);
-            return Err(format!("it counts {count} steps, has {steps} times and space for {capacity}"));
+            return Err(format!(
+                "its header has {count} steps, but there are {steps} times and space for {capacity}"
+            ));
         }
         Ok(layout)
     }
 
-    /// The file, values left out.
+    /// The file without the values.
     pub(super) fn image(&self) -> Image {
         let root = group(vec![("VTKHDF", self.tree())]);
         let sector = |at: Option<&u64>| at.map(|at| at / SECTOR);
@@ -138,7 +141,7 @@ impl Layout {
             Node::Dataset { kind: Kind::Real, dims: vec![self.count], rows: capacity, attributes: vec![] };
         let steps = Node::Group {
             attributes: vec![whole("NSteps", vec![], &[self.count])],
-            // The times last, next to NSteps.
+            // The times are last, to be near NSteps.
             children: [
                 ("NumberOfParts", offsets()),
                 ("PartOffsets", offsets()),

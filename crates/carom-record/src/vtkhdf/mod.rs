@@ -1,9 +1,10 @@
-//! `fields.vtkhdf`: the fields of a run in one file, an alternative to `fields.pvd` and its VTU
+//! `fields.vtkhdf`: the fields of a run in one file, as an alternative to `fields.pvd` with its VTU
 //! files.
 //!
-//! The mesh is written once. A step's values go to the disk first, then one write counts the step:
-//! a kill leaves the steps before it. The file grows by doubling its space, copied to a new file
-//! and renamed, and is cut to its size when the run ends.
+//! The mesh is written once. The values of a step are written first; then a single write increases
+//! the number of steps, so that a killed process leaves the steps before it intact. When the file
+//! is full, it is copied to a new file of twice the capacity, which is then renamed. At the end of
+//! the run it is truncated to the steps it contains.
 
 mod hdf5;
 mod layout;
@@ -22,12 +23,12 @@ use crate::{Block, FieldEntry, FieldSet, RecordError, files};
 const HINT: &str = "run the case again";
 const FIRST_CAPACITY: u64 = 16;
 
-/// Where it is in a run directory.
+/// Its path in a run directory.
 pub(crate) fn path(directory: &Path) -> PathBuf {
     directory.join("fields.vtkhdf")
 }
 
-/// A file of ours, its headers read.
+/// An open file whose headers have been read.
 struct Opened<F> {
     file: F,
     path: PathBuf,
@@ -49,8 +50,8 @@ fn open(directory: &Path, write: bool) -> Result<Option<Opened<File>>, RecordErr
     }
 }
 
-/// Writes the fields of the entry with the given place among all entries, and counts the entries up
-/// to it.
+/// Writes the fields of an entry at the given place among all entries, and sets the number of
+/// steps to include it.
 pub(crate) fn put(
     directory: &Path,
     place: usize,
@@ -68,7 +69,7 @@ pub(crate) fn put(
     let (layout, count) = (&opened.layout, opened.layout.count);
     if Layout::of(fields, count, layout.capacity) != *layout {
         let path = opened.path.display();
-        return Err(RecordError::Field { what: format!("{path} is for other bodies or quantities") });
+        return Err(RecordError::Field { what: format!("{path} has other bodies or quantities") });
     }
     if place > count {
         return Err(corrupt(&opened.path)(format!("it has {count} steps, but had {place}")));
@@ -82,10 +83,10 @@ pub(crate) fn put(
     opened.count(place + 1)
 }
 
-/// Forgets all but the given entries, which are the first ones.
+/// Removes all entries after the given ones, which are the first ones.
 pub(crate) fn keep(directory: &Path, entries: &[FieldEntry]) -> Result<(), RecordError> {
     let (path, count) = (path(directory), entries.len());
-    // As long as the file itself, and maybe never written again.
+    // A partial file is as large as the file itself, and may never be overwritten.
     removed(&files::partial(&path))?;
     if count == 0 {
         return removed(&path);
@@ -105,7 +106,7 @@ fn removed(path: &Path) -> Result<(), RecordError> {
     }
 }
 
-/// Gives back the space that no step uses.
+/// Truncates the file to the steps it contains.
 pub(crate) fn finish(directory: &Path) -> Result<(), RecordError> {
     match open(directory, false)? {
         Some(mut opened) if opened.layout.count < opened.layout.capacity => opened.copy(opened.layout.count),
@@ -156,7 +157,7 @@ fn create(path: &Path, entry: &FieldEntry, fields: &FieldSet) -> Result<(), Reco
     })
 }
 
-/// Headers, mesh and the tables that say where the values of a step stand.
+/// Writes headers, mesh, and the tables of offsets of the values of each step.
 fn begin(
     file: &mut File,
     layout: &Layout,
@@ -164,7 +165,7 @@ fn begin(
 ) -> io::Result<()> {
     let image = layout.image();
     file.write_all(&image.head)?;
-    // What nothing is written to is zero, and most file systems do not store it.
+    // Unwritten parts are zero; most file systems do not store them.
     file.set_len(image.length)?;
     let steps =
         |value: &dyn Fn(u64) -> u64| (0..layout.capacity).flat_map(|i| value(i).to_le_bytes()).collect();
@@ -197,7 +198,7 @@ impl Opened<File> {
         Self::of(file, path.to_path_buf()).map_err(corrupt(path))
     }
 
-    /// Lets the first `count` steps be seen, by one write inside one sector.
+    /// Sets the number of steps, by one write within one sector.
     fn count(&mut self, count: u64) -> Result<(), RecordError> {
         let image = Layout { count, ..self.layout.clone() }.image();
         let places = [image.data[COUNT], image.dims[TIMES]];
@@ -208,7 +209,7 @@ impl Opened<File> {
         Ok(())
     }
 
-    /// The same steps in a new file with space for so many, in place of this one.
+    /// Replaces the file by a copy with this capacity.
     fn copy(&mut self, capacity: u64) -> Result<(), RecordError> {
         let layout = Layout { capacity, ..self.layout.clone() };
         let path = self.path.clone();
@@ -244,7 +245,7 @@ impl Opened<File> {
 }
 
 impl Layout {
-    /// Datasets with values for every step, and how many bytes.
+    /// Datasets with values for every step, with their bytes per step.
     fn per_step(&self) -> Vec<(String, u64)> {
         let arrays = self.arrays.iter().map(|a| (path_of(a), 8 * self.points * a.components as u64));
         [(TIMES.into(), 8), (STEPS.into(), 8)].into_iter().chain(arrays).collect()
@@ -291,7 +292,7 @@ impl<F: Read + Seek> Opened<F> {
         let nodes = self.all::<8>("/VTKHDF/Connectivity", INTEGER, layout.connectivity)?;
         let nodes: Vec<usize> = nodes.into_iter().map(|b| u64::from_le_bytes(b) as usize).collect();
         if let Some(node) = nodes.iter().find(|&&node| node as u64 >= n) {
-            return Err(format!("a cell names node {node}, but there are {n} points"));
+            return Err(format!("a cell refers to node {node}, but there are {n} points"));
         }
         let ends =
             self.all::<8>("/VTKHDF/Offsets", INTEGER, layout.cells.checked_add(1).ok_or("too many cells")?)?;
@@ -319,7 +320,7 @@ impl<F: Read + Write + Seek> Opened<F> {
         write_at(&mut self.file, start + place * bytes.len() as u64, bytes)
     }
 
-    /// Values of a step, not yet counted.
+    /// Writes the values of a step, without increasing the number of steps.
     fn write_step(&mut self, place: u64, entry: &FieldEntry, fields: &FieldSet) -> io::Result<()> {
         self.write_row(TIMES, place, &entry.time.to_le_bytes())?;
         self.write_row(STEPS, place, &entry.step.to_le_bytes())?;

@@ -1,5 +1,5 @@
-//! The groups, attributes and datasets of an HDF5 file of the kind `hdf5.rs` writes. It is no
-//! general HDF5 reader and says so.
+//! Groups, attributes and datasets of an HDF5 file, only for files written by `hdf5.rs`; other HDF5
+//! files are an error.
 
 use std::collections::BTreeMap;
 use std::io::{Read, Seek, SeekFrom};
@@ -11,36 +11,36 @@ use super::hdf5::{ATTRIBUTE, Attribute, DATASPACE, DATATYPE, Kind, LAYOUT, LINK,
 pub(super) struct Dataset {
     pub(super) kind: Kind,
     pub(super) dims: Vec<u64>,
-    /// Where its values begin.
+    /// Address of its values.
     pub(super) address: u64,
-    /// Bytes it owns.
+    /// Bytes reserved for it.
     pub(super) size: u64,
 }
 
-/// What a file contains.
+/// Contents of a file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contents {
     /// `/group/name`.
     pub(super) datasets: BTreeMap<String, Dataset>,
     /// `/group@name`.
     pub(super) attributes: BTreeMap<String, Attribute>,
-    /// Groups and datasets in the order in which they stand in their group.
+    /// Groups and datasets in the order of their group.
     pub(super) order: Vec<String>,
 }
 
-/// Little-endian number of the first bytes, which are taken off.
+/// Removes the first bytes and returns them as a little-endian number.
 fn take(bytes: &mut &[u8], count: usize) -> Result<u64, String> {
-    let (head, rest) = bytes.split_at_checked(count).ok_or("a header ends too early")?;
-    *bytes = rest;
+    let (head, tail) = bytes.split_at_checked(count).ok_or("a header ends too early")?;
+    *bytes = tail;
     Ok(head.iter().rev().fold(0, |sum, &b| sum << 8 | u64::from(b)))
 }
 
-/// So many bytes from a place in the file.
+/// Reads `count` bytes at an address of the file.
 pub(super) fn bytes_at<F: Read + Seek>(file: &mut F, at: u64, count: u64) -> Result<Vec<u8>, String> {
     let words = |e: std::io::Error| e.to_string();
     let length = file.seek(SeekFrom::End(0)).map_err(words)?;
     if at.checked_add(count).is_none_or(|end| end > length) {
-        return Err(format!("{count} bytes at {at} reach beyond the end, {length}"));
+        return Err(format!("{count} bytes at {at} reach beyond the end of the file, {length}"));
     }
     let mut bytes = vec![0; count as usize];
     file.seek(SeekFrom::Start(at)).and_then(|_| file.read_exact(&mut bytes)).map_err(words)?;
@@ -51,11 +51,11 @@ impl Contents {
     /// Reads every header.
     ///
     /// # Errors
-    /// What is wrong or not of our kind, in words.
+    /// What is wrong or not supported.
     pub(super) fn read<F: Read + Seek>(file: &mut F) -> Result<Self, String> {
         let superblock = bytes_at(file, 0, 96)?;
         if !superblock.starts_with(SIGNATURE) || superblock[8] != 0 {
-            return Err("it does not begin like a file of ours".into());
+            return Err("it is not a file written by Carom".into());
         }
         let mut contents = Self::default();
         contents.object(file, "", take(&mut &superblock[ROOT..], 8)?, 0)?;
@@ -70,27 +70,28 @@ impl Contents {
         depth: usize,
     ) -> Result<(), String> {
         let prefix = bytes_at(file, address, 16)?;
-        let mut rest = &prefix[..];
-        let (version, count) = (take(&mut rest, 2)?, take(&mut rest, 2)?);
-        let _references = take(&mut rest, 4)?;
+        let mut remaining = &prefix[..];
+        let (version, count) = (take(&mut remaining, 2)?, take(&mut remaining, 2)?);
+        let _references = take(&mut remaining, 4)?;
         if version != 1 || depth > 4 {
-            return Err(format!("`{path}` is no object of ours"));
+            return Err(format!("`{path}` is not an object written by Carom"));
         }
-        let body = bytes_at(file, address.saturating_add(16), take(&mut rest, 4)?)?;
-        let mut rest = &body[..];
+        let body = bytes_at(file, address.saturating_add(16), take(&mut remaining, 4)?)?;
+        let mut remaining = &body[..];
         let (mut kind, mut dims, mut layout) = (None, None, None);
         for _ in 0..count {
-            let (message, size) = (take(&mut rest, 2)? as u16, take(&mut rest, 2)? as usize);
-            take(&mut rest, 4)?;
-            let (mut message_bytes, after) = rest.split_at_checked(size).ok_or("a header ends too early")?;
-            rest = after;
+            let (message, size) = (take(&mut remaining, 2)? as u16, take(&mut remaining, 2)? as usize);
+            take(&mut remaining, 4)?;
+            let (mut message_bytes, after) =
+                remaining.split_at_checked(size).ok_or("a header ends too early")?;
+            remaining = after;
             let bytes = &mut message_bytes;
             match message {
                 DATASPACE => dims = Some(dataspace(bytes)?),
                 DATATYPE => kind = Some(kind_of(bytes)?),
                 LAYOUT => {
                     if take(bytes, 2)? != 0x0103 {
-                        return Err(format!("`{path}` is not stored in one piece"));
+                        return Err(format!("`{path}` is not stored contiguously"));
                     }
                     layout = Some((take(bytes, 8)?, take(bytes, 8)?));
                 }
@@ -115,7 +116,7 @@ impl Contents {
             let used = dims.iter().try_fold(kind.size() as u64, |n, &d| n.checked_mul(d));
             if used.is_none_or(|used| used > size) || address.checked_add(size).is_none_or(|end| end > length)
             {
-                return Err(format!("`{path}` reaches beyond its end or that of the file"));
+                return Err(format!("`{path}` reaches beyond its reserved space or the end of the file"));
             }
             self.datasets.insert(path.into(), Dataset { kind, dims, address, size });
         }
@@ -124,16 +125,19 @@ impl Contents {
 
     /// A dataset of the given kind.
     pub(super) fn dataset(&self, path: &str, kind: Kind) -> Result<&Dataset, String> {
-        self.datasets.get(path).filter(|d| d.kind == kind).ok_or_else(|| format!("no dataset {path} of ours"))
+        self.datasets
+            .get(path)
+            .filter(|d| d.kind == kind)
+            .ok_or_else(|| format!("there is no dataset {path} of the expected type"))
     }
 
-    /// A whole number kept as an attribute.
+    /// An integer stored as an attribute.
     pub(super) fn number(&self, path: &str) -> Result<u64, String> {
         let attribute = self.attributes.get(path).ok_or_else(|| format!("no attribute {path}"))?;
         take(&mut &attribute.data[..], 8)
     }
 
-    /// Texts kept as an attribute; one if it is a scalar.
+    /// Strings stored as an attribute; one if it is a scalar.
     pub(super) fn texts(&self, path: &str) -> Vec<String> {
         let Some(attribute) = self.attributes.get(path) else { return Vec::new() };
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim_end_matches('\0').to_owned();
@@ -145,7 +149,7 @@ fn dataspace(bytes: &mut &[u8]) -> Result<Vec<u64>, String> {
     let (version, rank) = (take(bytes, 1)?, take(bytes, 1)?);
     take(bytes, 6)?;
     if version != 1 || rank > 2 {
-        return Err("a dataspace of another kind".into());
+        return Err("a dataspace is not supported".into());
     }
     (0..rank).map(|_| take(bytes, 8)).collect()
 }
@@ -154,18 +158,18 @@ fn kind_of(bytes: &[u8]) -> Result<Kind, String> {
     let size = take(&mut bytes.get(4..).unwrap_or_default(), 4)? as usize;
     let kinds = [Kind::Integer(4), Kind::Integer(8), Kind::Byte, Kind::Real, Kind::Text(size)];
     let same = |kind: &Kind| size > 0 && bytes.starts_with(&datatype(*kind));
-    kinds.into_iter().find(same).ok_or_else(|| "a datatype of another kind".into())
+    kinds.into_iter().find(same).ok_or_else(|| "a datatype is not supported".into())
 }
 
 fn attribute(bytes: &mut &[u8]) -> Result<Attribute, String> {
     if take(bytes, 2)? != 1 {
-        return Err("an attribute of another kind".into());
+        return Err("an attribute is not supported".into());
     }
     let lengths = [take(bytes, 2)?, take(bytes, 2)?, take(bytes, 2)?];
     let [name, kind, space] = lengths.map(|length| {
         let part = bytes.split_at_checked((length as usize).next_multiple_of(8));
-        part.map(|(part, rest)| {
-            *bytes = rest;
+        part.map(|(part, remaining)| {
+            *bytes = remaining;
             part
         })
     });

@@ -1,7 +1,7 @@
 use super::*;
 use crate::vtu::tests::sample;
 
-/// Fields of a step: the sample, its values told apart.
+/// Fields of a step: the sample, with values that differ from step to step.
 fn fields(step: u64) -> FieldSet {
     let mut fields = sample();
     fields.arrays.iter_mut().flat_map(|a| &mut a.values).for_each(|v| *v += step as f64);
@@ -45,15 +45,15 @@ fn the_same_steps_give_the_same_bytes() {
     finish(&whole).unwrap();
     written(&cut, 18);
     finish(&cut).unwrap();
-    let kept: Vec<FieldEntry> = (0..7).map(|i| entry(5 * i)).collect();
-    keep(&cut, &kept).unwrap();
-    assert_eq!(entries(&cut).unwrap().unwrap(), kept);
+    let first: Vec<FieldEntry> = (0..7).map(|i| entry(5 * i)).collect();
+    keep(&cut, &first).unwrap();
+    assert_eq!(entries(&cut).unwrap().unwrap(), first);
     (7..19).for_each(|i| put(&cut, i, &entry(5 * i as u64), &fields(5 * i as u64)).unwrap());
     finish(&cut).unwrap();
     assert!(fs::read(path(&whole)).unwrap() == fs::read(path(&cut)).unwrap());
 }
 
-/// What `count` writes is one piece of one sector, whatever the names.
+/// `count` writes one contiguous range within one sector, for any names.
 #[test]
 fn counting_a_step_changes_one_sector() {
     let place = tempfile::tempdir().unwrap();
@@ -81,14 +81,14 @@ fn damage_is_an_error_and_never_a_panic() {
         assert!(look(&bytes[..end]).is_err(), "cut at {end}");
     }
     for at in 0..bytes.len() {
-        let mut bent = bytes.clone();
-        bent[at] ^= 0x95;
-        let _ = look(&bent);
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 0x95;
+        let _ = look(&damaged);
     }
 }
 
 #[test]
-fn refusals_say_why() {
+fn errors_say_why() {
     let place = tempfile::tempdir().unwrap();
     written(place.path(), 2);
     let error = put(place.path(), 3, &entry(15), &fields(15)).unwrap_err().to_string();

@@ -1,10 +1,10 @@
 //! Field files: VTK unstructured grids of Lagrange cells, orders 1 to 3, with appended raw binary
 //! data.
 //!
-//! Node order is VTK's and Gmsh's: corners, then each edge's nodes in the direction of the edge,
-//! then the interior. Points are the REFERENCE positions; `displacement` is a point array, so that
-//! "Warp By Vector" at scale 1 shows the deformed bodies. Units travel as VTK's own information key
-//! `UNITS_LABEL`, body names as a string array of the field data.
+//! Nodes are in the order of VTK and Gmsh: corners, then the nodes of each edge in the direction of
+//! the edge, then the interior. Points are the REFERENCE positions; `displacement` is a point
+//! array, so that "Warp By Vector" at scale 1 shows the deformed bodies. Units are stored with
+//! VTK's information key `UNITS_LABEL`, body names as a string array of the field data.
 
 mod read;
 mod write;
@@ -19,7 +19,7 @@ pub enum Cell {
 }
 
 impl Cell {
-    /// VTK's number of the type.
+    /// VTK's number of the cell type.
     pub fn vtk_type(self) -> u8 {
         match self {
             Self::Curve => 68,
@@ -69,13 +69,13 @@ pub struct PointArray {
     pub values: Vec<f64>,
 }
 
-/// Bodies and quantities at one time. Bodies share no points, so that quantities may jump between
-/// them.
+/// Bodies and quantities at one time. Bodies share no points, so quantities may be discontinuous
+/// between them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FieldSet {
-    /// Reference positions, zero where the dimension has none.
+    /// Reference positions; components beyond the dimension are zero.
     pub points: Vec<[f64; 3]>,
-    /// Cells; one block per body, each body's points contiguous or not.
+    /// Cells, one block per body; the points of a body need not be contiguous.
     pub blocks: Vec<Block>,
     /// Quantities.
     pub arrays: Vec<PointArray>,
@@ -139,14 +139,14 @@ pub(crate) mod tests {
             assert!(FieldSet::from_vtu(&bytes[..end.min(bytes.len() - 40)]).is_err(), "cut at {end}");
         }
         for at in 0..bytes.len() {
-            let mut bent = bytes.clone();
-            bent[at] ^= 0x15;
-            let _ = FieldSet::from_vtu(&bent);
+            let mut damaged = bytes.clone();
+            damaged[at] ^= 0x15;
+            let _ = FieldSet::from_vtu(&damaged);
         }
     }
 
     #[test]
-    fn contradicting_lengths_are_refused() {
+    fn contradicting_lengths_are_an_error() {
         let mut fields = sample();
         fields.arrays[0].values.pop();
         assert!(fields.to_vtu(0.0).unwrap_err().to_string().contains("displacement"));

@@ -1,4 +1,4 @@
-//! VTU → `FieldSet`, for the files this crate writes. It is no general VTU reader and says so.
+//! VTU → `FieldSet`, only for files written by this crate; other VTU files are an error.
 
 use std::collections::HashMap;
 
@@ -23,7 +23,7 @@ fn attribute(tag: &BytesStart, name: &str) -> Option<String> {
     attribute.normalized_value(quick_xml::XmlVersion::Implicit1_0).ok().map(std::borrow::Cow::into_owned)
 }
 
-/// Arrays of the head with the section they stand in, and the number of points.
+/// Arrays of the head, each with its section, and the number of points.
 fn head(text: &str) -> Result<(Vec<Array>, usize), String> {
     let mut reader = quick_xml::Reader::from_str(text);
     reader.config_mut().check_end_names = false;
@@ -84,11 +84,11 @@ fn values<const B: usize>(data: &[u8], array: &Array) -> Result<Vec<[u8; B]>, St
     };
     let bytes =
         block().ok_or_else(|| format!("array `{}` reaches beyond the end of the file", array.name))?;
-    let (chunks, rest) = bytes.as_chunks::<B>();
-    if rest.is_empty() {
+    let (chunks, remainder) = bytes.as_chunks::<B>();
+    if remainder.is_empty() {
         Ok(chunks.to_vec())
     } else {
-        Err(format!("array `{}` has a torn value", array.name))
+        Err(format!("array `{}` ends with an incomplete value", array.name))
     }
 }
 
@@ -101,8 +101,8 @@ fn numbers(data: &[u8], array: &Array, expected: usize) -> Result<Vec<f64>, Stri
 }
 
 impl Block {
-    /// Blocks of cells that follow each other and are of one kind; a cell is its body, its VTK type
-    /// and its point numbers.
+    /// Blocks of successive cells of the same body, type and degree; a cell is given by its body,
+    /// its VTK type and its point numbers.
     pub(crate) fn gather(cells: Vec<(usize, u8, &[usize])>, names: &[String]) -> Result<Vec<Self>, String> {
         let mut blocks: Vec<Self> = Vec::new();
         let mut last = None;
@@ -110,12 +110,13 @@ impl Block {
             let cell = match kind {
                 68 => Cell::Curve,
                 69 => Cell::Triangle,
-                _ => return Err(format!("cells of VTK type {kind}")),
+                _ => return Err(format!("cells of VTK type {kind} are not supported")),
             };
             let degree = (1..=3).find(|&d| cell.nodes(d) == nodes.len());
-            let degree = degree.ok_or_else(|| format!("cells of {} nodes", nodes.len()))?;
+            let degree =
+                degree.ok_or_else(|| format!("cells with {} nodes are not supported", nodes.len()))?;
             if last != Some((body, kind, degree)) {
-                let name = names.get(body).cloned().ok_or("a cell of an unnamed body")?;
+                let name = names.get(body).cloned().ok_or("a cell belongs to an unnamed body")?;
                 blocks.push(Self { body: name, cell, degree, connectivity: Vec::new() });
                 last = Some((body, kind, degree));
             }
@@ -131,7 +132,7 @@ impl FieldSet {
     /// Reads the bytes of a field file.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// What is wrong with the file.
     pub fn from_vtu(bytes: &[u8]) -> Result<Self, String> {
         let cut = bytes.windows(APPENDED.len()).position(|w| w == APPENDED).ok_or("no appended raw data")?;
         let (text, data) = (&bytes[..cut], &bytes[cut + APPENDED.len()..]);
@@ -149,7 +150,7 @@ impl FieldSet {
         };
         let (connectivity, ends) = (read("connectivity")?, read("offsets")?);
         if let Some(node) = connectivity.iter().find(|&&node| node >= n) {
-            return Err(format!("a cell names node {node}, but there are {n} points"));
+            return Err(format!("a cell refers to node {node}, but there are {n} points"));
         }
         let types = values::<1>(data, find("Cells", "types")?)?;
         let bodies = values::<4>(data, find("CellData", "body")?)?;

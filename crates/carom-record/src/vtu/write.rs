@@ -7,7 +7,7 @@ use quick_xml::escape::escape;
 use super::FieldSet;
 use crate::RecordError;
 
-/// The XML head and the binary data behind it, growing together.
+/// The XML head and the binary data after it, written together.
 #[derive(Default)]
 struct Parts {
     head: String,
@@ -42,26 +42,26 @@ impl Parts {
 }
 
 impl FieldSet {
-    /// Refuses lengths that contradict each other.
+    /// Checks that all lengths are consistent.
     pub(crate) fn check(&self) -> Result<(), RecordError> {
-        let refuse = |what| Err(RecordError::Field { what });
+        let error = |what| Err(RecordError::Field { what });
         let n = self.points.len();
         for array in &self.arrays {
             if array.values.len() != n * array.components {
                 let (name, got, c) = (&array.name, array.values.len(), array.components);
-                return refuse(format!("array `{name}` has {got} values for {n} points of {c} components"));
+                return error(format!("array `{name}` has {got} values for {n} points of {c} components"));
             }
         }
         for block in &self.blocks {
             let (body, size) = (&block.body, block.cell.nodes(block.degree));
             if !(1..=3).contains(&block.degree) || !block.connectivity.len().is_multiple_of(size) {
                 let (got, degree) = (block.connectivity.len(), block.degree);
-                return refuse(format!(
+                return error(format!(
                     "body `{body}` has {got} node numbers in cells of {size} nodes, degree {degree}"
                 ));
             }
             if let Some(node) = block.connectivity.iter().find(|&&node| node >= n) {
-                return refuse(format!("body `{body}` names node {node}, but there are {n} points"));
+                return error(format!("body `{body}` refers to node {node}, but there are {n} points"));
             }
         }
         Ok(())
@@ -83,7 +83,7 @@ impl FieldSet {
             "",
             std::iter::once(time.to_le_bytes()),
         );
-        // VTK strings are bytes ended by zero.
+        // VTK strings are null-terminated.
         let names = self.blocks.iter().map(|b| b.body.as_str()).collect::<Vec<_>>();
         let codes: Vec<String> =
             names.iter().flat_map(|n| n.bytes().chain([0])).map(|b| b.to_string()).collect();

@@ -9,6 +9,7 @@ use carom_case::Case;
 use carom_mechanics::{GridReport, Simulation, State};
 use carom_record::{ContactRow, Event, Manifest, RunWriter, Source, Status};
 use cpu_time::{ProcessTime, ThreadTime};
+use serde::{Deserialize, Serialize};
 
 use super::columns::{Since, center_weights, columns, row};
 use super::fields::{consistent_weights, field_set, gap_of, sides};
@@ -17,7 +18,12 @@ use super::outcome::{End, Options, Outcome, Progress, RunError};
 use super::verdicts::judge;
 use crate::setup::Setup;
 
-type Counters = BTreeMap<String, u64>;
+/// What a run has counted, and where its time went, up to a checkpoint.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Tally {
+    counters: BTreeMap<String, u64>,
+    timings: BTreeMap<String, f64>,
+}
 
 /// Data of a step besides the simulation.
 struct Session<'a> {
@@ -33,6 +39,8 @@ struct Session<'a> {
     first_step: u64,
     /// What happened since the previous row.
     since: Since,
+    /// What earlier processes counted up to the checkpoint that this one began from.
+    earlier: Tally,
     /// Wall seconds spent on writing.
     output: f64,
     /// Processor seconds in steps.
@@ -62,7 +70,7 @@ pub fn run(
     let writer = RunWriter::create(
         directory,
         &manifest,
-        &bytes(simulation.state(), Since::default(), &manifest.counters)?,
+        &bytes(simulation.state(), Since::default(), &Tally::default())?,
     )?;
     let mut session = Session::new(case, simulation, writer, manifest);
     session.write_start()?;
@@ -105,8 +113,8 @@ pub fn resume(
         });
     }
     let reopened = RunWriter::reopen(directory)?;
-    let (state, since, counters): (State, Since, Counters) = postcard::from_bytes(&reopened.payload)
-        .map_err(|error| RunError::Incompatible {
+    let (state, since, tally): (State, Since, Tally) =
+        postcard::from_bytes(&reopened.payload).map_err(|error| RunError::Incompatible {
             what: format!(
                 "the checkpoint of {} does not fit this version of Carom: {error}",
                 directory.display()
@@ -122,13 +130,13 @@ pub fn resume(
     let mut manifest = reopened.manifest;
     manifest.status = Status::Running;
     // Those of a killed process are older in the manifest.
-    manifest.counters.extend(counters);
+    (manifest.counters, manifest.timings) = (tally.counters.clone(), tally.timings.clone());
     manifest.reason = None;
     manifest.started = carom_record::now();
     manifest.threads = options.threads;
     let remarks = reopened.fallback.iter().map(ToString::to_string).collect();
     let mut session = Session::new(case, simulation, reopened.writer, manifest);
-    session.since = since;
+    (session.since, session.earlier) = (since, tally);
     session.writer.manifest(&session.manifest)?;
     if reopened.rows == 0 {
         session.write_start()?;
@@ -154,6 +162,7 @@ impl<'a> Session<'a> {
             field_steps,
             stressed,
             since: Since::default(),
+            earlier: Tally::default(),
             began,
             first_step,
             output: 0.0,
@@ -242,8 +251,7 @@ impl<'a> Session<'a> {
             self.write_fields()?;
         }
         if step % output.checkpoint_every as u64 == 0 && !last {
-            self.writer
-                .checkpoint(step, &bytes(self.simulation.state(), self.since, &self.manifest.counters)?)?;
+            self.checkpoint()?;
         }
         Ok(())
     }
@@ -319,10 +327,42 @@ impl<'a> Session<'a> {
         }
     }
 
+    /// Adds what this process has spent so far to what earlier ones had. A checkpoint holds both, so
+    /// that a killed process is counted up to there.
+    fn tally(&mut self) {
+        let Tally { counters, timings } = &self.earlier;
+        let spent = self.simulation.timings();
+        for (phase, seconds) in [
+            ("assembly", spent.assembly),
+            ("contact", spent.contact),
+            ("factor", spent.factor),
+            ("solve", spent.solve),
+            ("output", self.output),
+            ("cpu", self.cpu),
+            ("total", self.began.elapsed().as_secs_f64()),
+        ] {
+            let earlier = timings.get(phase).copied().unwrap_or_default();
+            self.manifest.timings.insert(phase.into(), earlier + seconds);
+        }
+        let factorisations = counters.get("factorisations").copied().unwrap_or_default();
+        let counters = &mut self.manifest.counters;
+        counters.insert("steps".into(), self.simulation.state().step);
+        counters.insert("factorisations".into(), factorisations + self.simulation.factorisations());
+    }
+
+    /// Writes a checkpoint of the state as it is.
+    fn checkpoint(&mut self) -> Result<(), RunError> {
+        self.tally();
+        let state = self.simulation.state();
+        let tally =
+            Tally { counters: self.manifest.counters.clone(), timings: self.manifest.timings.clone() };
+        Ok(self.writer.checkpoint(state.step, &bytes(state, self.since, &tally)?)?)
+    }
+
     /// Writes the last checkpoint and manifest.
     fn close(mut self, end: End, remarks: Vec<String>) -> Result<Outcome, RunError> {
-        let state = &self.simulation.state();
-        self.writer.checkpoint(state.step, &bytes(state, self.since, &self.manifest.counters)?)?;
+        self.checkpoint()?;
+        let state = self.simulation.state();
         let wall = self.began.elapsed().as_secs_f64();
         let manifest = &mut self.manifest;
         (manifest.status, manifest.reason) = match &end {
@@ -330,18 +370,6 @@ impl<'a> Session<'a> {
             End::Interrupted => (Status::Stopped, Some("stopped by the user".into())),
             End::Stopped(stopped) => (Status::Failed, Some(stopped.to_string())),
         };
-        let spent = self.simulation.timings();
-        let phases = [("assembly", spent.assembly), ("contact", spent.contact), ("factor", spent.factor)];
-        for (phase, seconds) in phases.into_iter().chain([
-            ("solve", spent.solve),
-            ("output", self.output),
-            ("cpu", self.cpu),
-            ("total", wall),
-        ]) {
-            *manifest.timings.entry(phase.into()).or_default() += seconds;
-        }
-        manifest.counters.insert("steps".into(), state.step);
-        *manifest.counters.entry("factorisations".into()).or_default() += self.simulation.factorisations();
         let outcome = Outcome {
             directory: self.writer.directory().to_path_buf(),
             steps: state.step,
@@ -364,8 +392,8 @@ fn stressed(simulation: &Simulation) -> Vec<bool> {
 }
 
 /// A checkpoint: the state, what the next row will count, and what the run has counted.
-fn bytes(state: &State, since: Since, counters: &Counters) -> Result<Vec<u8>, RunError> {
-    postcard::to_stdvec(&(state, since, counters))
+fn bytes(state: &State, since: Since, tally: &Tally) -> Result<Vec<u8>, RunError> {
+    postcard::to_stdvec(&(state, since, tally))
         .map_err(|e| RunError::Incompatible { what: format!("the state cannot be encoded: {e}") })
 }
 

@@ -28,13 +28,16 @@ pub trait Thickness: Material<3> {
         let [[a, b], [c, d]] = h.0;
         let at = |across: f64| self.at(&Mat([[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, across]]));
         let mut across = 0.0;
-        let mut point = at(across)?;
+        let (mut point, mut last) = (at(across)?, f64::INFINITY);
         for _ in 0..100 {
             let (stress, stiffness) = (self.stress(&point).0[2][2], self.tangent(&point, &E3, &E3).0[2][2]);
             let mut step = stress / stiffness;
-            if step.abs() <= 2.0 * f64::EPSILON * (1.0 + across) {
+            // Converged to round-off: steps no longer shrink.
+            let rounded = step.abs() >= last && last < 1e-9;
+            if step.abs() <= 2.0 * f64::EPSILON * (1.0 + across) || rounded {
                 return Ok(across - step);
             }
+            last = step.abs();
             if !(stiffness > 0.0 && step.is_finite()) {
                 break;
             }

@@ -279,7 +279,7 @@ fn wrong_expectations_are_shown_where_they_stand() {
     let of =
         |expect: &str| wrong(&format!("case = \"fall.toml\"\n[[arm]]\nname = \"a\"\n[[expect]]\n{expect}\n"));
     let found = of("what = \"last A.ux\"\nat_most = 1");
-    assert!(found.why.contains("of which arm") && found.line == 5, "{found:?}");
+    assert!(found.why.contains("names no arm") && found.line == 5, "{found:?}");
     assert!(of("what = 'last A.ux of \"b\"'\nat_most = 1").what.contains("no arm is named \"b\""));
     assert!(of("what = 'last A.uz of \"a\"'\nat_most = 1").what.contains("did you mean `A.ux`"));
     assert!(of("what = \"order\"\nof = \"A.ux\"\nat_most = 1").what.contains("`against`"));

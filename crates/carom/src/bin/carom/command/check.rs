@@ -74,7 +74,9 @@ fn study(arguments: &Arguments) -> Result<Exit, Failure> {
             short(time.step)
         ));
     }
-    out::line(&lines.join("\n"))?;
+    if !console::is_quiet() {
+        out::line(&lines.join("\n"))?;
+    }
     Ok(Exit::Done)
 }
 

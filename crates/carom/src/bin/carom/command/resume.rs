@@ -44,7 +44,11 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if StudyManifest::is_in(&arguments.directory) {
-        let of_a_run = [(arguments.threads.is_some(), "--threads"), (arguments.profile, "--profile")];
+        let of_a_run = [
+            (arguments.threads.is_some(), "--threads"),
+            (arguments.profile, "--profile"),
+            (arguments.strict, "--strict"),
+        ];
         if let Some((_, option)) = of_a_run.iter().find(|(given, _)| *given) {
             let what = format!("{option} is for a run, and {} is a study", arguments.directory.display());
             let help = "the arms of a study take one thread each: --jobs sets how many run at the same time; \

@@ -1,5 +1,6 @@
 //! `carom study`: many runs of one case, in parallel, and one comparison.
 
+use std::collections::BTreeSet;
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -208,7 +209,7 @@ struct Seen {
     done: Vec<u64>,
     /// Wall seconds left, by arm that runs.
     left: Vec<Option<f64>>,
-    ended: usize,
+    ended: BTreeSet<usize>,
     json: bool,
     bar: ProgressBar,
     last: Option<Instant>,
@@ -221,7 +222,7 @@ impl Seen {
             steps: manifest.arms.iter().map(|a| a.steps).collect(),
             done: vec![0; manifest.arms.len()],
             left: vec![None; manifest.arms.len()],
-            ended: 0,
+            ended: BTreeSet::new(),
             json,
             bar: console::bar(manifest.arms.iter().map(|a| a.steps).sum()),
             last: None,
@@ -231,12 +232,17 @@ impl Seen {
     fn event(&mut self, event: &Event) {
         let told = match event {
             Event::AlreadyDone(i) => {
-                (self.done[*i], self.ended) = (self.steps[*i], self.ended + 1);
+                self.done[*i] = self.steps[*i];
+                // Pilots and anchors have ended before.
+                if !self.ended.insert(*i) {
+                    return;
+                }
                 json!({ "event": "kept", "arm": self.names[*i] })
             }
             Event::Began(i) => json!({ "event": "began", "arm": self.names[*i] }),
             Event::Ended(i, ended) => {
-                (self.done[*i], self.left[*i], self.ended) = (self.steps[*i], None, self.ended + 1);
+                (self.done[*i], self.left[*i]) = (self.steps[*i], None);
+                self.ended.insert(*i);
                 json!({ "event": "ended", "arm": self.names[*i], "status": ended.status, "reason": ended.reason, "wall": ended.wall })
             }
             Event::Progress(i, p) => {
@@ -260,7 +266,7 @@ impl Seen {
     fn line(&self) -> String {
         let left = self.left.iter().flatten().copied().reduce(f64::max);
         let left = left.map_or_else(String::new, |left| format!("  longest left {}", duration(left)));
-        format!("{} of {} arms{left}", self.ended, self.names.len())
+        format!("{} of {} arms{left}", self.ended.len(), self.names.len())
     }
 }
 

@@ -89,7 +89,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let Some(verification) = done.map_err(failure)? else {
         if arguments.json {
             out::event(&json!({ "event": "interrupted", "directory": directory }))?;
-        } else {
+        } else if !console::is_quiet() && !arguments.csv {
             out::line("stopped by Ctrl-C: nothing was judged")?;
         }
         return Ok(Exit::Interrupted);
@@ -103,7 +103,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     tell(&verification, arguments, &page)?;
     let unjudged = suite.items.len() - verification.set_ups.len();
-    if unjudged > 0 && !arguments.json && !arguments.csv {
+    if unjudged > 0 && !arguments.json && !arguments.csv && !console::is_quiet() {
         out::line(&format!(
             "ended at the first miss: {unjudged} of {} set-ups were not judged",
             suite.items.len()
