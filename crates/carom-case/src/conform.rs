@@ -272,6 +272,7 @@ impl Check {
             self.add(path, what, why, format!("write {}", key.kind.described(self.dimension)));
         } else if !range.contains(x) {
             let what = format!("`{}` must be {}, not {x}", key.name, range.described());
+            // A sign is easily lost, or of another convention.
             let help = if x < 0.0 && range.contains(-x) {
                 format!("did you mean `{} = {}`?", key.name, -x)
             } else {

@@ -15,7 +15,7 @@ use super::keys::{self, Kind};
 use super::load;
 use super::mesh;
 use super::place;
-use super::problem::{CaseError, Problem, Problems};
+use super::problem::{CaseError, Diagnostic, Problem, Problems};
 use super::suggest;
 use super::tree::{Entry, Node, Table};
 use super::view::{View, word};
@@ -360,6 +360,11 @@ pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, Case
         let word = key == "forces" && !value.starts_with('"');
         if word { format!("{key} = {}", toml_edit::Value::from(value)) } else { format!("{key} = {value}") }
     };
+    if let Some(parameter) = parameters.iter().find(|parameter| !parameter.contains('=')) {
+        let what = format!("`{parameter}` is not a parameter");
+        let (why, help) = ("parameters are written KEY=VALUE", "write for example rho_inf=0.1");
+        return Err(CaseError::Wrong(vec![Diagnostic::of_file("carom explain", what, why, help)]));
+    }
     let kind_line = format!("kind = {}", toml_edit::Value::from(kind));
     let text = std::iter::once(kind_line).chain(parameters.iter().map(line)).collect::<Vec<_>>().join("\n");
     let document = Document::parse("scheme", &text, &[])?;

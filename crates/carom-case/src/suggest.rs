@@ -6,7 +6,9 @@ pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
     let word = plain(word);
     let distance = |candidate: &str| {
         let candidate = plain(candidate);
-        let most = (word.chars().count().max(candidate.chars().count()) / 3).max(1);
+        let letters = word.chars().count().max(candidate.chars().count());
+        // One letter is no misspelling of another.
+        let most = if letters < 2 { 0 } else { (letters / 3).max(1) };
         let found = strsim::damerau_levenshtein(&word, &candidate);
         (found <= most).then_some(found)
     };

@@ -248,5 +248,5 @@ fn schemes_alone() {
     assert!(read("hht", &["alpha=-0.05"]).unwrap_err().contains("did you mean `alpha = 0.05`?"));
     assert!(read("chung_hulbert", &["rho_inf=0.5"]).unwrap_err().contains("did you mean `chung-hulbert`?"));
     assert!(read("newmark", &["beta=0.25"]).unwrap_err().contains("needs `gamma`"));
-    assert!(read("hu", &["rho_inf"]).unwrap_err().starts_with("scheme:2:"));
+    assert!(read("hu", &["rho_inf"]).unwrap_err().contains("written KEY=VALUE"));
 }

@@ -33,7 +33,7 @@ pub enum Stopped {
     },
     /// The scheme created energy.
     #[error(
-        "energy was created at t = {time:.6}: {created:.4e}, more than {share} of the largest energy so far ({scale:.4e})"
+        "energy was created at t = {time:.6}: {created:.4e}, which is {:.2} % of the energy scale {scale:.4e}; {:.3} % are allowed", 100.0 * created / scale, 100.0 * share
     )]
     EnergyGuard {
         /// Time.

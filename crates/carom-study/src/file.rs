@@ -77,6 +77,12 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
     // `Document` has parsed the same text already.
     let Ok(parsed) = toml_edit::Document::parse(document.text()) else { return file };
     let root = parsed.as_table();
+    if !document.is_study() && root.contains_key("body") {
+        let why = "it has bodies, and neither `case`, `arm` nor `grid`";
+        let help = "run it with carom run, or name it as the `case` of a study";
+        problems.push(Problem::new("body", "this is a case, not a study", why, help).at_key());
+        return file;
+    }
     known(root, &KEYS, "a study", "", problems);
     file.title = text(root, "title", "", problems);
     file.reference = text(root, "reference", "", problems);

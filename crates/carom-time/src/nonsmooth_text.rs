@@ -90,7 +90,9 @@ impl Display for NonsmoothExplanation {
         write!(f, "\norder {}   ", self.order)?;
         match (self.stable_omega_dt, self.rho_inf) {
             (Some(limit), _) => writeln!(f, "stable for ωΔt ≤ {limit} (linear motion)")?,
-            (None, rho) => writeln!(f, "ρ∞ = {:.4}   stable at any Δt (linear motion)", rho.unwrap_or(1.0))?,
+            (None, rho) => {
+                writeln!(f, "ρ∞ = {:.4}   unconditionally stable (linear motion)", rho.unwrap_or(1.0))?
+            }
         }
         writeln!(f, "\n  {:>6} {:>10} {:>12} {:>10}", "T/Δt", "ρ", "damping ξ", "PE %")?;
         for row in &self.accuracy {

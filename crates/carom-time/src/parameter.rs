@@ -19,7 +19,7 @@ pub struct Parameter {
 pub(crate) const RHO_INF: Parameter = Parameter {
     key: "rho_inf",
     range: (Included(0.0), Included(1.0)),
-    meaning: "Spectral radius at infinite frequency: 0 damps it within steps, 1 not at all.",
+    meaning: "Spectral radius at infinite frequency: 0 removes the highest frequencies within a few steps, 1 does not damp them.",
     example: "0.8",
 };
 

@@ -48,7 +48,7 @@ impl Display for Explanation {
                 .collect();
             writeln!(f, "  {}\n      {}", convention.name, values.join("   "))?;
         }
-        let stable = if self.a_stable { "stable at any Δt" } else { "not stable at any Δt" };
+        let stable = if self.a_stable { "unconditionally stable" } else { "not unconditionally stable" };
         writeln!(
             f,
             "\norder {}   ρ∞ = {}   {stable} (linear motion)",

@@ -104,7 +104,7 @@ const MATERIAL: Table = Table {
         key(
             "poisson",
             Number(Range { low: Some((-1.0, false)), high: Some((0.5, false)) }),
-            "Poisson's ratio, with young.",
+            "Poisson's ratio; given together with young.",
         )
         .optional()
         .example("0.465"),

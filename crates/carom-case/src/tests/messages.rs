@@ -31,7 +31,7 @@ try: did you mean `prism.top`?"
         "--set:1:21: `rho_inf` must be a number in [0, 1], not 1.2
   time.scheme.rho_inf=1.2
                       ^^^
-why: Spectral radius at infinite frequency: 0 damps it within steps, 1 not at all.
+why: Spectral radius at infinite frequency: 0 removes the highest frequencies within a few steps, 1 does not damp them.
 try: write for example `rho_inf = 0.8`"
     );
 }

@@ -10,8 +10,8 @@ use crate::exit::Failure;
 pub(crate) fn of_run(case: &Path, out: Option<&Path>) -> Result<PathBuf, Failure> {
     if let Some(out) = out {
         return if out.exists() {
-            let what = format!("{} exists already, and a run never overwrites", out.display());
-            Err(Failure::Argument { what, help: "name another directory, or leave --out out".to_owned() })
+            let what = format!("{} exists already, and Carom never overwrites a run", out.display());
+            Err(Failure::Argument { what, help: "name another directory, or omit --out".to_owned() })
         } else {
             Ok(out.to_owned())
         };

@@ -229,16 +229,16 @@ fn profile(manifest: &carom_record::Manifest) -> Vec<(String, f64)> {
 /// The page of a run: made, unless nobody wants it or nothing was computed since it was made.
 fn page(done: &recording::Outcome, options: Options) -> Result<Option<PathBuf>, Failure> {
     let made = done.directory.join("report.html");
-    let kept = done.wall == 0.0 && made.exists();
-    if options.report && !kept { report(&done.directory).map(Some) } else { Ok(kept.then_some(made)) }
+    let current = done.wall == 0.0 && made.exists();
+    if options.report && !current { report(&done.directory).map(Some) } else { Ok(current.then_some(made)) }
 }
 
 fn stopped_help(reason: &carom::Stopped) -> String {
     match reason {
         carom::Stopped::EnergyGuard { .. } => {
-            "use a scheme that dissipates (carom explain), keep persistency = \"project\", shorten an explicit step (compressed cells are stiffer), or look with time.energy_guard = false"
+            "reduce the step; use a scheme that dissipates (carom explain); keep persistency = \"project\"; or switch the guard off to inspect the run (time.energy_guard = false)"
         }
-        carom::Stopped::NoStep { .. } => "look at log.jsonl for what was tried; a finer mesh, a smaller step or a damped scheme may help",
+        carom::Stopped::NoStep { .. } => "log.jsonl lists what was tried; a finer mesh, a smaller step or a scheme with more damping may help",
     }
     .to_owned()
 }

@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         _ => {
             return argument(
                 format!("{} is neither .msh nor .vtu", path.display()),
-                "the ending says what is written",
+                "use a name that ends in .msh (for Gmsh) or .vtu (for ParaView)",
             );
         }
     };
