@@ -1,5 +1,5 @@
-//! A study from its files to its tables: four schemes on a bar of 100 cells that strikes a wall,
-//! 400 steps each, one after the other.
+//! A complete study, from its files to its tables: four schemes for a bar of 100 cells that strikes
+//! a wall, with 400 steps each, one after the other.
 //!
 //!     cargo bench -p carom-study
 

@@ -1,5 +1,5 @@
-//! Arms of a study: those written down, then the product of the grid; and an arm's problems, shown
-//! where the arm was written.
+//! Arms of a study: first those of [[arm]], then all combinations of the grid. Problems of an arm
+//! are reported at its place in the study file.
 
 use carom_record::study::design::{Kind, Role};
 use carom_run::case::{Diagnostic, Document, Problem};
@@ -7,10 +7,10 @@ use toml_edit::Value;
 
 use crate::file::{FINE_NAME, StudyFile};
 
-/// By what the computed reference divides the smallest step where nothing is said.
+/// Default factor by which the step of the computed reference is smaller than the smallest one.
 const REFINE: u32 = 8;
 
-/// What an arm changes, and where in the study file each change stands.
+/// The changes of an arm, with their places in the study file.
 #[derive(Clone)]
 pub(crate) struct Draft {
     pub(crate) name: String,
@@ -18,12 +18,11 @@ pub(crate) struct Draft {
     pub(crate) path: String,
     /// `key=value`, and its path.
     pub(crate) sets: Vec<(String, String)>,
-    /// The case file it names.
+    /// Its case file, if it names one.
     pub(crate) case: Option<String>,
-    /// Its expectations instead of the case's, as the override that puts them there, and their
-    /// path.
+    /// Its expectations as an override that replaces those of the case, and their path.
     pub(crate) expect: (String, String),
-    /// What it is to the study.
+    /// Its role in the study.
     pub(crate) role: Role,
 }
 
@@ -46,12 +45,12 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
     let combinations: usize =
         if file.grid.is_empty() { 0 } else { file.grid.iter().map(|(_, v)| v.len()).product() };
     for combination in 0..combinations {
-        let mut rest = combination;
+        let mut remainder = combination;
         let mut sets = Vec::new();
         let mut name = Vec::new();
         for (key, values) in file.grid.iter().rev() {
-            let i = rest % values.len();
-            rest /= values.len();
+            let i = remainder % values.len();
+            remainder /= values.len();
             sets.push((assignment(key, &values[i]), format!("grid.\"{key}\"[{i}]")));
             name.push(format!("{key}={}", brief(&values[i])));
         }
@@ -70,9 +69,9 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
     if file.design.is_some() { levels(&drafts, file) } else { drafts }
 }
 
-/// Every method of a design at each of its levels; at its own step where no steps are given. Where
-/// it is to get the step at which it costs what another method does, a step of its own is where its
-/// pilots begin, at the first level and likewise at the others.
+/// Every method of a design at each level, or at its own step if no steps are given. For a method
+/// whose cost is matched, its own step is the step of its first pilot at the first level, and is
+/// scaled with the steps of the levels for the others.
 fn levels(methods: &[Draft], file: &StudyFile) -> Vec<Draft> {
     let steps = &file.steps;
     let cost_of = file.cost_of.as_ref().or(methods.first().map(|m| &m.name));
@@ -83,10 +82,10 @@ fn levels(methods: &[Draft], file: &StudyFile) -> Vec<Draft> {
         let costed =
             (file.design == Some(Kind::MatchedCost) || method.role.by_cost) && cost_of != Some(&method.name);
         let own = sets.iter().find_map(|(set, _)| set.strip_prefix("time.step=")?.trim().parse::<f64>().ok());
-        // A step of the method's own gives way.
+        // The step of the level replaces the method's own step.
         sets.retain(|(set, _)| !set.starts_with("time.step="));
-        let begin = own.filter(|_| costed).map_or(*step, |own| own * step / steps[0]);
-        sets.push((format!("time.step={begin:?}"), format!("steps[{level}]")));
+        let first = own.filter(|_| costed).map_or(*step, |own| own * step / steps[0]);
+        sets.push((format!("time.step={first:?}"), format!("steps[{level}]")));
         let of = if costed { "cost of " } else { "" };
         Draft { name: format!("{}, {of}Δt {}", method.name, short(*step)), sets, role, ..method.clone() }
     };
@@ -94,20 +93,20 @@ fn levels(methods: &[Draft], file: &StudyFile) -> Vec<Draft> {
     methods.iter().flat_map(|m| (0..count).map(move |level| (m, level))).map(at).collect()
 }
 
-/// A step in a name: at most four digits, `1.875e-3`.
+/// A step for names: at most four digits, `1.875e-3`.
 fn short(step: f64) -> String {
     let text = format!("{step:.3e}");
     let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
     format!("{}e{exponent}", digits.trim_end_matches('0').trim_end_matches('.'))
 }
 
-/// Whether the reference is to be computed: it is asked for, and no arm has its name.
+/// Whether the reference is computed: it is requested, and no arm has its name.
 pub(crate) fn computes_reference(file: &StudyFile, drafts: &[Draft]) -> bool {
     file.reference.as_deref() == Some(FINE_NAME) && drafts.iter().all(|d| d.name != FINE_NAME)
 }
 
-/// The three runs of the computed reference, the coarsest first: at most `step` over `refine`,
-/// twice and four times that, whole steps up to `end`.
+/// The three runs of the computed reference, the coarsest first. The finest step is at most `step`
+/// over `refine`; the others are twice and four times as long. All divide `end`.
 pub(crate) fn fine(file: &StudyFile, step: f64, end: f64) -> Vec<Draft> {
     let steps = 4.0 * (end / step * f64::from(file.refine.unwrap_or(REFINE)) / 4.0).ceil();
     let default =
@@ -150,7 +149,7 @@ fn one_line(value: &Value) -> String {
     value.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// A value in a name: a table by its kind and numbers, `chung-hulbert 0.6`.
+/// A value for names: a table by its kind and numbers, `chung-hulbert 0.6`.
 fn brief(value: &Value) -> String {
     match value {
         Value::String(text) => text.value().clone(),
@@ -162,8 +161,8 @@ fn brief(value: &Value) -> String {
     }
 }
 
-/// Directory names: letters and digits of the name, the rest as single hyphens, at most 40
-/// characters.
+/// Directory name: letters, digits and dots of the name, everything else as single hyphens, at most
+/// 40 characters.
 pub(crate) fn slug(name: &str) -> String {
     let mut slug = String::new();
     for c in name.chars() {
@@ -181,8 +180,8 @@ pub(crate) fn slug(name: &str) -> String {
     slug.trim_matches(['-', '.']).to_owned()
 }
 
-/// A diagnostic of an arm's case, placed in the study file; `base` are those of the case without
-/// any change.
+/// A diagnostic of an arm's case, at its place in the study file; `base` are those of the case
+/// without any change.
 pub(crate) fn placed(study: &Document, draft: &Draft, found: &Diagnostic, base: &[Diagnostic]) -> Diagnostic {
     if base.contains(found) {
         return found.clone();
@@ -232,8 +231,8 @@ mod tests {
         assert_eq!(slug("Hu, Δt 1.875e-4"), "hu-dt-1.875e-4");
     }
 
-    /// At matched cost the others are named after the step whose cost they have, and begin where
-    /// they say.
+    /// At matched cost, methods are named after the step whose cost they have, and start at their
+    /// own step.
     #[test]
     fn matched_cost_names_what_is_matched() {
         let arm = |name: &str, step: Option<&str>| crate::file::ArmEntry {
@@ -257,7 +256,7 @@ mod tests {
             ("explicit, cost of Δt 5e-3", "time.step=0.001")
         );
         assert_eq!(arms[0].sets[0].0, "time.step=0.01");
-        // One that asks for it has a cost where the others have steps.
+        // With matched steps, an arm with `match = "cost"` is the same.
         let same = all(&of(Kind::MatchedStep));
         let sets = |arms: &[Draft]| arms.iter().map(|a| (a.name.clone(), a.sets.clone())).collect::<Vec<_>>();
         assert_eq!(sets(&same), sets(&arms));

@@ -1,4 +1,4 @@
-//! One arm of a study computed in its directory, from its start or from where it was left.
+//! Computes one arm of a study in its directory, from the start or from its last checkpoint.
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -10,7 +10,7 @@ use carom_run::recording::{self, Options, Progress};
 use crate::error::StudyError;
 use crate::jobs::Ended;
 
-/// One arm from where it is to its end.
+/// Computes an arm to its end; `begun`: resumes it.
 pub(crate) fn compute(
     manifest: &StudyManifest,
     directory: &Path,

@@ -1,11 +1,11 @@
-//! Expectations of a study must be in the records of its arms: names of arms, columns and metrics,
-//! keys that are numbers.
+//! Checks that the expectations of a study exist in the records of its arms: names of arms, columns
+//! and metrics.
 
 use carom_record::question::{Asked, Quantity, Question, Series, column_metric_names, metric_names};
 use carom_record::{Expect, Expression, OrderOf};
 use carom_run::case::{Case, Problem, history_columns};
 
-/// Adds what is wrong with a study's expectations.
+/// Adds the problems of a study's expectations.
 pub(crate) fn check(expects: &[Expect], arms: &[(&str, &Case)], problems: &mut Vec<Problem>) {
     for (i, expect) in expects.iter().enumerate() {
         let path = format!("expect[{i}].what");
@@ -19,7 +19,7 @@ pub(crate) fn check(expects: &[Expect], arms: &[(&str, &Case)], problems: &mut V
             }
         };
         if let Err((path, what)) = wrong {
-            let why = "it is asked of the records of the arms";
+            let why = "expectations of a study use the records of its arms";
             problems.push(Problem::new(path, what, why, "write for example 'last A.uy of \"ARM\"'"));
         }
     }
@@ -38,17 +38,17 @@ fn series(series: &Series, arms: &[(&str, &Case)]) -> Result<(), String> {
 
 fn metric(name: &str, arm: Option<&str>, arms: &[(&str, &Case)]) -> Result<(), String> {
     match name.rsplit_once(':') {
-        Some(("energy_lost", _)) => here(arm, arms).map(drop),
+        Some(("energy_lost", _)) => arms_of(arm, arms).map(drop),
         Some((of, what)) if column_metric_names().contains(&what) => {
             column(&Asked { column: of.to_owned(), arm: arm.map(str::to_owned) }, arms)
         }
-        _ if metric_names().contains(&name) => here(arm, arms).map(drop),
-        _ => Err(format!("there is no metric `{name}`; there are: {}", metric_names().join(", "))),
+        _ if metric_names().contains(&name) => arms_of(arm, arms).map(drop),
+        _ => Err(format!("there is no metric `{name}`; the metrics are: {}", metric_names().join(", "))),
     }
 }
 
 fn column(asked: &Asked, arms: &[(&str, &Case)]) -> Result<(), String> {
-    for (name, case) in here(asked.arm.as_deref(), arms)? {
+    for (name, case) in arms_of(asked.arm.as_deref(), arms)? {
         let columns = history_columns(case);
         if !columns.contains(&asked.column) {
             let near = columns.iter().min_by_key(|c| strsim::damerau_levenshtein(c, &asked.column));
@@ -59,8 +59,8 @@ fn column(asked: &Asked, arms: &[(&str, &Case)]) -> Result<(), String> {
     Ok(())
 }
 
-/// The arms a quantity is asked of: the one it names, or all.
-fn here<'a>(
+/// The arms of a quantity: the one it names, or all.
+fn arms_of<'a>(
     arm: Option<&str>,
     arms: &'a [(&'a str, &'a Case)],
 ) -> Result<Vec<&'a (&'a str, &'a Case)>, String> {
@@ -75,13 +75,13 @@ fn here<'a>(
 
 fn order_of(order: &OrderOf, arms: &[(&str, &Case)]) -> Result<(), String> {
     match Question::parse(&order.of) {
-        // A word that is no metric is a column.
+        // A single word that is not a metric is a column.
         Ok(Expression::Quantity(Quantity::Metric(name, None)))
             if !name.contains(':') && !metric_names().contains(&name.as_str()) =>
         {
             column(&Asked { column: name, arm: None }, arms)
         }
-        Ok(asked) => question(&asked, arms),
+        Ok(parsed) => question(&parsed, arms),
         Err(_) => series(&Series::parse(&order.of)?, arms),
     }
 }

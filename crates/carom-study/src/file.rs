@@ -26,19 +26,19 @@ pub(crate) const FINE: [&str; 2] = ["set", "refine"];
 pub(crate) const ARM: [&str; 5] = ["name", "case", "set", "expect", "match"];
 pub(crate) const CLAIM: [&str; 2] = ["text", "compare"];
 
-/// The reference that is computed where no arm has this name.
+/// Name of the computed reference, unless an arm has this name.
 pub(crate) const FINE_NAME: &str = "fine";
 
-/// A study file, read; what could not be read is a problem.
+/// A study file that has been read; parts that could not be read are reported as problems.
 #[derive(Default)]
 pub(crate) struct StudyFile {
     pub(crate) title: Option<String>,
-    /// Case of the arms that name none.
+    /// Case file of the arms that do not name one.
     pub(crate) case: Option<String>,
-    /// What all arms and the computed reference change in their case.
+    /// Changes of all arms and of the computed reference to their case.
     pub(crate) set: Vec<(String, Value)>,
     pub(crate) reference: Option<String>,
-    /// What makes the arms comparable: they are methods then.
+    /// How the arms, as methods, are made comparable.
     pub(crate) design: Option<Kind>,
     /// Steps of the levels.
     pub(crate) steps: Vec<f64>,
@@ -46,15 +46,15 @@ pub(crate) struct StudyFile {
     pub(crate) cost_of: Option<String>,
     pub(crate) goal: Option<Goal>,
     pub(crate) accuracy: Option<f64>,
-    /// What the computed reference changes in the case.
+    /// Changes of the computed reference to the case.
     pub(crate) fine: Vec<(String, Value)>,
-    /// By what it divides the smallest step.
+    /// Factor by which its step is smaller than the smallest one.
     pub(crate) refine: Option<u32>,
     pub(crate) arms: Vec<ArmEntry>,
     /// Keys with their values.
     pub(crate) grid: Vec<(String, Vec<Value>)>,
     pub(crate) claims: Vec<carom_record::study::Claim>,
-    /// What is expected of the arms together.
+    /// Expectations of the study as a whole.
     pub(crate) expects: Vec<Expect>,
 }
 
@@ -63,11 +63,11 @@ pub(crate) struct ArmEntry {
     pub(crate) name: String,
     /// Keys with their values.
     pub(crate) set: Vec<(String, Value)>,
-    /// The case file it names instead of the study's.
+    /// Its case file, if it is not that of the study.
     pub(crate) case: Option<String>,
-    /// What is expected of its record, as written.
+    /// Its expectations, as written.
     pub(crate) expect: Option<String>,
-    /// Whether it is given a cost where the design gives steps.
+    /// Whether its cost is matched in a design of matched steps.
     pub(crate) by_cost: bool,
 }
 
@@ -115,7 +115,7 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
                 Problem::new(
                     &path,
                     "the arm has no `name`",
-                    "tables and figures call it by its name",
+                    "tables and figures identify arms by name",
                     "add `name = \"fine\"`",
                 )
                 .at_key(),
@@ -154,7 +154,7 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
                 let why = "a claim is a statement and the comparison that decides it";
                 let help = "add `text = \"…\"` and `compare = 'METRIC of \"ARM\" > METRIC of \"ARM\"'`";
                 problems.push(
-                    Problem::new(&path, "the claim has not both `text` and `compare`", why, help).at_key(),
+                    Problem::new(&path, "the claim needs both `text` and `compare`", why, help).at_key(),
                 );
             }
         }
@@ -184,12 +184,12 @@ fn comparison(root: &dyn TableLike, file: &mut StudyFile, problems: &mut Vec<Pro
             Some(Some(steps)) if !steps.is_empty() && steps.windows(2).all(|h| h[0] > h[1]) => {
                 file.steps = steps;
             }
-            _ => problems.push(not("steps", "a list of falling positive numbers", "steps = [1e-3, 5e-4]")),
+            _ => problems.push(not("steps", "a list of decreasing positive numbers", "steps = [1e-3, 5e-4]")),
         }
     }
-    let lonely = [("steps", !file.steps.is_empty()), ("cost_of", file.cost_of.is_some())];
-    for (key, _) in lonely.iter().filter(|(_, given)| *given && !root.contains_key("design")) {
-        let why = "it says at which levels the methods of a design run";
+    let of_designs = [("steps", !file.steps.is_empty()), ("cost_of", file.cost_of.is_some())];
+    for (key, _) in of_designs.iter().filter(|(_, given)| *given && !root.contains_key("design")) {
+        let why = "it defines the levels of a design, at which all methods are run";
         let help = "add `design = \"matched-step\"`, or put steps into [grid]";
         problems.push(Problem::new(*key, format!("`{key}` without a design"), why, help).at_key());
     }
@@ -203,13 +203,13 @@ fn comparison(root: &dyn TableLike, file: &mut StudyFile, problems: &mut Vec<Pro
     if let Some(item) = table.get("refine") {
         match item.as_integer().and_then(|n| u32::try_from(n).ok()).filter(|n| *n > 0) {
             Some(n) => file.refine = Some(n),
-            None => problems.push(not("fine.refine", "a positive whole number", "refine = 8")),
+            None => problems.push(not("fine.refine", "a positive integer", "refine = 8")),
         }
     }
     if file.reference.as_deref() != Some(FINE_NAME) {
         let help = format!("add `reference = \"{FINE_NAME}\"`");
         problems.push(
-            Problem::new("fine", "[fine] is not used", "it describes a computed reference", help).at_key(),
+            Problem::new("fine", "[fine] is not used", "it defines the computed reference", help).at_key(),
         );
     }
 }
@@ -237,8 +237,7 @@ fn one_of<T: Copy>(
     found
 }
 
-/// Expectations of an arm: checked where they stand, and as the text that replaces those of its
-/// case.
+/// Checks the expectations of an arm, and returns them as the text that replaces those of its case.
 fn expected(
     document: &Document,
     table: &dyn TableLike,
@@ -262,7 +261,7 @@ fn expected(
     Some(text.lines().map(str::trim).collect::<Vec<_>>().join(" "))
 }
 
-/// Whether an arm is to have the cost of another, in a design of matched steps.
+/// Whether the cost of an arm is matched to that of another, in a design of matched steps.
 fn matched(table: &dyn TableLike, path: &str, design: Option<Kind>, problems: &mut Vec<Problem>) -> bool {
     let word = text(table, "match", path, problems);
     let place = format!("{path}.match");
@@ -272,20 +271,20 @@ fn matched(table: &dyn TableLike, path: &str, design: Option<Kind>, problems: &m
         (Some("cost"), _) => problems.push(Problem::new(
             place,
             "`match` without a design of matched steps",
-            "it takes an arm out of the steps that the others have in common",
+            "it matches an arm by cost where the other arms have the steps of the design",
             "add `design = \"matched-step\"`; with \"matched-cost\" every arm is matched by cost already",
         )),
         (Some(word), _) => problems.push(Problem::new(
             place,
             format!("an arm cannot match \"{word}\""),
-            "the only word is \"cost\"",
-            "match = \"cost\"",
+            "the only allowed value is \"cost\"",
+            "write `match = \"cost\"`",
         )),
     }
     false
 }
 
-/// Values of the case that the `set` of a table replaces.
+/// Changes in the `set` of a table.
 fn values(
     table: &dyn TableLike,
     path: &str,
@@ -304,7 +303,7 @@ fn values(
     set
 }
 
-/// Dotted keys are tables to TOML and one key here.
+/// TOML reads dotted keys as nested tables; here they are single keys.
 fn flatten(table: &dyn TableLike, before: &str, out: &mut Vec<(String, Value)>) {
     for (key, item) in table.iter() {
         let key = format!("{before}{key}");
@@ -338,7 +337,7 @@ fn text(table: &dyn TableLike, key: &str, path: &str, problems: &mut Vec<Problem
     let found = item.as_str().map(str::to_owned);
     if found.is_none() {
         let path = if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
-        problems.push(not(&path, "a text", &format!("{key} = \"…\"")));
+        problems.push(not(&path, "a string", &format!("{key} = \"…\"")));
     }
     found
 }
@@ -360,7 +359,7 @@ fn known(table: &dyn TableLike, keys: &[&str], name: &str, path: &str, problems:
         let help = near
             .map_or_else(|| format!("use one of: {}", keys.join(", ")), |k| format!("did you mean `{k}`?"));
         let path = if path.is_empty() { format!("\"{key}\"") } else { format!("{path}.\"{key}\"") };
-        let why = format!("{name} has the keys {}", keys.join(", "));
+        let why = format!("the keys of {name} are: {}", keys.join(", "));
         problems.push(Problem::new(path, format!("unknown key `{key}` in {name}"), why, help).at_key());
     }
 }

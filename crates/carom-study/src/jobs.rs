@@ -1,4 +1,4 @@
-//! Runs side by side, as many at a time as there are jobs, and what is told of them meanwhile.
+//! Concurrent runs, as many as there are jobs, and their events.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,14 +7,14 @@ use std::sync::{Mutex, PoisonError, mpsc};
 use carom_record::Status;
 use carom_run::recording::{self, End, Progress};
 
-/// What happens to an arm, told by its number.
+/// An event of an arm, given by its number.
 #[derive(Clone, Debug)]
 pub enum Event {
-    /// It was finished, or had failed, before.
+    /// It had finished or failed before.
     AlreadyDone(usize),
-    /// It begins, or goes on.
+    /// It is started or resumed.
     Began(usize),
-    /// After an accepted step.
+    /// It accepted a step.
     Progress(usize, Progress),
     /// It ended.
     Ended(usize, Ended),
@@ -42,8 +42,8 @@ impl Ended {
     }
 }
 
-/// Computes numbered runs, as many at a time as there are jobs, begun in the order given; stops at
-/// the first error.
+/// Computes numbered runs, as many concurrently as there are jobs, started in the given order;
+/// stops at the first error.
 pub(crate) fn side_by_side<E: Send>(
     order: VecDeque<usize>,
     jobs: usize,
@@ -57,7 +57,7 @@ pub(crate) fn side_by_side<E: Send>(
     let work = |send: &mpsc::Sender<Event>| {
         while !stop.load(Ordering::Relaxed) && !halted.load(Ordering::Relaxed) {
             let Some(i) = locked(&queue).pop_front() else { return };
-            // A listener that has gone must not stop the runs.
+            // Runs continue without a receiver of events.
             let _ = send.send(Event::Began(i));
             match one(i, &mut |p| drop(send.send(Event::Progress(i, *p)))) {
                 Ok(ended) => drop(send.send(Event::Ended(i, ended))),

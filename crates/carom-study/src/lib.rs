@@ -1,9 +1,9 @@
-//! Studies: one case run many times with some of its values replaced, in parallel, and its runs
-//! compared.
+//! Studies: one case is run many times, in parallel, with some of its values replaced, and the runs
+//! are compared.
 //!
-//! [`Plan::read`] reads a study file and checks every arm before anything is written; [`start`]
-//! makes the directory and [`resume`] runs what is not finished in it, so that a study killed at
-//! any moment goes on where it was. Tables and claims are functions of the records alone:
+//! [`Plan::read`] reads a study file and checks every arm before anything is written. [`start`]
+//! creates the directory, and [`resume`] runs the arms that have not finished, so that a study can
+//! be killed and resumed at any time. Tables and claims are functions of the records alone:
 //! [`carom_record::study`].
 
 mod arms;

@@ -1,22 +1,22 @@
-//! Steps at which methods cost the same. The cost of a run is counted, not timed: Newton iterations
-//! and factorisations (steps, where a scheme needs neither), each weighted by the processor seconds
-//! one of them took in the method's first pilot run.
+//! Steps at which methods have the same cost. The cost of a run is counted, not timed: Newton
+//! iterations and factorisations (steps, for schemes without either), each weighted by the
+//! processor seconds that one of them took in the first pilot run of the method.
 //!
 //! ```text
 //! cost = c_n · Newton iterations + c_f · factorisations        or  c_s · steps
 //! Δt = end/N,  N ← N · (budget/cost)^{1/p},  cost ∝ Nᵖ          until the cost is within 5 % of the budget: that of `cost_of` at the level
 //! ```
 //!
-//! p is 1 at first, then what two trials say: those that have the budget between them, or the last
-//! two. Fewer steps need more iterations each, so that a composite scheme's cost may grow as the
-//! cube root of N alone, and what is not asked for p never comes near. A budget that falls between
-//! the costs of two successive numbers of steps cannot be met; what was reached stands in
-//! `study.json` and on the page.
+//! p is 1 at first, and then follows from two trials: those on either side of the budget, or the
+//! last two. It must be estimated: longer steps need more iterations each, so the cost of a
+//! composite scheme may grow only as the cube root of N. A budget between the costs of two
+//! successive numbers of steps cannot be met; the cost that was reached is in `study.json` and on
+//! the page.
 //!
-//! Counts are the same bits everywhere; the weights are measured once and kept in
-//! `pilots/ARM/pilot.json` with every trial, so that a study that is resumed comes to the same
-//! steps. A pilot is a whole run, since contact costs more than flight; the one that is accepted
-//! becomes the arm. What the arms then really took is on the page.
+//! Counts are reproducible on every machine. The weights are measured once and stored with every
+//! trial in `pilots/ARM/pilot.json`, so that a resumed study has the same steps. A pilot is a
+//! complete run, because contact costs more than flight; the accepted one becomes the arm. The
+//! processor time that the arms really took is on the page.
 
 use std::fs;
 use std::path::Path;
@@ -33,17 +33,17 @@ use crate::compute::compute;
 use crate::error::StudyError;
 use crate::jobs::{Ended, Event, side_by_side};
 
-/// Share of the budget by which a cost may differ to be accepted; what is claimed is twice that.
+/// Relative difference from the budget at which a cost is accepted; the page states twice this.
 const CLOSE: f64 = 0.05;
-/// Pilot runs of an arm at most.
+/// Largest number of pilot runs of an arm.
 const TRIALS: usize = 9;
-/// By how many times a step may be longer than the one pilots begin with: beyond, most steps are
-/// rejected and bisected, and a run has no step to speak of.
+/// Largest step, relative to that of the first pilot: beyond it most steps are rejected and
+/// bisected, so that the run has no definite step.
 const LONGEST: u64 = 16;
-/// Powers of the number of steps a cost is taken to grow with.
+/// Range of the power with which the cost grows with the number of steps.
 const POWERS: (f64, f64) = (0.25, 2.0);
 
-/// Processor seconds of one of each.
+/// Processor seconds per iteration, factorisation or step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Weights {
     newton: f64,
@@ -52,7 +52,7 @@ struct Weights {
 }
 
 impl Weights {
-    /// From what a run took and did.
+    /// From the timings and counters of a run.
     fn of(manifest: &Manifest) -> Self {
         let time = |name: &str| manifest.timings.get(name).copied().unwrap_or(0.0);
         let (newton, factorisations) = (count(manifest, "newton"), count(manifest, "factorisations"));
@@ -82,7 +82,7 @@ fn count(manifest: &Manifest, name: &str) -> f64 {
 struct Trial {
     /// Steps.
     steps: u64,
-    /// Its cost in seconds; none where it could not run to its end.
+    /// Its cost in seconds; none if it did not run to its end.
     cost: Option<f64>,
 }
 
@@ -117,43 +117,43 @@ impl Pilot {
         fs::write(&new, text).and_then(|()| fs::rename(&new, &path)).map_err(io)
     }
 
-    /// Steps of the next trial; none where one is good enough, or there is nothing left to try.
+    /// Steps of the next trial; none if a trial is accepted or there is nothing left to try.
     fn next(&self, first: u64) -> Option<u64> {
         let Some(last) = self.trials.last() else { return Some(first) };
         let budget = self.budget?;
         let tried = |next: u64| self.trials.iter().any(|t| t.steps == next);
         if last.cost.is_none() {
-            // Refused, as an explicit scheme does beyond its stable step: half way back to what
-            // ran.
+            // The step was not possible, for example above the stable step of an explicit scheme:
+            // go half way back to the nearest trial that ran.
             let ran = self.trials.iter().filter(|t| t.cost.is_some()).map(|t| t.steps);
             let next = (ran.min_by_key(|s| s.abs_diff(last.steps))? + last.steps).div_ceil(2);
             return (self.trials.len() < TRIALS && !tried(next)).then_some(next);
         }
-        // Steps with what their cost is off the budget, as logarithms.
+        // Steps of the trials, with the logarithms of cost over budget.
         let off: Vec<(u64, f64)> =
             self.trials.iter().filter_map(|t| Some((t.steps, (t.cost? / budget).ln()))).collect();
         let nearest = |side: f64| {
-            let there = off.iter().filter(|t| t.1 * side > 0.0);
-            there.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).copied()
+            let on_side = off.iter().filter(|t| t.1 * side > 0.0);
+            on_side.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).copied()
         };
         let (below, above) = (nearest(-1.0), nearest(1.0));
-        let (steps, away) = *off.iter().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-        if away.exp_m1().abs() <= CLOSE || self.trials.len() >= TRIALS {
+        let (steps, excess) = *off.iter().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+        if excess.exp_m1().abs() <= CLOSE || self.trials.len() >= TRIALS {
             return None;
         }
         let power = |(a, b): ((u64, f64), (u64, f64))| (b.1 - a.1) / (b.0 as f64 / a.0 as f64).ln();
-        // Between two trials interpolated; beyond them no wilder than a cost can grow.
+        // Interpolated between two trials; extrapolated with a limited power.
         let power = match (below.zip(above), &off[..]) {
             (Some(pair), _) => power(pair),
             (None, [.., a, b]) if a.0 != b.0 => power((*a, *b)).clamp(POWERS.0, POWERS.1),
             _ => 1.0,
         };
-        let next = ((steps as f64 * (-away / power).exp()).round() as u64).max(first.div_ceil(LONGEST));
+        let next = ((steps as f64 * (-excess / power).exp()).round() as u64).max(first.div_ceil(LONGEST));
         let middle = below.zip(above).map(|(a, b)| u64::midpoint(a.0, b.0));
         [Some(next), middle].into_iter().flatten().find(|next| !tried(*next))
     }
 
-    /// The trial whose cost is closest to the budget; the first if none could run.
+    /// The trial whose cost is closest to the budget; the first one if none has a cost.
     fn closest(&self) -> usize {
         let off = |t: &Trial| {
             t.cost.zip(self.budget).map_or(f64::INFINITY, |(cost, budget)| (cost / budget).ln().abs())
@@ -164,11 +164,11 @@ impl Pilot {
     }
 }
 
-/// Settles the steps of every arm whose cost is matched, and computes these arms. Whether it came
-/// to its end.
+/// Determines the step of every arm whose cost is matched, and computes these arms. Returns whether
+/// all of them are settled.
 ///
 /// # Errors
-/// What the machine refused.
+/// Input/output or system error.
 pub(crate) fn settle(
     manifest: &mut StudyManifest,
     directory: &Path,
@@ -177,14 +177,14 @@ pub(crate) fn settle(
     stop: &AtomicBool,
 ) -> Result<bool, StudyError> {
     let Some(design) = manifest.design.clone() else { return Ok(true) };
-    let those = |mine: &dyn Fn(&Arm) -> bool| {
-        (0..manifest.arms.len()).filter(|i| mine(&manifest.arms[*i])).collect::<Vec<_>>()
+    let arms_with = |property: &dyn Fn(&Arm) -> bool| {
+        (0..manifest.arms.len()).filter(|i| property(&manifest.arms[*i])).collect::<Vec<_>>()
     };
-    let others = those(&|arm| manifest.by_cost(arm));
+    let others = arms_with(&|arm| manifest.by_cost(arm));
     if others.is_empty() {
         return Ok(true);
     }
-    let anchors = those(&|arm| !arm.role.fine && arm.role.method.as_ref() == Some(&design.cost_of));
+    let anchors = arms_with(&|arm| !arm.role.fine && arm.role.method.as_ref() == Some(&design.cost_of));
     let not_ended = |i: &usize| {
         let status = manifest.state(directory, &manifest.arms[*i]).map(|s| s.0);
         !matches!(status, Ok(Some(Status::Finished | Status::Failed)))
@@ -218,16 +218,16 @@ pub(crate) fn settle(
     };
     side_by_side::<StudyError>(others.iter().copied().collect(), jobs, &one, observe, stop)?;
     let settled = settled.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let whole = settled.len() == others.len();
+    let all_settled = settled.len() == others.len();
     for (i, steps, share) in settled {
         place(manifest, i, steps)?;
         manifest.arms[i].role.cost = share;
     }
     manifest.write(directory)?;
-    Ok(whole)
+    Ok(all_settled)
 }
 
-/// Gives an arm a number of steps, in its case and among what it sets.
+/// Sets the number of steps of an arm, in its case and in its changes.
 fn place(manifest: &mut StudyManifest, i: usize, steps: u64) -> Result<(), StudyError> {
     let case = case_with(manifest, i, steps)?;
     let arm = &mut manifest.arms[i];
@@ -248,8 +248,8 @@ fn case_with(manifest: &StudyManifest, i: usize, steps: u64) -> Result<Case, Stu
     Ok(case)
 }
 
-/// Pilot runs of an arm until its cost is that of the budget; how the accepted one ended, its
-/// steps, and its cost over the budget.
+/// Pilot runs of an arm until its cost matches the budget. Returns how the accepted one ended, its
+/// steps, and its cost divided by the budget.
 fn pilot(
     manifest: &StudyManifest,
     directory: &Path,
@@ -292,7 +292,7 @@ fn pilot(
     if !to.exists() {
         fs::rename(&from, &to).map_err(|source| RecordError::Io { action: "move", path: from, source })?;
     }
-    // What the other trials cost is in pilot.json; their records would be most of a study's size.
+    // The costs of the other trials are in pilot.json; their records are removed to save space.
     for trial in (1..=pilot.trials.len()).map(|trial| folder.join(trial.to_string())) {
         if trial.is_dir() {
             fs::remove_dir_all(&trial).map_err(|source| RecordError::Io {
@@ -309,8 +309,8 @@ fn pilot(
     Ok((Ended { status: run.status, reason: run.reason, wall }, accepted.steps, share))
 }
 
-/// One pilot run, begun or gone on with; none where the model refuses the step, which an explicit
-/// scheme does beyond its stable one.
+/// One pilot run, started or resumed; none if the step is not possible, for example above the
+/// stable step of an explicit scheme.
 fn trial(
     manifest: &StudyManifest,
     i: usize,
@@ -345,9 +345,9 @@ mod tests {
         Pilot { budget: Some(10.0), trials, ..Pilot::default() }
     }
 
-    /// Twice the budget: half the steps; within 5 %: done; a run that failed: done; the closest is
-    /// the one accepted. 20 and 14.14 are as √N, so that 10 needs a quarter of 400; between 7 and
-    /// 20 the power is ln(20/7)/ln 4 = 0.757; between successive numbers there is nothing.
+    /// Twice the budget gives half the steps; within 5 % a trial is accepted; the closest one is
+    /// used. 20 and 14.14 grow as √N, so 10 needs a quarter of 400; between 7 and 20 the power is
+    /// ln(20/7)/ln 4 = 0.757; between successive numbers of steps there is no further trial.
     #[test]
     fn steps_follow_the_budget() {
         assert_eq!(pilot(&[]).next(400), Some(400));
@@ -355,7 +355,7 @@ mod tests {
         assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(10.4))]).next(400), None);
         assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(14.142))]).next(400), Some(100));
         assert_eq!(pilot(&[(400, Some(20.0)), (100, Some(7.0))]).next(400), Some(160));
-        // Never beyond sixteen times the step.
+        // At most sixteen times the first step.
         assert_eq!(pilot(&[(400, Some(200.0)), (40, Some(30.0))]).next(400), Some(25));
         assert_eq!(pilot(&[(400, Some(200.0)), (25, Some(30.0))]).next(400), None);
         assert_eq!(pilot(&[(41, Some(12.0)), (40, Some(8.0))]).next(41), None);
@@ -364,8 +364,8 @@ mod tests {
         assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(12.0)), (166, None)]).closest(), 1);
     }
 
-    /// 8 iterations with 4 factorisations in 2 s, of which a quarter factored: 1.5/8 s and 0.5/4 s;
-    /// without iterations, by the step.
+    /// 8 iterations with 4 factorisations in 2 s, a quarter of which was spent on factorisations:
+    /// 1.5/8 s and 0.5/4 s. Without iterations, seconds per step.
     #[test]
     fn weights_by_hand() {
         let source = carom_record::Source { text: String::new(), sets: Vec::new() };

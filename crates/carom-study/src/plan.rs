@@ -1,5 +1,5 @@
-//! A study read and checked: every arm's case is resolved and its model built before anything is
-//! written.
+//! Reads and checks a study: the case of every arm is resolved, and its model built, before
+//! anything is written.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use crate::{expects, file};
 /// A study that can be started.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// What its directory will say of it.
+    /// The manifest.
     pub manifest: StudyManifest,
     /// Its simulations.
     pub arms: Vec<PlannedArm>,
@@ -27,22 +27,22 @@ pub struct Plan {
 pub struct PlannedArm {
     /// The case.
     pub case: Case,
-    /// Text of the case file and changes.
+    /// Text of the case file, and changes.
     pub source: Source,
 }
 
 impl Plan {
-    /// Reads a study file and the case it names.
+    /// Reads a study file and its cases.
     ///
     /// # Errors
-    /// Everything that is wrong, with its place in the study file; in the case file, where it is
-    /// wrong without any arm.
+    /// All problems, with their places in the study file, or in the case file for problems that it
+    /// has without any arm.
     pub fn read(path: &Path) -> Result<Self, CaseError> {
         let study = Document::open(path, &[])?;
         let mut problems = Vec::new();
         let file = file::read(&study, &mut problems);
         let drafts = arms::all(&file);
-        // Names of what could not be read would be missed for no reason of theirs.
+        // Parts that could not be read would give misleading errors about unknown names.
         if problems.is_empty() {
             names(&file, &drafts, &mut problems);
         }
@@ -73,7 +73,7 @@ impl Plan {
                 Ok(case) => {
                     sets.pop();
                     planned.push((draft, sets, case, base));
-                    // The computed reference is finer than every method, which are known now.
+                    // The step of the computed reference depends on those of all methods.
                     if computed && planned.len() == methods {
                         let times = planned.iter().map(|(_, _, case, _)| case.time.step);
                         let step = times.fold(f64::INFINITY, f64::min);
@@ -158,16 +158,16 @@ impl Plan {
     }
 }
 
-/// A case file arms start from.
+/// A case file that arms change.
 struct Base {
     path: PathBuf,
     text: String,
-    /// What is wrong with it without any arm.
+    /// Its problems without any change.
     diagnostics: Vec<Diagnostic>,
 }
 
 impl Base {
-    /// Reads the case file `name`, told at `place` of the study.
+    /// Reads the case file `name`; errors are reported at `place` of the study.
     fn read(study: &Document, folder: &Path, name: &str, place: &str) -> Result<Self, CaseError> {
         let path = folder.join(name);
         let document = Document::open(&path, &[]).map_err(|error| match error {
@@ -183,7 +183,8 @@ impl Base {
     }
 }
 
-/// Names arms and claims go by: present, different, known.
+/// Checks the names of arms: that there are some, that they are unique, and that references to them
+/// exist.
 fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) {
     if drafts.is_empty() {
         problems.push(Problem::new(
@@ -200,8 +201,8 @@ fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) 
             problems.push(Problem::new(
                 path,
                 what,
-                "tables, figures and claims tell them apart by name",
-                "rename one",
+                "tables, figures and claims identify arms by name",
+                "rename one of them",
             ));
         }
     }
@@ -214,15 +215,15 @@ fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) 
             "cost_of",
             format!("no method is named \"{name}\""),
             why,
-            "name one of them",
+            "use one of them",
         ));
     }
     let cost_of = file.cost_of.as_ref().or(drafts.first().and_then(|d| d.role.method.as_ref()));
     for (i, arm) in file.arms.iter().enumerate().filter(|(_, arm)| arm.by_cost && Some(&arm.name) == cost_of)
     {
         let what = format!("\"{}\" cannot match its own cost", arm.name);
-        let why = "`match = \"cost\"` gives an arm the cost of `cost_of`, the first arm where that is left out, and this arm is it";
-        let help = "name another arm in `cost_of`, or take `match` out";
+        let why = "`match = \"cost\"` matches the cost of the arm `cost_of`, by default the first one, and this is that arm";
+        let help = "give another arm in `cost_of`, or leave `match` out";
         problems.push(Problem::new(format!("arm[{i}].match"), what, why, help));
     }
     let known = || drafts.iter().map(|d| format!("\"{}\"", d.name)).collect::<Vec<_>>().join(", ");
@@ -230,12 +231,12 @@ fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) 
     if let Some(reference) =
         file.reference.as_deref().filter(|name| !["exact", file::FINE_NAME].contains(name) && !exists(name))
     {
-        let what = format!("the reference \"{reference}\" is no arm");
+        let what = format!("the reference \"{reference}\" is not an arm");
         problems.push(Problem::new(
             "reference",
             what,
             format!("the arms are: {}", known()),
-            "name one of them, \"exact\", or \"fine\" to have one computed",
+            "use one of them, \"exact\", or \"fine\" for a computed reference",
         ));
     }
     for (i, claim) in file.claims.iter().enumerate() {
@@ -248,19 +249,19 @@ fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) 
                         &path,
                         what,
                         format!("the arms are: {}", known()),
-                        "name one of them",
+                        "use one of them",
                     ));
                 }
             }
             Err(why) => {
-                let help = "for example 'restitution of \"ARM\" > 1.1 * restitution of \"ARM\"'";
-                problems.push(Problem::new(&path, "this is no comparison", why, help));
+                let help = "write for example 'restitution of \"ARM\" > 1.1 * restitution of \"ARM\"'";
+                problems.push(Problem::new(&path, "this is not a valid comparison", why, help));
             }
         }
     }
 }
 
-/// A case with changes, its model built once to see what only the model shows.
+/// A case with changes; its model is built once, to find problems that only the model shows.
 pub(crate) fn resolved(path: &Path, sets: &[String]) -> Result<Case, CaseError> {
     let document = Document::open(path, sets)?;
     let case = read(&document).map_err(|problems| document.diagnose_all(&problems))?;
@@ -268,10 +269,10 @@ pub(crate) fn resolved(path: &Path, sets: &[String]) -> Result<Case, CaseError> 
     Ok(case)
 }
 
-/// The diagnostics of a wrong case; a machine's refusal stays an error.
+/// The diagnostics of a wrong case; input/output and system errors are returned as errors.
 fn diagnostics(error: CaseError) -> Result<Vec<Diagnostic>, CaseError> {
     match error {
         CaseError::Wrong(found) => Ok(found),
-        refused @ CaseError::Refused { .. } => Err(refused),
+        error @ CaseError::Refused { .. } => Err(error),
     }
 }

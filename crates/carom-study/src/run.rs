@@ -1,6 +1,6 @@
-//! The arms of a study computed: as many at a time as there are jobs, the longest first, each in
-//! its own run directory. An arm that fails is a row of the tables; Ctrl-C or a kill leaves every
-//! arm resumable.
+//! Computes the arms of a study: as many concurrently as there are jobs, the longest first, each in
+//! its own run directory. An arm that fails is a row of the tables; after Ctrl-C or a kill, every
+//! arm can be resumed.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -19,16 +19,16 @@ use crate::{checks, matched, theory};
 /// A study that ended.
 #[derive(Debug)]
 pub struct Outcome {
-    /// Stopped before all arms had ended; `resume` goes on.
+    /// Whether it was stopped before all arms had ended; `resume` continues it.
     pub interrupted: bool,
-    /// What the records say.
+    /// The study, read from its records.
     pub study: Study,
 }
 
-/// Makes the directory of a study, which must not exist, and runs it.
+/// Creates the directory of a study, which must not exist, and runs the study.
 ///
 /// # Errors
-/// What the machine refused. A failed arm is no error.
+/// Input/output or system error. A failed arm is not an error.
 pub fn start(
     plan: &Plan,
     directory: &Path,
@@ -40,8 +40,8 @@ pub fn start(
         return Err(StudyError::Exists { path: directory.to_owned() });
     }
     let make = |path: PathBuf| {
-        let refused = |source| RecordError::Io { action: "create", path: path.clone(), source };
-        std::fs::create_dir_all(&path).map_err(refused)
+        let failed = |source| RecordError::Io { action: "create", path: path.clone(), source };
+        std::fs::create_dir_all(&path).map_err(failed)
     };
     make(directory.join("arms"))?;
     plan.manifest.write(directory)?;
@@ -51,10 +51,11 @@ pub fn start(
     resume(directory, jobs, observe, stop)
 }
 
-/// Runs the arms that have not ended, `jobs` at a time, and writes the tables.
+/// Runs the arms that have not ended, `jobs` of them concurrently, and writes the tables.
 ///
 /// # Errors
-/// What the machine refused, or what is no study of this version. A failed arm is no error.
+/// Input/output or system error, or a study that is not compatible with this version. A failed arm
+/// is not an error.
 pub fn resume(
     directory: &Path,
     jobs: usize,
@@ -64,13 +65,13 @@ pub fn resume(
     let mut manifest = StudyManifest::read(directory)?;
     manifest.status = Status::Running;
     manifest.write(directory)?;
-    let whole = matched::settle(&mut manifest, directory, jobs, observe, stop)?;
+    let settled = matched::settle(&mut manifest, directory, jobs, observe, stop)?;
     let mut waiting = Vec::new();
     for (i, arm) in manifest.arms.iter().enumerate() {
         match manifest.state(directory, arm)?.0 {
             Some(Status::Finished | Status::Failed) => observe(&Event::AlreadyDone(i)),
-            // An arm whose step is not settled waits for the next time.
-            _ if !whole => {}
+            // If the steps of matched cost are not settled, no other arm is run.
+            _ if !settled => {}
             state => waiting.push((i, state.is_some())),
         }
     }

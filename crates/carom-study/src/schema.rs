@@ -1,5 +1,5 @@
-//! JSON Schema (draft 2020-12) of the study file, for editors: its own keys, and those of the case
-//! wherever a value is set.
+//! JSON Schema (draft 2020-12) of the study file, for editors: its own keys, and the keys of the
+//! case where values are set.
 
 use carom_run::case;
 use serde_json::{Map, Value, json};
@@ -17,33 +17,35 @@ pub fn schema() -> Value {
     let set_doc = "Values of the case that this arm replaces: \"time.step\" = 1e-3, \"body.cylinder.element\" = \"T6\".";
     let expects = || json!({ "type": "array", "items": case::expectation() });
     let arm = [
-        text("Its name in tables, figures and claims."),
-        text("Another case file, relative to the study, instead of the study's."),
+        text("Name in tables, figures and claims."),
+        text("Case file of this arm, relative to the study file, instead of that of the study."),
         set(case::changes(), set_doc),
         expects(),
         one_of(
-            "In a design of matched steps: this method gets, level by level, the step at which it costs what `cost_of` does, as an explicit scheme must.",
+            "In a design of matched steps: at every level, this method has the step at which its cost equals that of `cost_of`; meant for explicit schemes.",
             &["cost"],
         ),
     ];
-    let claim =
-        [text("A statement, in words."), text("What decides it: 'METRIC of \"ARM\" > METRIC of \"ARM\"'.")];
+    let claim = [
+        text("The claim, in words."),
+        text("The comparison that decides it: 'METRIC of \"ARM\" > METRIC of \"ARM\"'."),
+    ];
     let study = [
         text("Title of the page."),
-        text("The case file, relative to this one."),
+        text("The case file, relative to the study file."),
         set(case::changes(), "Values of the case that all arms and the computed reference replace."),
         one_of(
-            "What makes the arms comparable: they are methods then, each run at every one of `steps`, or at the step at which it costs what the method `cost_of` costs there.",
+            "How the arms are made comparable: as methods, each run at every one of `steps` (matched-step), or at the steps at which its cost equals that of the method `cost_of` (matched-cost).",
             &["matched-step", "matched-cost"],
         ),
-        json!({ "type": "array", "minItems": 1, "items": { "type": "number", "exclusiveMinimum": 0 }, "description": "Falling time steps of the levels of a design; the case's own step if left out." }),
+        json!({ "type": "array", "minItems": 1, "items": { "type": "number", "exclusiveMinimum": 0 }, "description": "Decreasing time steps of the levels of a design. Default: the step of the case." }),
         text(
-            "The method whose cost the others are given, with matched cost or `match = \"cost\"`; the first if left out.",
+            "The method whose cost the others are matched to, with matched cost or `match = \"cost\"`. Default: the first one.",
         ),
-        one_of("What arms are ranked by.", &Goal::NAMES.map(|(name, ..)| name)),
-        json!({ "type": "number", "exclusiveMinimum": 0, "description": "The error that is good enough, 0.05 if left out." }),
+        one_of("Goal by which the arms are ranked.", &Goal::NAMES.map(|(name, ..)| name)),
+        json!({ "type": "number", "exclusiveMinimum": 0, "description": "Required accuracy: the largest acceptable error. Default: 0.05." }),
         text(
-            "The arm others are compared with, \"exact\" for the formulas of [exact], or \"fine\" to have a fine one computed.",
+            "The arm that the others are compared with, \"exact\" for the formulas of [exact], or \"fine\" for a computed reference.",
         ),
         object(
             "The computed reference.",
@@ -51,18 +53,18 @@ pub fn schema() -> Value {
             [
                 set(
                     case::changes(),
-                    "Values of the case it replaces; Chung and Hulbert's scheme with ρ∞ = 0.1 if it names no scheme.",
+                    "Values of the case that it replaces. Default scheme: that of Chung and Hulbert with ρ∞ = 0.1.",
                 ),
-                json!({ "type": "integer", "minimum": 1, "description": "Its step is the smallest of the study over this, 8 if left out." }),
+                json!({ "type": "integer", "minimum": 1, "description": "Factor by which its step is smaller than the smallest one of the study. Default: 8." }),
             ],
             &[],
         ),
-        json!({ "type": "array", "items": object("A simulation.", &ARM, arm, &["name"]) }),
-        set(case::changes().into_iter().map(list).collect(), "Lists of values; their product adds arms."),
-        json!({ "type": "array", "items": object("A statement, confirmed or denied.", &CLAIM, claim, &CLAIM) }),
+        json!({ "type": "array", "items": object("An arm: one variant of the case that is simulated.", &ARM, arm, &["name"]) }),
+        set(case::changes().into_iter().map(list).collect(), "Lists of values; every combination is an arm."),
+        json!({ "type": "array", "items": object("A claim about the arms, confirmed or denied by a comparison.", &CLAIM, claim, &CLAIM) }),
         expects(),
     ];
-    let mut schema = object("Many runs of one case, compared.", &KEYS, study, &["case"]);
+    let mut schema = object("A comparison of many runs of one case.", &KEYS, study, &["case"]);
     schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
     schema["title"] = json!("Carom study");
     schema

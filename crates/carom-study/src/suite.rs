@@ -1,5 +1,5 @@
-//! What `carom verify` runs: the cases and studies of files and folders that carry expectations,
-//! read and checked before anything is written.
+//! Suites for `carom verify`: the cases and studies with expectations in files and folders, read
+//! and checked before anything is written.
 
 use std::path::{Path, PathBuf};
 
@@ -12,22 +12,22 @@ use crate::plan::resolved;
 /// Cases and studies to verify.
 #[derive(Clone, Debug, Default)]
 pub struct Suite {
-    /// What is run, family by family.
+    /// Cases and studies, family by family.
     pub items: Vec<Item>,
-    /// Whether slow expectations are left out.
+    /// Whether slow expectations are skipped.
     pub fast: bool,
 }
 
 /// One file of a suite.
 #[derive(Clone, Debug)]
 pub struct Item {
-    /// Folder it belongs to.
+    /// Folder of its file.
     pub family: String,
     /// Name of its file without the ending.
     pub name: String,
     /// The file.
     pub file: PathBuf,
-    /// What it is.
+    /// Case or study.
     pub kind: Kind,
 }
 
@@ -41,11 +41,11 @@ pub enum Kind {
 }
 
 impl Suite {
-    /// Reads files, and all `.toml` files below folders. What carries no expectation, or with
-    /// `fast` only slow ones, is left out.
+    /// Reads files, and all `.toml` files below folders. Files without expectations, or with `fast`
+    /// only slow ones, are skipped.
     ///
     /// # Errors
-    /// Everything that is wrong with any of them, with its place.
+    /// All problems of all files, with their places.
     pub fn read(paths: &[PathBuf], fast: bool) -> Result<Self, CaseError> {
         let mut files = Vec::new();
         for path in paths {
@@ -66,14 +66,14 @@ impl Suite {
                 }
                 Ok(None) => {}
                 Err(CaseError::Wrong(found)) => wrong.extend(found),
-                Err(refused) => return Err(refused),
+                Err(error) => return Err(error),
             }
         }
         if wrong.is_empty() { Ok(suite) } else { Err(CaseError::Wrong(wrong)) }
     }
 }
 
-/// The folder below the one that was named, or that folder itself.
+/// The subfolder of the given folder that contains the file, or the folder itself.
 fn family(named: &Path, file: &Path, folder: bool) -> String {
     let parent = file.parent().unwrap_or(Path::new(""));
     let below =
@@ -90,10 +90,10 @@ fn family(named: &Path, file: &Path, folder: bool) -> String {
 }
 
 fn toml_files(folder: &Path) -> Result<Vec<PathBuf>, CaseError> {
-    let refused = |source| CaseError::Refused { path: folder.display().to_string(), source };
+    let unreadable = |source| CaseError::Refused { path: folder.display().to_string(), source };
     let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(refused)? {
-        let path = entry.map_err(refused)?.path();
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
         if path.is_dir() {
             found.extend(toml_files(&path)?);
         } else if path.extension().is_some_and(|e| e == "toml") {
@@ -103,7 +103,7 @@ fn toml_files(folder: &Path) -> Result<Vec<PathBuf>, CaseError> {
     Ok(found)
 }
 
-/// Whether one of the expectations is to be judged.
+/// Whether any of the expectations is to be evaluated.
 fn wanted<'a>(expects: impl IntoIterator<Item = &'a Expect>, fast: bool) -> bool {
     expects.into_iter().any(|e| !(fast && e.slow))
 }
@@ -111,7 +111,7 @@ fn wanted<'a>(expects: impl IntoIterator<Item = &'a Expect>, fast: bool) -> bool
 fn kind(file: &Path, fast: bool) -> Result<Option<Kind>, CaseError> {
     let document = Document::open(file, &[])?;
     if document.is_study() {
-        // Arms are built when they are read: not for nothing.
+        // Reading a study builds the models of its arms, so skip it if there is nothing to verify.
         if !document.text().contains("expect") {
             return Ok(None);
         }

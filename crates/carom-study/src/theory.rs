@@ -1,6 +1,6 @@
-//! What theory says of a study's schemes, for its page: `theory.csv`, spectral radius, damping
-//! ratio and period error of every method on the test oscillator, and `frequencies.csv`, the
-//! model's own frequencies and those of contact springs. Both are made when the study begins.
+//! Theory of the schemes of a study, for its page: `theory.csv` has spectral radius, damping ratio
+//! and period error of every method for the test oscillator; `frequencies.csv` has the natural
+//! frequencies of the model and those of contact springs. Both are written when the study starts.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -17,8 +17,8 @@ use crate::file::FINE_NAME;
 /// Points per decade of ωΔt, from 0.01 to 1000.
 const POINTS: i32 = 24;
 
-/// ρ of the whole amplification matrix, ξ and period error of its principal pair at Ω; none where
-/// that pair does not oscillate.
+/// Spectral radius of the amplification matrix, and damping ratio ξ and period error of its
+/// principal pair at Ω; none if the pair does not oscillate.
 fn at(scheme: &SchemeSpec, omega_dt: f64) -> [Option<f64>; 3] {
     let Ok(integrator) = scheme.integrator() else { return [None; 3] };
     if let Integrator::Nonsmooth(scheme, _) = &integrator {
@@ -35,10 +35,10 @@ fn at(scheme: &SchemeSpec, omega_dt: f64) -> [Option<f64>; 3] {
     [Some(radius), pair.map(|p| p.damping_ratio), pair.map(|p| p.period_error)]
 }
 
-/// Writes both files beside `study.json`.
+/// Writes both files next to `study.json`.
 ///
 /// # Errors
-/// What the machine refused.
+/// Input/output or system error.
 pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
     let mut lines = vec!["method,omega_dt,spectral_radius,damping_ratio,period_error".to_owned()];
     let mut seen: Vec<&SchemeSpec> = Vec::new();
@@ -53,7 +53,7 @@ pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
         for i in -2 * POINTS..=3 * POINTS {
             let omega_dt = 10f64.powf(f64::from(i) / f64::from(POINTS));
             let [radius, damping, period] = at(scheme, omega_dt);
-            // Beyond Ω ≈ 6 no period is resolved that could be in error.
+            // Above Ω ≈ 6 a period is not resolved, so it has no error.
             let period = period.filter(|_| omega_dt <= std::f64::consts::TAU);
             let cell =
                 |x: Option<f64>| x.filter(|x| x.is_finite()).map_or_else(String::new, |x| format!("{x:?}"));
@@ -69,7 +69,7 @@ pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
     let Some(found) = plan.arms.first().and_then(|arm| of_case(&arm.case)) else { return Ok(()) };
     let lowest = found.lowest.iter().enumerate().map(|(k, omega)| format!("{},{omega:?}", k + 1));
     let highest = found.highest.map(|omega| format!("highest,{omega:?}"));
-    // Arms that differ by their step alone have the same springs, and most have none.
+    // Arms that differ only in the step have the same springs, and most arms have none.
     let mut seen = BTreeSet::new();
     let stiff = plan.manifest.arms.iter().zip(&plan.arms).filter(|(arm, planned)| {
         let name = if arm.role.fine { FINE_NAME } else { arm.role.method.as_ref().unwrap_or(&arm.name) };
@@ -102,8 +102,8 @@ fn put(directory: &Path, name: &str, lines: &[String]) -> Result<(), RecordError
 mod tests {
     use super::*;
 
-    /// At Ω = 2π/10, published: ξ 0.297 and PE 12 % of Hu's scheme, 0.036 of Chung and Hulbert's
-    /// with ρ∞ = 0.1; the trapezoidal rule damps nothing.
+    /// Published values at Ω = 2π/10: ξ = 0.297 and a period error of 12 % for Hu's scheme, ξ =
+    /// 0.036 for that of Chung and Hulbert with ρ∞ = 0.1; the trapezoidal rule has no damping.
     #[test]
     fn published_dampings() {
         let damping = |kind: &str, parameters: &[(&str, f64)]| {

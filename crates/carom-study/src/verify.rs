@@ -1,5 +1,5 @@
-//! A suite run and judged: cases and arms side by side, the longest first, one thread each.
-//! Pictures and pages are made only if asked for.
+//! Runs a suite and evaluates its expectations: cases and arms run concurrently, the longest first,
+//! with one thread each. Fields and pages are written only on request.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -20,12 +20,11 @@ use crate::suite::{Item, Kind, Suite};
 /// How a suite is run.
 #[derive(Clone, Copy, Debug)]
 pub struct VerifyOptions {
-    /// Runs at the same time.
+    /// Number of concurrent runs.
     pub jobs: usize,
-    /// Whether runs write field files and checkpoints as their cases say, so that pages can be made
-    /// of them.
+    /// Whether runs write fields and checkpoints as set in their cases, so that pages can be made.
     pub whole: bool,
-    /// Whether to stop at the first set-up that misses an expectation or could not go on; the short
+    /// Whether to stop at the first set-up that misses an expectation or stops unexpectedly; short
     /// set-ups are then run first.
     pub fail_fast: bool,
 }
@@ -39,7 +38,7 @@ struct Unit {
     source: Source,
 }
 
-/// A simulation of a suite, as it is told of.
+/// Name and length of a simulation of a suite.
 #[derive(Clone, Debug)]
 pub struct Named {
     /// Family, file and arm.
@@ -49,12 +48,12 @@ pub struct Named {
 }
 
 impl Suite {
-    /// Runs everything into a directory, which is made; none if it was stopped before the end. With
-    /// `fail_fast`, what was judged until the first miss. `begin` is told the runs events speak of
-    /// by number.
+    /// Runs everything into a new directory; none if it was interrupted. With `fail_fast`, returns
+    /// the results up to the first miss. `begin` is called with all runs; events refer to them by
+    /// number.
     ///
     /// # Errors
-    /// What the machine refused. A run that stops, and an expectation that is missed, are no
+    /// Input/output or system error. Runs that stop and expectations that are missed are not
     /// errors.
     pub fn verify(
         &self,
@@ -74,7 +73,7 @@ impl Suite {
             units.iter().map(|u| Named { name: u.name.clone(), steps: u.case.time.steps() as u64 }).collect();
         begin(&named);
         let order = order(&units, self.items.len(), options.fail_fast);
-        // Raised by Ctrl-C, and by the first miss where that ends it.
+        // Set by Ctrl-C, and with `fail_fast` by the first miss.
         let halt = AtomicBool::new(false);
         let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
             let Unit { name, directory, case, source, .. } = &units[i];
@@ -123,7 +122,7 @@ impl Suite {
         Ok(Some(verification))
     }
 
-    /// Directories of the items: family/name, numbered where two would share one.
+    /// Directories of the items: family/name, numbered if two would be the same.
     fn places(&self) -> Vec<String> {
         let mut places: Vec<String> = Vec::new();
         for item in &self.items {
@@ -141,8 +140,8 @@ impl Suite {
     }
 }
 
-/// The longest first, so that all jobs have work to the end; or set-up by set-up, the shortest
-/// first, so that a miss is found soon.
+/// The longest run first, so that all jobs are busy until the end; or set-up by set-up, the
+/// shortest first, so that a miss is found early.
 fn order(units: &[Unit], items: usize, shortest_first: bool) -> Vec<usize> {
     let mut order: Vec<usize> = (0..units.len()).collect();
     let mut works = vec![0.0; items];
@@ -155,7 +154,7 @@ fn order(units: &[Unit], items: usize, shortest_first: bool) -> Vec<usize> {
     order
 }
 
-/// A case that writes its history alone: the numbers are the same bits.
+/// A case that writes its history only, with the same bits.
 fn bare(mut case: Case, whole: bool) -> Case {
     if !whole {
         case.output.fields_every = 0;
@@ -178,8 +177,8 @@ impl Item {
             }]),
             Kind::Study(plan) => {
                 let path = directory.join("arms");
-                let refused = |source| RecordError::Io { action: "create", path: path.clone(), source };
-                std::fs::create_dir_all(&path).map_err(refused)?;
+                let failed = |source| RecordError::Io { action: "create", path: path.clone(), source };
+                std::fs::create_dir_all(&path).map_err(failed)?;
                 plan.manifest.write(directory)?;
                 let arms = plan.arms.iter().zip(&plan.manifest.arms);
                 let unit = |(planned, arm): (&crate::PlannedArm, &carom_record::study::Arm)| Unit {
@@ -194,7 +193,7 @@ impl Item {
         }
     }
 
-    /// Its records held against what is expected of them.
+    /// Compares its records with its expectations.
     fn judged(&self, root: &Path, place: &str, wall: f64, fast: bool) -> Result<SetUp, StudyError> {
         let directory = root.join(place);
         let row = |arm: Option<&str>, directory: String, verdict: Expectation| Row {
@@ -247,8 +246,8 @@ impl Item {
                         set_up.stopped.push(format!("\"{}\": {reason}", arm.name));
                     }
                     let place = format!("{place}/{}", arm.directory);
-                    let mine = found.expectations.iter().cloned();
-                    set_up.rows.extend(mine.map(|v| row(Some(&arm.name), place.clone(), v)));
+                    let of_arm = found.expectations.iter().cloned();
+                    set_up.rows.extend(of_arm.map(|v| row(Some(&arm.name), place.clone(), v)));
                 }
                 set_up.rows.extend(study.expectations.into_iter().map(|v| row(None, place.to_owned(), v)));
             }
@@ -258,7 +257,7 @@ impl Item {
     }
 }
 
-/// Whether an expectation of the arm, or of the study about the arm, asks if it stopped.
+/// Whether an expectation of the arm, or one of the study about the arm, depends on `stopped`.
 fn stop_expected(manifest: &StudyManifest, arm: &str, expects: &[Expect]) -> bool {
     let about = |e: &Expect| {
         Question::parse(&e.what).is_ok_and(|q| q.asks_whether_stopped() && q.arms().contains(&Some(arm)))

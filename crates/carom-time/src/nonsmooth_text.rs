@@ -91,7 +91,7 @@ impl Display for NonsmoothExplanation {
         match (self.stable_omega_dt, self.rho_inf) {
             (Some(limit), _) => writeln!(f, "stable for ωΔt ≤ {limit} (linear motion)")?,
             (None, rho) => {
-                writeln!(f, "ρ∞ = {:.4}   unconditionally stable (linear motion)", rho.unwrap_or(1.0))?
+                writeln!(f, "ρ∞ = {:.4}   unconditionally stable (linear motion)", rho.unwrap_or(1.0))?;
             }
         }
         writeln!(f, "\n  {:>6} {:>10} {:>12} {:>10}", "T/Δt", "ρ", "damping ξ", "PE %")?;

@@ -1,5 +1,5 @@
-//! Expectations of arms and of studies: judged on records, orders in time, arms of other cases,
-//! stopped arms, and what is wrong with them.
+//! Expectations of arms and of studies: their outcomes, orders in time, arms with other cases,
+//! stopped arms, and errors.
 
 use std::fs;
 use std::path::PathBuf;
@@ -9,8 +9,7 @@ use carom_record::study::Study;
 use carom_run::case::{CaseError, Diagnostic};
 use carom_study::{Plan, start};
 
-/// A point-like bar in free fall, and one that is struck: exact for every scheme of second order
-/// but for round-off.
+/// A bar in free fall, which every scheme of second order integrates exactly up to round-off.
 const FALL: &str = r#"
 dimension = 1
 [[material]]
@@ -39,9 +38,9 @@ record = ["ux", "vx"]
 fields_every = 0
 "#;
 
-/// One cell held at one end: an oscillator of mass ρL/3 and stiffness E/L, ω = √300, started with
+/// One cell fixed at one end: an oscillator of mass ρL/3 and stiffness E/L, ω = √300, with initial
 /// velocity 1: u = sin(ωt)/ω.
-fn held() -> String {
+fn fixed() -> String {
     FALL.replace("gravity = [-2.0]", "")
         .replace("cells = 4", "cells = 1")
         .replace("[time]", "[[support]]\non = [\"bar.left\"]\nfix = [\"x\"]\n[time]")
@@ -50,7 +49,7 @@ fn held() -> String {
 fn folder(study: &str) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("fall.toml"), FALL).unwrap();
-    fs::write(folder.path().join("held.toml"), held()).unwrap();
+    fs::write(folder.path().join("fixed.toml"), fixed()).unwrap();
     let path = folder.path().join("study.toml");
     fs::write(&path, study).unwrap();
     (folder, path)
@@ -71,7 +70,7 @@ fn wrong(study: &str) -> Diagnostic {
 }
 
 #[test]
-fn arms_are_judged_on_their_records() {
+fn expectations_of_arms() {
     let study = run(r#"
 case = "fall.toml"
 [[arm]]
@@ -87,8 +86,8 @@ expect = [
 name = "down"
 set = { "body.bar.velocity" = [-1.0], "body.bar.gravity" = [2.0] }
 [[arm]]
-name = "held"
-case = "held.toml"
+name = "fixed"
+case = "fixed.toml"
 expect = [{ what = "first A.vx", value = 1, tolerance = 0 }]
 [[expect]]
 what = 'peak [ A.ux of "up" + A.ux of "down" ]'
@@ -112,15 +111,15 @@ tolerance = 0
     assert!(study.rows[1].expectations.is_empty());
     assert!(study.rows[2].expectations[0].pass, "{:?}", study.rows[2]);
     assert!(study.expectations.iter().all(|e| e.pass), "{:?}", study.expectations);
-    assert_eq!(study.manifest.source.others.keys().collect::<Vec<_>>(), ["held.toml"]);
+    assert_eq!(study.manifest.source.others.keys().collect::<Vec<_>>(), ["fixed.toml"]);
 }
 
-/// The trapezoidal rule has order 2, Newmark's with γ = 0.6 order 1: of a column and of a number,
-/// against a fine arm and among themselves.
+/// The trapezoidal rule has order 2, Newmark's method with γ = 0.6 has order 1: for a column and
+/// for a number, with respect to a fine arm and among the arms.
 #[test]
 fn orders_in_time() {
     let grid = r#"
-case = "held.toml"
+case = "fixed.toml"
 [grid]
 "time.scheme" = [{ kind = "newmark", beta = 0.25, gamma = 0.5 }, { kind = "newmark", beta = 0.3025, gamma = 0.6 }]
 "time.step" = [0.004, 0.002, 0.001, 0.0005]
@@ -149,12 +148,12 @@ tolerance = 0.1
         "{}",
         got[2].0
     );
-    // None of three arms: said, not passed over.
+    // Groups of fewer than three arms are reported, not ignored.
     let study = run(grid);
-    assert!(study.expectations[1].why.as_ref().unwrap().contains("no 3 arms differ in time.step"));
+    assert!(study.expectations[1].why.as_ref().unwrap().contains("no 3 arms that differ only in time.step"));
 
     let study = run(r#"
-case = "held.toml"
+case = "fixed.toml"
 reference = "fine"
 [[arm]]
 name = "fine"
@@ -171,11 +170,11 @@ tolerance = 0.1
     assert!(study.expectations[0].pass, "{:?}", study.expectations);
 }
 
-/// Against the oscillator's exact motion.
+/// With respect to the exact motion of the oscillator.
 #[test]
 fn orders_from_formulas() {
     let study = run(r#"
-case = "held.toml"
+case = "fixed.toml"
 [grid]
 "time.scheme" = [{ kind = "newmark", beta = 0.25, gamma = 0.5 }]
 "time.step" = [0.004, 0.002]
@@ -203,11 +202,11 @@ relative = 1e-3
     }
 }
 
-/// The same formula, where it belongs: in the case.
+/// The same formula, given in the case.
 #[test]
 fn orders_from_the_case() {
     let study = r#"
-case = "held.toml"
+case = "fixed.toml"
 reference = "exact"
 [[arm]]
 name = "one"
@@ -225,7 +224,7 @@ tolerance = 0.05
 "#;
     let (folder, path) = folder(study);
     let exact = "[exact]\n\"A.ux\" = \"sin(sqrt(300)*t)/sqrt(300)\"\n";
-    fs::write(folder.path().join("held.toml"), format!("{}{exact}", held())).unwrap();
+    fs::write(folder.path().join("fixed.toml"), format!("{}{exact}", fixed())).unwrap();
     let plan = Plan::read(&path).unwrap_or_else(|e| panic!("{e}"));
     let study =
         start(&plan, &folder.path().join("out"), 2, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
@@ -237,7 +236,7 @@ tolerance = 0.05
 #[test]
 fn a_stopped_arm_may_be_expected() {
     let study = run(r#"
-case = "held.toml"
+case = "fixed.toml"
 [[arm]]
 name = "guarded"
 set = { "newton.max_iterations" = 1, "newton.tolerance" = 1e-300 }

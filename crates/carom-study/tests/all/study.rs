@@ -1,5 +1,4 @@
-//! Studies of a bar that falls on a plane: rows, failure, stop and resume, what is wrong with a
-//! study file.
+//! Studies of a bar that falls on a plane: rows, failure, stop and resume, errors in study files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -105,15 +104,15 @@ fn rows_failures_and_claims() {
     assert!(tidy.contains("damped,steps,40.0,\n"));
     assert!(fs::read_to_string(directory.join("claims.csv")).unwrap().contains("confirmed"));
     // Nothing is computed twice, and nothing is overwritten.
-    let mut kept = 0;
+    let mut done_before = 0;
     resume(
         &directory,
         1,
-        &mut |e| kept += usize::from(matches!(e, Event::AlreadyDone(_))),
+        &mut |e| done_before += usize::from(matches!(e, Event::AlreadyDone(_))),
         &AtomicBool::new(false),
     )
     .unwrap();
-    assert_eq!(kept, 3);
+    assert_eq!(done_before, 3);
     assert!(start(&plan, &directory, 1, &mut |_| (), &AtomicBool::new(false)).is_err());
 }
 
@@ -126,10 +125,10 @@ fn histories(directory: &Path) -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// Stopped in the middle of an arm, with another not begun, and the files it was made from gone:
-/// the same bytes in the end.
+/// A study that is stopped within an arm, with another arm not started, and whose input files are
+/// removed, ends with the same bytes.
 #[test]
-fn goes_on_where_it_was_stopped() {
+fn resumes_where_it_was_stopped() {
     let (folder, path) = folder(THREE);
     let plan = Plan::read(&path).unwrap();
     let (whole, parts) = (folder.path().join("whole"), folder.path().join("parts"));
@@ -156,7 +155,7 @@ fn wrong_arms_are_shown_in_the_study_file() {
     let found = wrong("[[arm]]\nname = \"a\"\nset = { \"time.schem\" = 1, \"body.bra.element\" = \"L3\" }\n");
     assert!(found[0].file.ends_with("study.toml"));
     assert_eq!((found[0].line, found[0].quoted.starts_with("set =")), (4, true));
-    // A step that does not divide the end: shown at the arm, not in the case.
+    // A step that does not divide the end is reported at the arm, not in the case.
     let found = wrong("[[arm]]\nname = \"a\"\nset = { \"time.step\" = 0.03 }\n");
     assert_eq!((found.len(), found[0].line), (1, 2), "{found:?}");
     assert!(found[0].why.contains("arm \"a\""));
@@ -174,21 +173,21 @@ fn wrong_study_files() {
     let first = |study: &str| wrong(study)[0].clone();
     let found = first("[[arm]]\nname = \"a\"\nsett = {}\n");
     assert_eq!((found.line, found.help.as_str()), (4, "did you mean `set`?"));
-    assert!(first("reference = \"finest\"\n[[arm]]\nname = \"a\"\n").what.contains("no arm"));
+    assert!(first("reference = \"finest\"\n[[arm]]\nname = \"a\"\n").what.contains("is not an arm"));
     assert!(first("[[arm]]\nname = \"a\"\n[[arm]]\nname = \"a\"\n").what.contains("two arms"));
     assert!(first("").what.contains("no arms"));
-    assert!(first("[[arm]]\nname = 3\n").what.contains("`name` is not a text"));
+    assert!(first("[[arm]]\nname = 3\n").what.contains("`name` is not a string"));
     assert!(first("[grid]\n\"time.step\" = 1e-3\n").what.contains("list"));
     let found = first("[[arm]]\nname = \"a\"\n[[claim]]\ntext = \"t\"\ncompare = 'apex of \"b\" > 1'\n");
     assert_eq!((found.line, found.what.as_str()), (6, "no arm is named \"b\""));
     let (_folder, path) = folder("[[arm]]\nname = \"a\"\n");
     fs::write(&path, "case = \"none.toml\"\n[[arm]]\nname = \"a\"\n").unwrap();
-    let told = Plan::read(&path).unwrap_err().to_string();
-    assert!(told.contains("study.toml:1:8") && told.contains("none.toml"), "{told}");
+    let message = Plan::read(&path).unwrap_err().to_string();
+    assert!(message.contains("study.toml:1:8") && message.contains("none.toml"), "{message}");
 }
 
-/// Every method at every step, and a reference of three runs whose steps double, at most an eighth
-/// of the smallest: 0.4/0.005 · 8 = 640 steps.
+/// Every method at every step, and a reference of three runs whose steps double; the finest step is
+/// at most an eighth of the smallest one: 0.4/0.005 · 8 = 640 steps.
 #[test]
 fn a_design_builds_its_arms_and_ranks_them() {
     let (folder, path) = folder(
@@ -208,12 +207,10 @@ fn a_design_builds_its_arms_and_ranks_them() {
     let out = folder.path().join("out");
     let study = start(&plan, &out, 2, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
     let ranking = study.ranking.unwrap();
-    // Hu's scheme dissipates the vibration that the impact leaves: last at both steps, and the
-    // verdict says so.
+    // Hu's scheme dissipates the vibration after the impact, so it is last at both steps.
     let first: Vec<&str> = ranking.levels.iter().map(|l| study.rows[l[0].arm].name.as_str()).collect();
     assert_eq!(first, ["CH, Δt 1e-2", "CH, Δt 5e-3"]);
-    // With two threads, and stopped where it touches and resumed: the same bits, and nothing left
-    // behind.
+    // Two threads, and a stop during contact with a resume, give the same bits; no files remain.
     let checks = study.checks.as_ref().unwrap();
     assert_eq!((checks.arm.as_str(), checks.threads.0), ("Hu, Δt 1e-2", 2));
     assert!(checks.active_pairs == 1 && (1..40).contains(&checks.resumed.0), "{checks:?}");
@@ -224,19 +221,19 @@ fn a_design_builds_its_arms_and_ranks_them() {
     let verdict = ranking.verdict.unwrap();
     assert_eq!(study.manifest.arms[verdict.arm].role.method.as_deref(), Some("CH"));
     assert!(out.join("ranking.csv").is_file() && out.join("reference.csv").is_file());
-    // Where it cannot be tried the study is none the worse; where it can be again, it is.
-    let (tried, repeated) = (out.join("checks.json"), out.join("checks"));
+    // If the checks cannot be made, the study is still valid; later they are made.
+    let (checked, repeated) = (out.join("checks.json"), out.join("checks"));
     let again = || resume(&out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap();
-    fs::remove_file(&tried).unwrap();
+    fs::remove_file(&checked).unwrap();
     fs::write(&repeated, "in the way").unwrap();
     let hindered = again();
-    assert!(!hindered.interrupted && hindered.study.checks.is_none() && !tried.exists());
+    assert!(!hindered.interrupted && hindered.study.checks.is_none() && !checked.exists());
     fs::remove_file(&repeated).unwrap();
     assert_eq!(again().study.checks, study.checks);
 }
 
-/// A method that takes one solve a step and one that projects differ little: at twice the step of
-/// the case, matched cost gives it back.
+/// Two methods of similar cost: the second starts at twice the step of the case, and matched cost
+/// determines its step.
 #[test]
 fn matched_cost_settles_and_resumes_at_the_same_steps() {
     let (folder, path) = folder(
@@ -255,7 +252,7 @@ fn matched_cost_settles_and_resumes_at_the_same_steps() {
     let trials = pilot["trials"].as_array().unwrap();
     assert_eq!(trials[0]["steps"], 20);
     assert_eq!(trials[pilot["settled"].as_u64().unwrap() as usize]["steps"], settled[1]);
-    // The arm is lost, its pilot record is not: the same steps again.
+    // Resumed from the pilot record: the same steps.
     let again = resume(&out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
     assert_eq!(steps(&again), settled);
     assert!(
@@ -264,8 +261,8 @@ fn matched_cost_settles_and_resumes_at_the_same_steps() {
     );
 }
 
-/// Beside arms at the common step, one explicit arm at the cost of the first: only its step is
-/// settled, and what is settled is what its case has.
+/// Arms at a common step, and one explicit arm at the cost of the first: only its step is
+/// determined, and its case has the step that was determined.
 #[test]
 fn an_arm_matches_cost_where_the_others_match_steps() {
     let (folder, path) = folder(
@@ -291,7 +288,7 @@ fn an_arm_matches_cost_where_the_others_match_steps() {
 }
 
 #[test]
-fn wrong_designs_are_told() {
+fn wrong_designs_are_reported() {
     let first = |study: &str| wrong(study)[0].clone();
     let found = first("design = \"matched\"\n[[arm]]\nname = \"a\"\n");
     assert_eq!(found.help, "did you mean \"matched-step\"?");
@@ -299,7 +296,7 @@ fn wrong_designs_are_told() {
     assert!(
         first("design = \"matched-step\"\nsteps = [0.005, 0.01]\n[[arm]]\nname = \"a\"\n")
             .what
-            .contains("falling")
+            .contains("decreasing")
     );
     assert!(
         first("design = \"matched-cost\"\ncost_of = \"b\"\n[[arm]]\nname = \"a\"\n")
