@@ -133,7 +133,9 @@ fn with_common(file: &StudyFile, own: Vec<(String, String)>) -> Vec<(String, Str
         own.iter().any(|(own, _)| common == key(own) || common.starts_with(&format!("{}.", key(own))))
     };
     let common = file.set.iter().map(|entry| entry_at(entry, ""));
-    common.filter(|(set, _)| !overridden(set)).chain(own.iter().cloned()).collect()
+    let mut sets: Vec<_> = common.filter(|(set, _)| !overridden(set)).collect();
+    sets.extend(own);
+    sets
 }
 
 fn entry_at((key, value): &(String, Value), path: &str) -> (String, String) {
