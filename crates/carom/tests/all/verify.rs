@@ -135,5 +135,5 @@ fn a_wrong_case_is_two_and_nothing_is_written() {
     std::fs::create_dir_all(place.0.join("none")).unwrap();
     let done = place.carom(&["verify", "none"]);
     assert_eq!(done.status.code(), Some(2));
-    assert!(text(&done.stderr).contains("carries an expectation"));
+    assert!(text(&done.stderr).contains("no expectations found"));
 }

@@ -29,7 +29,7 @@ Exit codes:
   0    done
   1    an expectation was missed (verify, or --strict)
   2    the case or an argument is wrong
-  3    the simulation stopped; its last good state is on record
+  3    the simulation stopped; its last good state is saved
   4    input/output or system error
   130  stopped by Ctrl-C; carom resume continues")]
 struct Arguments {

@@ -8,7 +8,8 @@ use serde::Serialize;
 use crate::exit::{Exit, Failure};
 use crate::out;
 
-/// Order, ρ∞, damping, period error of a time integrator, and its parameters in every convention
+/// Print order, ρ∞, damping and period error of a time integrator, and its parameters in every
+/// convention
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     /// Exit with 1 if an expectation of a run is missed
     #[arg(long)]
     strict: bool,
-    /// One JSON object per event on standard output, and nothing else there
+    /// Print one JSON object per event on standard output, and nothing else
     #[arg(long)]
     pub(crate) json: bool,
 }

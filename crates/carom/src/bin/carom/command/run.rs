@@ -25,7 +25,8 @@ pub(crate) struct Arguments {
     /// Directory of the run; must not exist yet [default: runs/NAME, runs/NAME-2, …]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace a value of the case; tables of a list by their name: body.cylinder.element=T6
+    /// Replace a value of the case; an entry of a list is addressed by its name:
+    /// body.cylinder.element=T6
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
     /// Threads; results are bitwise identical for any number [default: one per core]
@@ -40,7 +41,7 @@ pub(crate) struct Arguments {
     /// Exit with 1 if an expectation is missed
     #[arg(long)]
     strict: bool,
-    /// One JSON object per event on standard output, and nothing else there
+    /// Print one JSON object per event on standard output, and nothing else
     #[arg(long)]
     pub(crate) json: bool,
 }

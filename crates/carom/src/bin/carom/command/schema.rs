@@ -11,7 +11,7 @@ Example:
   and `#:schema ./carom.schema.json` as first line of a case
   carom schema --study > study.schema.json")]
 pub(crate) struct Arguments {
-    /// That of study files
+    /// Print the schema of study files
     #[arg(long)]
     study: bool,
 }

@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     /// Write no figures and no page
     #[arg(long)]
     no_report: bool,
-    /// One JSON object per event on standard output, and nothing else there
+    /// Print one JSON object per event on standard output, and nothing else
     #[arg(long)]
     pub(crate) json: bool,
 }

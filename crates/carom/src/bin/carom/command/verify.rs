@@ -21,7 +21,7 @@ use crate::{console, directory, out};
 /// The cases as they were when the program was built.
 static CASES: Dir = include_dir!("$CAROM_CASES");
 
-/// Run every case that carries expectations and report which are met
+/// Run every case that has expectations and report which are met
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -33,9 +33,9 @@ Examples:
 Exit codes: 0 all met · 1 an expectation was missed · 2 a case is wrong · 3 a run stopped though nothing expected it")]
 #[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
-    /// Cases, studies, or folders of them [default: cases/, or the fast cases this program carries]
+    /// Cases, studies, or folders of them [default: cases/, or the fast cases built into the program]
     paths: Vec<PathBuf>,
-    /// Skip cases marked slow
+    /// Skip expectations marked slow, and cases that have no others
     #[arg(long)]
     fast: bool,
     /// Stop at the first set-up that misses an expectation, the shortest first
@@ -56,7 +56,7 @@ pub(crate) struct Arguments {
     /// Write one Markdown table per family into this directory
     #[arg(long, value_name = "DIR")]
     markdown: Option<PathBuf>,
-    /// One JSON object per event on standard output, and nothing else there
+    /// Print one JSON object per event on standard output, and nothing else
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -76,7 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let suite = Suite::read(&paths, fast)?;
     if suite.items.is_empty() {
         let help = "name a case or study with [[expect]], or a folder of them".to_owned();
-        return Err(Failure::Argument { what: "nothing here carries an expectation".to_owned(), help });
+        return Err(Failure::Argument { what: "no expectations found".to_owned(), help });
     }
     std::fs::create_dir_all(&directory)?;
     let options =
