@@ -47,11 +47,15 @@ pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, no
 
 fn header(run: &Run) -> Markup {
     let (m, machine) = (&run.manifest, &run.manifest.machine);
+    let missed = m.expectations.iter().filter(|expectation| !expectation.pass).count();
     let (class, word) = match m.status {
-        Status::Running => ("running", "running or interrupted; can be resumed"),
-        Status::Finished => ("finished", "finished"),
-        Status::Stopped => ("stopped", "stopped; can be resumed"),
-        Status::Failed => ("failed", "failed"),
+        Status::Running => ("running", "running or interrupted; can be resumed".to_owned()),
+        Status::Finished if missed > 0 => {
+            ("failed", format!("finished; {missed} of {} expectations missed", m.expectations.len()))
+        }
+        Status::Finished => ("finished", "finished".to_owned()),
+        Status::Stopped => ("stopped", "stopped; can be resumed".to_owned()),
+        Status::Failed => ("failed", "failed".to_owned()),
     };
     let (rows, last) = (run.times().len(), run.times().last().copied().unwrap_or(0.0));
     let wall: f64 = m.timings.get("total").copied().unwrap_or_else(|| m.timings.values().sum());

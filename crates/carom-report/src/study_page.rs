@@ -23,10 +23,14 @@ const MANY: usize = 12;
 
 /// The page.
 pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins: &[Origin]) -> String {
+    let failed = study.rows.iter().filter(|row| row.status == Some(Status::Failed)).count();
     let (class, word) = match study.manifest.status {
-        Status::Finished => ("finished", "finished"),
-        Status::Running => ("running", "running or interrupted; can be resumed"),
-        Status::Stopped | Status::Failed => ("stopped", "stopped; can be resumed"),
+        Status::Finished if failed > 0 => {
+            ("failed", format!("finished; {failed} of {} arms failed", study.rows.len()))
+        }
+        Status::Finished => ("finished", "finished".to_owned()),
+        Status::Running => ("running", "running or interrupted; can be resumed".to_owned()),
+        Status::Stopped | Status::Failed => ("stopped", "stopped; can be resumed".to_owned()),
     };
     let body = html! {
         p { span.status.(class) { (word) } }
