@@ -1,4 +1,4 @@
-//! The program carries the shipped cases: it is built anew when they change.
+//! The program includes the cases of the repository, so it is rebuilt when they change.
 
 fn main() -> std::io::Result<()> {
     use std::io::Write as _;

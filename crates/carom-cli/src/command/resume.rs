@@ -1,4 +1,4 @@
-//! `carom resume`: continues after a stop; the result is bitwise identical.
+//! `carom resume`: resumes a run or a study; the result is bitwise identical.
 
 use std::num::NonZero;
 use std::path::PathBuf;
@@ -17,13 +17,14 @@ use crate::{out, summary};
 Examples:
   carom resume runs/impact
   carom resume runs/fair --jobs 2")]
+#[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
     /// The directory of the run or study
     directory: PathBuf,
     /// Threads of a run; results are bitwise identical for any number [default: one per core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZero<usize>>,
-    /// Arms of a study computed at the same time; results are bitwise identical for any number
+    /// Number of concurrent arms of a study; results are bitwise identical for any number
     /// [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
@@ -36,7 +37,7 @@ pub(crate) struct Arguments {
     /// Exit with 1 if an expectation of a run is missed
     #[arg(long)]
     strict: bool,
-    /// One JSON object per event on standard output, and nothing else there
+    /// Print one JSON object per event on standard output, and nothing else
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -46,8 +47,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let of_a_run = [(arguments.threads.is_some(), "--threads"), (arguments.profile, "--profile")];
         if let Some((_, option)) = of_a_run.iter().find(|(given, _)| *given) {
             let what = format!("{option} is for a run, and {} is a study", arguments.directory.display());
-            let help = "the arms of a study take one thread each: --jobs sets how many run at the same time; \
-                        the time of an arm is in its manifest.json";
+            let help = "each arm of a study uses one thread, and --jobs sets the number of concurrent arms; \
+                        the timings of an arm are in its manifest.json";
             return Err(Failure::Argument { what, help: help.to_owned() });
         }
         return super::study::resume(
@@ -58,7 +59,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         );
     }
     if arguments.jobs.is_some() {
-        let what = format!("--jobs is for a study, and {} is none", arguments.directory.display());
+        let what = format!("--jobs is for a study, and {} is not a study", arguments.directory.display());
         return Err(Failure::Argument { what, help: "use --threads for a run".to_owned() });
     }
     super::report::run_directory(&arguments.directory)?;

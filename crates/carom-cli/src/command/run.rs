@@ -1,4 +1,4 @@
-//! `carom run`: one simulation → a run directory, with its report.
+//! `carom run`: one simulation, recorded in a run directory with its report.
 
 use std::num::NonZero;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use crate::live::{Live, stop_on_signal};
 use crate::simulation::{self, Options};
 use crate::{directory, out, summary};
 
-/// Simulate a case into a run directory, with its report
+/// Simulate a case and write a run directory with its report
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -18,13 +18,14 @@ Examples:
   sed s/0.25/0.5/ impact.toml | carom run - --out runs/dense
   carom run impact.toml --set time.step=1e-3 --set body.cylinder.element=T6
   carom run impact.toml --set 'time.scheme={ kind = \"hu\" }' --out runs/hu")]
+#[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
     /// The case file, or - for standard input
     case: PathBuf,
     /// Directory of the run; must not exist yet [default: runs/NAME, runs/NAME-2, …]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace a value of the case; tables of a list by their name: body.cylinder.element=T6
+    /// Replace a value of the case; tables of a list are given by name: body.cylinder.element=T6
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
     /// Threads; results are bitwise identical for any number [default: one per core]
@@ -39,7 +40,7 @@ pub(crate) struct Arguments {
     /// Exit with 1 if an expectation is missed
     #[arg(long)]
     strict: bool,
-    /// One JSON object per event on standard output, and nothing else there
+    /// Print one JSON object per event on standard output, and nothing else
     #[arg(long)]
     pub(crate) json: bool,
 }

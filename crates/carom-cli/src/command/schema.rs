@@ -8,10 +8,10 @@ use crate::out;
 #[command(after_help = "\
 Example:
   carom schema > carom.schema.json
-  and `#:schema ./carom.schema.json` as first line of a case
+  and `#:schema ./carom.schema.json` as the first line of a case
   carom schema --study > study.schema.json")]
 pub(crate) struct Arguments {
-    /// That of study files
+    /// Print the schema of study files
     #[arg(long)]
     study: bool,
 }

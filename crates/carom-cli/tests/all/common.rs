@@ -1,6 +1,6 @@
-//! What the tests of the binary share: a place to run it in.
+//! Shared by the tests of the binary: a directory to run it in.
 
-#![allow(dead_code)] // each test file uses its part
+#![allow(dead_code)] // no test file uses everything
 
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
@@ -12,7 +12,7 @@ pub(crate) const IMPACT: &str = include_str!("../../../../cases/impact/impact.to
 pub(crate) const COARSE: [&str; 4] =
     ["--set", "body.cylinder.mesh.size=0.25", "--set", "body.prism.mesh.cells=[4,2]"];
 
-/// A directory of its own per test, removed when it ends.
+/// The directory of a test, removed at its end.
 pub(crate) struct Place(pub(crate) PathBuf);
 
 impl Place {

@@ -1,4 +1,4 @@
-//! The command line, run: one program, so that it is linked once.
+//! Tests that run the command line: a single test program, so that it is linked once.
 
 #![allow(clippy::unwrap_used)]
 
