@@ -1,5 +1,5 @@
-//! The examples of the book run as the book says, and give what they expect; every kind of scheme
-//! has its page, and its rows in the verification.
+//! The examples of the book run as described there and meet their expectations; every kind of
+//! scheme has its page in the book and its rows in the verification.
 
 use crate::common::{Place, text};
 
@@ -8,7 +8,7 @@ fn example(name: &str) -> String {
     concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/book/examples/").to_owned() + name
 }
 
-/// A block is pressed, and another run begins where that one ended: there the block stays in
+/// A block is preloaded in one run, and another run starts from its final state: the block stays in
 /// equilibrium until a disc strikes it.
 #[test]
 fn a_run_that_starts_from_another() {
@@ -17,8 +17,8 @@ fn a_run_that_starts_from_another() {
         let case = example(name);
         let out = place.carom(&[&["run", &case, "--no-report"], more].concat());
         assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
-        let said = text(&out.stdout);
-        assert!(said.contains("as expected") && !said.contains("NOT as expected"), "{said}");
+        let output = text(&out.stdout);
+        assert!(output.contains("as expected") && !output.contains("MISSED"), "{output}");
     };
     run("preload.toml", &["--out", "runs/preload"]);
     let from = format!("initial.from={:?}", place.0.join("runs/preload"));
@@ -26,11 +26,11 @@ fn a_run_that_starts_from_another() {
 
     let missing = place.carom(&["run", &example("struck.toml"), "--set", "initial.from=\"runs/none\""]);
     assert_eq!(missing.status.code(), Some(2));
-    let said = text(&missing.stderr);
-    assert!(said.contains("cannot be started from") && said.contains("--set:1:"), "{said}");
+    let output = text(&missing.stderr);
+    assert!(output.contains("cannot be started from") && output.contains("--set:1:"), "{output}");
 }
 
-/// A kind of the table that a user does not meet, or that the suite does not measure, is not done.
+/// Every kind of scheme must be documented and verified.
 #[test]
 fn every_scheme_has_a_page_and_rows_in_the_suite() {
     let read = |path: &str| {

@@ -1,5 +1,4 @@
-//! The binary from outside: exit codes, what is said where, and that a wrong case leaves nothing
-//! behind.
+//! The binary as a process: exit codes, messages, and that a wrong case writes no files.
 
 use std::io::Write;
 use std::process::Stdio;
@@ -7,7 +6,7 @@ use std::process::Stdio;
 use crate::common::{COARSE, IMPACT, Place, text};
 
 #[test]
-fn wrong_cases_exit_2_say_where_and_write_nothing() {
+fn wrong_cases_exit_2_report_the_place_and_write_nothing() {
     let cases: &[(&str, Vec<u8>, &[&str])] = &[
         (
             "key",
@@ -52,20 +51,20 @@ fn wrong_cases_exit_2_say_where_and_write_nothing() {
             &["check", "case.toml"],
         ] {
             let done = place.carom(arguments);
-            let told = text(&done.stderr);
-            assert_eq!(done.status.code(), Some(2), "{name}: {told}");
+            let output = text(&done.stderr);
+            assert_eq!(done.status.code(), Some(2), "{name}: {output}");
             if arguments.contains(&"--json") {
                 let event: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
                 assert_eq!((&event["event"], &event["exit"]), (&"error".into(), &2.into()), "{name}");
-                let said = event["errors"][0]["what"].as_str().unwrap();
-                assert!(told.contains(said), "{name}: {said:?} not in\n{told}");
+                let what = event["errors"][0]["what"].as_str().unwrap();
+                assert!(output.contains(what), "{name}: {what:?} not in\n{output}");
             } else {
                 assert!(done.stdout.is_empty(), "{name}");
             }
             for part in *parts {
-                assert!(told.contains(part), "{name}: {part:?} not in\n{told}");
+                assert!(output.contains(part), "{name}: {part:?} not in\n{output}");
             }
-            assert!(!told.contains('\u{1b}'), "no colour into a pipe");
+            assert!(!output.contains('\u{1b}'), "no colour in a pipe");
             assert_eq!(place.entries(), ["case.toml"], "{name}");
         }
     }
@@ -79,19 +78,19 @@ fn a_study_is_checked_as_a_study_and_not_run_as_a_case() {
         .file("case.toml", IMPACT)
         .file("study.toml", format!("title = \"Two\"\ncase = \"case.toml\"\n{arms}"));
     let done = place.carom(&["check", "study.toml"]);
-    let told = text(&done.stdout);
+    let output = text(&done.stdout);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
-    assert!(told.contains("Two (2 runs of case.toml)") && told.contains("Hu: hu, order 1"), "{told}");
+    assert!(output.contains("Two (2 runs of case.toml)") && output.contains("Hu: hu, order 1"), "{output}");
     let json = place.carom(&["check", "study.toml", "--json"]);
     assert!(text(&json.stdout).contains("\"event\":\"check\""));
     for (arguments, parts) in [
         (&["run", "study.toml"][..], &["this is a study, not a case", "study.toml:2:1", "carom study"][..]),
-        (&["check", "study.toml", "--set", "time.step=1"], &["a study takes no --set"]),
+        (&["check", "study.toml", "--set", "time.step=1"], &["--set cannot be used with a study"]),
     ] {
         let done = place.carom(arguments);
-        let told = text(&done.stderr);
-        assert_eq!(done.status.code(), Some(2), "{told}");
-        assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+        let output = text(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{output}");
+        assert!(parts.iter().all(|part| output.contains(part)), "{output}");
     }
     assert_eq!(place.entries(), ["case.toml", "study.toml"]);
 }
@@ -108,10 +107,10 @@ fn files_that_cannot_be_read() {
 }
 
 #[test]
-fn one_diagnostic_as_it_is_shown() {
+fn format_of_a_diagnostic() {
     let place = Place::new("shown");
     place.file("case.toml", IMPACT.replace("prism.top", "prism.topp"));
-    let told = text(&place.carom(&["check", "case.toml"]).stderr);
+    let output = text(&place.carom(&["check", "case.toml"]).stderr);
     let expected = "\
 error: body `prism` has no side `topp`
   --> case.toml:39:11
@@ -122,7 +121,7 @@ error: body `prism` has no side `topp`
    = why: its mesh has the sides: prism.bottom, prism.right, prism.top, prism.left
    = try: did you mean `prism.top`?
 ";
-    assert_eq!(told, expected);
+    assert_eq!(output, expected);
 }
 
 #[test]
@@ -137,17 +136,17 @@ fn arguments_are_checked() {
         (&["run", "case.toml", "--set", "time.scheme.rho_inf=1.2"], "--set:1:21"),
         (&["run"], "<CASE>"),
         (&["rnu", "case.toml"], "unrecognized subcommand"),
-        (&["resume", "old"], "old is no run directory"),
-        (&["report", "nowhere"], "nowhere is no run directory"),
+        (&["resume", "old"], "old is not a run directory"),
+        (&["report", "nowhere"], "nowhere is not a run directory"),
         (&["explain", "bathe"], "scheme \"bathe\" has no `rho_inf`"),
         (&["explain", "hht", "alpha=-0.1"], "did you mean `alpha = 0.1`?"),
         (&["explain", "wbz", "rho=0.5"], "unknown key `rho`"),
     ];
     for (arguments, part) in wrong {
         let done = place.carom(arguments);
-        let told = text(&done.stderr);
-        assert_eq!(done.status.code(), Some(2), "{arguments:?}: {told}");
-        assert!(told.contains(part), "{arguments:?}: {part:?} not in\n{told}");
+        let output = text(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{arguments:?}: {output}");
+        assert!(output.contains(part), "{arguments:?}: {part:?} not in\n{output}");
         assert!(done.stdout.is_empty());
     }
     assert_eq!(place.entries(), ["case.toml", "old"]);
@@ -155,7 +154,7 @@ fn arguments_are_checked() {
 }
 
 #[test]
-fn a_study_goes_on_with_its_own_options() {
+fn a_study_is_resumed_with_its_own_options() {
     let place = Place::new("study");
     place.file("case.toml", IMPACT);
     let arm = "[[arm]]\nname = \"short\"\nset = { \"time.end\" = 1.875e-2, \"output.fields_every\" = 0 }\n";
@@ -174,47 +173,47 @@ fn a_study_goes_on_with_its_own_options() {
 }
 
 #[test]
-fn check_tells_the_case() {
+fn check_prints_the_case() {
     let place = Place::new("check");
     place.file("case.toml", IMPACT);
     let done = place.carom(&["check", "case.toml", "--set", "body.cylinder.element=T6"]);
-    let told = text(&done.stdout);
+    let output = text(&done.stdout);
     assert_eq!((done.status.code(), done.stderr.len()), (Some(0), 0));
     for part in ["Cylinder falling on a prism", "T6 of rubber", "cylinder.arc against prism.top", "400 steps"]
     {
-        assert!(told.contains(part), "{part:?} not in\n{told}");
+        assert!(output.contains(part), "{part:?} not in\n{output}");
     }
     let done = place.carom(&["check", "case.toml", "--json", "--set", "preset=paper"]);
-    let told: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
-    assert_eq!(told["case"]["contacts"][0]["persistency"], "none");
-    assert_eq!(told["case"]["time"]["scheme"]["rho_inf"], 0.1);
+    let output: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    assert_eq!(output["case"]["contacts"][0]["persistency"], "none");
+    assert_eq!(output["case"]["time"]["scheme"]["rho_inf"], 0.1);
     assert_eq!(place.entries(), ["case.toml"]);
 }
 
 #[test]
 fn explain_and_schema_and_help() {
     let place = Place::new("explain");
-    let told = |arguments: &[&str]| {
+    let output = |arguments: &[&str]| {
         let done = place.carom(arguments);
         assert_eq!(done.status.code(), Some(0), "{arguments:?}");
         text(&done.stdout)
     };
-    assert!(told(&["explain"]).contains("hu"));
-    assert!(told(&["explain", "chung-hulbert", "rho_inf=0.1"]).contains("order 2"));
-    let hu: serde_json::Value = serde_json::from_str(&told(&["explain", "hu", "--json"])).unwrap();
+    assert!(output(&["explain"]).contains("hu"));
+    assert!(output(&["explain", "chung-hulbert", "rho_inf=0.1"]).contains("order 2"));
+    let hu: serde_json::Value = serde_json::from_str(&output(&["explain", "hu", "--json"])).unwrap();
     assert_eq!((&hu["scheme"]["beta"], &hu["order"]), (&1.0.into(), &1.into()));
-    let schema: serde_json::Value = serde_json::from_str(&told(&["schema"])).unwrap();
+    let schema: serde_json::Value = serde_json::from_str(&output(&["schema"])).unwrap();
     assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
     for command in
         ["run", "resume", "study", "verify", "check", "explain", "mesh", "new", "report", "schema", "man"]
     {
-        assert!(told(&[command, "--help"]).contains("Example"), "{command}");
+        assert!(output(&[command, "--help"]).contains("Example"), "{command}");
     }
-    assert!(told(&["--help"]).contains("Exit codes"));
+    assert!(output(&["--help"]).contains("Exit codes"));
     assert!(place.entries().is_empty());
 }
 
-/// The case that the README shows is a case.
+/// The case in the README is valid.
 #[test]
 fn the_case_of_the_readme() {
     let readme = include_str!("../../../../README.md");
@@ -225,7 +224,7 @@ fn the_case_of_the_readme() {
     assert_eq!((done.status.code(), text(&done.stderr)), (Some(0), String::new()));
 }
 
-/// A case from a pipe runs like one from a file, and a stream without an end is refused.
+/// A case from a pipe is run like one from a file, and a stream that is too long is an error.
 #[test]
 fn a_case_from_standard_input() {
     let place = Place::new("stdin");
@@ -237,7 +236,7 @@ fn a_case_from_standard_input() {
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        // The reader may have had enough before the end.
+        // The reader may stop before the end.
         let _ = child.stdin.take().unwrap().write_all(bytes);
         child.wait_with_output().unwrap()
     };
@@ -254,9 +253,9 @@ fn a_case_from_standard_input() {
     assert!(place.0.join("runs/stdin/history.csv").is_file());
 }
 
-/// Without `--strict` a missed expectation is reported and the run still ends with 0.
+/// Without `--strict`, a missed expectation is reported and the exit code is still 0.
 #[test]
-fn missed_expectations_are_an_error_if_asked_for() {
+fn missed_expectations_are_an_error_with_strict() {
     let place = Place::new("strict");
     place.file("case.toml", IMPACT);
     let short = [&["run", "case.toml", "--no-report", "--set", "time.end=0.01875"], &COARSE[..]].concat();

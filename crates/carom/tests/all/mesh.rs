@@ -1,4 +1,4 @@
-//! `carom mesh` from outside: what it writes is read back the same, and it overwrites nothing.
+//! `carom mesh` as a process: files are read back unchanged, and nothing is overwritten.
 
 use std::path::PathBuf;
 use std::process::{Command, Output};
@@ -45,7 +45,7 @@ fn meshes_are_written_once_and_read_back() {
     std::fs::remove_dir_all(&place).unwrap();
 }
 
-/// A square of two triangles, the second one clockwise.
+/// A square of two triangles; the second one is clockwise.
 const SQUARE: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat
 $PhysicalNames\n1\n2 1 \"square\"\n$EndPhysicalNames
 $Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes
@@ -81,8 +81,8 @@ fn repairs_are_logged_once() {
 }
 
 #[test]
-fn what_cannot_be_written_is_told() {
-    let place = place("told");
+fn what_cannot_be_written_is_reported() {
+    let place = place("reported");
     assert_eq!(mesh("impact/impact.toml", &place.join("a.stl")).status.code(), Some(2));
     assert_eq!(mesh("impact/impact.toml", &place.join("no/a.msh")).status.code(), Some(4));
     assert_eq!(mesh("impact/nothing.toml", &place.join("a.msh")).status.code(), Some(2));

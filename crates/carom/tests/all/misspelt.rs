@@ -1,5 +1,5 @@
-//! Every case and study of the repository is read, and every misspelling of every key in them
-//! refused. That the schema says the same is checked from outside (`scripts/check_schema.py`).
+//! Every case and study of the repository is valid, and every misspelling of a key in them is an
+//! error. `scripts/check_schema.py` checks the same for the schema.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use serde_json::Value;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
-/// Every file of cases/ and of the templates, with its text.
+/// Every file in cases/ and in the templates, with its text.
 fn shipped() -> Vec<(PathBuf, String)> {
     let mut found = Vec::new();
     let mut folders = vec![Path::new(ROOT).join("cases"), Path::new(ROOT).join("crates/carom/templates")];
@@ -32,8 +32,8 @@ fn is_study(text: &str) -> bool {
     text.lines().any(|line| line.starts_with("case ") || line.starts_with("case="))
 }
 
-/// Every variant of a document with one key misspelt, and where; of a list's tables that have a key
-/// in common, the first has it misspelt.
+/// Every variant of a document with one misspelt key, and the path of the key; of the tables of a
+/// list with a common key, only the first has it misspelt.
 fn misspelt(document: &Value) -> Vec<(String, Value)> {
     let mut found = Vec::new();
     match document {
@@ -68,15 +68,15 @@ fn misspelt(document: &Value) -> Vec<(String, Value)> {
     found
 }
 
-/// Reads one file, and its misspellings in vain; how many there are.
-fn refused(path: &Path, text: &str, reads: &dyn Fn(&str) -> Result<(), String>) -> usize {
+/// Checks that a file is valid and that all its misspelt variants are errors; returns their number.
+fn misspellings(path: &Path, text: &str, reads: &dyn Fn(&str) -> Result<(), String>) -> usize {
     let name = path.display();
     let document: Value = toml_edit::de::from_str(text).unwrap();
     reads(&toml_edit::ser::to_string(&document).unwrap()).unwrap_or_else(|e| panic!("{name}: {e}"));
     let wrong = misspelt(&document);
     for (key, document) in &wrong {
         let text = toml_edit::ser::to_string(document).unwrap();
-        assert!(reads(&text).is_err(), "{name}: the reader lets `{key}` pass");
+        assert!(reads(&text).is_err(), "{name}: the reader accepts `{key}`");
     }
     wrong.len()
 }
@@ -90,7 +90,7 @@ fn no_misspelt_key_of_a_case_passes() {
                 Document::parse(path.to_str().unwrap(), text, &[]).map_err(|e| format!("{e:?}"))?;
             read(&document).map(|_| ()).map_err(|problems| format!("{problems:#?}"))
         };
-        checked = (checked.0 + 1, checked.1 + refused(path, text, &reads));
+        checked = (checked.0 + 1, checked.1 + misspellings(path, text, &reads));
     }
     assert!(checked.0 >= 8 && checked.1 > 300, "{checked:?}");
 }
@@ -100,7 +100,7 @@ fn no_misspelt_key_of_a_study_passes() {
     let mut checked = (0, 0);
     let scratch = tempfile::tempdir().unwrap();
     for (path, text) in shipped().iter().filter(|(_, text)| is_study(text)) {
-        // Studies name cases of their own folder and of those beside it.
+        // Studies use cases of their own folder and of neighbouring folders.
         let folder = path.parent().unwrap();
         for folder in std::fs::read_dir(folder.parent().unwrap()).unwrap().map(|f| f.unwrap().path()) {
             let copy = scratch.path().join(folder.file_name().unwrap());
@@ -114,7 +114,7 @@ fn no_misspelt_key_of_a_study_passes() {
             std::fs::write(&changed, text).unwrap();
             Plan::read(&changed).map(|_| ()).map_err(|e| format!("{e:?}"))
         };
-        checked = (checked.0 + 1, checked.1 + refused(path, text, &reads));
+        checked = (checked.0 + 1, checked.1 + misspellings(path, text, &reads));
     }
     assert!(checked.0 >= 2 && checked.1 > 60, "{checked:?}");
 }

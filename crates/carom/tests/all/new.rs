@@ -1,4 +1,5 @@
-//! `carom new` from outside: every template reads, runs and makes a page; nothing is overwritten.
+//! `carom new` as a process: every template is valid, runs and makes a page; nothing is
+//! overwritten.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -8,14 +9,14 @@ fn carom(place: &Path, arguments: &[&str]) -> Output {
 }
 
 #[test]
-fn every_template_reads_and_runs() {
+fn every_template_is_valid_and_runs() {
     let scratch = tempfile::tempdir().unwrap();
     for template in ["impact-2d", "bar-1d", "gmsh"] {
         let (folder, case) = (format!("my/{template}"), format!("my/{template}/{template}.toml"));
         let done = carom(scratch.path(), &["new", &folder, "--template", template]);
-        let told = String::from_utf8(done.stdout).unwrap();
+        let output = String::from_utf8(done.stdout).unwrap();
         assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
-        assert!(told.contains(&format!("carom run {case}")), "{told}");
+        assert!(output.contains(&format!("carom run {case}")), "{output}");
         let text = std::fs::read_to_string(scratch.path().join(&case)).unwrap();
         assert!(text.starts_with("#:schema ./schema.json\n"));
         let schema = std::fs::read(scratch.path().join(&folder).join("schema.json")).unwrap();
@@ -36,7 +37,8 @@ fn nothing_is_overwritten() {
     let scratch = tempfile::tempdir().unwrap();
     std::fs::write(scratch.path().join("taken"), "mine").unwrap();
     std::fs::create_dir(scratch.path().join("empty")).unwrap();
-    for (name, part) in [("taken", "exists already"), ("empty", "exists already"), ("..", "names no folder")]
+    for (name, part) in
+        [("taken", "exists already"), ("empty", "exists already"), ("..", "is not a valid folder name")]
     {
         let done = carom(scratch.path(), &["new", name]);
         assert_eq!(done.status.code(), Some(2), "{name}");

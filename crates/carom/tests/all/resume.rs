@@ -1,4 +1,4 @@
-//! A run that is killed, interrupted or run differently leaves the same record, byte for byte.
+//! A run that is killed, interrupted, or run with other options has the same record, byte for byte.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
@@ -28,11 +28,12 @@ fn resume(place: &Place, out: &str) -> Command {
     place.command(&["resume", out, "--no-report"])
 }
 
-/// What must be the same: rows, events, fields. The manifest has wall times, checkpoints of an
-/// interrupted run fall elsewhere.
+/// The files that must be the same: rows, events, fields. The manifest has wall times, and an
+/// interrupted run has checkpoints at other steps.
 fn record(place: &Place, out: &str) -> Files {
-    let kept = |name: &String| name.starts_with("fields") || !name.contains('/') && name != "manifest.json";
-    files(&place.0.join(out)).into_iter().filter(|(name, _)| kept(name)).collect()
+    let compared =
+        |name: &String| name.starts_with("fields") || !name.contains('/') && name != "manifest.json";
+    files(&place.0.join(out)).into_iter().filter(|(name, _)| compared(name)).collect()
 }
 
 /// Bytes by path.
@@ -52,7 +53,7 @@ fn files(directory: &Path) -> Files {
     found
 }
 
-/// Equal names and bytes; says which file differs, not how.
+/// Compares names and bytes; reports which file differs, not how.
 fn assert_same(a: &Files, b: &Files, when: &str) {
     assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>(), "{when}");
     for (name, bytes) in a {
@@ -66,13 +67,13 @@ fn ended(command: &mut Command, code: i32) -> Output {
     done
 }
 
-/// Numbers in [0, 1) that are the same in every run of the test (Knuth's MMIX generator).
+/// Reproducible random numbers in [0, 1) (Knuth's MMIX generator).
 fn random(seed: &mut u64) -> f64 {
     *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*seed >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// What every other run must equal, and how long it took.
+/// The record of an uninterrupted run, and its duration.
 fn whole(place: &Place) -> (Files, Duration) {
     let began = Instant::now();
     ended(&mut run(place, "whole", &[]), 0);
@@ -99,7 +100,7 @@ fn twenty_kills_leave_the_same_bytes() {
                 ended(&mut command, 0);
                 break;
             }
-            // The first one falls at once; the others are spread so that about twenty fit into one
+            // The first kill comes at once; the others are spread so that about twenty fit into one
             // run.
             let delay = if kills == 0 { Duration::ZERO } else { wall.mul_f64(0.15 * random(&mut seed)) };
             let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
@@ -117,11 +118,11 @@ fn twenty_kills_leave_the_same_bytes() {
             break;
         }
     }
-    assert!(resumed >= 10, "only {resumed} of 20 kills fell after the directory was made");
+    assert!(resumed >= 10, "only {resumed} of 20 kills came after the directory was created");
 }
 
 #[test]
-fn interrupted_runs_exit_130_and_go_on() {
+fn interrupted_runs_exit_130_and_resume() {
     let place = place("interrupt");
     let (expected, _) = whole(&place);
     let mut child =
@@ -134,8 +135,8 @@ fn interrupted_runs_exit_130_and_go_on() {
     assert_eq!((child.wait().unwrap().code(), &last["event"]), (Some(130), &"interrupted".into()));
     assert!(last["steps"].as_u64().unwrap() < 400);
 
-    let told = ended(&mut resume(&place, "stopped"), 0).stdout;
-    assert!(text(&told).starts_with("400 steps to t = 0.75"));
+    let output = ended(&mut resume(&place, "stopped"), 0).stdout;
+    assert!(text(&output).starts_with("400 steps to t = 0.75"));
     assert_same(&expected, &record(&place, "stopped"), "interrupted");
 }
 
@@ -145,8 +146,8 @@ fn a_finished_run_is_left_alone() {
     ended(&mut run(&place, "done", &["--set", "time.end=0.05625"]), 0);
     ended(&mut place.command(&["report", "done"]), 0);
     let before = files(&place.0.join("done"));
-    let told = ended(&mut place.command(&["resume", "done"]), 0).stdout;
-    assert!(text(&told).contains("nothing was computed"));
+    let output = ended(&mut place.command(&["resume", "done"]), 0).stdout;
+    assert!(text(&output).contains("nothing was computed"));
     assert_same(&before, &files(&place.0.join("done")), "finished");
 }
 
@@ -262,9 +263,9 @@ fn created_energy_stops_the_run_with_exit_3() {
     let done = ended(&mut run(&place, "plain", &plain), 3);
     let last: serde_json::Value = serde_json::from_str(text(&done.stdout).lines().last().unwrap()).unwrap();
     assert_eq!((&last["event"], &last["directory"]), (&"stopped".into(), &"plain".into()));
-    let told = text(&done.stderr);
+    let output = text(&done.stderr);
     for part in ["energy was created", "the last good state is in plain", "persistency = \"project\""] {
-        assert!(told.contains(part), "{part:?} not in\n{told}");
+        assert!(output.contains(part), "{part:?} not in\n{output}");
     }
     let manifest: serde_json::Value =
         serde_json::from_slice(&files(&place.0.join("plain"))["manifest.json"]).unwrap();

@@ -1,5 +1,5 @@
-//! One impact under every kind of scheme, with its sides swapped, and twice as large: each runs to
-//! its end, and to the same rebound.
+//! The impact with every kind of scheme, with its sides swapped, and at twice the size: each run
+//! finishes, with the same rebound.
 
 use crate::common::{COARSE, IMPACT, Place, text};
 use serde_json::Value;
@@ -14,7 +14,7 @@ fn outcome(place: &Place, sets: &[&str]) -> Value {
     serde_json::from_str(text(&done.stdout).lines().last().unwrap()).unwrap()
 }
 
-/// Lowest position of the cylinder's top, and the end of contact.
+/// Lowest position of the top of the cylinder, and the end of contact.
 fn rebound(done: &Value) -> (f64, f64) {
     let end = done["expectations"].as_array().unwrap().iter().find(|e| e["what"] == "contact_end").unwrap();
     assert_eq!(done["extremes"][0]["column"], "A.uy");
@@ -25,10 +25,10 @@ fn near(got: f64, wanted: f64, tolerance: f64, what: &str) {
     assert!((got - wanted).abs() <= tolerance, "{what}: {got}, not {wanted} ± {tolerance}");
 }
 
-/// Bands of two unrelated codes on finer meshes; Hu's scheme is of order 1 and falls short by a
-/// little more.
+/// The tolerances cover the results of two independent codes on finer meshes; Hu's scheme has order
+/// 1 and a larger error.
 #[test]
-fn the_impact_under_every_scheme() {
+fn the_impact_with_every_scheme() {
     let place = Place::new("schemes");
     place.file("case.toml", IMPACT);
     let coarse = [COARSE[1], COARSE[3], "output.fields_every=0"];
@@ -60,8 +60,8 @@ fn the_larger_impact_from_two_heights() {
     let place = Place::new("larger");
     place.file("case.toml", IMPACT);
     let prism = "body.prism.mesh={shape=\"rectangle\",min=[0.0,-1.0],max=[2.0,0.0],cells=[4,2]}";
-    // From gap 0.5: benchmark values of an explicit code with penalty. From 1.0: the two schemes
-    // against each other.
+    // Gap 0.5: benchmark values of an explicit code with a penalty. Gap 1.0: the two
+    // schemes are compared with each other.
     for (gap, lowest, end) in [(0.5, -1.146, 0.830), (1.0, -1.746, 0.901)] {
         let cylinder = format!(
             "body.cylinder.mesh={{shape=\"half-disc\",radius=1.0,center=[0.0,{:?}],size=0.5}}",

@@ -2,7 +2,7 @@
 
 use crate::common::{Place, text};
 
-/// A bar in free flight, exact for the trapezoidal rule; 20 steps.
+/// A bar in free flight, which the scheme integrates exactly; 20 steps.
 const FALL: &str = r#"
 title = "Free fall"
 dimension = 1
@@ -42,7 +42,7 @@ fn place(name: &str) -> Place {
         std::fs::create_dir_all(place.0.join(folder)).unwrap();
     }
     place.file("cases/flight/free.toml", format!("{FALL}{FREE}{MISSED}"));
-    // The case of a study, without expectations: not run by itself.
+    // The case of a study, which has no expectations and is not run by itself.
     place.file("cases/wall/base.toml", FALL);
     place.file(
         "cases/wall/study.toml",
@@ -57,11 +57,11 @@ fn place(name: &str) -> Place {
 fn fast_cases_are_met_and_written() {
     let place = place("verify-fast");
     let done = place.carom(&["verify", "--fast", "--markdown", "book", "--verbose"]);
-    let (told, seen) = (text(&done.stdout), text(&done.stderr));
-    assert_eq!(done.status.code(), Some(0), "{told}{seen}");
-    assert!(told.contains("flight/free  max |A.ux − (-t)|, t < 0.05"), "{told}");
-    assert!(told.contains("2 set-ups, 2 with dynamic contact; 3 expected values, 0 missed"), "{told}");
-    assert_eq!(seen.lines().count(), 4, "{seen}");
+    let (output, progress) = (text(&done.stdout), text(&done.stderr));
+    assert_eq!(done.status.code(), Some(0), "{output}{progress}");
+    assert!(output.contains("flight/free  max |A.ux − (-t)|, t < 0.05"), "{output}");
+    assert!(output.contains("2 set-ups, 2 with dynamic contact; 3 expected values, 0 missed"), "{output}");
+    assert_eq!(progress.lines().count(), 4, "{progress}");
     let out = place.0.join("runs/verify");
     let table = std::fs::read_to_string(out.join("verify.csv")).unwrap();
     assert_eq!(table.lines().count(), 4);
@@ -103,9 +103,9 @@ fn a_missed_expectation_is_one() {
 fn the_first_miss_can_end_it() {
     let place = place("verify-fail-fast");
     let done = place.carom(&["verify", "--fail-fast", "--jobs", "1", "--out", "there"]);
-    let told = text(&done.stdout);
-    assert_eq!(done.status.code(), Some(1), "{told}");
-    assert!(told.contains("ended at the first miss: 1 of 2 set-ups were not judged"), "{told}");
+    let output = text(&done.stdout);
+    assert_eq!(done.status.code(), Some(1), "{output}");
+    assert!(output.contains("stopped at the first miss: 1 of 2 set-ups were not evaluated"), "{output}");
     assert!(
         place.0.join("there/flight/free").is_dir() && !place.0.join("there/wall/study/study.csv").exists()
     );

@@ -1,5 +1,5 @@
-//! What is shown besides results, chosen by the options that every command takes: how much, in which
-//! colours, and the progress bar on standard error.
+//! Output other than results, controlled by the options of all commands: verbosity, colours, and
+//! the progress bar on standard error.
 
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -17,7 +17,7 @@ static VERBOSITY: OnceLock<Verbosity> = OnceLock::new();
 #[derive(clap::Args)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct Options {
-    /// Print more: steps that were rejected, contacts that change, every row of a table
+    /// Print more: rejected steps, changes of contact, every row of a table
     #[arg(short, long, global = true, conflicts_with = "quiet")]
     verbose: bool,
     /// Print errors only
@@ -74,12 +74,12 @@ pub(crate) fn in_colour() -> bool {
     anstream::AutoStream::choice(&io::stderr()) != ColorChoice::Never
 }
 
-/// Writes a line to standard error. A line that nobody can read must not stop a run.
+/// Writes a line to standard error. A closed standard error must not stop a run.
 pub(crate) fn say(line: impl Display) {
     let _ = writeln!(anstream::stderr().lock(), "{line}");
 }
 
-/// A bar of so many steps; hidden where standard error is no terminal, and with `--quiet`.
+/// A progress bar; hidden with `--quiet`, and if standard error is not a terminal.
 pub(crate) fn bar(steps: u64) -> ProgressBar {
     let target =
         if is_quiet() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr_with_hz(RATE) };

@@ -1,4 +1,4 @@
-//! Failures on standard error: with the line of the case they come from, in colour on a terminal.
+//! Failures on standard error, with the line of the case file, in colour on a terminal.
 
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
@@ -8,21 +8,21 @@ use serde_json::json;
 use crate::exit::{Exit, Failure};
 use crate::{console, out};
 
-/// Prints a failure, with `json` as an event on standard output too; returns its exit code.
+/// Prints a failure, with `json` also as an event on standard output; returns its exit code.
 pub(crate) fn print(failure: &Failure, json: bool) -> Exit {
     let text = match failure {
         Failure::Case(CaseError::Wrong(found)) => found.iter().map(rendered).collect::<Vec<_>>().join("\n\n"),
         Failure::Argument { help, .. } => plain(&failure.to_string(), &[("try", help)]),
         Failure::Stopped { help, directory, .. } => {
-            let kept = format!("the last good state is in {}", directory.display());
-            plain(&failure.to_string(), &[("note", &kept), ("try", help)])
+            let note = format!("the last good state is in {}", directory.display());
+            plain(&failure.to_string(), &[("note", &note), ("try", help)])
         }
         Failure::Case(CaseError::Refused { .. }) | Failure::Refused { .. } => {
             plain(&failure.to_string(), &[])
         }
     };
     console::say(text);
-    // A run that stopped has been an event already.
+    // The event of a run that stopped has been printed already.
     if json && !matches!(failure, Failure::Stopped { .. }) {
         let _ = out::event(&event(failure));
     }

@@ -1,12 +1,12 @@
-//! Where a run goes: never onto an older one.
+//! Directories of new runs; existing ones are never overwritten.
 
 use std::path::{Path, PathBuf};
 
 use crate::command::STDIN;
 use crate::exit::Failure;
 
-/// The directory of a new run, not made yet: `--out`, or `runs/NAME`, `runs/NAME-2`, … after the
-/// case file's name.
+/// The directory of a new run, which is not created here: `--out`, or `runs/NAME`, `runs/NAME-2`, …
+/// with the name of the case file.
 pub(crate) fn of_run(case: &Path, out: Option<&Path>) -> Result<PathBuf, Failure> {
     if let Some(out) = out {
         return if out.exists() {

@@ -1,4 +1,4 @@
-//! What a process says when it ends, and why it does.
+//! Exit codes, and the failures they stand for.
 
 use std::path::PathBuf;
 
@@ -7,13 +7,13 @@ use carom::case::CaseError;
 /// Exit codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Exit {
-    /// All was done.
+    /// Success.
     Done = 0,
     /// An expectation was missed (`verify`, `--strict`).
     Missed = 1,
     /// The case or an argument is wrong.
     Wrong = 2,
-    /// The simulation stopped; its last good state is kept.
+    /// The simulation stopped; its last good state is saved.
     Stopped = 3,
     /// Input/output or system error: disk, permission, memory.
     Refused = 4,
@@ -21,7 +21,7 @@ pub(crate) enum Exit {
     Interrupted = 130,
 }
 
-/// Why a command did not end well.
+/// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
     /// The case is wrong, or its file could not be read.

@@ -1,5 +1,5 @@
-//! What is seen while a simulation runs: a bar on a terminal's standard error, or events on
-//! standard output. And Ctrl-C.
+//! Progress of a simulation: a bar on standard error if it is a terminal, or events on standard
+//! output. Also Ctrl-C.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,7 +12,7 @@ use crate::exit::{Exit, Failure};
 use crate::simulation::Progress;
 use crate::{console, out};
 
-/// At most ten events a second.
+/// At most ten events per second.
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// Shows progress. Dropping it erases the bar.
@@ -45,7 +45,7 @@ impl Live {
         }
     }
 
-    /// Shows a step. Events are thinned; the last step is always one.
+    /// Shows a step. Not every step is an event, but the last one always is.
     pub(crate) fn show(&mut self, progress: &Progress) {
         self.bar.set_length(progress.steps as u64);
         self.bar.set_position(progress.step as u64);
@@ -62,7 +62,7 @@ impl Live {
             return;
         }
         self.last = Some(Instant::now());
-        // A line that nobody can read must not stop the run.
+        // A closed standard output must not stop the run.
         let _ = out::event(&Event { event: "progress", progress });
     }
 }
@@ -86,7 +86,7 @@ fn line(p: &Progress) -> String {
     )
 }
 
-/// What is worth a line with `--verbose`: attempts that were rejected, contacts that changed.
+/// A line for `--verbose`, if attempts were rejected or contacts changed.
 fn changes(p: &Progress) -> Option<String> {
     let counts = [(p.rejected, "rejected"), (p.activations, "activated"), (p.releases, "released")];
     let counts: Vec<_> =
@@ -95,7 +95,7 @@ fn changes(p: &Progress) -> Option<String> {
     (!counts.is_empty()).then(|| format!("step {step}  t {time:.6e}  Newton {newton}  {}", counts.join(", ")))
 }
 
-/// Seconds as people say them.
+/// A duration for people: `2 min 10 s`.
 pub(crate) fn duration(seconds: f64) -> String {
     if !seconds.is_finite() {
         return "?".to_owned();
@@ -109,7 +109,7 @@ pub(crate) fn duration(seconds: f64) -> String {
     }
 }
 
-/// A flag that the first Ctrl-C sets; the second one ends the process at once.
+/// A flag that is set by the first Ctrl-C; the second one ends the process immediately.
 pub(crate) fn stop_on_signal() -> Result<Arc<AtomicBool>, Failure> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
@@ -118,7 +118,7 @@ pub(crate) fn stop_on_signal() -> Result<Arc<AtomicBool>, Failure> {
             std::process::exit(Exit::Interrupted as i32);
         }
     });
-    set.map_err(|e| Failure::Refused { what: format!("signals cannot be watched: {e}") })?;
+    set.map_err(|e| Failure::Refused { what: format!("cannot install the handler of Ctrl-C: {e}") })?;
     Ok(stop)
 }
 
@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn line_says_it_all() {
+    fn line_of_a_step() {
         let p = Progress {
             step: 180,
             steps: 400,

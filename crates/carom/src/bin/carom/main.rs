@@ -26,12 +26,12 @@ Examples:
   carom explain chung-hulbert rho_inf=0.1
 
 Exit codes:
-  0    done
+  0    success
   1    an expectation was missed (verify, or --strict)
   2    the case or an argument is wrong
   3    the simulation stopped; its last good state is saved
   4    input/output or system error
-  130  stopped by Ctrl-C; carom resume continues")]
+  130  stopped by Ctrl-C; continue with carom resume")]
 struct Arguments {
     #[command(flatten)]
     console: console::Options,

@@ -1,10 +1,10 @@
-//! Standard output: text or JSON lines. A reader that has gone away (`| head`) is no error.
+//! Standard output: text or JSON lines. A reader that closes the pipe (`| head`) is not an error.
 
 use std::io::{self, Write};
 
 use serde::Serialize;
 
-/// Writes a text and the end of its line.
+/// Writes a text and a line end.
 pub(crate) fn line(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     quiet(writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()))

@@ -1,4 +1,4 @@
-//! The boundary to the library: what a command asks of a simulation, and what it gets back.
+//! The interface to the library: options, progress and outcome of a simulation.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -12,15 +12,15 @@ use crate::exit::Failure;
 /// How to run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Options {
-    /// Threads; results do not depend on them.
+    /// Number of threads; results do not depend on it.
     pub(crate) threads: usize,
     /// Whether figures and page are made at the end.
     pub(crate) report: bool,
-    /// Whether wall time is measured by phase.
+    /// Whether a timing profile is printed.
     pub(crate) profile: bool,
 }
 
-/// Where a simulation is, after an accepted step.
+/// State of a simulation after an accepted step.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Progress {
     pub(crate) step: usize,
@@ -31,9 +31,9 @@ pub(crate) struct Progress {
     pub(crate) newton: usize,
     /// Active contact nodes.
     pub(crate) active: usize,
-    /// Attempts at the step that were rejected.
+    /// Rejected attempts at the step.
     pub(crate) rejected: usize,
-    /// Contact nodes that became active in it, and that ceased to be.
+    /// Contact nodes that were activated and released in it.
     pub(crate) activations: usize,
     pub(crate) releases: usize,
     /// Energy created so far over the largest energy so far.
@@ -47,7 +47,7 @@ pub(crate) struct Progress {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Outcome {
     pub(crate) directory: PathBuf,
-    /// Stopped by Ctrl-C before the end.
+    /// Whether it was stopped by Ctrl-C before the end.
     pub(crate) interrupted: bool,
     pub(crate) steps: usize,
     pub(crate) time: f64,
@@ -58,7 +58,7 @@ pub(crate) struct Outcome {
     pub(crate) profile: Vec<(String, f64)>,
     /// The page, if it was made.
     pub(crate) report: Option<PathBuf>,
-    /// Said once.
+    /// Remarks for the summary.
     pub(crate) remarks: Vec<String>,
 }
 
@@ -73,7 +73,7 @@ pub(crate) struct Extreme {
     pub(crate) max_time: f64,
 }
 
-/// An `[[expect]]` with what came out.
+/// Outcome of an `[[expect]]`.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Expectation {
     pub(crate) what: String,
@@ -86,13 +86,13 @@ pub(crate) struct Expectation {
     pub(crate) met: bool,
 }
 
-/// What the model of a case has, for `carom check`.
+/// Facts about the model of a case, for `carom check`.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Facts {
     pub(crate) bodies: Vec<BodyFacts>,
-    /// Steps a pressure wave takes through the smallest body.
+    /// Steps in which a pressure wave crosses the smallest body.
     pub(crate) transit_steps: f64,
-    /// 2/ω_max, of explicit schemes.
+    /// 2/ω_max, for explicit schemes.
     pub(crate) stable_step: Option<f64>,
 }
 
@@ -102,13 +102,13 @@ pub(crate) struct BodyFacts {
     pub(crate) name: String,
     pub(crate) nodes: usize,
     pub(crate) cells: usize,
-    /// Sides with their numbers of nodes.
+    /// Sides, with their numbers of nodes.
     pub(crate) sides: Vec<(String, usize)>,
     /// Free degrees of freedom.
     pub(crate) dofs: usize,
 }
 
-/// Runs a case into a directory that does not exist yet.
+/// Runs a case in a new directory.
 pub(crate) fn run(
     case: &Case,
     document: &Document,
@@ -123,7 +123,7 @@ pub(crate) fn run(
     conclude(done.map_err(|error| failure(error, Some(document)))?, options)
 }
 
-/// Resumes a run that was stopped; a finished one is returned as it is.
+/// Resumes a run that was stopped; a finished run is returned unchanged.
 pub(crate) fn resume(
     directory: &Path,
     options: Options,
@@ -135,12 +135,12 @@ pub(crate) fn resume(
     conclude(done.map_err(|error| failure(error, None))?, options)
 }
 
-/// Builds the model of a case, so that what only the model knows is checked too.
+/// Builds the model of a case, which also checks what only the model shows.
 pub(crate) fn facts(case: &Case, document: &Document) -> Result<Facts, Failure> {
     model_facts(case).map_err(|problems| Failure::Case(document.diagnose_all(&problems)))
 }
 
-/// Makes figures and page of a run directory from its records.
+/// Makes the figures and the page of a run directory from its records.
 pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
     match carom_report::report(directory) {
         Ok(made) => Ok(made.page),
@@ -218,7 +218,7 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
     })
 }
 
-/// Wall seconds by phase in the order of a step, then all of them, and processor time.
+/// Wall seconds by phase in the order of a step, then their total and the processor time.
 fn profile(manifest: &carom_record::Manifest) -> Vec<(String, f64)> {
     let phases = manifest.phases().into_iter().map(|(name, _, seconds)| (name.to_owned(), seconds));
     let sums =
@@ -226,7 +226,7 @@ fn profile(manifest: &carom_record::Manifest) -> Vec<(String, f64)> {
     phases.chain(sums).collect()
 }
 
-/// The page of a run: made, unless nobody wants it or nothing was computed since it was made.
+/// Makes the page of a run if it is requested and anything was computed since it was last made.
 fn page(done: &recording::Outcome, options: Options) -> Result<Option<PathBuf>, Failure> {
     let made = done.directory.join("report.html");
     let current = done.wall == 0.0 && made.exists();
@@ -253,7 +253,7 @@ fn extremes(run: &carom_record::Run) -> Vec<Extreme> {
     columns
         .filter_map(|column| {
             let values = run.column(&column.name)?;
-            // An inverted cell has no stress: its rows are not numbers.
+            // Rows in which a cell is inverted have no stress: they are NaN.
             let rows = (0..values.len()).filter(|&row| !values[row].is_nan());
             let low = rows.clone().min_by(|&a, &b| values[a].total_cmp(&values[b]))?;
             let high = rows.min_by(|&a, &b| values[b].total_cmp(&values[a]))?;
@@ -272,7 +272,7 @@ fn extremes(run: &carom_record::Run) -> Vec<Extreme> {
 fn model_facts(case: &Case) -> Result<Facts, carom::case::Problems> {
     let model = carom::Setup::new(case).build()?;
     let d = model.dimension;
-    // Where another run ended, its contacts have kept the bodies apart.
+    // A start from another run has no overlaps: its contacts prevented them.
     let overlaps = if case.initial.is_none() { carom::overlaps(&model) } else { Vec::new() };
     let problems = [overlaps, carom::too_long(case, &model)].concat();
     if !problems.is_empty() {
@@ -288,7 +288,7 @@ fn model_facts(case: &Case) -> Result<Facts, carom::case::Problems> {
         if let Some(m) = case.materials.iter().find(|m| m.name == spec.material)
             && m.density > 0.0
         {
-            // In plane stress the thickness gives way: Λ is 2Λμ/(Λ + 2μ).
+            // In plane stress Λ is replaced by 2Λμ/(Λ + 2μ).
             let lambda = match case.plane {
                 carom::case::Plane::Strain => m.lambda,
                 carom::case::Plane::Stress => 2.0 * m.lambda * m.mu / (m.lambda + 2.0 * m.mu),

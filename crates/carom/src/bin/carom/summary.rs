@@ -1,4 +1,4 @@
-//! What is printed at the end of a run.
+//! The summary at the end of a run.
 
 use serde::Serialize;
 
@@ -14,8 +14,8 @@ struct Event<'a> {
     outcome: &'a Outcome,
 }
 
-/// Prints the outcome on standard output; a run that stopped is an event, too. A missed expectation
-/// changes the exit code only with `strict`.
+/// Prints the outcome on standard output; with `json`, a run that stopped is an event too. A missed
+/// expectation changes the exit code only with `strict`.
 pub(crate) fn print(done: Result<Outcome, Failure>, json: bool, strict: bool) -> Result<Exit, Failure> {
     if json && let Err(Failure::Stopped { reason, directory, .. }) = &done {
         out::event(&serde_json::json!({ "event": "stopped", "reason": reason, "directory": directory }))?;
@@ -71,7 +71,7 @@ fn text(outcome: &Outcome) -> String {
     lines.extend(outcome.expectations.iter().map(|e| format!("  {}", expectation(e))));
     for (phase, seconds) in &outcome.profile {
         let each = 1e3 * seconds / outcome.steps.max(1) as f64;
-        lines.push(format!("  {phase:10} {:>10}  {:>9} ms a step", duration(*seconds), short(each)));
+        lines.push(format!("  {phase:10} {:>10}  {:>9} ms per step", duration(*seconds), short(each)));
     }
     lines.extend(outcome.remarks.iter().map(|remark| format!("  {remark}")));
     if outcome.interrupted {
@@ -83,7 +83,7 @@ fn text(outcome: &Outcome) -> String {
     lines.join("\n")
 }
 
-/// Five digits, in the shorter of the two notations.
+/// A number with five digits, in the shorter of the two notations.
 pub(crate) fn short(x: f64) -> String {
     if x == 0.0 || (1e-3..1e6).contains(&x.abs()) {
         let digits = (4 - x.abs().max(1e-3).log10().floor() as i32).clamp(0, 7) as usize;
@@ -126,9 +126,9 @@ mod tests {
             report: Some("runs/impact-2/report.html".into()),
             remarks: Vec::new(),
         };
-        let told = text(&outcome);
+        let summary = text(&outcome);
         assert_eq!(
-            told.lines().collect::<Vec<_>>(),
+            summary.lines().collect::<Vec<_>>(),
             [
                 "400 steps to t = 0.75 in 3.2 s",
                 "  A.uy  min     -0.78268 at 0.43125    max            0 at 0          m",
@@ -137,7 +137,7 @@ mod tests {
             ]
         );
         let profiled = text(&Outcome { profile: vec![("assembly".into(), 1.25)], ..outcome.clone() });
-        assert!(profiled.contains("\n  assembly        1.2 s      3.125 ms a step\n"), "{profiled}");
+        assert!(profiled.contains("\n  assembly        1.2 s      3.125 ms per step\n"), "{profiled}");
         let stopped = text(&Outcome { interrupted: true, report: None, ..outcome });
         assert!(stopped.ends_with("carom resume runs/impact-2\nruns/impact-2"), "{stopped}");
     }
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn numbers_are_short() {
         let numbers = [1.0, -0.097, 123456.7, 1.875e-3, 1e-5, 25.30801, 2e9];
-        let told = ["1", "-0.097", "123457", "0.001875", "1.0000e-5", "25.308", "2.0000e9"];
-        assert_eq!(numbers.map(short), told);
+        let expected = ["1", "-0.097", "123457", "0.001875", "1.0000e-5", "25.308", "2.0000e9"];
+        assert_eq!(numbers.map(short), expected);
     }
 }

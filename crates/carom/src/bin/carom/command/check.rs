@@ -1,5 +1,5 @@
-//! `carom check`: reads and resolves a case or a study, reports what is wrong and where; runs
-//! nothing, writes nothing.
+//! `carom check`: reads and resolves a case or a study and reports errors with their place; it runs
+//! nothing and writes nothing.
 
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ use crate::simulation::{self, BodyFacts, Facts};
 use crate::summary::short;
 use crate::{console, out};
 
-/// Read and resolve a case or a study and report what is wrong and where; run nothing
+/// Read and resolve a case or a study and report its errors, without running it
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  carom check impact.toml --set time.scheme.rho_inf=0.5\n  carom check laboratory.toml"
@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
     /// Replace a value of the case, as in `carom run`
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
-    /// The case as resolved, with every default, or its errors, as JSON on standard output
+    /// Print the resolved case with all defaults, or its errors, as JSON
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -51,8 +51,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 fn study(arguments: &Arguments) -> Result<Exit, Failure> {
     if !arguments.sets.is_empty() {
         return Err(Failure::Argument {
-            what: "a study takes no --set".into(),
-            help: "write what all arms change into `set` of the study, what one changes into `set` of its [[arm]]"
+            what: "--set cannot be used with a study".into(),
+            help: "put changes of all arms into `set` of the study, and changes of one arm into `set` of its [[arm]]"
                 .into(),
         });
     }
@@ -69,7 +69,7 @@ fn study(arguments: &Arguments) -> Result<Exit, Failure> {
         lines.push(format!(
             "  arm      {}: {}, {} steps of {}{role}",
             arm.name,
-            told_scheme(&time.scheme),
+            scheme_text(&time.scheme),
             time.steps(),
             short(time.step)
         ));
@@ -90,7 +90,7 @@ fn table(case: &Case, facts: &Facts) -> String {
             lines.extend(repairs.iter().map(|repair| format!("           repaired: {repair}")));
         }
         if let Some(PlaceSpec { rotate, about, shift }) = &body.place {
-            lines.push(format!("           turned by {rotate}° about {about:?}, moved by {shift:?}"));
+            lines.push(format!("           rotated by {rotate}° about {about:?}, translated by {shift:?}"));
         }
     }
     for support in &case.supports {
@@ -105,7 +105,7 @@ fn table(case: &Case, facts: &Facts) -> String {
         ));
     }
     for load in &case.loads {
-        lines.push(format!("  load     {:12} {}", load.name.as_deref().unwrap_or(""), told_load(load)));
+        lines.push(format!("  load     {:12} {}", load.name.as_deref().unwrap_or(""), load_text(load)));
     }
     for contact in &case.contacts {
         let primary = match &contact.primary {
@@ -117,14 +117,14 @@ fn table(case: &Case, facts: &Facts) -> String {
     for probe in &case.probes {
         lines.push(format!("  probe    {:12} at {:?} of {}", probe.name, probe.at, probe.body));
     }
-    lines.push(format!("  scheme   {}", told_scheme(&case.time.scheme)));
+    lines.push(format!("  scheme   {}", scheme_text(&case.time.scheme)));
     let steps = case.time.steps();
     lines.push(format!("  time     {steps} steps of {} to {}", short(case.time.step), short(case.time.end)));
     let transit = short(facts.transit_steps);
     lines.push(format!("           a pressure wave crosses the smallest body in {transit} steps"));
     if let Some(stable) = facts.stable_step {
         lines.push(format!(
-            "           the longest stable step is {}, of which {} is accepted",
+            "           the longest stable step is {}; at most {} of it is accepted",
             short(stable),
             SAFETY
         ));
@@ -133,7 +133,7 @@ fn table(case: &Case, facts: &Facts) -> String {
     lines.join("\n")
 }
 
-fn told_scheme(scheme: &SchemeSpec) -> String {
+fn scheme_text(scheme: &SchemeSpec) -> String {
     let parameters = scheme.parameters.iter().map(|(key, value)| format!("{key} = {value}"));
     std::iter::once(scheme.kind.clone())
         .chain(parameters)
@@ -142,7 +142,7 @@ fn told_scheme(scheme: &SchemeSpec) -> String {
         .join(", ")
 }
 
-fn told_load(load: &LoadSpec) -> String {
+fn load_text(load: &LoadSpec) -> String {
     let list = |value: &[FormulaSpec]| value.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
     let what = match &load.kind {
         LoadKind::Traction { on, value } => format!("traction [{}] on {}", list(value), on.join(", ")),
@@ -164,10 +164,10 @@ fn derived(spec: &SchemeSpec) -> Option<String> {
         return None;
     }
     Some(match spec.integrator().ok()?.explain() {
-        Explained::Stages(told) => format!("order {}, ρ∞ = {}", told.order, short(told.rho_inf)),
-        Explained::Nonsmooth(told) => match told.rho_inf {
-            None => format!("order {}, explicit", told.order),
-            Some(rho) => format!("order {}, ρ∞ = {}, impulses", told.order, short(rho)),
+        Explained::Stages(scheme) => format!("order {}, ρ∞ = {}", scheme.order, short(scheme.rho_inf)),
+        Explained::Nonsmooth(scheme) => match scheme.rho_inf {
+            None => format!("order {}, explicit", scheme.order),
+            Some(rho) => format!("order {}, ρ∞ = {}, impulses", scheme.order, short(rho)),
         },
     })
 }

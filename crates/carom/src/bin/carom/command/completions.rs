@@ -1,4 +1,4 @@
-//! `carom completions`: a script with which a shell completes commands and options.
+//! `carom completions`: completion scripts for shells.
 
 use clap::CommandFactory;
 use clap_complete::Shell;

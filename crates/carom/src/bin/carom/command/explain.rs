@@ -1,4 +1,4 @@
-//! `carom explain`: what a time integrator does, before anything is computed.
+//! `carom explain`: properties of time integrators.
 
 use std::fmt::Display;
 
@@ -19,39 +19,39 @@ Examples:
   carom explain hht alpha=0.05 forces=average-state
   carom explain moreau-jean theta=0.5")]
 pub(crate) struct Arguments {
-    /// Kind, as in a case file; without one: all of them side by side
+    /// Kind, as in a case file; without it, a table of all kinds
     scheme: Option<String>,
     /// Its parameters
     #[arg(value_name = "KEY=VALUE")]
     parameters: Vec<String>,
-    /// The same as one JSON object
+    /// Print one JSON object instead
     #[arg(long)]
     pub(crate) json: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let Some(kind) = &arguments.scheme else {
-        return tell(&carom_time::explain_all(), arguments.json);
+        return print(&carom_time::explain_all(), arguments.json);
     };
     let spec = read_scheme(kind, &arguments.parameters)?;
     if spec.is_static() {
         return Err(Failure::Argument {
             what:
-                "the scheme `static` integrates nothing: every step is an equilibrium at rest, t is the load parameter"
+                "the scheme `static` is not a time integrator: every step is a static equilibrium, with t as the load parameter"
                     .into(),
-            help: "carom explain lists the time integrators".into(),
+            help: "list the time integrators with carom explain".into(),
         });
     }
     let scheme =
         spec.integrator().map_err(|e| Failure::Argument { what: e.to_string(), help: String::new() })?;
-    tell(&scheme.explain(), arguments.json)
+    print(&scheme.explain(), arguments.json)
 }
 
-fn tell<T: Display + Serialize>(told: &T, json: bool) -> Result<Exit, Failure> {
+fn print<T: Display + Serialize>(explained: &T, json: bool) -> Result<Exit, Failure> {
     if json {
-        out::event(told)?;
+        out::event(explained)?;
     } else {
-        out::line(&told.to_string())?;
+        out::line(&explained.to_string())?;
     }
     Ok(Exit::Done)
 }

@@ -27,9 +27,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         out::line(&String::from_utf8_lossy(&page))?;
         return Ok(Exit::Done);
     };
-    let refused = |e| Failure::Refused { what: format!("cannot write to {}: {e}", folder.display()) };
+    let failed = |e| Failure::Refused { what: format!("cannot write to {}: {e}", folder.display()) };
     std::fs::create_dir_all(folder)
         .and_then(|()| clap_mangen::generate_to(command, folder))
-        .map_err(refused)?;
+        .map_err(failed)?;
     Ok(Exit::Done)
 }

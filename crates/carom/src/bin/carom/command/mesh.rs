@@ -19,7 +19,7 @@ Examples:
 pub(crate) struct Arguments {
     /// The case file
     case: PathBuf,
-    /// File to write, .msh (Gmsh 4.1, with the names of bodies and sides) or .vtu; must not exist
+    /// File to write: .msh (Gmsh 4.1, with the names of bodies and sides) or .vtu; must not exist
     /// yet
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -44,12 +44,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if path.exists() {
         return argument(
             format!("{} exists already and is not overwritten", path.display()),
-            "name another file",
+            "give another file name",
         );
     }
     let (case, document) = super::case(&arguments.case, &arguments.sets)?;
     let bytes = match (case.dimension, msh) {
-        (1, true) => return argument("bars are not written as .msh".to_owned(), "write them as .vtu"),
+        (1, true) => return argument("bars cannot be written as .msh".to_owned(), "write them as .vtu"),
         (_, false) => vtu(&case, &meshes(&case, &document)?)?,
         (_, true) => {
             let meshes = meshes(&case, &document)?;
@@ -72,7 +72,7 @@ fn meshes(case: &Case, document: &Document) -> Result<Vec<Mesh>, Failure> {
     case.bodies.iter().enumerate().map(mesh).collect()
 }
 
-/// Bodies side by side; they share no points.
+/// All bodies in one file; they share no points.
 fn vtu(case: &Case, meshes: &[Mesh]) -> Result<Vec<u8>, Failure> {
     let mut fields = FieldSet::default();
     for (spec, mesh) in case.bodies.iter().zip(meshes) {
@@ -93,15 +93,15 @@ fn vtu(case: &Case, meshes: &[Mesh]) -> Result<Vec<u8>, Failure> {
     fields.to_vtu(0.0).map_err(|e| Failure::Refused { what: e.to_string() })
 }
 
-/// A file that was not there before: whole, or not at all.
+/// Writes a new file atomically; an existing one is not overwritten.
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let refused = |e: std::io::Error| Failure::Refused { what: format!("{}: {e}", path.display()) };
+    let failed = |e: std::io::Error| Failure::Refused { what: format!("{}: {e}", path.display()) };
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
-    // As readable as the user's mask makes any other file.
+    // The same permissions as for any other file of the user.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.tempfile_in(folder).map_err(refused)?;
-    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(refused)?;
-    file.persist_noclobber(path).map(|_| ()).map_err(|e| refused(e.error))
+    let mut file = builder.tempfile_in(folder).map_err(failed)?;
+    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(failed)?;
+    file.persist_noclobber(path).map(|_| ()).map_err(|e| failed(e.error))
 }

@@ -22,15 +22,15 @@ use carom::case::{Case, Document, read};
 use crate::console;
 use crate::exit::Failure;
 
-/// Stands for standard input where a case file is asked for.
+/// Name of standard input in place of a case file.
 pub(crate) const STDIN: &str = "-";
 
-/// Reads a case with its overrides, from a file or from standard input; nothing is written.
+/// Reads a case with its overrides, from a file or from standard input.
 fn case(path: &Path, sets: &[String]) -> Result<(Case, Document), Failure> {
     let document = if path == Path::new(STDIN) {
         let input = std::io::stdin();
         if input.is_terminal() {
-            console::say("reading a case from standard input, up to its end (Ctrl-D)");
+            console::say("reading a case from standard input; end it with Ctrl-D");
         }
         Document::read_from("<stdin>", input.lock(), sets)?
     } else {
@@ -40,7 +40,7 @@ fn case(path: &Path, sets: &[String]) -> Result<(Case, Document), Failure> {
     Ok((case, document))
 }
 
-/// Threads as asked for, or one for each core.
-fn threads(asked: Option<NonZero<usize>>) -> usize {
-    asked.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get)
+/// The requested number of threads, or one per core.
+fn threads(requested: Option<NonZero<usize>>) -> usize {
+    requested.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get)
 }

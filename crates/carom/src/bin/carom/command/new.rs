@@ -1,4 +1,4 @@
-//! `carom new`: a commented case to begin with, in a folder of its own.
+//! `carom new`: a new folder with a commented case.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::exit::{Exit, Failure};
 use crate::out;
 
-/// Make a folder with a commented case to begin with
+/// Create a folder with a commented case to start from
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -14,9 +14,9 @@ Examples:
   carom new drop --template gmsh
   carom new studies/bar --template bar-1d")]
 pub(crate) struct Arguments {
-    /// Folder to make; the case in it has the same name. Must not exist yet
+    /// Folder to create, which must not exist yet; the case in it has the same name
     name: PathBuf,
-    /// What the case is about
+    /// The case to start from
     #[arg(long, value_enum, default_value = "impact-2d")]
     template: Template,
 }
@@ -29,7 +29,7 @@ enum Template {
     /// A bar strikes a rigid wall, with its exact solution
     #[value(name = "bar-1d")]
     Bar1d,
-    /// Bodies and sides from a mesh that Gmsh made
+    /// Bodies and sides from a Gmsh mesh
     Gmsh,
 }
 
@@ -59,19 +59,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let argument = |what: String, help: &str| Failure::Argument { what, help: help.to_owned() };
     let Some(name) = folder.file_name().and_then(|n| n.to_str()) else {
         return Err(argument(
-            format!("{} names no folder", folder.display()),
+            format!("{} is not a valid folder name", folder.display()),
             "give a name such as `carom new drop`",
         ));
     };
     if let Some(parent) = folder.parent().filter(|p| !p.as_os_str().is_empty()) {
-        std::fs::create_dir_all(parent).map_err(|e| refused("make", parent, &e))?;
+        std::fs::create_dir_all(parent).map_err(|e| failed("create", parent, &e))?;
     }
     std::fs::create_dir(folder).map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists => argument(
             format!("{} exists already and is not overwritten", folder.display()),
             "choose another name",
         ),
-        _ => refused("make", folder, &error),
+        _ => failed("create", folder, &error),
     })?;
     let schema = serde_json::to_string_pretty(&carom::case::schema()).map_err(std::io::Error::from)?;
     let case = format!("{name}.toml");
@@ -80,7 +80,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     files.extend(arguments.template.files());
     for (file, bytes) in files {
         let path = folder.join(file);
-        std::fs::write(&path, bytes).map_err(|e| refused("write", &path, &e))?;
+        std::fs::write(&path, bytes).map_err(|e| failed("write", &path, &e))?;
     }
     let case = folder.join(case);
     let quoted = if case.to_string_lossy().contains(' ') {
@@ -90,13 +90,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     out::line(&format!(
         "{}\n\nnext:\n  carom check {quoted}\n  carom run {quoted}\n\n\
-         An editor that knows TOML schemas (Taplo, Even Better TOML) completes and explains keys by {}.",
+         An editor that supports TOML schemas (Taplo, Even Better TOML) completes and explains keys with {}.",
         case.display(),
         folder.join("schema.json").display()
     ))?;
     Ok(Exit::Done)
 }
 
-fn refused(verb: &str, path: &Path, error: &std::io::Error) -> Failure {
+fn failed(verb: &str, path: &Path, error: &std::io::Error) -> Failure {
     Failure::Refused { what: format!("cannot {verb} {}: {error}", path.display()) }
 }

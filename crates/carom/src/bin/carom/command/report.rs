@@ -1,4 +1,4 @@
-//! `carom report`: figures and page from the records alone.
+//! `carom report`: figures and page, made from the records alone.
 
 use std::path::{Path, PathBuf};
 
@@ -26,14 +26,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// Refuses what is no run directory.
+/// Checks that a directory is a run directory.
 pub(super) fn run_directory(directory: &Path) -> Result<(), Failure> {
     if directory.join("manifest.json").is_file() {
         return Ok(());
     }
-    let what = format!("{} is no run directory: it has no manifest.json", directory.display());
+    let what = format!("{} is not a run directory: it has no manifest.json", directory.display());
     Err(Failure::Argument {
         what,
-        help: "name a directory that `carom run` made, for example runs/impact".to_owned(),
+        help: "give a directory that `carom run` created, for example runs/impact".to_owned(),
     })
 }

@@ -1,4 +1,4 @@
-//! `carom resume`: continues after a stop; the result is bitwise identical.
+//! `carom resume`: resumes a run or a study; the result is bitwise identical.
 
 use std::num::NonZero;
 use std::path::PathBuf;
@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
     /// Threads of a run; results are bitwise identical for any number [default: one per core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZero<usize>>,
-    /// Arms of a study computed at the same time; results are bitwise identical for any number
+    /// Number of concurrent arms of a study; results are bitwise identical for any number
     /// [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
@@ -51,8 +51,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         ];
         if let Some((_, option)) = of_a_run.iter().find(|(given, _)| *given) {
             let what = format!("{option} is for a run, and {} is a study", arguments.directory.display());
-            let help = "the arms of a study take one thread each: --jobs sets how many run at the same time; \
-                        the time of an arm is in its manifest.json";
+            let help = "each arm of a study uses one thread, and --jobs sets the number of concurrent arms; \
+                        the timings of an arm are in its manifest.json";
             return Err(Failure::Argument { what, help: help.to_owned() });
         }
         return super::study::resume(
@@ -63,7 +63,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         );
     }
     if arguments.jobs.is_some() {
-        let what = format!("--jobs is for a study, and {} is none", arguments.directory.display());
+        let what = format!("--jobs is for a study, and {} is not a study", arguments.directory.display());
         return Err(Failure::Argument { what, help: "use --threads for a run".to_owned() });
     }
     super::report::run_directory(&arguments.directory)?;

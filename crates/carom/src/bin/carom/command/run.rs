@@ -1,4 +1,4 @@
-//! `carom run`: one simulation → a run directory, with its report.
+//! `carom run`: one simulation, recorded in a run directory with its report.
 
 use std::num::NonZero;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use crate::live::{Live, stop_on_signal};
 use crate::simulation::{self, Options};
 use crate::{directory, out, summary};
 
-/// Simulate a case into a run directory, with its report
+/// Simulate a case and write a run directory with its report
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -8,7 +8,7 @@ use crate::out;
 #[command(after_help = "\
 Example:
   carom schema > carom.schema.json
-  and `#:schema ./carom.schema.json` as first line of a case
+  and `#:schema ./carom.schema.json` as the first line of a case
   carom schema --study > study.schema.json")]
 pub(crate) struct Arguments {
     /// Print the schema of study files

@@ -1,4 +1,4 @@
-//! `carom study`: many runs of one case, in parallel, and one comparison.
+//! `carom study`: many runs of one case, in parallel, and their comparison.
 
 use std::collections::BTreeSet;
 use std::num::NonZero;
@@ -22,21 +22,21 @@ use crate::{console, directory, out};
 const SHOWN: [&str; 6] =
     ["contact_duration", "impulse_y", "restitution", "energy_lost", "newton_iterations", "wall_time"];
 
-/// Run a case many times with some of its values replaced, and compare
+/// Run a case many times with some of its values replaced, and compare the runs
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   carom study cases/paper/paper.toml
   carom study cases/paper/fair.toml --jobs 4 --out runs/fair
 
-A failed arm is a row of the table, and the study still ends with 0.")]
+A failed arm is a row of the table; the exit code is still 0.")]
 pub(crate) struct Arguments {
     /// The study file
     study: PathBuf,
     /// Directory of the study; must not exist yet [default: runs/NAME, runs/NAME-2, …]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Arms (variants) computed at the same time; results are bitwise identical for any number
+    /// Number of concurrent arms (variants); results are bitwise identical for any number
     /// [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
@@ -65,7 +65,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 /// Resumes a study that was stopped; `page`: with figures and page at the end.
 pub(crate) fn resume(
     directory: &Path,
-    asked: Option<NonZero<usize>>,
+    requested: Option<NonZero<usize>>,
     page: bool,
     json: bool,
 ) -> Result<Exit, Failure> {
@@ -75,7 +75,7 @@ pub(crate) fn resume(
     if json {
         out::event(&json!({ "event": "resume", "directory": directory, "arms": seen.names }))?;
     }
-    let done = carom_study::resume(directory, jobs(asked), &mut |e| seen.event(e), &stop);
+    let done = carom_study::resume(directory, jobs(requested), &mut |e| seen.event(e), &stop);
     conclude(done, seen, directory, page)
 }
 
@@ -98,8 +98,9 @@ pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
     Ok(carom_report::study(directory).map_err(made)?.page)
 }
 
-pub(super) fn jobs(asked: Option<NonZero<usize>>) -> usize {
-    asked.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get)
+/// The requested number of concurrent runs, or one per core.
+pub(super) fn jobs(requested: Option<NonZero<usize>>) -> usize {
+    requested.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get)
 }
 
 pub(super) fn failure(error: StudyError) -> Failure {
@@ -155,7 +156,7 @@ fn text(study: &Study) -> String {
             }),
             Some(Status::Failed) => format!("  failed: {}", row.reason.as_deref().unwrap_or("?")),
             Some(_) => "  not finished".to_owned(),
-            None => "  not begun".to_owned(),
+            None => "  not started".to_owned(),
         };
         lines.push(format!("{:width$}{cells}", row.name));
     }
@@ -180,13 +181,13 @@ fn text(study: &Study) -> String {
     lines.join("\n")
 }
 
-/// The verdict of a study with a goal, as on its page.
+/// The recommendation of a study with a goal, as on its page.
 fn recommendation(study: &Study, ranking: &Ranking) -> Vec<String> {
     let goal = ranking.goal.word();
     let Some(verdict) = &ranking.verdict else {
         let why = match &ranking.measure {
             Err(why) => why.clone(),
-            Ok(measure) => format!("no arm has a value of: {}", measure.words),
+            Ok(measure) => format!("no arm has a value for: {}", measure.words),
         };
         return vec![String::new(), format!("no recommendation for the goal \"{goal}\": {why}")];
     };
@@ -201,7 +202,7 @@ fn recommendation(study: &Study, ranking: &Ranking) -> Vec<String> {
     lines
 }
 
-/// What is seen while a study runs.
+/// Progress of a study.
 struct Seen {
     names: Vec<String>,
     steps: Vec<u64>,
@@ -230,7 +231,7 @@ impl Seen {
     }
 
     fn event(&mut self, event: &Event) {
-        let told = match event {
+        let line = match event {
             Event::AlreadyDone(i) => {
                 self.done[*i] = self.steps[*i];
                 // Pilots and anchors have ended before.
@@ -254,9 +255,9 @@ impl Seen {
                 json!({ "event": "progress", "arm": self.names[*i], "step": p.step, "steps": p.steps, "time": p.time, "left": p.left })
             }
         };
-        // A line that nobody can read must not stop the study.
+        // A closed standard output must not stop the study.
         if self.json {
-            let _ = out::event(&told);
+            let _ = out::event(&line);
         }
         self.bar.set_position(self.done.iter().sum());
         self.bar.set_message(self.line());

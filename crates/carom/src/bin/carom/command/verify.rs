@@ -1,4 +1,4 @@
-//! `carom verify`: every case that carries expectations, run and compared with them.
+//! `carom verify`: runs every case with expectations and compares the results with them.
 
 use std::collections::BTreeMap;
 use std::num::NonZero;
@@ -30,7 +30,7 @@ Examples:
   carom verify --fast --csv
   carom verify --verbose | less -S
 
-Exit codes: 0 all met · 1 an expectation was missed · 2 a case is wrong · 3 a run stopped though nothing expected it")]
+Exit codes: 0 all met · 1 an expectation was missed · 2 a case is wrong · 3 a run stopped unexpectedly")]
 #[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
     /// Cases, studies, or folders of them [default: cases/, or the fast cases built into the program]
@@ -38,10 +38,10 @@ pub(crate) struct Arguments {
     /// Skip expectations marked slow, and cases that have no others
     #[arg(long)]
     fast: bool,
-    /// Stop at the first set-up that misses an expectation, the shortest first
+    /// Stop at the first set-up that misses an expectation; short set-ups are run first
     #[arg(long, conflicts_with = "report")]
     fail_fast: bool,
-    /// Runs at the same time; results are bitwise identical for any number [default: all cores]
+    /// Number of concurrent runs; results are bitwise identical for any number [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     /// Directory of the verification; must not exist yet [default: runs/verify, runs/verify-2, …]
@@ -50,7 +50,7 @@ pub(crate) struct Arguments {
     /// Print the table as CSV
     #[arg(long, conflicts_with = "json")]
     csv: bool,
-    /// Write field files, figures and a page for every run
+    /// Write fields, figures and a page for every run
     #[arg(long)]
     report: bool,
     /// Write one Markdown table per family into this directory
@@ -101,11 +101,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if let Some(folder) = &arguments.markdown {
         carom_report::verify_markdown(&directory, folder).map_err(|e| unwritten(&e))?;
     }
-    tell(&verification, arguments, &page)?;
+    print(&verification, arguments, &page)?;
     let unjudged = suite.items.len() - verification.set_ups.len();
     if unjudged > 0 && !arguments.json && !arguments.csv && !console::is_quiet() {
         out::line(&format!(
-            "ended at the first miss: {unjudged} of {} set-ups were not judged",
+            "stopped at the first miss: {unjudged} of {} set-ups were not evaluated",
             suite.items.len()
         ))?;
     }
@@ -132,7 +132,7 @@ fn pages(suite: &Suite, verification: &Verification, directory: &Path) -> Result
     Ok(())
 }
 
-fn tell(v: &Verification, arguments: &Arguments, page: &Path) -> Result<(), Failure> {
+fn print(v: &Verification, arguments: &Arguments, page: &Path) -> Result<(), Failure> {
     if arguments.json {
         for (set_up, row) in v.rows() {
             out::event(
@@ -154,7 +154,8 @@ fn tell(v: &Verification, arguments: &Arguments, page: &Path) -> Result<(), Fail
     Ok(out::line(&page.display().to_string())?)
 }
 
-/// What was missed, or every row, in columns; runs that stopped; one line per family; and in all.
+/// Missed expectations (with `all`, every row) as a table; runs that stopped; one line per family;
+/// the total.
 fn summary(v: &Verification, all: bool) -> String {
     let rows: Vec<_> = v.rows().filter(|(_, row)| all || !row.verdict.pass).collect();
     let mut lines = if rows.is_empty() { Vec::new() } else { table(&rows) };
@@ -219,8 +220,8 @@ fn table(rows: &[(&SetUp, &Row)]) -> Vec<String> {
     cells.iter().map(padded).collect()
 }
 
-/// What is seen while a suite runs: a bar on a terminal; with `--verbose` a line for every run that
-/// ended, on standard error.
+/// Progress of a suite: a bar on a terminal; with `--verbose`, a line on standard error for every
+/// run that ended.
 struct Seen {
     runs: Vec<Named>,
     done: Vec<u64>,
@@ -241,13 +242,13 @@ impl Seen {
         self.bar.set_length(runs.iter().map(|r| r.steps).sum::<u64>().max(1));
         if self.json {
             let names: Vec<_> = runs.iter().map(|r| &r.name).collect();
-            // A line that nobody can read must not stop the suite.
+            // A closed standard output must not stop the suite.
             let _ = out::event(&json!({ "event": "start", "runs": names }));
         }
     }
 
     fn event(&mut self, event: &Event) {
-        let told = match event {
+        let line = match event {
             Event::Began(i) => json!({ "event": "began", "run": self.runs[*i].name }),
             Event::Ended(i, ended) => {
                 (self.done[*i], self.ended) = (self.runs[*i].steps, self.ended + 1);
@@ -270,7 +271,7 @@ impl Seen {
             Event::AlreadyDone(_) => return,
         };
         if self.json {
-            let _ = out::event(&told);
+            let _ = out::event(&line);
         }
         self.bar.set_position(self.done.iter().sum());
         self.bar.set_message(format!("{} of {} runs", self.ended, self.runs.len()));
