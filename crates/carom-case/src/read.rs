@@ -76,7 +76,9 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
         time: reader.one("time").and_then(|v| time(v, &mut problems)),
     };
     let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
-    draft.bodies = reader.each("body", |v, path| body(v, reader.dimension?, folder, path, &mut problems));
+    let refine = reader.root.number("refine").filter(|factor| *factor >= 1.0).unwrap_or(1.0);
+    draft.bodies =
+        reader.each("body", |v, path| body(v, reader.dimension?, refine, folder, path, &mut problems));
     draft.loads = reader.each("load", |v, path| load::read(v, folder, path, &mut problems));
     draft.expects = reader.each("expect", |v, path| {
         expect::one(v, path, Asked::OfARun, Exact::Of(&draft.exact), &mut problems)
@@ -237,6 +239,7 @@ fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<Material
 fn body(
     v: View,
     dimension: usize,
+    refine: f64,
     folder: &Path,
     path: &str,
     problems: &mut Vec<Problem>,
@@ -251,6 +254,15 @@ fn body(
         &format!("{path}.mesh"),
         problems,
     )?;
+    let Some(mesh) = mesh.refined(refine) else {
+        let what = format!("`refine` = {refine} is not an integer, and {path}.mesh comes from a file");
+        let why = "the cells of a file are divided into whole parts";
+        // One mistake, however many bodies come from files.
+        if problems.iter().all(|problem| problem.path != "refine") {
+            problems.push(Problem::new("refine", what, why, format!("write `refine = {}`", refine.ceil())));
+        }
+        return None;
+    };
     Some(BodySpec {
         name: v.text("name")?,
         material: v.text("material")?,
@@ -320,6 +332,7 @@ fn time(v: View, problems: &mut Vec<Problem>) -> Option<TimeSpec> {
     Some(TimeSpec {
         end: v.number("end")?,
         step: v.number("step")?,
+        phase: v.number("phase")?,
         scheme: scheme?,
         energy_guard: v.value("energy_guard")?.number(),
     })

@@ -156,7 +156,7 @@ fn grid(case: &Case) -> Grid {
     // Load steps create no energy: the difference between works and energies is the error of a sum
     // over few steps.
     let guard = case.time.energy_guard.filter(|_| !case.time.scheme.is_static());
-    Grid { dt: case.time.step, steps: (case.time.end / case.time.step).round() as u64, guard }
+    Grid { dt: case.time.step, steps: case.time.steps() as u64, phase: case.time.phase, guard }
 }
 
 /// Why a case has no initial state, with its key and a suggestion.

@@ -19,6 +19,7 @@ pub mod quadrature;
 mod reference;
 pub mod shape;
 mod solid;
+mod subdivide;
 mod tree;
 
 pub use body::{Body, Inverted, PointState};

@@ -26,6 +26,12 @@ pub const CASE: Table = Table {
         key("thickness", Number(POSITIVE), "Out-of-plane thickness; in dimension 1, the area of the cross-section.")
             .unit("length, or length² in dimension 1")
             .default("1.0"),
+        key(
+            "refine",
+            Number(AT_LEAST_ONE),
+            "Refinement of all meshes: built-in shapes are made with cells smaller by this factor; for meshes of files it must be an integer, the number of parts into which every edge is divided.",
+        )
+        .default("1.0"),
         key("units", Kind::Table(&UNITS), "Unit labels in figures and columns; values are not converted.")
             .optional()
             .example("{ length = \"m\", time = \"s\", mass = \"kg\" }"),
@@ -345,6 +351,8 @@ const CONTACT: Table = Table {
     later: &["passes", "normals", "overlap", "between", "friction"],
 };
 
+const FRACTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, false)) };
+const AT_LEAST_ONE: Range = Range { low: Some((1.0, true)), high: None };
 const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };
 
 const RIGID: Table = Table {
@@ -374,6 +382,12 @@ const TIME: Table = Table {
             .unit("time")
             .example("1.875e-3")
             .later("a table { initial, min, max, … }"),
+        key(
+            "phase",
+            Number(FRACTION),
+            "Fraction of a step by which all instants are earlier: the first step is shorter by it, and the last one has this length. Runs that differ in it meet contact at different instants of a step.",
+        )
+        .default("0.0"),
         key("scheme", Variant(schemes), "Time integrator.")
             .example("{ kind = \"chung-hulbert\", rho_inf = 0.1 }"),
         key(

@@ -107,7 +107,7 @@ pub fn resume(
             directory: directory.to_path_buf(),
             end: End::Finished,
             steps: steps as u64,
-            time: steps as f64 * case.time.step,
+            time: case.time.end,
             wall: 0.0,
             remarks: vec!["the run is finished: nothing was computed".into()],
         });
@@ -147,7 +147,7 @@ pub fn resume(
 impl<'a> Session<'a> {
     fn new(case: &'a Case, simulation: Simulation, mut writer: RunWriter, manifest: Manifest) -> Self {
         writer.field_format(case.output.format);
-        let at = |time: &f64| (time / simulation.dt()).round() as u64;
+        let at = |time: &f64| simulation.grid().nearest(*time);
         let field_steps = case.output.at_times.iter().map(at).collect();
         let weights = center_weights(simulation.model());
         let first_step = simulation.state().step;
@@ -257,7 +257,8 @@ impl<'a> Session<'a> {
     }
 
     fn write_row(&mut self) -> Result<(), RunError> {
-        let (model, state, dt) = (self.simulation.model(), self.simulation.state(), self.simulation.dt());
+        let (model, state) = (self.simulation.model(), self.simulation.state());
+        let dt = self.simulation.grid().length(state.step);
         row(model, state, dt, &self.since, &self.weights, &mut self.values);
         self.since = Since::default();
         self.writer.history(&self.values)?;

@@ -107,12 +107,13 @@ fn worst(case: &Case, steps: u64) -> Option<f64> {
 /// The balance closes as far as the equations of a step are solved.
 const TIGHT: &str = "newton.tolerance=1e-14";
 
-const LAWS: [&[&str]; 5] = [
+const LAWS: [&[&str]; 6] = [
     &["contact.wall.persistency=\"project\""],
     &["contact.wall.persistency=\"none\""],
     &["contact.wall.law=\"predictor\""],
     &["contact.wall.enforcement=\"penalty\"", "contact.wall.stiffness=1e4"],
     &["contact.wall.force=\"end\""],
+    &["time.phase=0.3"],
 ];
 
 const BAR: &str = r#"
