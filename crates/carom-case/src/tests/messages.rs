@@ -293,7 +293,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     ),
     (
         &["body.cylinder.mesh.refine=[{ near = [0.0, 0.0], size = 0.1 }]"],
-        &["unknown key `refine`", "is a key of mesh of shape \"polygon\""],
+        &["unknown key `refine`", "is a key of the case, mesh of shape \"polygon\""],
     ),
     (&["body.cylinder.place={ turn = 30 }"], &["unknown key `turn` in place", "rotate, about, shift"]),
     // keys of other tables
