@@ -172,6 +172,7 @@ impl<'a> Reader<'a> {
             dimension,
             plane: self.root.choice("plane")?,
             thickness: self.root.number("thickness")?,
+            refine: self.root.number("refine")?,
             units: Units {
                 length: units.text("length")?,
                 time: units.text("time")?,

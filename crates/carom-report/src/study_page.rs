@@ -2,15 +2,16 @@
 //! self-contained page.
 
 use carom_record::Status;
-use carom_record::study::{Row, Study, Verdict};
+use carom_record::study::ensemble::Spread;
+use carom_record::study::{Held, Row, Study, Verdict};
 use maud::{Markup, PreEscaped, Render, html};
 
 use crate::collected::Origin;
-use crate::digits::five;
+use crate::digits::{five, three};
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::plot::{Plot, style};
 use crate::text::{Label, Prose};
-use crate::{convergence, design, integrity, verdict};
+use crate::{convergence, design, ensemble, integrity, verdict};
 
 /// Arms in one table of metrics; more arms need more tables.
 const ACROSS: usize = 8;
@@ -38,7 +39,8 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
         (setup(study, picture))
         (arms(study))
         (verdict::rankings(study))
-        (claims(&study.verdicts))
+        (claims(study))
+        (ensemble::section(study))
         (expectations(study))
         h2 { "Figures" }
         @for (i, plot) in plots.iter().enumerate() {
@@ -159,24 +161,59 @@ fn line(arm: usize) -> Markup {
     }
 }
 
-fn claims(verdicts: &[Verdict]) -> Markup {
-    let class = |v: &Verdict| match v.holds {
-        Some(true) => "pass",
-        Some(false) => "miss",
-        None => "undecided",
+fn claims(study: &Study) -> Markup {
+    let class = |v: &Verdict| match (&v.held, v.holds) {
+        (Some(held), _) if held.held == held.of => "pass",
+        (Some(held), _) if held.held == 0 => "miss",
+        (None, Some(true)) => "pass",
+        (None, Some(false)) => "miss",
+        _ => "undecided",
     };
+    let ratio = |held: &Held| {
+        let of = |spread: &Spread| {
+            let (low, high) = spread.range();
+            format!("{} ({} to {})", three(spread.median()), three(low), three(high))
+        };
+        held.ratio.as_ref().map_or_else(String::new, of)
+    };
+    let all = study.manifest.ensemble.is_some();
     html! {
-        @if !verdicts.is_empty() {
+        @if !study.verdicts.is_empty() {
             h2 { "Claims" }
             table {
-                thead { tr { th { "Claim" } th.n { "Left side" } th.n { "Right side" } th { "Result" } } }
-                @for v in verdicts {
+                thead {
+                    tr {
+                        th { "Claim" }
+                        @if all { th { "Held in" } th.n { "Left/right: median (range)" } }
+                        th.n { "Left side" } th.n { "Right side" } th { "Result" }
+                    }
+                }
+                @for v in &study.verdicts {
                     tr {
                         td { (v.claim.text) br; code { (v.claim.compare) } }
+                        @if all {
+                            @match &v.held {
+                                Some(held) => {
+                                    td { (held.held) " of " (held.of) } td.n { (ratio(held)) }
+                                },
+                                None => { td { "–" } td.n { "–" } },
+                            }
+                        }
                         td.n { (or_dash(v.left, five)) }
                         td.n { (or_dash(v.right, five)) }
-                        td.(class(v)) { (v.word()) }
+                        td.(class(v)) {
+                            @match &v.held {
+                                Some(held) => { "holds " (held.word()) },
+                                None => (v.word()),
+                            }
+                        }
                     }
+                }
+            }
+            @if all {
+                p.small {
+                    "Held in: members of the ensemble in which the comparison is true, of those in which it \
+                     can be decided. Left and right side: of the arms as given."
                 }
             }
         }

@@ -131,7 +131,10 @@ fn conclude(
         let claims = study
             .verdicts
             .iter()
-            .map(|v| json!({ "claim": v.claim.text, "left": v.left, "right": v.right, "verdict": v.word() }));
+            .map(|v| {
+                let held = v.held.as_ref().map(|held| json!({ "held": held.held, "of": held.of }));
+                json!({ "claim": v.claim.text, "left": v.left, "right": v.right, "verdict": v.word(), "ensemble": held })
+            });
         let claims: Vec<_> = claims.collect();
         let event = if outcome.interrupted { "interrupted" } else { "done" };
         out::event(&json!({ "event": event, "directory": directory, "report": page, "claims": claims }))?;
@@ -162,9 +165,16 @@ fn text(study: &Study) -> String {
     }
     for v in &study.verdicts {
         let value = |x: Option<f64>| x.map_or("–".into(), short);
+        let word = v.held.as_ref().map_or_else(
+            || format!("{:9}", v.word()),
+            |held| format!("held in {} of {}", held.held, held.of),
+        );
+        let ratio = v.held.as_ref().and_then(|held| held.ratio.as_ref()).map_or_else(String::new, |ratio| {
+            let (low, high) = ratio.range();
+            format!("; ratio {}, {} to {}", short(ratio.median()), short(low), short(high))
+        });
         lines.push(format!(
-            "{:9}  {}  ({} against {})",
-            v.word(),
+            "{word}  {}  ({} against {}{ratio})",
             v.claim.text,
             value(v.left),
             value(v.right)
@@ -184,12 +194,14 @@ fn text(study: &Study) -> String {
 /// The recommendation of a study with a goal, as on its page.
 fn recommendation(study: &Study, ranking: &Ranking) -> Vec<String> {
     let goal = ranking.goal.word();
-    let Some(verdict) = &ranking.verdict else {
-        let why = match &ranking.measure {
-            Err(why) => why.clone(),
-            Ok(measure) => format!("no arm has a value for: {}", measure.words),
-        };
-        return vec![String::new(), format!("no recommendation for the goal \"{goal}\": {why}")];
+    let verdict = match &ranking.verdict {
+        Ok(verdict) => verdict,
+        Err(reasons) => {
+            let mut lines = vec![String::new(), format!("no recommendation for the goal \"{goal}\":")];
+            let why = ranking.measure.as_ref().err();
+            lines.extend(reasons.iter().chain(why).map(|reason| format!("  {reason}")));
+            return lines;
+        }
     };
     let name = &study.manifest.arms[verdict.arm].name;
     let mut lines = vec![String::new(), format!("recommended for the goal \"{goal}\": {name}")];
@@ -219,13 +231,13 @@ struct Seen {
 impl Seen {
     fn new(manifest: &StudyManifest, json: bool) -> Self {
         Self {
-            names: manifest.arms.iter().map(|a| a.name.clone()).collect(),
-            steps: manifest.arms.iter().map(|a| a.steps).collect(),
-            done: vec![0; manifest.arms.len()],
-            left: vec![None; manifest.arms.len()],
+            names: manifest.runs().map(|a| a.name.clone()).collect(),
+            steps: manifest.runs().map(|a| a.steps).collect(),
+            done: vec![0; manifest.runs().count()],
+            left: vec![None; manifest.runs().count()],
             ended: BTreeSet::new(),
             json,
-            bar: console::bar(manifest.arms.iter().map(|a| a.steps).sum()),
+            bar: console::bar(manifest.runs().map(|a| a.steps).sum()),
             last: None,
         }
     }
@@ -267,7 +279,7 @@ impl Seen {
     fn line(&self) -> String {
         let left = self.left.iter().flatten().copied().reduce(f64::max);
         let left = left.map_or_else(String::new, |left| format!("  longest left {}", duration(left)));
-        format!("{} of {} arms{left}", self.ended.len(), self.names.len())
+        format!("{} of {} runs{left}", self.ended.len(), self.names.len())
     }
 }
 
