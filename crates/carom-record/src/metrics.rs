@@ -8,6 +8,7 @@
 //! difference of the recorded `contact_impulse`, which the time integrator accumulates; a mean
 //! force over a window w is [P(t + w) − P(t)]/w, not a mean of samples.
 
+mod averaged;
 mod book;
 mod column;
 mod compare;
@@ -23,6 +24,7 @@ mod samples;
 mod striker;
 mod table;
 
+pub use averaged::of_averages;
 pub use book::book_table;
 pub use column::column_roughness;
 pub use compare::{deviation, phase_shift};

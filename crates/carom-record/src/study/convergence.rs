@@ -28,7 +28,7 @@ pub(super) struct Converged {
 /// Range of orders that are taken as they are.
 const REGULAR: (f64, f64) = (0.95, 2.05);
 /// Safety factor of an observed order.
-const SAFE: f64 = 1.25;
+pub(super) const SAFE: f64 = 1.25;
 /// Safety factor without one.
 const UNSAFE: f64 = 3.0;
 

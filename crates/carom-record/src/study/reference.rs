@@ -4,7 +4,8 @@
 //! computed    runs at decreasing steps, and on finer meshes where `mesh` of [fine] says so; each level
 //!             is run with every member of the study's ensemble. Value: the median of the members at the
 //!             finest level. Uncertainty: that of the refinement (convergence.rs), plus the largest
-//!             distance of a member from the median, plus a step for an instant
+//!             distance of a member from the median, plus half a step for an instant, plus 5/4 of what
+//!             averaging over a short time changes, for extremes and variations (metrics/averaged.rs)
 //! an arm      the same with the arms that differ from it only in the step; with a single run nothing is known
 //! exact       the formulas of [exact], and the metrics that can be computed from these columns; uncertainty 0
 //! ideal       the values for elastic bodies: no change or dissipation of energy, no penetration
@@ -20,7 +21,7 @@ use std::path::Path;
 use carom_formula::Formula;
 
 use super::arm::{Arm, step};
-use super::convergence::converged;
+use super::convergence::{SAFE, converged};
 use super::digits::short;
 use super::ensemble::Spread;
 use super::manifest::StudyManifest;
@@ -145,13 +146,15 @@ pub struct Reference {
     pub what: String,
     /// Its levels, the finest last; for exact formulas, one sampled from them.
     levels: Vec<Level>,
+    /// Metrics of the finest run after averaging over a short time.
+    averaged: Vec<Metric>,
     exact: bool,
 }
 
 impl Reference {
     /// Of levels of decreasing steps, the finest last.
     pub fn of_levels(what: String, levels: Vec<Level>) -> Self {
-        Self { what, levels, exact: false }
+        Self { what, levels, averaged: Vec::new(), exact: false }
     }
 
     /// Whether its uncertainty includes that of the mesh: it is exact, or its mesh was refined.
@@ -204,7 +207,12 @@ impl Reference {
         }
         let sampled = Trajectory { times, columns, metrics: known };
         let levels = vec![Level::single(0.0, sampled)];
-        Some(Self { what: "the exact formulas of [exact]".to_owned(), levels, exact: true })
+        Some(Self {
+            what: "the exact formulas of [exact]".to_owned(),
+            levels,
+            averaged: Vec::new(),
+            exact: true,
+        })
     }
 
     /// Value of a metric with its uncertainty.
@@ -223,8 +231,15 @@ impl Reference {
         let medians: Vec<f64> = levels.iter().map(Spread::median).collect();
         let found = converged(&self.sizes(), &medians).ok_or("a single run gives no error estimate")?;
         let (value, spread) = levels.last().map_or((0.0, 0.0), |s| (s.median(), s.half_width()));
-        let instant = self.levels.last().filter(|_| INSTANTS.contains(&name)).map_or(0.0, |level| level.step);
-        Ok(Estimate { value, uncertainty: found.uncertainty + spread + instant, order: found.order, spread })
+        // A recorded instant is late by up to a step; the median of several phases by half of one.
+        let late = |level: &Level| if level.members.len() > 1 { level.step / 2.0 } else { level.step };
+        let instant = self.levels.last().filter(|_| INSTANTS.contains(&name)).map_or(0.0, late);
+        let single = self.levels.last().and_then(|level| level.members.first()?.value(name));
+        let averaged =
+            self.averaged.iter().find(|metric| metric.name == name).and_then(|metric| metric.value);
+        let smoothed = single.zip(averaged).map_or(0.0, |(one, other)| SAFE * (one - other).abs());
+        let uncertainty = found.uncertainty + spread + instant + smoothed;
+        Ok(Estimate { value, uncertainty, order: found.order, spread })
     }
 
     /// Reference value of a metric.
@@ -358,12 +373,15 @@ impl StudyManifest {
             return Ok(Reference::of_formulas(&formulas, end, 8000));
         }
         let arms = self.reference_arms();
-        let mut levels = Vec::new();
+        let (mut levels, mut averaged) = (Vec::new(), Vec::new());
         for &i in &arms {
             let mut members = Vec::new();
             for run in self.runs_of(i) {
                 if self.state(directory, self.run(run))?.0 == Some(Status::Finished) {
                     let run = Run::open(&directory.join(&self.run(run).directory))?;
+                    if members.is_empty() && Some(&i) == arms.last() {
+                        averaged = metrics::of_averages(&run);
+                    }
                     members.push(Trajectory::of(&run, &metrics::of_run(&run)));
                 } else if run == i {
                     return Ok(None);
@@ -383,7 +401,7 @@ impl StudyManifest {
         let members = reference.levels.last().map_or(1, |level| level.members.len());
         let ensemble = if members > 1 { format!(", {members} members each") } else { String::new() };
         let what = format!("\"{}\", {count}{ensemble}", self.arms[*last].name);
-        Ok(Some(Reference { what, ..reference }))
+        Ok(Some(Reference { what, averaged, ..reference }))
     }
 }
 

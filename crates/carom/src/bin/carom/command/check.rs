@@ -74,6 +74,10 @@ fn study(arguments: &Arguments) -> Result<Exit, Failure> {
             short(time.step)
         ));
     }
+    if let Some(ensemble) = &manifest.ensemble {
+        let runs = arms.len() + manifest.members.len();
+        lines.push(format!("  ensemble {}: {runs} runs in all", ensemble.words()));
+    }
     if !console::is_quiet() {
         out::line(&lines.join("\n"))?;
     }
