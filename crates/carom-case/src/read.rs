@@ -305,6 +305,7 @@ fn contact(v: View) -> Option<ContactSpec> {
         persistency: v.choice("persistency")?,
         active_set: v.choice("active_set")?,
         detection: v.choice("detection")?,
+        xi: v.choice("xi")?,
         law: v.choice("law"),
         restitution: v.number("restitution")?,
     })

@@ -336,6 +336,13 @@ const CONTACT: Table = Table {
         .default("\"closest-point\"")
         .paper("\"trajectory\""),
         key(
+            "xi",
+            Choice(&["closest", "frozen"], &[]),
+            "Point of the primary facet at which the gap is measured during a step: the closest point, recomputed in every iteration; or, as printed \
+             in the paper, that of the trajectory crossing in the first step of a contact and the closest point at the start of the step in later ones.",
+        )
+        .default("\"closest\""),
+        key(
             "restitution",
             Number(RESTITUTION),
             "Newton's coefficient of restitution e, for contact laws on velocities; with paoli-schatzman, the weight of the previous position.",
