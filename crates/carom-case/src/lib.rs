@@ -27,7 +27,6 @@ mod suggest;
 mod tests;
 mod tree;
 mod view;
-mod warnings;
 
 pub use carom_record::{Bound, Expect as ExpectSpec};
 pub use columns::history_columns;

@@ -104,10 +104,10 @@ const MATERIAL: Table = Table {
         key(
             "poisson",
             Number(Range { low: Some((-1.0, false)), high: Some((0.5, false)) }),
-            "Poisson's ratio; given together with young.",
+            "Poisson's ratio; given together with young. At 0.5 the material would be incompressible and its bulk modulus infinite.",
         )
         .optional()
-        .example("0.465"),
+        .example("0.49"),
     ],
     later: &[],
 };

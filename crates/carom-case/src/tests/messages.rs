@@ -32,7 +32,7 @@ try: did you mean `prism.top`?"
   time.scheme.rho_inf=1.2
                       ^^^
 why: Spectral radius at infinite frequency: 0 removes the highest frequencies within a few steps, 1 does not damp them.
-try: write for example `rho_inf = 0.8`"
+try: write for example `rho_inf = 1`"
     );
 }
 
