@@ -11,7 +11,7 @@ use carom_case::{Case, Plane};
 use carom_mechanics::model::{BodyInstance, Model};
 use carom_solid::{Element, Mesh};
 
-use super::{Found, short};
+use super::found::{Found, short};
 
 /// Poisson's ratio above which triangles of constant strain lock in plane strain: at 0.45 the bulk
 /// modulus is ten times the shear modulus.

@@ -4,7 +4,7 @@
 use carom_case::Case;
 use carom_mechanics::model::{BodyInstance, Model};
 
-use super::{Found, short};
+use super::found::{Found, short};
 
 /// Share of the strain energy that is warned about.
 const SHARE: f64 = 1e-6;

@@ -4,7 +4,7 @@
 use carom_case::{Case, PrimarySpec, Quantity};
 use carom_mechanics::model::Model;
 
-use super::{Found, short};
+use super::found::{Found, short};
 use crate::build::side::side;
 
 /// Ratio of spacings up to which two sides count as equally fine: meshers do not meet a size better.

@@ -4,6 +4,7 @@
 //! [`WARNINGS`] is the one table; a rule is a function of the case and its model, or of the record.
 
 mod elements;
+mod found;
 mod masses;
 mod meshes;
 mod record;
@@ -13,14 +14,8 @@ use carom_case::Case;
 use carom_mechanics::model::Model;
 use carom_record::{Run, Warning};
 
+pub use found::Found;
 pub use steps::wave_speed;
-
-/// Where a rule applies, and what it found there.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Found {
-    place: String,
-    what: String,
-}
 
 /// How a warning is found.
 #[derive(Clone, Copy, Debug)]
@@ -127,20 +122,4 @@ pub(crate) fn warnings_of_record(case: &Case, run: &Run) -> Vec<Warning> {
         Rule::Model(_) => None,
     };
     WARNINGS.iter().filter_map(given).flatten().collect()
-}
-
-impl Found {
-    fn of_body(name: &str, what: String) -> Self {
-        Self { place: format!("body \"{name}\""), what }
-    }
-
-    fn of_contact(name: &str, what: String) -> Self {
-        Self { place: format!("contact \"{name}\""), what }
-    }
-}
-
-/// A number with three digits.
-fn short(x: f64) -> String {
-    let digits = (2 - x.abs().max(1e-300).log10().floor() as i32).clamp(0, 9) as usize;
-    if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) { format!("{x:.2e}") } else { format!("{x:.digits$}") }
 }

@@ -6,7 +6,7 @@ use carom_case::Case;
 use carom_record::Run;
 use carom_record::metrics::MUCH_CREATED;
 
-use super::{Found, short};
+use super::found::{Found, short};
 
 /// A contact in the plane in which at most one of several nodes was active at a time.
 pub(super) fn one_node(case: &Case, run: &Run) -> Vec<Found> {

@@ -11,7 +11,7 @@ use carom_mechanics::model::Model;
 use carom_solid::Mesh;
 
 use super::elements::area;
-use super::{Found, short};
+use super::found::{Found, short};
 
 /// Courant number that is warned about.
 const LONG: f64 = 10.0;
