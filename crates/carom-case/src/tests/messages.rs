@@ -99,7 +99,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["time.step=7.5e-13"], &["too many steps"]),
     (&["output.at_times=[0.1, 0.8]"], &["the time 0.8 is outside the run"]),
     // a frozen contact point
-    (&["contact.strike.xi=froze"], &["`xi` cannot be \"froze\"", "did you mean \"frozen\"?"]),
+    (&["contact.strike.xi=froze"], &["`xi` cannot be \"froze\"", "did you mean `frozen`?"]),
     (&["contact.strike.xi=frozen"], &["cannot be used with this detection", "xi = \"closest\""]),
     (
         &["preset=paper", "contact.strike.xi=frozen", "contact.strike.enforcement=penalty"],
