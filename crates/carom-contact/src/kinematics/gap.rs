@@ -24,7 +24,7 @@ pub(crate) struct Gap {
     at: FacetPoint,
     shape: LineShape,
     /// The gap g.
-    pub(crate) gap: f64,
+    pub(crate) distance: f64,
     tau: f64,
     kappa: f64,
     /// a; a unique closest point has a > 0.
@@ -37,7 +37,7 @@ impl Gap {
         let at = facet.at(y, xi);
         let (gap, kappa) = ((from - at.position).dot(&at.normal), at.normal.dot(&at.second));
         let a = at.measure * at.measure - gap * kappa;
-        Self { at, shape: facet.shape.at(xi), gap, tau: 0.0, kappa, a }
+        Self { at, shape: facet.shape.at(xi), distance: gap, tau: 0.0, kappa, a }
     }
 
     /// At a fixed ξ.
@@ -45,7 +45,7 @@ impl Gap {
         let at = facet.at(y, xi);
         let (from_point, a) = (from - at.position, at.measure * at.measure);
         let tau = from_point.dot(&at.tangent) / a;
-        Self { at, shape: facet.shape.at(xi), gap: from_point.dot(&at.normal), tau, kappa: 0.0, a }
+        Self { at, shape: facet.shape.at(xi), distance: from_point.dot(&at.normal), tau, kappa: 0.0, a }
     }
 
     /// ψᵅ of a node of the facet.
@@ -62,7 +62,9 @@ impl Gap {
     /// ∂²g/∂y∂y of the node and of `count` nodes of the facet, `d` components each: overwrites the
     /// first ((1 + `count`) `d`)² entries, row-major.
     pub(crate) fn curvature_into(&self, count: usize, d: usize, curvature: &mut [f64]) {
-        let Self { at: FacetPoint { tangent: t, normal: n, measure: j, .. }, gap, kappa, a, .. } = *self;
+        let Self {
+            at: FacetPoint { tangent: t, normal: n, measure: j, .. }, distance: gap, kappa, a, ..
+        } = *self;
         let count = 1 + count;
         // Every vector of the stencil is a scalar per node times n or t.
         let phi = |p: usize| if p == 0 { 1.0 } else { -self.weight(p - 1) };

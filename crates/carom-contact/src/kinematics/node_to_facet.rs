@@ -325,7 +325,7 @@ impl Kinematics for NodeToFacet {
             return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a: gap.a });
         }
         let nodes = std::iter::once(&node).chain(facet.nodes);
-        rows.push(gap.gap, nodes.zip(gap.gradient(facet.nodes.len())).map(|(&n, slope)| (n, slope.0)));
+        rows.push(gap.distance, nodes.zip(gap.gradient(facet.nodes.len())).map(|(&n, slope)| (n, slope.0)));
         Ok(())
     }
 
