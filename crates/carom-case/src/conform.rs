@@ -275,6 +275,8 @@ impl Check {
             // A sign is easily lost, or of another convention.
             let help = if x < 0.0 && range.contains(-x) {
                 format!("did you mean `{} = {}`?", key.name, -x)
+            } else if let Some(end) = range.end_next_to(x) {
+                format!("write for example `{} = {end}`", key.name)
             } else {
                 format!("write for example `{} = {}`", key.name, self.names.example(key))
             };

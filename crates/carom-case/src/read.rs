@@ -219,7 +219,7 @@ fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<Material
             if !misspelt || given.len() > 2 {
                 let had = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
                 let what = format!("the elastic constants are not a valid pair: {had}");
-                let help = "give `lambda` and `mu`, or `young` and `poisson`";
+                let help = elastic_help(v, given);
                 problems.push(
                     Problem::new(path, what, "an isotropic material has two elastic constants", help)
                         .at_key(),
@@ -318,9 +318,25 @@ fn contact(v: View) -> Option<ContactSpec> {
         persistency: v.choice("persistency")?,
         active_set: v.choice("active_set")?,
         detection: v.choice("detection")?,
+        xi: v.choice("xi")?,
         law: v.choice("law"),
         restitution: v.number("restitution")?,
     })
+}
+
+/// The pair of elastic constants that was probably meant.
+fn elastic_help(v: View, given: &[&str]) -> String {
+    let pairs = "give `lambda` and `mu`, or `young` and `poisson`";
+    let ([mu, poisson], ["lambda", "mu", "poisson"]) =
+        (["mu", "poisson"].map(|key| v.number(key).filter(|x| x.is_finite())), given)
+    else {
+        return pairs.to_owned();
+    };
+    let (Some(mu), Some(poisson)) = (mu, poisson) else { return pairs.to_owned() };
+    // Where there is no such material, the nearest that there is.
+    let poisson = poisson.clamp(-0.99, 0.49);
+    let lambda = (2.0 * mu * poisson / (1.0 - 2.0 * poisson) * 1e6).round() / 1e6;
+    format!("{pairs}; with this `mu`, Poisson's ratio is {poisson} for `lambda = {lambda}`")
 }
 
 fn probe(v: View) -> Option<ProbeSpec> {

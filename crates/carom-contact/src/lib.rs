@@ -10,6 +10,6 @@ mod rows;
 
 pub use active_set::{ActiveSet, Contender, Cycle};
 pub use interface::{Answer, ConservingPenalty, Interface, Penalty, Point, Unilateral};
-pub use kinematics::{Detection, Kinematics, NodeToFacet, NodeToPlane, Surface};
+pub use kinematics::{ContactPoint, Detection, Kinematics, NodeToFacet, NodeToPlane, Surface};
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

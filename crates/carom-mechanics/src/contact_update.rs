@@ -24,6 +24,13 @@ const FACET_UPDATES: u32 = 12;
 /// Events of pairs, with the index of their contact.
 pub(crate) type Events = Vec<(usize, PairEvent)>;
 
+/// Prepares the pairs for a step from positions `y`.
+pub(crate) fn start_step(model: &Model, y: &[f64], pairings: &mut [Pairing]) {
+    for (contact, pairing) in model.contacts.iter().zip(pairings) {
+        pairing.pairs.iter_mut().for_each(|pair| contact.kinematics.start_step(pair, y));
+    }
+}
+
 /// Updates the pairs for motion from `before` to `now`; returns whether that requires another
 /// solve.
 pub(crate) fn search(

@@ -33,7 +33,7 @@ pub use episode::{Episode, default_bridge, episodes, first_episode};
 pub use evaluated::{all, of_column, of_run, probe_columns};
 pub use facts::{Facts, contact_force};
 pub use force::high_frequency;
-pub use ledger::energy_lost_at;
+pub use ledger::{MUCH_CREATED, energy_lost_at};
 pub use pressure::hertz;
 pub(crate) use samples::extreme;
 pub use samples::{at, peak_mean, roughness, total_variation};

@@ -1,15 +1,15 @@
 //! `study.html`: recommendation, arms, ranking, figures and metrics of a study as a single
 //! self-contained page.
 
-use carom_record::Status;
 use carom_record::study::ensemble::Spread;
 use carom_record::study::{Held, Row, Study, Verdict};
+use carom_record::{Status, Warning};
 use maud::{Markup, PreEscaped, Render, html};
 
 use crate::collected::Origin;
 use crate::digits::{five, three};
 use crate::document::{document, figure, file, joined, minus, or_dash};
-use crate::plot::{Plot, style};
+use crate::plot::{APART, Plot, style};
 use crate::text::{Label, Prose};
 use crate::{convergence, design, ensemble, integrity, verdict};
 
@@ -42,6 +42,7 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
         (claims(study))
         (ensemble::section(study))
         (expectations(study))
+        (warnings(study, origins))
         h2 { "Figures" }
         @for (i, plot) in plots.iter().enumerate() {
             (figure(i + 1, &plot.name, &["svg", "csv", "py"], &plot.caption, &plot.svg()))
@@ -116,7 +117,7 @@ fn arms(study: &Study) -> Markup {
                 @for (i, (row, arm)) in study.rows.iter().zip(&m.arms).enumerate() {
                     tr {
                         td.n { (i + 1) }
-                        td { (line(i)) }
+                        td { (line(i, row.is_unsound())) }
                         td {
                             a href={ (arm.directory) "/report.html" } { (row.name) }
                             @if m.reference.as_ref() == Some(&row.name) { " (reference)" }
@@ -127,7 +128,7 @@ fn arms(study: &Study) -> Markup {
                             (codes(&arm.sets, html! { br; }))
                         }
                         td.n { (arm.steps) }
-                        (ended(row))
+                        (ended(study, i, row))
                     }
                 }
             }
@@ -136,7 +137,7 @@ fn arms(study: &Study) -> Markup {
 }
 
 /// How an arm ended, and why.
-fn ended(row: &Row) -> Markup {
+fn ended(study: &Study, arm: usize, row: &Row) -> Markup {
     let (class, word) = match row.status {
         Some(Status::Finished) => ("pass", "finished"),
         Some(Status::Failed) => ("miss", "failed"),
@@ -147,13 +148,14 @@ fn ended(row: &Row) -> Markup {
         td.(class) {
             (word)
             @if let Some(reason) = &row.reason { br; span.small { (reason) } }
+            @if let Some(others) = study.finished_alike(arm) { br; span.small { (others) } }
         }
     }
 }
 
 /// The line of an arm in the figures.
-fn line(arm: usize) -> Markup {
-    let (color, dashes, _) = style(arm);
+fn line(arm: usize, apart: bool) -> Markup {
+    let (color, dashes, _) = if apart { APART } else { style(arm) };
     html! {
         svg.line width="44" height="10" {
             path d="M1 5h42" stroke=(color) stroke-width="2" stroke-dasharray=(dashes) {}
@@ -254,6 +256,37 @@ fn expectations(study: &Study) -> Markup {
                     }
                 }
             }
+        }
+    }
+}
+
+/// The warnings of all arms; one that several arms share is listed once.
+fn warnings(study: &Study, origins: &[Origin]) -> Markup {
+    let mut shared: Vec<(&Warning, Vec<usize>)> = Vec::new();
+    for (arm, warning) in origins.iter().flat_map(|o| o.warnings.iter().map(|warning| (o.arm, warning))) {
+        match shared.iter_mut().find(|(known, _)| *known == warning) {
+            Some((_, arms)) => arms.push(arm),
+            None => shared.push((warning, vec![arm])),
+        }
+    }
+    html! {
+        @if !shared.is_empty() {
+            h2 { "Warnings" }
+            table {
+                thead { tr { th { "Warning" } th { "What was found, and why it matters" } th { "Try" } th { "Arms" } } }
+                @for (warning, arms) in shared {
+                    tr {
+                        td { code { (warning.id) } }
+                        td { (warning.place) ": " (warning.what) "; " (warning.why) "." }
+                        td { (warning.advice) }
+                        td {
+                            @if arms.len() == study.rows.len() && arms.len() > 1 { "all" }
+                            @else { (joined(arms.iter().map(|arm| arm + 1), ", ")) }
+                        }
+                    }
+                }
+            }
+            p.small { "Arms by their number." }
         }
     }
 }

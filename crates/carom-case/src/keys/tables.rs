@@ -110,10 +110,10 @@ const MATERIAL: Table = Table {
         key(
             "poisson",
             Number(Range { low: Some((-1.0, false)), high: Some((0.5, false)) }),
-            "Poisson's ratio; given together with young.",
+            "Poisson's ratio; given together with young. At 0.5 the material would be incompressible and its bulk modulus infinite.",
         )
         .optional()
-        .example("0.465"),
+        .example("0.49"),
     ],
     later: &[],
 };
@@ -341,6 +341,13 @@ const CONTACT: Table = Table {
         )
         .default("\"closest-point\"")
         .paper("\"trajectory\""),
+        key(
+            "xi",
+            Choice(&["closest", "frozen"], &[]),
+            "Point of the primary facet at which the gap is measured during a step: the closest point, recomputed in every iteration; or, as printed \
+             in the paper, that of the trajectory crossing in the first step of a contact and the closest point at the start of the step in later ones.",
+        )
+        .default("\"closest\""),
         key(
             "restitution",
             Number(RESTITUTION),

@@ -10,6 +10,7 @@
 //!            study.html figures/     the page
 //! ```
 
+mod alike;
 mod arm;
 mod arms;
 pub mod checks;

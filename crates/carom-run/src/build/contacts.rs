@@ -5,7 +5,8 @@ use carom_case::{
     ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, Persistency, PrimarySpec, Problem,
 };
 use carom_contact::{
-    ConservingPenalty, Detection, Kinematics, NodeToFacet, NodeToPlane, Penalty, Surface, Unilateral,
+    ConservingPenalty, ContactPoint, Detection, Kinematics, NodeToFacet, NodeToPlane, Penalty, Surface,
+    Unilateral,
 };
 use carom_mechanics::model::{BodyInstance, Contact, Model};
 use carom_solid::Cover;
@@ -56,8 +57,13 @@ pub(super) fn contacts(
                         carom_case::Detection::ClosestPoint => Detection::ClosestPoint,
                         carom_case::Detection::Trajectory => Detection::Trajectory,
                     };
+                    let point = match spec.xi {
+                        carom_case::ContactPoint::Closest => ContactPoint::Closest,
+                        carom_case::ContactPoint::Frozen => ContactPoint::Frozen,
+                    };
                     let side = Surface::new(primary.shape, &primary.facets, &primary.orientations);
-                    Box::new(NodeToFacet::new(secondary.nodes.clone(), side, detection))
+                    let contact = NodeToFacet::new(secondary.nodes.clone(), side, detection);
+                    Box::new(contact.with_point(point))
                 }
                 Err(problem) => {
                     problems.push(problem);

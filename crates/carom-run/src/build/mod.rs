@@ -5,7 +5,7 @@ mod contacts;
 mod loads;
 mod motions;
 mod refusals;
-mod side;
+pub(crate) mod side;
 
 use std::collections::BTreeMap;
 

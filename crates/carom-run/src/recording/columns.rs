@@ -261,8 +261,11 @@ fn penetration(model: &Model, state: &State) -> f64 {
     let mut rows = Rows::new(model.dimension);
     for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
         for pair in pairs {
-            // A pair without a closest point is remote.
-            let _ = contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows);
+            // At the closest point, even where the step has measured the gap at a frozen one. A pair
+            // without a closest point is remote.
+            let mut pair = *pair;
+            contact.kinematics.start_step(&mut pair, &state.y);
+            let _ = contact.kinematics.measure(&mut pair, &state.y, &mut rows);
         }
     }
     rows.iter().map(|row| -row.gap).fold(0.0, f64::max)

@@ -18,3 +18,4 @@ mod restart;
 mod reversal;
 mod statics;
 mod tangent;
+mod warnings;

@@ -74,6 +74,25 @@ text = "The trapezoidal rule keeps its energy"
 compare = 'energy_lost of "guarded" < 1e-6'
 "#;
 
+/// Where nodes begin to touch less often, less energy is created.
+#[test]
+fn a_failed_arm_names_the_arms_of_its_method_that_finished() {
+    let trapezoidal = r#""time.scheme" = { kind = "newmark", beta = 0.25, gamma = 0.5 }, "contact.wall.persistency" = "none", "time.energy_guard" = 0.05"#;
+    let arm = |name: &str, set: &str| format!("[[arm]]\nname = \"{name}\"\nset = {{ {set} }}\n");
+    let step = |step: &str| format!("{trapezoidal}, \"time.step\" = {step}");
+    let arms =
+        [arm("fine", &step("0.01")), arm("coarse", &step("0.02")), arm("damped", "\"time.step\" = 0.02")];
+    let (folder, path) = folder(&arms.concat());
+    let directory = folder.path().join("study");
+    let plan = Plan::read(&path).unwrap();
+    let study = start(&plan, &directory, 1, &mut |_| {}, &AtomicBool::new(false)).unwrap().study;
+    let known = "the same method finished with a longer step: \"coarse\"";
+    assert_eq!(study.finished_alike(0).as_deref(), Some(known));
+    assert!(study.finished_alike(1).is_none() && study.finished_alike(2).is_none());
+    // The coarse arm created 3 % of energy.
+    assert_eq!([0, 1, 2].map(|arm| study.rows[arm].is_unsound()), [true, true, false]);
+}
+
 #[test]
 fn rows_failures_and_claims() {
     let (folder, path) = folder(THREE);
@@ -274,7 +293,7 @@ fn wrong_ensembles_are_reported() {
     assert!(first("mesh = [2, 3]").why.contains("are members, on the given mesh"));
     assert!(first("mesh = [1, 1]").what.contains("not a list of increasing numbers"));
     assert!(first("phases = 1").help.contains("phases = 5"));
-    assert_eq!(first("fases = 5").help, "did you mean `phases`?");
+    assert_eq!(first("phase = 5").help, "did you mean `phases`?");
 }
 
 /// Two methods of similar cost: the second starts at twice the step of the case, and matched cost

@@ -1,10 +1,12 @@
 //! Progress of a simulation: a bar on standard error if it is a terminal, or events on standard
 //! output. Also Ctrl-C.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use carom_record::Manifest;
 use indicatif::ProgressBar;
 use serde::Serialize;
 
@@ -20,6 +22,10 @@ pub(crate) struct Live {
     json: bool,
     bar: ProgressBar,
     last: Option<Instant>,
+    /// The run, whose manifest has the warnings.
+    directory: PathBuf,
+    /// Number of warnings already shown; none before the first step.
+    warned: Option<usize>,
 }
 
 #[derive(Serialize)]
@@ -30,23 +36,30 @@ struct Event<'a> {
 }
 
 impl Live {
-    pub(crate) fn new(json: bool) -> Self {
-        Self { json, bar: console::bar(1), last: None }
+    pub(crate) fn new(json: bool, directory: &Path) -> Self {
+        Self { json, bar: console::bar(1), last: None, directory: directory.to_owned(), warned: None }
     }
 
-    /// Prints the warnings of a case before it runs.
-    pub(crate) fn warn(&self, warnings: &[String]) {
-        for message in warnings {
+    /// Shows the warnings of the run that have not been shown yet.
+    pub(crate) fn warn(&mut self) {
+        // Without a manifest nothing was run.
+        let warnings = Manifest::read(&self.directory).map_or_else(|_| Vec::new(), |m| m.warnings);
+        for warning in warnings.iter().skip(self.warned.unwrap_or(0)) {
             if self.json {
-                let _ = out::event(&serde_json::json!({ "event": "warning", "message": message }));
+                let event = serde_json::json!({ "event": "warning", "message": warning.to_string(), "warning": warning });
+                let _ = out::event(&event);
             } else if !console::is_quiet() {
-                console::say(format_args!("warning: {message}"));
+                self.bar.suspend(|| console::say(format_args!("warning: {warning}")));
             }
         }
+        self.warned = Some(warnings.len());
     }
 
     /// Shows a step. Not every step is an event, but the last one always is.
     pub(crate) fn show(&mut self, progress: &Progress) {
+        if self.warned.is_none() {
+            self.warn();
+        }
         self.bar.set_length(progress.steps as u64);
         self.bar.set_position(progress.step as u64);
         if !self.bar.is_hidden() {

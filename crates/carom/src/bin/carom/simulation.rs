@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use carom::case::{Case, Document};
 use carom::recording::{self, RunError};
+use carom_record::Warning;
 use serde::Serialize;
 
 use crate::exit::Failure;
@@ -94,6 +95,9 @@ pub(crate) struct Facts {
     pub(crate) transit_steps: f64,
     /// 2/ω_max, for explicit schemes.
     pub(crate) stable_step: Option<f64>,
+    /// Doubts about the case.
+    #[serde(skip)]
+    pub(crate) warnings: Vec<Warning>,
 }
 
 /// A body's mesh.
@@ -236,9 +240,13 @@ fn page(done: &recording::Outcome, options: Options) -> Result<Option<PathBuf>, 
 fn stopped_help(reason: &carom::Stopped) -> String {
     match reason {
         carom::Stopped::EnergyGuard { .. } => {
-            "reduce the step; use a scheme that dissipates (carom explain); keep persistency = \"project\"; or switch the guard off to inspect the run (time.energy_guard = false)"
+            "keep persistency = \"project\"; use a scheme that dissipates (carom explain); change the step (contact creates energy where nodes begin to touch, so that a \
+             longer step may succeed where a shorter one does not); or switch the guard off to inspect the run (time.energy_guard = false)"
         }
-        carom::Stopped::NoStep { .. } => "log.jsonl lists what was tried; a finer mesh, a smaller step or a scheme with more damping may help",
+        carom::Stopped::NoStep { .. } => {
+            "smaller steps from this state were tried (log.jsonl), so the state itself is at fault: use a scheme with more damping (carom explain), \
+             persistency = \"project\" for contacts, a finer mesh, or another step from the start; a longer one may succeed where a shorter one does not"
+        }
     }
     .to_owned()
 }
@@ -288,12 +296,7 @@ fn model_facts(case: &Case) -> Result<Facts, carom::case::Problems> {
         if let Some(m) = case.materials.iter().find(|m| m.name == spec.material)
             && m.density > 0.0
         {
-            // In plane stress Λ is replaced by 2Λμ/(Λ + 2μ).
-            let lambda = match case.plane {
-                carom::case::Plane::Strain => m.lambda,
-                carom::case::Plane::Stress => 2.0 * m.lambda * m.mu / (m.lambda + 2.0 * m.mu),
-            };
-            let speed = ((lambda + 2.0 * m.mu) / m.density).sqrt();
+            let speed = carom::wave_speed(case, m);
             let least = |i: usize| {
                 let at = mesh.nodes.iter().map(|x| x[i]);
                 at.clone().fold(f64::NEG_INFINITY, f64::max) - at.fold(f64::INFINITY, f64::min)
@@ -310,5 +313,5 @@ fn model_facts(case: &Case) -> Result<Facts, carom::case::Problems> {
             dofs: free,
         });
     }
-    Ok(Facts { bodies, transit_steps: transit, stable_step })
+    Ok(Facts { bodies, transit_steps: transit, stable_step, warnings: carom::warnings(case, &model) })
 }

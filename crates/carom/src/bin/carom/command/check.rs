@@ -39,7 +39,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let (case, document) = super::case(&arguments.case, &arguments.sets)?;
     let facts = simulation::facts(&case, &document)?;
     if arguments.json {
-        let event = serde_json::json!({ "event": "check", "case": case, "model": facts, "warnings": case.warnings() });
+        let event =
+            serde_json::json!({ "event": "check", "case": case, "model": facts, "warnings": facts.warnings });
         out::event(&event)?;
     } else if !console::is_quiet() {
         out::line(&table(&case, &facts))?;
@@ -133,7 +134,7 @@ fn table(case: &Case, facts: &Facts) -> String {
             SAFETY
         ));
     }
-    lines.extend(case.warnings().iter().map(|warning| format!("  warning  {warning}")));
+    lines.extend(facts.warnings.iter().map(|warning| format!("  warning  {warning}")));
     lines.join("\n")
 }
 

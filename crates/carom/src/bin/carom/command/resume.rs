@@ -76,8 +76,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if arguments.json {
         out::event(&json!({ "event": "resume", "directory": arguments.directory }))?;
     }
-    let mut live = Live::new(arguments.json);
+    let mut live = Live::new(arguments.json, &arguments.directory);
     let done = simulation::resume(&arguments.directory, options, &mut |p| live.show(p), &stop);
+    if done.is_ok() {
+        live.warn();
+    }
     drop(live);
     summary::print(done, arguments.json, arguments.strict)
 }

@@ -61,9 +61,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             &json!({ "event": "start", "title": case.title, "directory": directory, "steps": steps }),
         )?;
     }
-    let mut live = Live::new(arguments.json);
-    live.warn(&case.warnings());
+    let mut live = Live::new(arguments.json, &directory);
     let done = simulation::run(&case, &document, &directory, options, &mut |p| live.show(p), &stop);
+    if matches!(&done, Ok(_) | Err(Failure::Stopped { .. })) {
+        live.warn();
+    }
     drop(live);
     summary::print(done, arguments.json, arguments.strict)
 }

@@ -152,12 +152,16 @@ fn text(study: &Study) -> String {
     let width = study.rows.iter().map(|r| r.name.chars().count()).max().unwrap_or(0);
     let heads = SHOWN.iter().fold(String::new(), |row, name| row + &format!("  {name:>17}"));
     let mut lines = vec![format!("{:width$}{heads}", "")];
-    for row in &study.rows {
+    for (arm, row) in study.rows.iter().enumerate() {
         let cells: String = match row.status {
             Some(Status::Finished) => SHOWN.iter().fold(String::new(), |line, name| {
                 line + &format!("  {:>17}", row.value(name).map_or("–".into(), short))
             }),
-            Some(Status::Failed) => format!("  failed: {}", row.reason.as_deref().unwrap_or("?")),
+            Some(Status::Failed) => {
+                let alike =
+                    study.finished_alike(arm).map_or_else(String::new, |others| format!(" ({others})"));
+                format!("  failed: {}{alike}", row.reason.as_deref().unwrap_or("?"))
+            }
             Some(_) => "  not finished".to_owned(),
             None => "  not started".to_owned(),
         };
