@@ -72,7 +72,7 @@ fn formula(input: &mut Input) -> ModalResult<Tree, FormulaError> {
     let at = input.current_token_start();
     match input.chars().next() {
         None => Ok(tree),
-        Some(')') => refuse("this parenthesis was never opened", at..at + 1),
+        Some(')') => refuse("this parenthesis has no opening parenthesis", at..at + 1),
         Some(_) => misplaced(input, "an operator"),
     }
 }
@@ -86,7 +86,7 @@ fn misplaced<T>(input: &Input, wanted: &str) -> ModalResult<T, FormulaError> {
     let at = input.current_token_start();
     match input.chars().next() {
         None => refuse(format!("the formula ends where {wanted} is expected"), at..at),
-        Some(c) => refuse(format!("`{c}` stands where {wanted} is expected"), at..at + c.len_utf8()),
+        Some(c) => refuse(format!("`{c}` found where {wanted} is expected"), at..at + c.len_utf8()),
     }
 }
 
@@ -208,7 +208,7 @@ fn function(name: &str, variables: &[&str]) -> Result<(Function, usize), String>
     }
     Err(match nearest(name, names) {
         Some(near) => format!("there is no function `{name}`: did you mean `{near}`?"),
-        None => format!("there is no function `{name}`: known are {}", names.join(", ")),
+        None => format!("there is no function `{name}`: the functions are {}", names.join(", ")),
     })
 }
 

@@ -36,13 +36,13 @@ pub fn scheme(
 }
 
 impl Name {
-    /// The integrator of this name. `forces` is for the α family.
+    /// The integrator of this name.
     ///
     /// # Errors
     /// As [`scheme`].
-    pub fn integrator(&self, forces: ForceRule) -> Result<Integrator, SchemeError> {
+    pub fn integrator(&self) -> Result<Integrator, SchemeError> {
         let given = self.parameters.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();
-        scheme(self.kind, &given, forces)
+        scheme(self.kind, &given, self.forces)
     }
 }
 
@@ -55,7 +55,7 @@ mod tests {
         scheme(kind, &parameters, ForceRule::AverageForces)
     }
 
-    /// theory.md §3.1, from the papers named there.
+    /// Against the papers that each scheme names.
     #[test]
     fn parameters_are_the_published_ones() {
         let table: &[(&str, &[(&str, f64)], [f64; 4])] = &[

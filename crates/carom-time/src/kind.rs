@@ -95,7 +95,11 @@ impl KindInfo {
 
     /// The name by which a member is requested.
     pub fn named(&self, member: &Member) -> Name {
-        Name { kind: self.name, parameters: member.parameters.iter().copied().collect() }
+        Name {
+            kind: self.name,
+            parameters: member.parameters.iter().copied().collect(),
+            forces: ForceRule::default(),
+        }
     }
 
     /// The sets of keys in words: "beta + gamma, or rho_inf".
@@ -141,7 +145,8 @@ impl KindInfo {
         };
         let values: Vec<f64> = set.iter().map(value).collect::<Result<_, _>>()?;
         let parameters = set.iter().map(|parameter| parameter.key).zip(values.iter().copied()).collect();
-        let name = Name { kind, parameters };
+        let forces = if self.is_alpha() { forces } else { ForceRule::default() };
+        let name = Name { kind, parameters, forces };
         Ok(match self.build {
             Build::Alpha(build) => Integrator::Alpha(build(number, &values)?.with_forces(forces), name),
             Build::Stages(build) => Integrator::Stages(build(&values)?, name),
