@@ -102,13 +102,26 @@ impl KindInfo {
         }
     }
 
-    /// The sets of keys in words: "beta + gamma, or rho_inf".
+    /// The sets of keys in words: "`beta` and `gamma`, or `rho_inf`".
     fn expected(&self) -> String {
-        let words = |set: &&[Parameter]| match set {
-            [] => "no parameter".to_owned(),
-            set => set.iter().map(|parameter| parameter.key).collect::<Vec<_>>().join(" + "),
+        let words = |set: &&[Parameter]| {
+            let keys: Vec<_> = set.iter().map(|parameter| format!("`{}`", parameter.key)).collect();
+            match keys.split_last() {
+                None => "no parameters".to_owned(),
+                Some((last, [])) => last.clone(),
+                Some((last, others)) => format!("{} and {last}", others.join(", ")),
+            }
         };
         self.sets.iter().map(words).collect::<Vec<_>>().join(", or ")
+    }
+
+    /// The kind with the example of each parameter, once per set.
+    fn examples(&self) -> Vec<String> {
+        let example = |set: &&[Parameter]| {
+            let keys: String = set.iter().map(|p| format!(", {} = {}", p.key, p.example)).collect();
+            format!("{{ kind = \"{}\"{keys} }}", self.name)
+        };
+        self.sets.iter().map(example).collect()
     }
 
     fn keys(&self) -> Vec<&'static str> {
@@ -131,16 +144,24 @@ impl KindInfo {
         }
         let (number, set, _) = best;
         let (kind, expected, known) = (self.name, || self.expected(), || self.keys());
+        let examples = || self.examples();
         if let Some(key) = given.keys().find(|key| !set.iter().any(|parameter| parameter.key == **key)) {
             return Err(SchemeError::Superfluous {
                 kind,
                 key: key.clone(),
                 expected: expected(),
+                examples: examples(),
                 known: known(),
             });
         }
         let value = |&Parameter { key, .. }: &Parameter| {
-            let missing = || SchemeError::Missing { kind, key, expected: expected(), known: known() };
+            let missing = || SchemeError::Missing {
+                kind,
+                key,
+                expected: expected(),
+                examples: examples(),
+                known: known(),
+            };
             given.get(key).copied().ok_or_else(missing)
         };
         let values: Vec<f64> = set.iter().map(value).collect::<Result<_, _>>()?;

@@ -23,7 +23,10 @@ impl Display for Explanation {
     fn fmt(&self, f: &mut Formatter) -> Result {
         if let Some((name, others)) = self.names.split_first() {
             writeln!(f, "{name}   {}", self.references.join("; "))?;
-            list(f, "identical to", others)?;
+            if !others.is_empty() {
+                writeln!(f, "\nidentical to")?;
+            }
+            others.iter().try_for_each(|other| writeln!(f, "  {other}"))?;
         }
         writeln!(f, "\nparameters")?;
         for convention in &self.conventions {

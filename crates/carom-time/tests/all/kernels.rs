@@ -9,7 +9,7 @@ use carom_time::schemes::bathe::Bathe;
 use carom_time::schemes::bdf2::Bdf2;
 use carom_time::schemes::energy_momentum::EnergyMomentum;
 use carom_time::schemes::moreau_jean::MoreauJean;
-use carom_time::{Explained, ForceRule, KINDS, Kernel, Member, Oscillator, STATIC, Scheme, map};
+use carom_time::{Explained, KINDS, Kernel, Member, Oscillator, STATIC, Scheme, map};
 
 use crate::common::{all, run};
 

@@ -51,6 +51,7 @@ pub(crate) struct Outcome {
     pub(crate) interrupted: bool,
     pub(crate) steps: usize,
     pub(crate) time: f64,
+    pub(crate) time_unit: String,
     pub(crate) wall: f64,
     pub(crate) extremes: Vec<Extreme>,
     pub(crate) expectations: Vec<Expectation>,
@@ -201,6 +202,12 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
         interrupted: done.end == recording::End::Interrupted,
         steps: done.steps as usize,
         time: done.time,
+        time_unit: run
+            .manifest
+            .columns
+            .iter()
+            .find(|c| c.name == "time")
+            .map_or_else(String::new, |c| c.unit.clone()),
         wall: done.wall,
         extremes: extremes(&run),
         expectations: expectations
@@ -221,8 +228,9 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
 /// Wall seconds by phase in the order of a step, then their total and the processor time.
 fn profile(manifest: &carom_record::Manifest) -> Vec<(String, f64)> {
     let phases = manifest.phases().into_iter().map(|(name, _, seconds)| (name.to_owned(), seconds));
-    let sums =
-        ["total", "cpu"].into_iter().filter_map(|name| Some((name.to_owned(), *manifest.timings.get(name)?)));
+    let sums = [("total", "total"), ("processor", "cpu")]
+        .into_iter()
+        .filter_map(|(word, name)| Some((word.to_owned(), *manifest.timings.get(name)?)));
     phases.chain(sums).collect()
 }
 
@@ -236,9 +244,9 @@ fn page(done: &recording::Outcome, options: Options) -> Result<Option<PathBuf>, 
 fn stopped_help(reason: &carom::Stopped) -> String {
     match reason {
         carom::Stopped::EnergyGuard { .. } => {
-            "reduce the step; use a scheme that dissipates (carom explain); keep persistency = \"project\"; or switch the guard off to inspect the run (time.energy_guard = false)"
+            "reduce the step, use a scheme with more damping (carom explain) or persistency = \"project\"; to inspect the run, switch the guard off with time.energy_guard = false"
         }
-        carom::Stopped::NoStep { .. } => "log.jsonl lists what was tried; a finer mesh, a smaller step or a scheme with more damping may help",
+        carom::Stopped::NoStep { .. } => "use a finer mesh, a smaller step or a scheme with more damping; log.jsonl lists the rejected steps",
     }
     .to_owned()
 }
