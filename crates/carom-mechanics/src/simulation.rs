@@ -14,7 +14,7 @@ use crate::workspace::Workspace;
 /// Bisections of Δt before the run stops.
 const MAX_BISECTIONS: u32 = 12;
 
-/// Why a simulation stopped before its end; the state of the last grid time is kept.
+/// Why a simulation stopped before its end; the state of the last grid time is preserved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Stopped {
     /// No step from here is accepted, however small.

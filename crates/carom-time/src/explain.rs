@@ -80,9 +80,9 @@ pub struct Explanation {
 /// Explains a scheme.
 ///
 /// ```
-/// let told = carom_time::explain(&carom_time::Scheme::chung_hulbert(0.1)?);
-/// assert_eq!((told.order, told.constrained.steps), (2, Some(6)));
-/// assert!(told.to_string().contains("chung-hulbert"));
+/// let hulbert = carom_time::explain(&carom_time::Scheme::chung_hulbert(0.1)?);
+/// assert_eq!((hulbert.order, hulbert.constrained.steps), (2, Some(6)));
+/// assert!(hulbert.to_string().contains("chung-hulbert"));
 /// # Ok::<(), carom_time::SchemeError>(())
 /// ```
 pub fn explain(scheme: &Scheme) -> Explanation {

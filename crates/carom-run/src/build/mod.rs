@@ -4,8 +4,8 @@
 mod contacts;
 mod loads;
 mod motions;
-mod refusals;
 mod side;
+mod unsolvable;
 
 use std::collections::BTreeMap;
 
@@ -87,8 +87,8 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     let probes = probes(case, &parts, &mut problems);
     let is_static = case.time.scheme.is_static();
     let unconstrained = if is_static { free_motions(&parts, &fixed) } else { Vec::new() };
-    problems.extend(refusals::unconstrained(&parts, &unconstrained, &contacts));
-    problems.extend(refusals::massless(case, &parts, &massless));
+    problems.extend(unsolvable::unconstrained(&parts, &unconstrained, &contacts));
+    problems.extend(unsolvable::massless(case, &parts, &massless));
 
     let free: Vec<usize> = (0..dofs).filter(|&i| !fixed[i]).collect();
     let mut unknown = vec![usize::MAX; dofs];

@@ -109,7 +109,7 @@ pub fn resume(
             steps: steps as u64,
             time: steps as f64 * case.time.step,
             wall: 0.0,
-            remarks: vec!["the run is finished: nothing was computed".into()],
+            remarks: vec!["the run was already finished; nothing was computed".into()],
         });
     }
     let reopened = RunWriter::reopen(directory)?;

@@ -38,8 +38,8 @@ impl Scheme {
     /// ```
     /// let hht = carom_time::Scheme::hht(0.25)?;
     /// assert_eq!((hht.gamma, hht.beta), (0.75, 0.390625));
-    /// let refused = carom_time::Scheme::hht(-0.05).unwrap_err().to_string();
-    /// assert!(refused.contains("write alpha = 0.05"));
+    /// let rejected = carom_time::Scheme::hht(-0.05).unwrap_err().to_string();
+    /// assert!(rejected.contains("write alpha = 0.05"));
     /// # Ok::<(), carom_time::SchemeError>(())
     /// ```
     pub fn hht(alpha: f64) -> Result<Self, SchemeError> {

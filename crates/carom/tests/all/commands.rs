@@ -165,11 +165,16 @@ fn a_study_is_resumed_with_its_own_options() {
         text(&done.stdout) + &text(&done.stderr)
     };
     assert!(code(&["study", "study.toml", "--out", "s", "--no-report"], 0).contains("short"));
-    assert!(code(&["resume", "s", "--threads", "2"], 2).contains("--threads is for a run, and s is a study"));
-    assert!(code(&["resume", "s", "--profile"], 2).contains("--profile is for a run"));
+    assert!(
+        code(&["resume", "s", "--threads", "2"], 2)
+            .contains("--threads is an option for runs, but s is a study")
+    );
+    assert!(code(&["resume", "s", "--profile"], 2).contains("--profile is an option for runs"));
     assert!(!place.0.join("s/study.html").exists() && place.0.join("s/study.csv").exists());
     assert!(code(&["resume", "s", "--jobs", "1"], 0).contains("study.html"));
-    assert!(code(&["resume", "s/arms/01-short", "--jobs", "1"], 2).contains("--jobs is for a study"));
+    assert!(
+        code(&["resume", "s/arms/01-short", "--jobs", "1"], 2).contains("--jobs is an option for studies")
+    );
 }
 
 #[test]

@@ -145,7 +145,7 @@ pub(crate) fn facts(case: &Case, document: &Document) -> Result<Facts, Failure> 
 pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
     match carom_report::report(directory) {
         Ok(made) => Ok(made.page),
-        Err(error) if error.exit_code() == 4 => Err(Failure::Refused { what: error.to_string() }),
+        Err(error) if error.exit_code() == 4 => Err(Failure::System { what: error.to_string() }),
         Err(error) => Err(Failure::Argument {
             what: error.to_string(),
             help: "run the case again, or continue with carom resume".into(),
@@ -179,7 +179,7 @@ fn failure(error: RunError, document: Option<&Document>) -> Failure {
                 help: problems.first().map_or(String::new(), |p| p.help.clone()),
             },
         },
-        RunError::Record(error) if error.exit_code() == 4 => Failure::Refused { what: error.to_string() },
+        RunError::Record(error) if error.exit_code() == 4 => Failure::System { what: error.to_string() },
         error => Failure::Argument { what: error.to_string(), help: "run the case again".into() },
     }
 }
