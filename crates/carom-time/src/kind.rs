@@ -118,8 +118,9 @@ impl KindInfo {
     /// The kind with the example of each parameter, once per set.
     fn examples(&self) -> Vec<String> {
         let example = |set: &&[Parameter]| {
-            let keys: String = set.iter().map(|p| format!(", {} = {}", p.key, p.example)).collect();
-            format!("{{ kind = \"{}\"{keys} }}", self.name)
+            let kind = format!("kind = \"{}\"", self.name);
+            let keys = set.iter().map(|p| format!("{} = {}", p.key, p.example));
+            format!("{{ {} }}", std::iter::once(kind).chain(keys).collect::<Vec<_>>().join(", "))
         };
         self.sets.iter().map(example).collect()
     }

@@ -32,15 +32,13 @@ pub(crate) fn write_wrapped(f: &mut Formatter, text: &str) -> Result {
     let mut column = 0;
     for word in text.split(' ') {
         let width = word.chars().count();
-        if column == 0 {
-            (write!(f, "  ")?, column = 2);
-        } else if column + 1 + width > 100 {
-            (write!(f, "\n    ")?, column = 4);
-        } else {
-            (write!(f, " ")?, column += 1);
-        }
-        write!(f, "{word}")?;
-        column += width;
+        let before = match column {
+            0 => "  ",
+            _ if column + 1 + width > 100 => "\n    ",
+            _ => " ",
+        };
+        write!(f, "{before}{word}")?;
+        column = width + if before.starts_with('\n') { 4 } else { column + before.len() };
     }
     writeln!(f)
 }
