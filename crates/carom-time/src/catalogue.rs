@@ -89,7 +89,10 @@ mod tests {
         assert!(matches!(error, SchemeError::Missing { key: "rho_inf", .. }));
         let error = build("newmark", &[("beta", 0.25)]).unwrap_err();
         assert!(matches!(error, SchemeError::Missing { key: "gamma", .. }));
-        assert_eq!(error.to_string(), "scheme `newmark` needs `gamma`; it takes beta + gamma, or rho_inf");
+        assert_eq!(
+            error.to_string(),
+            "scheme `newmark` requires `beta` and `gamma`, or `rho_inf`; `gamma` is missing"
+        );
         let error = build("newmark", &[("beta", 0.25), ("gamma", 0.5), ("rho_inf", 1.0)]).unwrap_err();
         assert!(matches!(&error, SchemeError::Superfluous { key, .. } if key == "rho_inf"));
         let error = build("hu", &[("rho_inf", 0.0)]).unwrap_err();
