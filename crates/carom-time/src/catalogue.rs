@@ -96,7 +96,7 @@ mod tests {
         let error = build("newmark", &[("beta", 0.25), ("gamma", 0.5), ("rho_inf", 1.0)]).unwrap_err();
         assert!(matches!(&error, SchemeError::Superfluous { key, .. } if key == "rho_inf"));
         let error = build("hu", &[("rho_inf", 0.0)]).unwrap_err();
-        assert_eq!(error.to_string(), "scheme `hu` does not take `rho_inf`; it takes no parameter");
+        assert_eq!(error.to_string(), "`rho_inf` cannot be given here: scheme `hu` requires no parameters");
         for value in [1.2, -0.1, f64::NAN, f64::INFINITY] {
             let error = build("chung-hulbert", &[("rho_inf", value)]).unwrap_err();
             assert!(
