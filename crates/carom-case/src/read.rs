@@ -371,8 +371,9 @@ fn scheme(table: &Table, preset: Preset, path: &str, problems: &mut Vec<Problem>
     {
         let help = match &error {
             SchemeError::OutOfRange { hint, .. } => hint.clone(),
-            SchemeError::Missing { expected, .. } | SchemeError::Superfluous { expected, .. } => {
-                format!("give {expected}")
+            SchemeError::Missing { examples, .. } | SchemeError::Superfluous { examples, .. } => {
+                let written: Vec<_> = examples.iter().map(|example| format!("`{example}`")).collect();
+                format!("write for example {}", written.join(" or "))
             }
             SchemeError::UnknownKind { .. } => suggest::help(kind, error.known().iter().copied()),
         };
@@ -387,8 +388,9 @@ pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, Case
     let line = |parameter: &String| {
         let (key, value) =
             parameter.split_once('=').map_or((parameter.trim(), ""), |(k, v)| (k.trim(), v.trim()));
-        let word = key == "forces" && !value.starts_with('"');
-        if word { format!("{key} = {}", toml_edit::Value::from(value)) } else { format!("{key} = {value}") }
+        // A word needs no quotes on the command line.
+        let value = value.parse().unwrap_or_else(|_| toml_edit::Value::from(value));
+        format!("{key} = {}", value.to_string().trim())
     };
     if let Some(parameter) = parameters.iter().find(|parameter| !parameter.contains('=')) {
         let what = format!("`{parameter}` is not a parameter");
@@ -397,7 +399,7 @@ pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, Case
     }
     let kind_line = format!("kind = {}", toml_edit::Value::from(kind));
     let text = std::iter::once(kind_line).chain(parameters.iter().map(line)).collect::<Vec<_>>().join("\n");
-    let document = Document::parse("scheme", &text, &[])?;
+    let document = Document::parse("arguments", &text, &[])?;
     let mut problems = conform::variant(document.root(), keys::schemes());
     let spec = scheme(document.root(), Preset::Default, "", &mut problems);
     spec.filter(|_| problems.is_empty()).ok_or_else(|| document.diagnose_all(&problems))

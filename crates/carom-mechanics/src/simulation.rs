@@ -14,12 +14,12 @@ use crate::workspace::Workspace;
 /// Bisections of Δt before the run stops.
 const MAX_BISECTIONS: u32 = 12;
 
-/// Why a simulation stopped before its end; the state of the last grid time is kept.
+/// Why a simulation stopped before its end; the state of the last grid time is preserved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Stopped {
     /// No step from here is accepted, however small.
     #[error(
-        "no step from t = {time:.6} is accepted, not even Δt = {dt:.3e} ({halvings} halvings): {rejected}"
+        "the step at t = {time:.6} was bisected {halvings} times, to Δt = {dt:.3e}, and is still rejected: {rejected}"
     )]
     NoStep {
         /// Time of the last accepted state.
@@ -33,7 +33,7 @@ pub enum Stopped {
     },
     /// The scheme created energy.
     #[error(
-        "energy was created at t = {time:.6}: {created:.4e}, which is {:.2} % of the energy scale {scale:.4e}; {:.3} % are allowed", 100.0 * created / scale, 100.0 * share
+        "energy was created at t = {time:.6}: {created:.4e}, which is {:.2} % of the energy scale {scale:.4e}; the limit is {:.3} %", 100.0 * created / scale, 100.0 * share
     )]
     EnergyGuard {
         /// Time.

@@ -192,7 +192,7 @@ impl Manifest {
         let known = PHASES.iter().filter_map(|&(name, what)| Some((name, what, *self.timings.get(name)?)));
         let mut phases: Vec<_> = known.collect();
         let remainder = total - phases.iter().map(|(.., seconds)| seconds).sum::<f64>();
-        phases.push(("rest", "sums, energies, projections, decisions", remainder.max(0.0)));
+        phases.push(("other", "sums, energies, projections, control logic", remainder.max(0.0)));
         phases
     }
 

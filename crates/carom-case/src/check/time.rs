@@ -45,7 +45,7 @@ impl Check<'_> {
             let (below, above) = ((end / step).floor(), (end / step).ceil());
             let why = format!("a run has a whole number of steps, and end / step = {}", rounded(end / step));
             let help = format!(
-                "try step = {} or step = {}, or end = {} or end = {}",
+                "use step = {} or step = {}, or end = {} or end = {}",
                 rounded(end / above),
                 rounded(end / below),
                 rounded(below * step),

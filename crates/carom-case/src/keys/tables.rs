@@ -154,9 +154,9 @@ const BODY: Table = Table {
         key(
             "mass",
             Choice(&["consistent", "lumped", "redistributed", "redistributed-nearest"], &[]),
-            "Mass matrix: consistent; lumped (diagonal, by HRZ scaling); redistributed: no mass on contact nodes, the smallest change of the other \
-             nodes preserves total mass, centre of mass and second moments; or redistributed-nearest: no mass on contact nodes, their mass is \
-             added to the nearest other nodes.",
+            "Mass matrix. consistent; lumped: diagonal, by HRZ scaling; redistributed: no mass on contact nodes, and the smallest change at the other \
+             nodes that preserves the total mass, the centre of mass and the second moments; redistributed-nearest: no mass on contact nodes, and \
+             their mass is added to the nearest other nodes.",
         )
         .default("\"consistent\""),
     ],
@@ -234,7 +234,7 @@ const MOVE: Table = Table {
 
 const LOAD: Table = Table {
     name: "[[load]]",
-    doc: "A load on sides (`on` with `traction` or `pressure`) or in a body (`body` with `body_force`). Formulas are in the reference position X, Y and the time t.",
+    doc: "A load on sides (`on` with `traction` or `pressure`) or in a body (`body` with `body_force`). Formulas are functions of the reference position X, Y and the time t.",
     keys: &[
         key("name", Name, "Name used in messages.").optional().example("\"press\""),
         key("on", Sides, "Loaded sides, with `traction` or `pressure`.")
@@ -274,8 +274,12 @@ const INITIAL: Table = Table {
     keys: &[
         key("from", Text, "Directory of the finished run, relative to the folder of the case.")
             .example("\"runs/preload\""),
-        key("velocities", Choice(&["keep", "zero"], &[]), "Initial velocities: those of that run, or zero.")
-            .default("\"keep\""),
+        key(
+            "velocities",
+            Choice(&["keep", "zero"], &[]),
+            "Initial velocities: those at the end of the other run, or zero.",
+        )
+        .default("\"keep\""),
     ],
     later: &[],
 };
@@ -309,7 +313,7 @@ const CONTACT: Table = Table {
         key(
             "law",
             Choice(&["position", "predictor", "velocity"], &[]),
-            "What contact constrains: positions at the end of the step; these and the predictor y + Δt v (contact-stabilised); or velocities, \
+            "What contact constrains: positions at the end of the step; positions and the predictor y + Δt v (contact-stabilised); or velocities, \
              by impulses. Default: the law of the scheme.",
         )
         .optional()
@@ -317,7 +321,7 @@ const CONTACT: Table = Table {
         key(
             "force",
             Choice(&["alpha_f", "end"], &[]),
-            "When the contact force acts in a step: averaged with α_f (eq. 15), or at the end of the step.",
+            "How the contact force enters the balance of a step: averaged with α_f (eq. 15), or at the end of the step.",
         )
         .default("\"alpha_f\""),
         key(
@@ -337,7 +341,7 @@ const CONTACT: Table = Table {
         key(
             "detection",
             Choice(&["closest-point", "trajectory"], &[]),
-            "Gap that decides about activation: at the closest point, or at the ξ of the trajectory crossing (eq. 8 as printed).",
+            "Gap that decides whether a pair becomes active: at the closest point, or at the ξ where the trajectories cross (eq. 8 as printed in the paper).",
         )
         .default("\"closest-point\"")
         .paper("\"trajectory\""),
@@ -400,7 +404,7 @@ const TIME: Table = Table {
         key(
             "energy_guard",
             NumberOrFalse(POSITIVE),
-            "Fraction of the largest energy so far by which total − external_work may rise above its running minimum before the run stops; false: never.",
+            "The run stops if total − external_work rises above its running minimum by more than this fraction of the largest energy so far; false: the run never stops for this reason.",
         )
         .default("0.02")
         .paper("false"),
@@ -422,13 +426,13 @@ const NEWTON: Table = Table {
         key(
             "tangent",
             Choice(&["frozen", "frozen-double", "full"], &[]),
-            "When the tangent is factorised. frozen: the factorisation is reused over iterations and steps as a preconditioner as long as that pays; from 10 000 unknowns on it is in single precision where that suffices. frozen-double: the same, always in double precision. full: in every iteration.",
+            "When the tangent is factorised. frozen: the factorisation is reused as a preconditioner over iterations and steps as long as this reduces the cost; with 10 000 unknowns or more it is in single precision where this suffices. frozen-double: the same, always in double precision. full: in every iteration.",
         )
         .default("\"frozen\""),
         key(
             "mixing",
             Count(0),
-            "Number of earlier corrections with the same factorisation that improve the next one (the restart length of the Krylov method); 0 disables it.",
+            "Number of earlier corrections with the same factorisation that accelerate the next one (the restart length of the Krylov method); 0 disables mixing.",
         )
         .default("4"),
     ],
@@ -484,7 +488,7 @@ const OUTPUT: Table = Table {
 /// One expected value, of a case, an arm or a study.
 pub const EXPECT: Table = Table {
     name: "[[expect]]",
-    doc: "An expected value with one bound: value and tolerance, value and relative, at_most, or at_least. With a formula, tolerance alone is enough.",
+    doc: "An expected value with one bound: `value` and `tolerance`, `value` and `relative`, `at_most`, or `at_least`. With a `formula`, `tolerance` alone is sufficient.",
     keys: &[
         key(
             "what",

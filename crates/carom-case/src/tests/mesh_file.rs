@@ -45,7 +45,7 @@ fn errors_are_reported_at_their_key() {
         missing.what.contains("\"nowhere.msh\" cannot be read") && missing.why.contains("there is no file")
     );
     assert!(problem("body.prism.mesh.file=../gmsh").why.contains("is not a file"));
-    assert!(problem("body.prism.mesh.file=gmsh.toml").what.contains("this is no Gmsh mesh"));
+    assert!(problem("body.prism.mesh.file=gmsh.toml").what.contains("this is not a Gmsh mesh"));
     let name = problem("body.prism.mesh.surface=prisma");
     assert!(name.what.contains("\"prisma\"") && name.why.contains("cylinder, prism"), "{name}");
     assert!(problem("body.prism.element=T6").help.contains("element = \"T10\""));

@@ -87,7 +87,10 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
         &["time.scheme={ kind = \"hu\", rho_inf = 0.5 }"],
         &["unknown key `rho_inf` in scheme \"hu\"", "scheme \"wbz\""],
     ),
-    (&["time.scheme={ kind = \"newmark\", beta = 0.25 }"], &["needs `gamma`"]),
+    (
+        &["time.scheme={ kind = \"newmark\", beta = 0.25 }"],
+        &["requires `beta` and `gamma`, or `rho_inf`; `gamma` is missing", "kind = \"newmark\", rho_inf"],
+    ),
     (&["time.scheme={ kind = \"hht\", alpha = -0.1 }"], &["did you mean `alpha = 0.1`?"]),
     (&["time.scheme=hu"], &["`scheme` must be a table { kind = \"…\", … }, not the string \"hu\""]),
     // steps

@@ -110,7 +110,7 @@ pub fn resume(
             steps: steps as u64,
             time: case.time.end,
             wall: 0.0,
-            remarks: vec!["the run is finished: nothing was computed".into()],
+            remarks: vec!["the run was already finished; nothing was computed".into()],
         });
     }
     let reopened = RunWriter::reopen(directory)?;

@@ -35,8 +35,8 @@ impl Kernel for EnergyMomentum {
 
     fn notes(&self) -> &'static [&'static str] {
         &[
-            "energy, momentum and moment of momentum of free motion: exactly, nonlinear too",
-            "energy of contact: exactly with enforcement = \"penalty\"",
+            "in free motion energy, momentum and angular momentum are conserved exactly, also with nonlinear forces",
+            "with enforcement = \"penalty\" energy is conserved exactly in contact, too",
         ]
     }
 

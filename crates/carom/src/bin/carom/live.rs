@@ -86,10 +86,10 @@ impl Drop for Live {
     }
 }
 
-/// `t 0.3375  Δt 1.88e-3  Newton 4  contacts 7  created 1.2e-6  left 3 s`
+/// `t 0.3375  Δt 1.88e-3  Newton 4  contacts 7  energy created 1.2e-6  left 3 s`
 fn line(p: &Progress) -> String {
     format!(
-        "t {:.4e}  Δt {:.3e}  Newton {}  contacts {}  created {:.1e}  left {}",
+        "t {:.4e}  Δt {:.3e}  Newton {}  contacts {}  energy created {:.1e}  left {}",
         p.time,
         p.dt,
         p.newton,
@@ -131,7 +131,7 @@ pub(crate) fn stop_on_signal() -> Result<Arc<AtomicBool>, Failure> {
             std::process::exit(Exit::Interrupted as i32);
         }
     });
-    set.map_err(|e| Failure::Refused { what: format!("cannot install the handler of Ctrl-C: {e}") })?;
+    set.map_err(|e| Failure::System { what: format!("cannot install the handler of Ctrl-C: {e}") })?;
     Ok(stop)
 }
 
@@ -155,10 +155,11 @@ mod tests {
             wall: 1.0,
             eta: 130.0,
         };
-        let told = "t 3.3750e-1  Δt 1.875e-3  Newton 4  contacts 7  created 1.2e-6  left 2 min 10 s";
-        assert_eq!(line(&p), told);
-        let told = "step 180  t 3.375000e-1  Newton 4  1 rejected, 2 released";
-        assert_eq!(changes(&p).as_deref(), Some(told));
+        let expected =
+            "t 3.3750e-1  Δt 1.875e-3  Newton 4  contacts 7  energy created 1.2e-6  left 2 min 10 s";
+        assert_eq!(line(&p), expected);
+        let expected = "step 180  t 3.375000e-1  Newton 4  1 rejected, 2 released";
+        assert_eq!(changes(&p).as_deref(), Some(expected));
         assert_eq!([0.26, 61.0, 7300.0, f64::NAN].map(duration), ["0.3 s", "61 s", "2 h 1 min", "?"]);
     }
 }

@@ -52,6 +52,7 @@ pub(crate) struct Outcome {
     pub(crate) interrupted: bool,
     pub(crate) steps: usize,
     pub(crate) time: f64,
+    pub(crate) time_unit: String,
     pub(crate) wall: f64,
     pub(crate) extremes: Vec<Extreme>,
     pub(crate) expectations: Vec<Expectation>,
@@ -148,7 +149,7 @@ pub(crate) fn facts(case: &Case, document: &Document) -> Result<Facts, Failure> 
 pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
     match carom_report::report(directory) {
         Ok(made) => Ok(made.page),
-        Err(error) if error.exit_code() == 4 => Err(Failure::Refused { what: error.to_string() }),
+        Err(error) if error.exit_code() == 4 => Err(Failure::System { what: error.to_string() }),
         Err(error) => Err(Failure::Argument {
             what: error.to_string(),
             help: "run the case again, or continue with carom resume".into(),
@@ -182,7 +183,7 @@ fn failure(error: RunError, document: Option<&Document>) -> Failure {
                 help: problems.first().map_or(String::new(), |p| p.help.clone()),
             },
         },
-        RunError::Record(error) if error.exit_code() == 4 => Failure::Refused { what: error.to_string() },
+        RunError::Record(error) if error.exit_code() == 4 => Failure::System { what: error.to_string() },
         error => Failure::Argument { what: error.to_string(), help: "run the case again".into() },
     }
 }
@@ -205,6 +206,12 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
         interrupted: done.end == recording::End::Interrupted,
         steps: done.steps as usize,
         time: done.time,
+        time_unit: run
+            .manifest
+            .columns
+            .iter()
+            .find(|c| c.name == "time")
+            .map_or_else(String::new, |c| c.unit.clone()),
         wall: done.wall,
         extremes: extremes(&run),
         expectations: expectations
@@ -225,8 +232,9 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
 /// Wall seconds by phase in the order of a step, then their total and the processor time.
 fn profile(manifest: &carom_record::Manifest) -> Vec<(String, f64)> {
     let phases = manifest.phases().into_iter().map(|(name, _, seconds)| (name.to_owned(), seconds));
-    let sums =
-        ["total", "cpu"].into_iter().filter_map(|name| Some((name.to_owned(), *manifest.timings.get(name)?)));
+    let sums = [("total", "total"), ("processor", "cpu")]
+        .into_iter()
+        .filter_map(|(word, name)| Some((word.to_owned(), *manifest.timings.get(name)?)));
     phases.chain(sums).collect()
 }
 

@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
     /// [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
-    /// Write no figures and no page
+    /// Do not write figures and report page
     #[arg(long)]
     no_report: bool,
     /// Print one JSON object per event on standard output, and nothing else
@@ -82,7 +82,7 @@ pub(crate) fn resume(
 /// Rebuilds tables, figures and page of a study, and the pages of its arms.
 pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
     let made = |error: carom_report::ReportError| match error.exit_code() {
-        4 => Failure::Refused { what: error.to_string() },
+        4 => Failure::System { what: error.to_string() },
         _ => Failure::Argument {
             what: error.to_string(),
             help: "continue with carom resume, or run the study again".into(),
@@ -105,9 +105,9 @@ pub(super) fn jobs(requested: Option<NonZero<usize>>) -> usize {
 
 pub(super) fn failure(error: StudyError) -> Failure {
     match error {
-        StudyError::Record(ref e) if e.exit_code() == 4 => Failure::Refused { what: error.to_string() },
+        StudyError::Record(ref e) if e.exit_code() == 4 => Failure::System { what: error.to_string() },
         StudyError::Arm { source: carom::recording::RunError::Record(ref e), .. } if e.exit_code() == 4 => {
-            Failure::Refused { what: error.to_string() }
+            Failure::System { what: error.to_string() }
         }
         error => Failure::Argument {
             what: error.to_string(),
