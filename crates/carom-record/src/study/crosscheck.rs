@@ -7,7 +7,7 @@
 use super::arm::step;
 use super::design::Kind;
 use super::manifest::StudyManifest;
-use super::ranking::Ranked;
+use super::places::Ranked;
 use super::row::Row;
 
 /// A level, judged by what was not matched there.

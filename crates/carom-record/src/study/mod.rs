@@ -24,6 +24,7 @@ pub mod ensemble;
 mod manifest;
 mod measure;
 mod orders;
+mod places;
 pub mod ranking;
 pub mod reference;
 mod row;
