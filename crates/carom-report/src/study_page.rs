@@ -25,9 +25,14 @@ const MANY: usize = 12;
 /// The page.
 pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins: &[Origin]) -> String {
     let failed = study.rows.iter().filter(|row| row.status == Some(Status::Failed)).count();
+    let unsound = study.rows.iter().filter(|row| row.is_unsound()).count() - failed;
     let (class, word) = match study.manifest.status {
         Status::Finished if failed > 0 => {
             ("failed", format!("finished; {failed} of {} arms failed", study.rows.len()))
+        }
+        Status::Finished if unsound > 0 => {
+            let of = study.rows.len();
+            ("failed", format!("finished; {unsound} of {of} arms created more than 2 % of the energy"))
         }
         Status::Finished => ("finished", "finished".to_owned()),
         Status::Running => ("running", "running or interrupted; can be resumed".to_owned()),

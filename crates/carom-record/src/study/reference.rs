@@ -331,6 +331,20 @@ impl Reference {
     }
 }
 
+/// What happens where contact begins, which is a part of the mathematical problem as long as contact
+/// nodes have mass.
+fn begins(arm: &Arm) -> &'static str {
+    let contacts = arm.case.get("contacts").and_then(serde_json::Value::as_array);
+    let all = |value: &str| {
+        contacts.is_some_and(|c| !c.is_empty() && c.iter().all(|c| c["persistency"].as_str() == Some(value)))
+    };
+    match (all("project"), all("none")) {
+        (true, _) => "; impacts of nodes are inelastic (velocities are projected)",
+        (_, true) => "; velocities of nodes are not changed where contact begins",
+        _ => "",
+    }
+}
+
 impl StudyManifest {
     /// Indices of the arms of the reference, the finest last: those of a computed reference, or at
     /// most three: the named arm after those arms that differ from it only in a longer step.
@@ -400,7 +414,8 @@ impl StudyManifest {
         };
         let members = reference.levels.last().map_or(1, |level| level.members.len());
         let ensemble = if members > 1 { format!(", {members} members each") } else { String::new() };
-        let what = format!("\"{}\", {count}{ensemble}", self.arms[*last].name);
+        let law = begins(&self.arms[*last]);
+        let what = format!("\"{}\", {count}{ensemble}{law}", self.arms[*last].name);
         Ok(Some(Reference { what, averaged, ..reference }))
     }
 }
