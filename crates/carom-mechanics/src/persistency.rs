@@ -7,7 +7,8 @@
 //!
 //! with all active rows as equalities. Projecting v alone would retain the accelerations of the
 //! impact and does not remove the oscillations (theory.md §5.3). Massless dofs keep their velocity:
-//! they follow the massive side.
+//! they follow the massive side. With a restitution, energy is returned (`restitution.rs`) before the
+//! accelerations are solved for.
 
 use carom_contact::{Row, Rows};
 
@@ -15,14 +16,16 @@ use crate::constraints::{Constraints, independent_rows};
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;
 use crate::rejected::Rejected;
+use crate::restitution::Impact;
 use crate::state::State;
 use crate::system::System;
 
-/// Projects `state` if one of the new contacts (contact, node) requires it. The jump of kinetic
-/// energy is recorded as contact work and returned.
+/// Projects `state`, the end of the step `impact`, if one of the new contacts (contact, node)
+/// requires it. The jump of kinetic energy is recorded as contact work and returned.
 pub(crate) fn project(
     model: &Model,
     state: &mut State,
+    impact: &Impact,
     activations: &[(usize, usize)],
     system: &mut System,
 ) -> Result<Option<f64>, Rejected> {
@@ -48,6 +51,9 @@ pub(crate) fn project(
         (0..3).for_each(|i| state.impulses[k][i] -= impulse * normal[i]);
     }
 
+    let before = state.ledger.kinetic;
+    impact.restitute(model, state, &rows, before - model.kinetic(&state.v), system)?;
+
     let (forces, bending) = drive(model, state, &gaps, &rows);
     system.factor.solve(model, &forces, &bending, &mut change, &mut multipliers)?;
     take_accelerations(model, state, &change);
@@ -57,7 +63,6 @@ pub(crate) fn project(
 
     averaged_contact_into(model, state, &gaps);
     book_contact_forces(model, state);
-    let before = state.ledger.kinetic;
     book_kinetic(model, state);
     let jump = state.ledger.kinetic - before;
     state.ledger.contact_work += jump;

@@ -338,7 +338,8 @@ const CONTACT: Table = Table {
         key(
             "restitution",
             Number(RESTITUTION),
-            "Newton's coefficient of restitution e, for contact laws on velocities; with paoli-schatzman, the weight of the previous position.",
+            "Coefficient of restitution e: Newton's, for contact laws on velocities; with energy-momentum and multipliers, e² is the fraction of the \
+             energy taken by impacts that is returned (1 elastic, 0 inelastic); with paoli-schatzman, the weight of the previous position.",
         )
         .default("0.0"),
     ],

@@ -29,6 +29,6 @@ pub struct Contact {
     pub projects: bool,
     /// Whether the active set may change before Newton's method has converged.
     pub within: bool,
-    /// Coefficient of restitution e; 0 unless the scheme has its own contact law.
+    /// Coefficient of restitution e; 0 unless the scheme or its conserving constraint uses it.
     pub restitution: f64,
 }

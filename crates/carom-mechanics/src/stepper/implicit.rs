@@ -1,7 +1,7 @@
 //! Kernels that are lists of implicit stages: guess, solve, record, and project at activation of
 //! contact.
 
-use carom_contact::{Pairing, Rows};
+use carom_contact::{Direction, Pairing, Rows};
 use carom_time::{Before, Kernel, Memory, Stage, Weights};
 
 use super::{Accepted, StepReport, Stepper, difference};
@@ -9,10 +9,11 @@ use crate::carried;
 use crate::contact_update::{GAP_TOLERANCE, search};
 use crate::equations::{Equations, Iterate};
 use crate::ledger;
-use crate::model::{LoadsAt, Model};
+use crate::model::{Contact, LoadsAt, Model};
 use crate::newton::solve_stage;
 use crate::persistency::{averaged_contact_into, project};
 use crate::rejected::Rejected;
+use crate::restitution::Impact;
 use crate::settings::Settings;
 use crate::state::{Means, Previous, State};
 use crate::sums::dot;
@@ -124,11 +125,10 @@ impl Stepper for Implicit {
             model.mass.multiply_into(&change, &mut forces);
             next.ledger.contact_work -= dot(shift, &forces);
         }
-        for (k, contact) in
-            model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.acts_between())
-        {
+        let of_path = |contact: &Contact| contact.interface.direction() != Direction::End;
+        for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| of_path(contact)) {
             debug_assert_eq!(next.pairs[k].len(), solved.rows[k].len(), "contact {}", contact.name);
-            // The next step continues from the accumulated gap.
+            // The next step continues from this gap.
             let gaps = solved.rows[k].iter().map(|row| Some(row.gap));
             next.pairs[k].iter_mut().zip(gaps).for_each(|(pair, gap)| pair.start = gap);
         }
@@ -136,7 +136,13 @@ impl Stepper for Implicit {
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
         if !report.activations.is_empty() {
-            let projected = project(model, &mut next, &report.activations, &mut work.system)?;
+            let impact = Impact {
+                dt,
+                velocity: &state.v,
+                contact_work: state.ledger.contact_work,
+                closed: closed(model, &solved.at.pairings, &report.activations),
+            };
+            let projected = project(model, &mut next, &impact, &report.activations, &mut work.system)?;
             if let Some(jump) = projected {
                 report.projection = jump;
                 carried::project(&mut next, factor);
@@ -210,6 +216,16 @@ impl Implicit {
         self.kernel.stage_into(k, dt, &Memory { states: &states, before }, &mut stage);
         stage
     }
+}
+
+/// Contact and pair of new contacts, with the gaps at the step's start where they are known.
+fn closed(model: &Model, pairings: &[Pairing], activations: &[(usize, usize)]) -> Vec<((usize, usize), f64)> {
+    let of = |&(k, node): &(usize, usize)| {
+        let secondary = model.contacts[k].kinematics.secondary();
+        let p = pairings[k].pairs.iter().position(|pair| secondary[pair.node] == node)?;
+        Some(((k, p), pairings[k].pairs[p].start?))
+    };
+    activations.iter().filter_map(of).collect()
 }
 
 /// Moving supports have their own velocities and accelerations, not the scheme's.
