@@ -53,7 +53,7 @@ pub struct DiscreteGradient {
 
 impl DiscreteGradient {
     /// Evaluates it from the row at y_½, the change ΔG, and y_½ and Δy flat over all dofs.
-    pub fn evaluate(&mut self, middle: Row, change: f64, y: &[f64], increment: &[f64]) {
+    pub fn evaluate(&mut self, middle: Row, change: f64, jump: f64, y: &[f64], increment: &[f64]) {
         let d = middle.dimension();
         debug_assert!(d <= 2 || middle.nodes.len() == 1, "rotations in space are not there yet");
         self.dimension = d;
@@ -74,9 +74,13 @@ impl DiscreteGradient {
         // The stencil at the step's start: ε is constant over the iterations.
         let start = self.arms.iter().zip(&self.centred).map(|(x, c)| x - 0.5 * c);
         let stencil: f64 = start.map(|x| x * x).sum();
-        self.size = dot(&self.deforming, &self.deforming) + ROUND_OFF * ROUND_OFF * stencil;
-        let missing = change - dot(&self.middle, &self.moved);
-        self.factor = if self.size > 0.0 { missing / self.size } else { 0.0 };
+        let deformed = dot(&self.deforming, &self.deforming);
+        self.size = deformed + ROUND_OFF * ROUND_OFF * stencil;
+        let kink: f64 = std::env::var("CV_KINK").map_or(0.5, |x| x.parse().unwrap());
+        let jump = if jump.abs() <= kink * deformed.sqrt() { jump } else { if jump.abs()>1e-12 {eprintln!("excluded {jump:e} of {:e}", deformed.sqrt());} 0.0 };
+        let missing = change + jump - dot(&self.middle, &self.moved);
+        // In one dimension the gap is linear.
+        self.factor = if d > 1 && self.size > 0.0 { missing / self.size } else { 0.0 };
         self.gradient.clear();
         let corrected = |(g, d): (&f64, &f64)| g + self.factor * d;
         self.gradient.extend(self.middle.iter().zip(&self.deforming).map(corrected));
@@ -100,7 +104,7 @@ impl DiscreteGradient {
         };
         slope.clear();
         slope.resize(n, 0.0);
-        for (q, slope) in slope.iter_mut().enumerate().filter(|_| size > 0.0) {
+        for (q, slope) in slope.iter_mut().enumerate().filter(|_| d > 1 && size > 0.0) {
             let bent = 0.5 * dot(&matrix[q * n..(q + 1) * n], moved);
             let longer = deforming[q] + 0.5 * rotation * turn(deforming, q);
             *slope = (end.gradient[q] - middle[q] - bent - 2.0 * factor * longer) / size;

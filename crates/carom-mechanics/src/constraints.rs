@@ -171,10 +171,11 @@ fn derivative_of_direction(
         }
         Direction::DiscreteGradient => {
             let (mut middle, mut rows) = (*pair, Rows::new(equations.model.dimension));
+            let (start, jump) = equations.start_of(k, pair, &mut rows);
             // It was measured there in the evaluation.
             if contact.kinematics.measure(&mut middle, place, &mut rows).is_ok() {
-                let (mut gradient, start) = (DiscreteGradient::default(), pair.start.unwrap_or(row.gap));
-                gradient.evaluate(rows.row(0), row.gap - start, place, &at.increment);
+                let mut gradient = DiscreteGradient::default();
+                gradient.evaluate(rows.row(0), row.gap - start, jump, place, &at.increment);
                 contact.kinematics.curvature_into(&middle, place, &mut matrix);
                 gradient.derivative_into(row, &mut matrix);
             }

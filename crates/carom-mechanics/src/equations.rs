@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use carom_contact::{Answer, Direction, DiscreteGradient, Pairing, Point, Rows};
+use carom_contact::{Answer, Direction, DiscreteGradient, Pair, Pairing, Point, Rows};
 use carom_time::{Internal, Stage};
 
 use crate::balance::{Forces, contact_weights, known_into, mean_acceleration, residual_into};
@@ -340,8 +340,10 @@ impl<'a> Equations<'a> {
                 if direction == Direction::DiscreteGradient {
                     if answer.active {
                         let at_middle = &mut pair.clone();
+                        let (start, jump) = self.start_of(k, pair, discrete_gradients);
+                        let change = row.gap - start;
                         contact.kinematics.measure(at_middle, place, discrete_gradients).map_err(failed)?;
-                        gradient.evaluate(discrete_gradients.row(p), row.gap - start, place, &at.increment);
+                        gradient.evaluate(discrete_gradients.row(p), change, jump, place, &at.increment);
                         discrete_gradients.gradient_mut(p).copy_from_slice(gradient.gradient());
                     } else {
                         discrete_gradients.push_open();
@@ -357,6 +359,23 @@ impl<'a> Equations<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Gap of an active pair at the step's start to its facet; and less that to the facet on which it
+    /// was then, for a closed pair that has left it since. A pair that was beyond the end of its facet
+    /// already was not on the surface.
+    pub(crate) fn start_of(&self, contact: usize, pair: &Pair, rows: &mut Rows) -> (f64, f64) {
+        let (before, start) = (&self.state.pairs[contact], pair.start.unwrap_or(0.0));
+        let old = before.binary_search_by_key(&pair.node, |old| old.node).map(|p| before[p]);
+        if old.is_ok_and(|old| old.facet == pair.facet) {
+            return (start, 0.0);
+        }
+        let kinematics = &self.model.contacts[contact].kinematics;
+        if kinematics.measure(&mut pair.clone(), &self.state.y, rows).is_err() {
+            return (start, 0.0);
+        }
+        let here = rows.pop();
+        (here, if old.is_ok_and(|old| old.active && old.xi.abs() <= 1.0 + 1e-9) { here - start } else { 0.0 })
     }
 
     /// ∂r/∂y · `change` of bodies and loads at an iterate, without contact; exact and not
