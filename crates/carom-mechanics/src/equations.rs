@@ -361,21 +361,18 @@ impl<'a> Equations<'a> {
         Ok(())
     }
 
-    /// Gap of an active pair at the step's start to its facet; and less that to the facet on which it
-    /// was then, for a closed pair that has left it since. A pair that was beyond the end of its facet
-    /// already was not on the surface.
+    /// Gap of an active pair to its facet at the step's start; and what it is more than the gap to
+    /// the facet on which the pair was closed then, if that is another one.
     pub(crate) fn start_of(&self, contact: usize, pair: &Pair, rows: &mut Rows) -> (f64, f64) {
         let (before, start) = (&self.state.pairs[contact], pair.start.unwrap_or(0.0));
         let old = before.binary_search_by_key(&pair.node, |old| old.node).map(|p| before[p]);
-        if old.is_ok_and(|old| old.facet == pair.facet) {
-            return (start, 0.0);
-        }
         let kinematics = &self.model.contacts[contact].kinematics;
-        if kinematics.measure(&mut pair.clone(), &self.state.y, rows).is_err() {
+        let stayed = old.is_ok_and(|old| old.facet == pair.facet);
+        if stayed || kinematics.measure(&mut pair.clone(), &self.state.y, rows).is_err() {
             return (start, 0.0);
         }
         let here = rows.pop();
-        (here, if old.is_ok_and(|old| old.active && old.xi.abs() <= 1.0 + 1e-9) { here - start } else { 0.0 })
+        (here, if old.is_ok_and(|old| old.active) { here - start } else { 0.0 })
     }
 
     /// ∂r/∂y · `change` of bodies and loads at an iterate, without contact; exact and not

@@ -7,7 +7,7 @@
 //!
 //! Energy, linear and angular momentum of free motion are conserved exactly for any hyperelastic
 //! law and rotation. Order 2, ρ∞ = 1. The carried acceleration is the mean of the step, (v_{s+1} −
-//! v_s)/Δt. A contact force acts at the end of the step.
+//! v_s)/Δt. The direction of a contact force is up to its law.
 use crate::kind::{Build, KindInfo, Member};
 use crate::stage::{Internal, Kernel, Memory, Stage};
 
@@ -36,7 +36,8 @@ impl Kernel for EnergyMomentum {
     fn notes(&self) -> &'static [&'static str] {
         &[
             "energy, momentum and moment of momentum of free motion: exactly, nonlinear too",
-            "energy of contact: exactly with enforcement = \"penalty\"",
+            "moment of momentum in contact: exactly, except with law = \"predictor\"",
+            "energy of contact: exactly with enforcement = \"penalty\", and with multipliers while gaps stay closed",
         ]
     }
 
