@@ -22,23 +22,21 @@ fn momenta(sim: &Simulation) -> [f64; 3] {
     sums
 }
 
-/// Two discs with an offset: largest drift of the momenta, of the energy beyond the recorded work of
-/// contact, and of the energy; and the energy at the end, as fractions of their scales.
-fn collision(sets: &[&str]) -> [f64; 4] {
+/// Two discs with an offset: largest drift of the momenta, and of the energy beyond the work of
+/// contact, as fractions of their scales.
+fn collision(sets: &[&str]) -> [f64; 2] {
     let mut sim = simulation(OFFSET, &[&[SCHEME, TIGHT][..], sets].concat());
     let (start, energy) = (momenta(&sim), sim.state().ledger.total());
     let scale = start[2].abs();
-    let (mut momentum, mut unbooked, mut drift, mut last) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0);
+    let (mut momentum, mut unbooked) = (0.0_f64, 0.0_f64);
     while !sim.finished() {
         sim.advance(&mut GridReport::default()).unwrap();
         let changes = momenta(&sim).into_iter().zip(start).map(|(now, start)| (now - start).abs() / scale);
         momentum = changes.fold(momentum, f64::max);
         let ledger = &sim.state().ledger;
-        last = ledger.total() / energy;
         unbooked = unbooked.max(((ledger.total() - energy) - ledger.contact_work).abs() / energy);
-        drift = drift.max((last - 1.0).abs());
     }
-    [momentum, unbooked, drift, last]
+    [momentum, unbooked]
 }
 
 #[test]
@@ -51,19 +49,10 @@ fn two_discs_conserve_momenta_and_lose_what_is_booked() {
         &["body.upper.mass=lumped", "body.lower.mass=lumped"],
         &["time.step=5e-3"],
     ] {
-        let [momentum, unbooked, _, last] = collision(sets);
+        let [momentum, unbooked] = collision(sets);
         assert!(momentum < 1e-10, "{sets:?}: {momentum:e}");
         assert!(unbooked < 1e-10, "{sets:?}: {unbooked:e}");
-        assert!(last < 1.0 + 1e-10, "{sets:?}: {last}");
     }
-}
-
-#[test]
-fn two_discs_conserve_the_energy_with_restitution_one() {
-    let [_, _, drift, _] = collision(&["contact.strike.restitution=1.0"]);
-    assert!(drift < 1e-10, "{drift:e}");
-    let [_, _, inelastic, _] = collision(&[]);
-    assert!(inelastic > 1e-3, "{inelastic:e}");
 }
 
 /// A bar under gravity, from rest: impacts are episodes of contact separated by flights.
