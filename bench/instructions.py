@@ -55,11 +55,11 @@ def main():
         for name in benchmarks(binary):
             if options.only in name:
                 try:
-                    told = f"{(count(binary, name, 1 + MORE) - count(binary, name, 1)) / MORE:14,.0f}"
+                    counts = f"{(count(binary, name, 1 + MORE) - count(binary, name, 1)) / MORE:14,.0f}"
                 except RuntimeError as error:
                     # An older valgrind does not support every AVX instruction.
-                    told = f"not counted: {error}"
-                print(f"{name:60} {told}", flush=True)
+                    counts = f"not counted: {error}"
+                print(f"{name:60} {counts}", flush=True)
 
 
 main()

@@ -174,8 +174,8 @@ def values(key):
         return f"list: {count}of {values(items)}"
     if kind in ("number", "integer"):
         bounds = [("minimum", "≥"), ("exclusiveMinimum", ">"), ("maximum", "≤"), ("exclusiveMaximum", "<")]
-        told = [f"{sign} {key[name]:g}" for name, sign in bounds if name in key]
-        return " ".join(filter(None, [kind, ", ".join(told)]))
+        limits = [f"{sign} {key[name]:g}" for name, sign in bounds if name in key]
+        return " ".join(filter(None, [kind, ", ".join(limits)]))
     return {"object": "table", "string": "text", "boolean": "`true` `false`"}.get(kind, "–")
 
 

@@ -58,8 +58,8 @@ def main(program):
     for path in sorted([*ROOT.glob("cases/*/*.toml"), *ROOT.glob("crates/carom/templates/*.toml"), *ROOT.glob("docs/book/examples/*.toml")]):
         document = tomllib.loads(path.read_text())
         kind = kinds["case" in document]
-        told = [f"{error.message} at {error.json_path}" for error in kind.iter_errors(document)]
-        assert not told, f"{path}: {told}"
+        errors = [f"{error.message} at {error.json_path}" for error in kind.iter_errors(document)]
+        assert not errors, f"{path}: {errors}"
         files += 1
         for place in places(document):
             assert not kind.is_valid(misspelt(document, place)), f"{path}: the schema accepts a misspelt {place}"

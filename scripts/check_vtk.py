@@ -78,15 +78,15 @@ def against_tables(run, times, grids):
     pressures = {}
     for row in csv.DictReader((run / "contact.csv").open()):
         pressures.setdefault(float(row["time"]), {})[int(row["node"])] = float(row["pressure"])
-    touched = 0
+    in_contact = 0
     for instant, grid in zip(times, grids):
         array = grid.GetPointData().GetArray("contact_pressure")
         found = {i: array.GetValue(i) for i in range(array.GetNumberOfValues()) if array.GetValue(i) != 0.0}
         assert found == pressures.get(instant, {}), f"contact pressure at {instant}"
-        touched += bool(found)
-    assert touched > 0, "no instant has contact"
+        in_contact += bool(found)
+    assert in_contact > 0, "no instant has contact"
     assert {grids[-1].GetCellType(i) for i in range(grids[-1].GetNumberOfCells())} == {69}
-    return touched
+    return in_contact
 
 
 def killed_and_resumed(carom, case, step_size, place):
@@ -111,7 +111,7 @@ def main():
     manifest = json.loads((finished / "manifest.json").read_text())
     step_size = manifest["case"]["time"]["step"]
     times, grids = vtu(finished, step_size)
-    touched = against_tables(finished, times, grids)
+    in_contact = against_tables(finished, times, grids)
     with tempfile.TemporaryDirectory() as place:
         case = Path(place) / "case.toml"
         case.write_text(manifest["source"]["text"])
@@ -124,7 +124,7 @@ def main():
         for name in ("history.csv", "contact.csv"):
             assert (run / name).read_bytes() == (finished / name).read_bytes(), f"{name} differs"
         size = (run / "fields.vtkhdf").stat().st_size
-    print(f"{finished}: {len(times)} instants, {touched} in contact; one file of {size / 1e6:.2f} MB, readable after a kill at {seen}")
+    print(f"{finished}: {len(times)} instants, {in_contact} in contact; one file of {size / 1e6:.2f} MB, readable after a kill at {seen}")
 
 
 if __name__ == "__main__":

@@ -151,7 +151,7 @@ def explanations(carom):
         said = run(carom, "explain", *arguments)
         if said is not None:
             # The section on other codes is printed by the command only.
-            write(f"explain/{name}.txt", said.split("\nelsewhere\n")[0].strip() + "\n")
+            write(f"explain/{name}.txt", said.split("\nin other codes\n")[0].strip() + "\n")
 
 
 def keys(carom):

@@ -60,7 +60,7 @@ def main():
         if not found:
             survived.append(fault["name"])
     if given.markdown:
-        lines = [["Fault", "In", "Seen first by"], ["---"] * 3, *rows]
+        lines = [["Fault", "In", "Found by"], ["---"] * 3, *rows]
         lines = [" | ".join(cell.replace("|", "\\|") for cell in line) for line in lines]
         given.markdown.write_text("".join(f"| {line} |\n" for line in lines), encoding="utf-8")
     print(f"{len(rows)} faults, {len(survived)} survived{': ' + ', '.join(survived) if survived else ''}")

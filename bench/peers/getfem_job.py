@@ -110,4 +110,4 @@ for step in range(STEPS):
     iterations += md.solve("max_res", 1e-8, "max_iter", 40, "lsearch", "simplest", "alpha min", 0.2)[0]
     md.shift_variables_for_time_integration()
     velocity.append(float(load @ md.variable("Previous_Dot_u1")) / load.sum())
-job.tell("GetFEM", int(spaces["u1"].nbdof() + spaces["u2"].nbdof()), begin, iterations, job.RHO * load.sum(), velocity)
+job.print_result("GetFEM", int(spaces["u1"].nbdof() + spaces["u2"].nbdof()), begin, iterations, job.RHO * load.sum(), velocity)

@@ -57,7 +57,7 @@ def peak_mean_force(mass, velocity):
     return max((mass * (velocity[n + window] - velocity[n]) / (window * DT) for n in range(len(velocity) - window)), default=None)
 
 
-def tell(code, dofs, begin, iterations, mass, velocity):
+def print_result(code, dofs, begin, iterations, mass, velocity):
     """Prints one JSON object.
 
     `begin` is usage() before the first step; `mass` and `velocity` are those of peak_mean_force.

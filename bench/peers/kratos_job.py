@@ -123,4 +123,4 @@ while analysis.KeepAdvancingSolutionLoop():
     iterations += part.ProcessInfo[Kratos.NL_ITERATION_NUMBER]
     analysis.FinalizeSolutionStep()
     velocity.append(falling())
-job.tell("Kratos", 2 * part.NumberOfNodes(), begin, iterations, job.RHO * area, velocity)
+job.print_result("Kratos", 2 * part.NumberOfNodes(), begin, iterations, job.RHO * area, velocity)

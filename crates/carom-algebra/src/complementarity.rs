@@ -69,7 +69,7 @@ pub fn complementarity(d: &[f64], b: &[f64], z: &mut Vec<f64>) -> Result<(), Lin
     }
     Err(LinearError::Engine {
         size: n,
-        reason: "principal pivoting does not end: the matrix is not definite".into(),
+        reason: "principal pivoting does not terminate: the matrix is not definite".into(),
     })
 }
 

@@ -164,7 +164,8 @@ impl Condensed {
             Numbers::Double(entries) => self.solver(entries).forward(&self.elimination.root, rhs, x),
             Numbers::Single(entries) => self.solver(entries).forward(&self.elimination.root, rhs, x),
         }
-        for (value, &i) in self.kept_part(x).iter_mut().zip(&self.elimination.order[self.elimination.inner..])
+        for (value, &i) in
+            self.schur_part(x).iter_mut().zip(&self.elimination.order[self.elimination.inner..])
         {
             *value += rhs[i as usize];
         }
@@ -182,7 +183,7 @@ impl Condensed {
     }
 
     /// The last unknowns of a vector in elimination order.
-    pub fn kept_part<'a>(&self, x: &'a mut [f64]) -> &'a mut [f64] {
+    pub fn schur_part<'a>(&self, x: &'a mut [f64]) -> &'a mut [f64] {
         let first = x.len() - self.elimination.schur_size();
         &mut x[first..]
     }
@@ -241,7 +242,7 @@ mod tests {
                 let mut saddle = Saddle::default();
                 saddle.begin(condensed.schur(), elimination.schur_size(), 0);
                 saddle.factor().unwrap();
-                saddle.solve(condensed.kept_part(&mut x), &mut []);
+                saddle.solve(condensed.schur_part(&mut x), &mut []);
                 condensed.substitute_into(&mut x, &mut out);
                 let error = out.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
                 assert!(error < digits, "{m} {}: {error:e}", last.len());
@@ -300,7 +301,7 @@ mod tests {
                     let mut saddle = Saddle::default();
                     saddle.begin(condensed.schur(), elimination.schur_size(), 0);
                     saddle.factor().unwrap();
-                    saddle.solve(condensed.kept_part(&mut x), &mut []);
+                    saddle.solve(condensed.schur_part(&mut x), &mut []);
                     condensed.substitute_into(&mut x, &mut out);
                     let bits = |x: &[f64]| x.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
                     (bits(condensed.schur()), bits(&out), out)
@@ -339,7 +340,7 @@ mod tests {
             let mut saddle = Saddle::default();
             saddle.begin(condensed.schur(), elimination.schur_size(), 0);
             saddle.factor().unwrap();
-            saddle.solve(condensed.kept_part(&mut x), &mut []);
+            saddle.solve(condensed.schur_part(&mut x), &mut []);
             condensed.substitute_into(&mut x, &mut out);
             let error = out.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(error < 1e-12, "{last:?}: {error:e}");

@@ -151,7 +151,7 @@ impl Elimination {
     }
 
     /// Place of an unknown among those eliminated last.
-    pub fn kept_place(&self, unknown: usize) -> Option<usize> {
+    pub fn schur_place(&self, unknown: usize) -> Option<usize> {
         (self.place[unknown] as usize).checked_sub(self.inner)
     }
 

@@ -76,10 +76,25 @@ impl Check {
                 meant.extend(near);
             }
         }
-        let required = spec.keys.iter().filter(|k| matches!(k.default, Default::Required));
-        for key in required.filter(|k| table.get(k.name).is_none() && !meant.contains(&k.name)) {
-            self.missing(key.name, key, spec.name, path);
+        let required = spec.keys.iter().copied().filter(|k| matches!(k.default, Default::Required));
+        let missing: Vec<_> =
+            required.filter(|k| table.get(k.name).is_none() && !meant.contains(&k.name)).collect();
+        if spec.tag.is_some() && missing.len() > 1 {
+            self.missing_together(&missing, spec, path);
+        } else {
+            missing.iter().for_each(|key| self.missing(key.name, key, spec.name, path));
         }
+    }
+
+    /// Missing parameters of one scheme or shape: one mistake.
+    fn missing_together(&mut self, keys: &[&Key], spec: &Spec, path: &str) {
+        let names: Vec<_> = keys.iter().map(|key| format!("`{}`", key.name)).collect();
+        let meanings: Vec<_> = keys.iter().map(|key| format!("{}: {}", key.name, meaning(key))).collect();
+        let examples: Vec<_> =
+            keys.iter().map(|key| format!("`{} = {}`", key.name, self.names.example(key))).collect();
+        let what = format!("{} has no {}", spec.name, and(&names));
+        let help = format!("add for example {}", and(&examples));
+        self.problems.push(Problem::new(path, what, meanings.join(" "), help).at_key());
     }
 
     fn missing(&mut self, name: &str, key: &Key, table: &str, path: &str) {
@@ -249,7 +264,11 @@ impl Check {
             return self.add(path, what, why, format!("use one of: {}", suggest::list(now.iter().copied())));
         }
         let what = format!("`{key}` cannot be \"{word}\"");
-        let why = format!("{meaning} Allowed values: {}", suggest::list(now.iter().copied()));
+        let near = suggest::nearest(word, now.iter().copied());
+        let why = match near {
+            Some(_) => format!("{meaning} Allowed values: {}", suggest::list(now.iter().copied())),
+            None => meaning.to_owned(),
+        };
         self.add(path, what, why, suggest::help(word, now.iter().copied()));
     }
 
@@ -275,6 +294,8 @@ impl Check {
             // A sign is easily lost, or of another convention.
             let help = if x < 0.0 && range.contains(-x) {
                 format!("did you mean `{} = {}`?", key.name, -x)
+            } else if let Some(end) = range.end_next_to(x) {
+                format!("write for example `{} = {end}`", key.name)
             } else {
                 format!("write for example `{} = {}`", key.name, self.names.example(key))
             };
@@ -352,6 +373,14 @@ impl Check {
 /// Whether a problem suggests that this key was meant.
 fn meant(problem: &Problem, key: &str) -> bool {
     problem.help.contains(&format!("`{key}`"))
+}
+
+/// `a, b and c`.
+fn and(words: &[String]) -> String {
+    match words.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
+        _ => words.concat(),
+    }
 }
 
 /// What a key means, with its unit.

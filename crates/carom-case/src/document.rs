@@ -30,7 +30,7 @@ impl Document {
         let unreadable = |source: std::io::Error| match source.kind() {
             std::io::ErrorKind::NotFound => wrong(
                 "there is no such file",
-                "a case is a single TOML file",
+                "a relative path starts at the working directory",
                 "check the path and the working directory",
             ),
             _ => CaseError::Refused { path: name.clone(), source },
@@ -39,7 +39,7 @@ impl Document {
         if facts.is_dir() {
             return Err(wrong(
                 "this is a directory",
-                "a case is a single TOML file",
+                "a case or a study is a single TOML file",
                 "give the path of the .toml file inside it",
             ));
         }

@@ -27,7 +27,6 @@ mod suggest;
 mod tests;
 mod tree;
 mod view;
-mod warnings;
 
 pub use carom_record::{Bound, Expect as ExpectSpec};
 pub use columns::history_columns;
@@ -38,8 +37,8 @@ pub use problem::{CaseError, Diagnostic, Problem, Problems};
 pub use read::{read, read_scheme};
 pub use schema::{changes, expectation, schema};
 pub use spec::{
-    ActiveSetRule, BodySpec, Case, ContactLaw, ContactSpec, Detection, Enforcement, ForceTime, FormulaSpec,
-    InitialSpec, Law, LoadKind, LoadSpec, MassKind, MaterialSpec, MeshSpec, NewtonSpec, OutputSpec,
-    Persistency, PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec, Quantity, RefineSpec, SchemeSpec,
-    SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
+    ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime,
+    FormulaSpec, InitialSpec, Law, LoadKind, LoadSpec, MassKind, MaterialSpec, MeshSpec, NewtonSpec,
+    OutputSpec, Persistency, PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec, Quantity, RefineSpec,
+    SchemeSpec, SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
 };

@@ -86,7 +86,7 @@ pub(super) fn read(
     }
     let hash = blake3::hash(&bytes).to_hex().to_string();
     let Facts { nodes, cells, sides, repairs, .. } = facts;
-    Some(MeshSpec::File { file, surface, hash, nodes, cells, sides, repairs })
+    Some(MeshSpec::File { file, surface, hash, nodes, cells, sides, repairs, parts: 1 })
 }
 
 /// The file's bytes, or why it cannot be read.

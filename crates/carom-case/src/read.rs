@@ -76,7 +76,9 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
         time: reader.one("time").and_then(|v| time(v, &mut problems)),
     };
     let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
-    draft.bodies = reader.each("body", |v, path| body(v, reader.dimension?, folder, path, &mut problems));
+    let refine = reader.root.number("refine").filter(|factor| *factor >= 1.0).unwrap_or(1.0);
+    draft.bodies =
+        reader.each("body", |v, path| body(v, reader.dimension?, refine, folder, path, &mut problems));
     draft.loads = reader.each("load", |v, path| load::read(v, folder, path, &mut problems));
     draft.expects = reader.each("expect", |v, path| {
         expect::one(v, path, Asked::OfARun, Exact::Of(&draft.exact), &mut problems)
@@ -170,6 +172,7 @@ impl<'a> Reader<'a> {
             dimension,
             plane: self.root.choice("plane")?,
             thickness: self.root.number("thickness")?,
+            refine: self.root.number("refine")?,
             units: Units {
                 length: units.text("length")?,
                 time: units.text("time")?,
@@ -216,7 +219,7 @@ fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<Material
             if !misspelt || given.len() > 2 {
                 let had = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
                 let what = format!("the elastic constants are not a valid pair: {had}");
-                let help = "give `lambda` and `mu`, or `young` and `poisson`";
+                let help = elastic_help(v, given);
                 problems.push(
                     Problem::new(path, what, "an isotropic material has two elastic constants", help)
                         .at_key(),
@@ -237,6 +240,7 @@ fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<Material
 fn body(
     v: View,
     dimension: usize,
+    refine: f64,
     folder: &Path,
     path: &str,
     problems: &mut Vec<Problem>,
@@ -251,6 +255,15 @@ fn body(
         &format!("{path}.mesh"),
         problems,
     )?;
+    let Some(mesh) = mesh.refined(refine) else {
+        let what = format!("`refine` = {refine} is not an integer, and {path}.mesh comes from a file");
+        let why = "the cells of a file are divided into whole parts";
+        // One mistake, however many bodies come from files.
+        if problems.iter().all(|problem| problem.path != "refine") {
+            problems.push(Problem::new("refine", what, why, format!("write `refine = {}`", refine.ceil())));
+        }
+        return None;
+    };
     Some(BodySpec {
         name: v.text("name")?,
         material: v.text("material")?,
@@ -305,9 +318,25 @@ fn contact(v: View) -> Option<ContactSpec> {
         persistency: v.choice("persistency")?,
         active_set: v.choice("active_set")?,
         detection: v.choice("detection")?,
+        xi: v.choice("xi")?,
         law: v.choice("law"),
         restitution: v.number("restitution")?,
     })
+}
+
+/// The pair of elastic constants that was probably meant.
+fn elastic_help(v: View, given: &[&str]) -> String {
+    let pairs = "give `lambda` and `mu`, or `young` and `poisson`";
+    let ([mu, poisson], ["lambda", "mu", "poisson"]) =
+        (["mu", "poisson"].map(|key| v.number(key).filter(|x| x.is_finite())), given)
+    else {
+        return pairs.to_owned();
+    };
+    let (Some(mu), Some(poisson)) = (mu, poisson) else { return pairs.to_owned() };
+    // Where there is no such material, the nearest that there is.
+    let poisson = poisson.clamp(-0.99, 0.49);
+    let lambda = (2.0 * mu * poisson / (1.0 - 2.0 * poisson) * 1e6).round() / 1e6;
+    format!("{pairs}; with this `mu`, Poisson's ratio is {poisson} for `lambda = {lambda}`")
 }
 
 fn probe(v: View) -> Option<ProbeSpec> {
@@ -320,6 +349,7 @@ fn time(v: View, problems: &mut Vec<Problem>) -> Option<TimeSpec> {
     Some(TimeSpec {
         end: v.number("end")?,
         step: v.number("step")?,
+        phase: v.number("phase")?,
         scheme: scheme?,
         energy_guard: v.value("energy_guard")?.number(),
     })
@@ -341,8 +371,9 @@ fn scheme(table: &Table, preset: Preset, path: &str, problems: &mut Vec<Problem>
     {
         let help = match &error {
             SchemeError::OutOfRange { hint, .. } => hint.clone(),
-            SchemeError::Missing { expected, .. } | SchemeError::Superfluous { expected, .. } => {
-                format!("give {expected}")
+            SchemeError::Missing { examples, .. } | SchemeError::Superfluous { examples, .. } => {
+                let written: Vec<_> = examples.iter().map(|example| format!("`{example}`")).collect();
+                format!("write for example {}", written.join(" or "))
             }
             SchemeError::UnknownKind { .. } => suggest::help(kind, error.known().iter().copied()),
         };
@@ -357,8 +388,9 @@ pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, Case
     let line = |parameter: &String| {
         let (key, value) =
             parameter.split_once('=').map_or((parameter.trim(), ""), |(k, v)| (k.trim(), v.trim()));
-        let word = key == "forces" && !value.starts_with('"');
-        if word { format!("{key} = {}", toml_edit::Value::from(value)) } else { format!("{key} = {value}") }
+        // A word needs no quotes on the command line.
+        let value = value.parse().unwrap_or_else(|_| toml_edit::Value::from(value));
+        format!("{key} = {}", value.to_string().trim())
     };
     if let Some(parameter) = parameters.iter().find(|parameter| !parameter.contains('=')) {
         let what = format!("`{parameter}` is not a parameter");
@@ -367,7 +399,7 @@ pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, Case
     }
     let kind_line = format!("kind = {}", toml_edit::Value::from(kind));
     let text = std::iter::once(kind_line).chain(parameters.iter().map(line)).collect::<Vec<_>>().join("\n");
-    let document = Document::parse("scheme", &text, &[])?;
+    let document = Document::parse("arguments", &text, &[])?;
     let mut problems = conform::variant(document.root(), keys::schemes());
     let spec = scheme(document.root(), Preset::Default, "", &mut problems);
     spec.filter(|_| problems.is_empty()).ok_or_else(|| document.diagnose_all(&problems))

@@ -1,6 +1,7 @@
 //! "Did you mean": the candidate nearest to a misspelt word.
 
-/// The nearest candidate, if at most a third of the letters differ.
+/// The nearest candidate, if at most a third of the letters differ, or the only one that begins
+/// with the word.
 pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let plain = |s: &str| s.to_lowercase().replace(['-', ' '], "_");
     let word = plain(word);
@@ -12,7 +13,10 @@ pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
         let found = strsim::damerau_levenshtein(&word, &candidate);
         (found <= most).then_some(found)
     };
-    candidates.into_iter().filter_map(|c| Some((distance(c)?, c))).min_by_key(|(d, _)| *d).map(|(_, c)| c)
+    let candidates: Vec<_> = candidates.into_iter().collect();
+    let near = candidates.iter().filter_map(|&c| Some((distance(c)?, c))).min_by_key(|(d, _)| *d);
+    let mut longer = candidates.iter().copied().filter(|c| word.len() > 2 && plain(c).starts_with(&word));
+    near.map(|(_, c)| c).or_else(|| longer.next().filter(|_| longer.next().is_none()))
 }
 
 /// `did you mean …?`, or the list of all candidates.

@@ -247,6 +247,6 @@ fn schemes_alone() {
     assert_eq!((spec.parameters["alpha"], spec.forces), (0.05, carom_time::ForceRule::AverageState));
     assert!(read("hht", &["alpha=-0.05"]).unwrap_err().contains("did you mean `alpha = 0.05`?"));
     assert!(read("chung_hulbert", &["rho_inf=0.5"]).unwrap_err().contains("did you mean `chung-hulbert`?"));
-    assert!(read("newmark", &["beta=0.25"]).unwrap_err().contains("needs `gamma`"));
+    assert!(read("newmark", &["beta=0.25"]).unwrap_err().contains("`gamma` is missing"));
     assert!(read("hu", &["rho_inf"]).unwrap_err().contains("written KEY=VALUE"));
 }

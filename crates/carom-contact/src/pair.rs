@@ -122,7 +122,7 @@ pub enum ContactError {
         a: f64,
     },
     /// The closest point lies far outside the facet or was not found.
-    #[error("secondary node {node} lost primary facet {facet}: closest point at ξ = {xi:.3}")]
+    #[error("secondary node {node} is beyond primary facet {facet}: its closest point is at ξ = {xi:.3}")]
     Lost {
         /// Global number of the secondary node.
         node: usize,

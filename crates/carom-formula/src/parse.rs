@@ -24,7 +24,7 @@ use crate::error::FormulaError;
 use crate::function::{CONSTANTS, Function};
 use crate::tree::Tree::{self, Call, Number};
 
-/// Longer texts are refused: no formula is, and reading one recurses.
+/// Longer texts are rejected: parsing is recursive, and no real formula is that long.
 const LONGEST: usize = 4096;
 /// Parentheses within parentheses.
 const DEEPEST: usize = 64;
@@ -63,30 +63,30 @@ fn formula(input: &mut Input) -> ModalResult<Tree, FormulaError> {
     let end = input.len();
     if end > LONGEST {
         let message = format!("the formula is longer than {LONGEST} bytes");
-        return refuse(message, input.floor_char_boundary(LONGEST)..end);
+        return reject(message, input.floor_char_boundary(LONGEST)..end);
     }
     if input.trim().is_empty() {
-        return refuse("the formula is empty", 0..end);
+        return reject("the formula is empty", 0..end);
     }
     let tree = terminated(expression, multispace0).parse_next(input)?;
     let at = input.current_token_start();
     match input.chars().next() {
         None => Ok(tree),
-        Some(')') => refuse("this parenthesis was never opened", at..at + 1),
+        Some(')') => reject("this parenthesis has no opening parenthesis", at..at + 1),
         Some(_) => misplaced(input, "an operator"),
     }
 }
 
 /// An error that ends the parsing.
-fn refuse<T>(message: impl Into<String>, at: Range<usize>) -> ModalResult<T, FormulaError> {
+fn reject<T>(message: impl Into<String>, at: Range<usize>) -> ModalResult<T, FormulaError> {
     Err(ErrMode::Cut(FormulaError { message: message.into(), at }))
 }
 
 fn misplaced<T>(input: &Input, wanted: &str) -> ModalResult<T, FormulaError> {
     let at = input.current_token_start();
     match input.chars().next() {
-        None => refuse(format!("the formula ends where {wanted} is expected"), at..at),
-        Some(c) => refuse(format!("`{c}` stands where {wanted} is expected"), at..at + c.len_utf8()),
+        None => reject(format!("the formula ends where {wanted} is expected"), at..at),
+        Some(c) => reject(format!("`{c}` found where {wanted} is expected"), at..at + c.len_utf8()),
     }
 }
 
@@ -127,14 +127,14 @@ fn no_operand<T>(input: &mut Input) -> ModalResult<T, FormulaError> {
 /// The power operator of other languages.
 fn starred<T>(input: &mut Input) -> ModalResult<T, FormulaError> {
     let at = "**".span().parse_next(input)?;
-    refuse("a power is written ^, not **", at)
+    reject("a power is written ^, not **", at)
 }
 
 fn open(input: &mut Input) -> ModalResult<(), FormulaError> {
     let at = preceded(multispace0, '('.span()).parse_next(input)?;
     input.state.open += 1;
     if input.state.open > DEEPEST {
-        return refuse(format!("more than {DEEPEST} nested parentheses"), at);
+        return reject(format!("more than {DEEPEST} nested parentheses"), at);
     }
     Ok(())
 }
@@ -153,7 +153,7 @@ fn number(input: &mut Input) -> ModalResult<Tree, FormulaError> {
     let (text, at) = (mantissa, opt(exponent)).take().with_span().parse_next(input)?;
     match text.parse() {
         Ok(value) if f64::is_finite(value) => Ok(Number(value)),
-        _ => refuse(format!("the number {text} is too large"), at),
+        _ => reject(format!("the number {text} is too large"), at),
     }
 }
 
@@ -162,16 +162,16 @@ fn named(input: &mut Input) -> ModalResult<Tree, FormulaError> {
     let letters = (one_of(AsChar::is_alpha), take_while(0.., (AsChar::is_alphanum, '_')));
     let (name, at) = letters.take().with_span().parse_next(input)?;
     if opt(open).parse_next(input)?.is_none() {
-        return variable(name, input.state.variables).or_else(|message| refuse(message, at));
+        return variable(name, input.state.variables).or_else(|message| reject(message, at));
     }
     let (function, count) =
-        function(name, input.state.variables).or_else(|message| refuse(message, at.clone()))?;
+        function(name, input.state.variables).or_else(|message| reject(message, at.clone()))?;
     let arguments: Vec<Tree> =
         terminated(separated(1.., expression, (multispace0, ',')), close).parse_next(input)?;
     let (got, at) = (arguments.len(), at.start..input.current_token_start());
     if got != count {
         let s = if count == 1 { "" } else { "s" };
-        return refuse(format!("`{name}` takes {count} argument{s}, not {got}"), at);
+        return reject(format!("`{name}` takes {count} argument{s}, not {got}"), at);
     }
     Ok(Call(function, arguments))
 }
@@ -208,7 +208,7 @@ fn function(name: &str, variables: &[&str]) -> Result<(Function, usize), String>
     }
     Err(match nearest(name, names) {
         Some(near) => format!("there is no function `{name}`: did you mean `{near}`?"),
-        None => format!("there is no function `{name}`: known are {}", names.join(", ")),
+        None => format!("there is no function `{name}`: the functions are {}", names.join(", ")),
     })
 }
 

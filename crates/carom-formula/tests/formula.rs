@@ -103,12 +103,12 @@ fn mistakes_have_a_place_and_a_word_of_help() {
         ("  ", 0..2, "the formula is empty"),
         ("2*", 2..2, "the formula ends where a number, a variable or a function is expected"),
         ("2*(t", 4..4, "the formula ends where an operator or a closing parenthesis is expected"),
-        ("2 t", 2..3, "`t` stands where an operator is expected"),
-        ("2*)", 2..3, "`)` stands where a number, a variable or a function is expected"),
-        ("t)", 1..2, "this parenthesis was never opened"),
+        ("2 t", 2..3, "`t` found where an operator is expected"),
+        ("2*)", 2..3, "`)` found where a number, a variable or a function is expected"),
+        ("t)", 1..2, "this parenthesis has no opening parenthesis"),
         ("t**2", 1..3, "a power is written ^, not **"),
-        ("3 + $", 4..5, "`$` stands where a number, a variable or a function is expected"),
-        ("3 = t", 2..3, "`=` stands where an operator is expected"),
+        ("3 + $", 4..5, "`$` found where a number, a variable or a function is expected"),
+        ("3 = t", 2..3, "`=` found where an operator is expected"),
         ("T + 1", 0..1, "there is no variable `T`: did you mean `t`?"),
         ("1 + velocity", 4..12, "there is no variable `velocity`: the variables are X, t"),
         ("Pi*2", 0..2, "there is no variable `Pi`: did you mean `pi`?"),
@@ -122,8 +122,8 @@ fn mistakes_have_a_place_and_a_word_of_help() {
         ("SQRT(t)", 0..4, "there is no function `SQRT`: did you mean `sqrt`?"),
         ("sin t", 0..3, "`sin` is a function: write its argument in parentheses"),
         ("t*(X + velocity", 7..15, "there is no variable `velocity`: the variables are X, t"),
-        ("1e*t", 1..2, "`e` stands where an operator is expected"),
-        ("sin()", 4..5, "`)` stands where a number, a variable or a function is expected"),
+        ("1e*t", 1..2, "`e` found where an operator is expected"),
+        ("sin()", 4..5, "`)` found where a number, a variable or a function is expected"),
     ] {
         let error = Formula::parse(text, &["X", "t"]).unwrap_err();
         assert_eq!((error.message.as_str(), error.at), (message, at), "{text:?}");

@@ -8,7 +8,7 @@
 //! with y = y_s + d, a(d) and the weights w (end of stage) and b (start of step) from the stage.
 //! The unknown is the increment d: formed from rounded positions, the acceleration would carry
 //! their last digit divided by Δt². A massless dof has no inertia to average with: its balance
-//! holds at s + 1 alone. f_ext is gravity and the loads, evaluated at the same time (and, for
+//! is enforced at s + 1 only. f_ext is gravity and the loads, evaluated at the same time (and, for
 //! pressures, positions) as f_int. The residual of a constrained dof is its reaction force.
 //!
 //! At prescribed dofs the acceleration ü is known, and M ü acts on the neighbours like an external

@@ -8,12 +8,12 @@
 //!
 //! for a constant Δt. A projection replaces q by the force at the state, and another Δt changes
 //! c Δt q: the impulse c Δ(Δt q) that no force of a step accounts for. Both equations are linear, so
-//! the part of q that is due to contact obeys the first one with the mean contact force; it is what
-//! is kept here, as a resultant on each secondary side.
+//! the part of q that is due to contact obeys the first one with the mean contact force. This part is
+//! stored here, as a resultant on each secondary side.
 
 use crate::state::State;
 
-/// Books a change of the step to `dt`; `factor`: c.
+/// Records a change of the step to `dt`; `factor`: c.
 pub(crate) fn change_step(state: &mut State, factor: f64, dt: f64) {
     let old = std::mem::replace(&mut state.carried.dt, dt);
     if old == 0.0 || old == dt || factor == 0.0 {
@@ -21,7 +21,7 @@ pub(crate) fn change_step(state: &mut State, factor: f64, dt: f64) {
     }
     for k in 0..state.carried.forces.len() {
         let force = state.carried.forces[k];
-        book(state, k, force.map(|f| factor * (dt - old) * f));
+        record(state, k, force.map(|f| factor * (dt - old) * f));
     }
 }
 
@@ -35,17 +35,17 @@ pub(crate) fn advance(state: &mut State, means: &[[f64; 3]], weights: [f64; 2]) 
     }
 }
 
-/// Books a projection: accelerations satisfy the balance at the state again.
+/// Records a projection: accelerations satisfy the balance at the state again.
 pub(crate) fn project(state: &mut State, factor: f64) {
     for k in 0..state.carried.forces.len() {
         let now = state.contact_forces[k];
         let old = std::mem::replace(&mut state.carried.forces[k], now);
         let change = std::array::from_fn(|i| factor * state.carried.dt * (now[i] - old[i]));
-        book(state, k, change);
+        record(state, k, change);
     }
 }
 
-fn book(state: &mut State, contact: usize, change: [f64; 3]) {
+fn record(state: &mut State, contact: usize, change: [f64; 3]) {
     for i in 0..3 {
         state.impulses[contact][i] += change[i];
         state.ledger.algorithmic_impulse[i] += change[i];

@@ -24,6 +24,13 @@ const FACET_UPDATES: u32 = 12;
 /// Events of pairs, with the index of their contact.
 pub(crate) type Events = Vec<(usize, PairEvent)>;
 
+/// Prepares the pairs for a step from positions `y`.
+pub(crate) fn start_step(model: &Model, y: &[f64], pairings: &mut [Pairing]) {
+    for (contact, pairing) in model.contacts.iter().zip(pairings) {
+        pairing.pairs.iter_mut().for_each(|pair| contact.kinematics.start_step(pair, y));
+    }
+}
+
 /// Updates the pairs for motion from `before` to `now`; returns whether that requires another
 /// solve.
 pub(crate) fn search(
@@ -43,7 +50,7 @@ pub(crate) fn search(
 
 /// Before the first load step, activates initial contacts if supports leave rigid motions free.
 /// Returns whether there are any.
-pub(crate) fn hold_on(model: &Model, evaluation: &mut Evaluation) -> bool {
+pub(crate) fn activate_initial(model: &Model, evaluation: &mut Evaluation) -> bool {
     if model.unconstrained.is_empty() || evaluation.pressing().next().is_some() {
         return false;
     }
@@ -175,14 +182,14 @@ fn update_facets(model: &Model, evaluation: &mut Evaluation, found: &mut Events)
 }
 
 /// Reports an active constraint without a row: supports prevent it from being satisfied.
-pub(crate) fn check_stuck(equations: &Equations, evaluation: &Evaluation) -> Result<(), Rejected> {
+pub(crate) fn check_satisfiable(equations: &Equations, evaluation: &Evaluation) -> Result<(), Rejected> {
     let model = equations.model;
     let rows = Constraints::of(equations, evaluation).places;
     for (k, p) in evaluation.pressing().filter(|place| !rows.contains(place)) {
         let (contact, depth) = (&model.contacts[k], -evaluation.rows[k].row(p).gap);
         if contact.interface.is_constraint() && depth > GAP_TOLERANCE * model.scale {
             let node = contact.kinematics.secondary()[evaluation.at.pairings[k].pairs[p].node];
-            return Err(Rejected::Stuck { contact: contact.name.clone(), node, depth });
+            return Err(Rejected::Overconstrained { contact: contact.name.clone(), node, depth });
         }
     }
     Ok(())

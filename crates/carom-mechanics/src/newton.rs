@@ -7,10 +7,12 @@
 //! slid off its facet. Nothing less is accepted.
 
 use crate::constraints::Constraints;
-use crate::contact_update::{ContactUpdate, Events, GAP_TOLERANCE, check_stuck, hold_on, search};
+use crate::contact_update::{
+    ContactUpdate, Events, GAP_TOLERANCE, activate_initial, check_satisfiable, search,
+};
 use crate::equations::{Equations, Evaluation, Iterate, Measure};
 use crate::linear_problem::{Correction, Goal};
-use crate::model::check_held;
+use crate::model::check_rigid_modes;
 use crate::rejected::Rejected;
 use crate::renewal::{FrozenTangent, Renewal};
 use crate::settings::{Settings, Tangent};
@@ -77,7 +79,7 @@ pub(crate) fn solve_stage(
         }
         begun => begun?,
     };
-    if is_static && hold_on(model, &mut now) {
+    if is_static && activate_initial(model, &mut now) {
         now = again(equations, now, work)?;
     }
     work.restore_factor(equations, &renewal)?;
@@ -102,7 +104,7 @@ pub(crate) fn solve_stage(
             work.linear.restart();
         }
         if iteration >= settings.max_iterations || (!is_static && grown > PATIENCE) {
-            check_stuck(equations, &now)?;
+            check_satisfiable(equations, &now)?;
             return Err(Rejected::NoConvergence {
                 iterations: effort.iterations,
                 step: step / model.scale,
@@ -111,7 +113,7 @@ pub(crate) fn solve_stage(
         }
         let rows = Constraints::of(equations, &now);
         if is_static {
-            check_held(&model.parts, &model.unconstrained, &now.place, rows.rows.iter())?;
+            check_rigid_modes(&model.parts, &model.unconstrained, &now.place, rows.rows.iter())?;
         }
         let made = renewal.made;
         renewal.due |= full;

@@ -27,7 +27,7 @@ pub enum Rejected {
     },
     /// Newton did not converge.
     #[error(
-        "Newton's method did not converge in {iterations} iterations: last step {step:.2e} L, residual {residual:.2e} of the forces"
+        "Newton's method did not converge in {iterations} iterations: last correction {step:.2e} L, residual {residual:.2e} of the sum of forces"
     )]
     NoConvergence {
         /// Number of iterations.
@@ -38,7 +38,7 @@ pub enum Rejected {
         residual: f64,
     },
     /// The active set returns to one visited before.
-    #[error("contact \"{contact}\": nodes {nodes:?} open and close in turn")]
+    #[error("contact \"{contact}\": the active set does not settle: nodes {nodes:?} open and close in turn")]
     Cycle {
         /// Contact.
         contact: String,
@@ -49,8 +49,10 @@ pub enum Rejected {
     #[error(transparent)]
     Linear(#[from] LinearError),
     /// An active constraint cannot be satisfied: its row has no independent free dofs.
-    #[error("contact \"{contact}\": node {node} penetrates by {depth:.3e} and supports leave it no way out")]
-    Stuck {
+    #[error(
+        "contact \"{contact}\": node {node} penetrates by {depth:.3e}, and supports prevent it from moving out"
+    )]
+    Overconstrained {
         /// Contact.
         contact: String,
         /// Global number of the secondary node.
@@ -71,7 +73,7 @@ pub enum Rejected {
     Unconstrained(#[from] Unconstrained),
     /// A moving support does not start at the position of its formula.
     #[error(
-        "a moved support would jump: node {node} is {distance:.3e} away from where its `move` has it at t = 0; let the formula begin where the node is"
+        "a moved support would jump: node {node} is {distance:.3e} from the position that its `move` gives at t = 0; let the formula begin at the position of the node"
     )]
     Jump {
         /// Global number of the node.
@@ -81,7 +83,7 @@ pub enum Rejected {
     },
     /// The contact forces of an explicit step do not converge.
     #[error(
-        "the contact forces of an explicit step did not settle in {rounds} rounds: a gap is still off by {gap:.3e}"
+        "the contact forces of an explicit step did not converge in {rounds} iterations: the error of a gap is still {gap:.3e}"
     )]
     Unsettled {
         /// Number of linearisations.
@@ -91,7 +93,7 @@ pub enum Rejected {
     },
     /// Penetration deeper than the scheme's law allows in one step.
     #[error(
-        "a node penetrates by {depth:.3e}, more than the {bound:.3e} that the contact law explains in this step"
+        "a node penetrates by {depth:.3e}, more than the {bound:.3e} that the contact law allows in this step"
     )]
     Deep {
         /// Depth of the deepest node.
@@ -116,7 +118,7 @@ impl Rejected {
             Self::NoConvergence { .. } | Self::Unsettled { .. } => "no-convergence",
             Self::Cycle { .. } => "active-set-cycle",
             Self::Linear(_) => "linear-solver",
-            Self::Stuck { .. } => "stuck-contact",
+            Self::Overconstrained { .. } => "overconstrained-contact",
             Self::NegativeMass => "negative-mass",
             Self::NoValue(_) => "no-value",
             Self::Unconstrained(_) => "unconstrained-body",

@@ -14,12 +14,12 @@ use crate::workspace::Workspace;
 /// Bisections of Δt before the run stops.
 const MAX_BISECTIONS: u32 = 12;
 
-/// Why a simulation stopped before its end; the state of the last grid time is kept.
+/// Why a simulation stopped before its end; the state of the last grid time is preserved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Stopped {
     /// No step from here is accepted, however small.
     #[error(
-        "no step from t = {time:.6} is accepted, not even Δt = {dt:.3e} ({halvings} halvings): {rejected}"
+        "the step at t = {time:.6} was bisected {halvings} times, to Δt = {dt:.3e}, and is still rejected: {rejected}"
     )]
     NoStep {
         /// Time of the last accepted state.
@@ -33,7 +33,7 @@ pub enum Stopped {
     },
     /// The scheme created energy.
     #[error(
-        "energy was created at t = {time:.6}: {created:.4e}, which is {:.2} % of the energy scale {scale:.4e}; {:.3} % are allowed", 100.0 * created / scale, 100.0 * share
+        "energy was created at t = {time:.6}: {created:.4e}, which is {:.2} % of the energy scale {scale:.4e}; the limit is {:.3} %", 100.0 * created / scale, 100.0 * share
     )]
     EnergyGuard {
         /// Time.
@@ -113,16 +113,56 @@ pub struct GridReport {
     pub events: Vec<LogEvent>,
 }
 
-/// A grid of times with its energy guard.
+/// A grid of times with its energy guard: 0, (1 − phase)Δt, (2 − phase)Δt, … , end. A phase other
+/// than 0 shifts all instants between by this fraction of a step; the first and the last step are
+/// shorter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     /// Step Δt.
     pub dt: f64,
     /// Steps to the end.
     pub steps: u64,
+    /// Shift as a fraction of a step, in [0, 1).
+    pub phase: f64,
     /// Fraction of the largest energy so far that may be created before the run stops; none
     /// disables the guard.
     pub guard: Option<f64>,
+}
+
+impl Grid {
+    /// The time after so many steps.
+    pub fn time(&self, step: u64) -> f64 {
+        if self.phase == 0.0 {
+            step as f64 * self.dt
+        } else if step == 0 {
+            0.0
+        } else if step < self.steps {
+            (step as f64 - self.phase) * self.dt
+        } else {
+            (self.steps - 1) as f64 * self.dt
+        }
+    }
+
+    /// Length of a step, counted from 1.
+    pub fn length(&self, step: u64) -> f64 {
+        if self.phase == 0.0 {
+            self.dt
+        } else if step <= 1 {
+            (1.0 - self.phase) * self.dt
+        } else if step < self.steps {
+            self.dt
+        } else {
+            self.phase * self.dt
+        }
+    }
+
+    /// Number of the step whose end is nearest to a time.
+    pub fn nearest(&self, time: f64) -> u64 {
+        let last = self.steps.saturating_sub(1);
+        let step = ((time / self.dt + self.phase).round() as u64).min(self.steps);
+        let nearer = |other: u64| (self.time(other) - time).abs() < (self.time(step) - time).abs();
+        [step.saturating_sub(1), last].into_iter().find(|&other| nearer(other)).unwrap_or(step)
+    }
 }
 
 /// A model with its state.
@@ -130,11 +170,9 @@ pub struct Simulation {
     model: Model,
     /// At the last grid time.
     state: State,
-    dt: f64,
-    steps: u64,
+    grid: Grid,
     stepper: Box<dyn Stepper>,
     work: Workspace,
-    guard: Option<f64>,
 }
 
 impl Simulation {
@@ -161,8 +199,7 @@ impl Simulation {
     pub fn resume(model: Model, stepper: Box<dyn Stepper>, grid: Grid, state: State, threads: usize) -> Self {
         let model = model.on_threads(threads);
         let work = Workspace::new(&model);
-        let Grid { dt, steps, guard } = grid;
-        Self { model, state, dt, steps, stepper, work, guard }
+        Self { model, state, grid, stepper, work }
     }
 
     /// The constant data.
@@ -180,14 +217,19 @@ impl Simulation {
         self.state
     }
 
+    /// The grid of times.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
     /// Grid step Δt.
     pub fn dt(&self) -> f64 {
-        self.dt
+        self.grid.dt
     }
 
     /// Grid steps to the end.
     pub fn steps(&self) -> u64 {
-        self.steps
+        self.grid.steps
     }
 
     /// Continues from another state of the same model: what follows is bitwise what followed it
@@ -207,7 +249,7 @@ impl Simulation {
 
     /// Whether the end time is reached.
     pub fn finished(&self) -> bool {
-        self.state.step >= self.steps
+        self.state.step >= self.grid.steps
     }
 
     /// Wall time by phase so far.
@@ -251,14 +293,14 @@ impl Simulation {
     }
 
     fn advance_here(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
-        let start = self.state.step as f64 * self.dt;
+        let (start, length) = (self.grid.time(self.state.step), self.grid.length(self.state.step + 1));
         // The state after the substeps so far; none before the first.
         let mut reached: Option<State> = None;
         // Progress through the grid step in units of Δt/2^level.
         let rejected = report.rejected;
         let (mut level, mut done) = (self.state.bisection.level(), 0_u64);
         while done < 1 << level {
-            let dt = self.dt / f64::from(1_u32 << level);
+            let dt = length / f64::from(1_u32 << level);
             let time = start + done as f64 * dt;
             let to = start + (done + 1) as f64 * dt;
             match self.stepper.step(
@@ -315,7 +357,7 @@ impl Simulation {
         let Some(mut state) = reached else { return Ok(()) };
         state.bisection = self.state.bisection.after(report.rejected > rejected);
         state.step += 1;
-        state.time = state.step as f64 * self.dt;
+        state.time = self.grid.time(state.step);
         self.watch(&state)?;
         self.work.put(std::mem::replace(&mut self.state, state));
         Ok(())
@@ -323,7 +365,7 @@ impl Simulation {
 
     /// Checks the energy guard.
     fn watch(&self, state: &State) -> Result<(), Stopped> {
-        let Some(share) = self.guard else { return Ok(()) };
+        let Some(share) = self.grid.guard else { return Ok(()) };
         let ledger = &state.ledger;
         let (created, scale) = (ledger.rise(), ledger.scale());
         // Round-off of the energies themselves does not count.

@@ -162,7 +162,7 @@ impl TangentFactor {
             self.places.push((*compliance == 0.0).then_some(index));
         }
         saddle.begin(condensed.schur(), elimination.schur_size(), self.places.iter().flatten().count());
-        let place = |unknown: usize| elimination.kept_place(unknown);
+        let place = |unknown: usize| elimination.schur_place(unknown);
         rows.each_entry(model, |r, unknown, slope| {
             let included = !(self.of_mass && model.massless[model.free[unknown]]);
             if let (Some(row), Some(a)) = (self.places[r].filter(|_| included), place(unknown)) {
@@ -189,7 +189,7 @@ impl TangentFactor {
         let Some(condensed) = (if self.of_mass { &mut self.mass } else { &mut self.tangent }) else { return };
         let (x, multipliers) = x.split_at_mut(unknowns);
         condensed.eliminate_into(x, &mut self.inner);
-        self.saddle.solve(condensed.kept_part(&mut self.inner), multipliers);
+        self.saddle.solve(condensed.schur_part(&mut self.inner), multipliers);
         condensed.substitute_into(&mut self.inner, x);
     }
 

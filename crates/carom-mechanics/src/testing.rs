@@ -107,5 +107,6 @@ pub(crate) fn model(
 pub(crate) fn simulation(model: Model, scheme: impl Kernel + 'static, dt: f64) -> Simulation {
     let settings = Settings { tolerance: 1e-9, max_iterations: 20, tangent: Tangent::Full, mixing: 0 };
     let stepper = Box::new(Implicit::new(Box::new(scheme), settings));
-    Simulation::new(model, stepper, Grid { dt, steps: u64::MAX, guard: None }, true, None, 1).unwrap()
+    Simulation::new(model, stepper, Grid { dt, steps: u64::MAX, phase: 0.0, guard: None }, true, None, 1)
+        .unwrap()
 }

@@ -28,6 +28,7 @@ pub mod study;
 pub mod verification;
 mod vtkhdf;
 mod vtu;
+mod warning;
 mod writer;
 
 pub use error::RecordError;
@@ -38,4 +39,5 @@ pub use pvd::{FieldEntry, FieldFormat};
 pub use rows::{ContactRow, Event};
 pub use run::{History, Run};
 pub use vtu::{Block, Cell, FieldSet, PointArray};
+pub use warning::Warning;
 pub use writer::{Reopened, RunWriter, last_checkpoint};

@@ -6,7 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{RecordError, files};
+use crate::{RecordError, Warning, files};
 
 /// Status of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -131,9 +131,9 @@ pub struct Manifest {
     /// boundary, facet by facet, with interior points between the end points of a facet.
     #[serde(default)]
     pub sides: BTreeMap<String, Vec<Vec<usize>>>,
-    /// Warnings about the case.
+    /// Doubts about the case, and, once the run has finished, about its results.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     /// Wall seconds per phase.
     pub timings: BTreeMap<String, f64>,
     /// Counts: steps, newton, factorisations, rejected, …
@@ -192,7 +192,7 @@ impl Manifest {
         let known = PHASES.iter().filter_map(|&(name, what)| Some((name, what, *self.timings.get(name)?)));
         let mut phases: Vec<_> = known.collect();
         let remainder = total - phases.iter().map(|(.., seconds)| seconds).sum::<f64>();
-        phases.push(("rest", "sums, energies, projections, decisions", remainder.max(0.0)));
+        phases.push(("other", "sums, energies, projections, control logic", remainder.max(0.0)));
         phases
     }
 

@@ -8,6 +8,7 @@
 //! difference of the recorded `contact_impulse`, which the time integrator accumulates; a mean
 //! force over a window w is [P(t + w) − P(t)]/w, not a mean of samples.
 
+mod averaged;
 mod book;
 mod column;
 mod compare;
@@ -23,6 +24,7 @@ mod samples;
 mod striker;
 mod table;
 
+pub use averaged::of_averages;
 pub use book::book_table;
 pub use column::column_roughness;
 pub use compare::{deviation, phase_shift};
@@ -31,7 +33,7 @@ pub use episode::{Episode, default_bridge, episodes, first_episode};
 pub use evaluated::{all, of_column, of_run, probe_columns};
 pub use facts::{Facts, contact_force};
 pub use force::high_frequency;
-pub use ledger::energy_lost_at;
+pub use ledger::{MUCH_CREATED, energy_lost_at};
 pub use pressure::hertz;
 pub(crate) use samples::extreme;
 pub use samples::{at, peak_mean, roughness, total_variation};

@@ -57,7 +57,7 @@ fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Vec<Cu
         let points: Vec<(f64, f64)> =
             arms.into_iter().filter_map(&point).filter(|p| p.0 > 0.0 && p.1 > 0.0).collect();
         let (x, y) = points.into_iter().unzip();
-        Curve { label: name.to_owned(), style, x, y, marked: true }
+        Curve { label: name.to_owned(), style, x, y, marked: true, apart: false }
     };
     methods(study).into_iter().enumerate().map(curve).filter(|c| !c.x.is_empty()).collect()
 }
@@ -177,8 +177,8 @@ fn multiples(study: &Study, column: &Column, time: &str) -> Option<Plot> {
     for (style, (name, arms)) in methods(study).into_iter().enumerate().take(MULTIPLES) {
         let Some(finest) = arms.last() else { continue };
         let Some((_, x, y)) = column.curves.iter().find(|(arm, ..)| arm == finest) else { continue };
-        let curve =
-            Curve { label: String::new(), style: style % 8, x: x.clone(), y: y.clone(), marked: false };
+        let (x, y) = (x.clone(), y.clone());
+        let curve = Curve { label: String::new(), style: style % 8, x, y, marked: false, apart: false };
         let y_label = if panes.len() % 3 == 0 { with_unit(&label, &column.unit) } else { String::new() };
         panes.push(Pane {
             title: name.to_owned(),
@@ -250,7 +250,7 @@ fn theory(study: &Study) -> Option<Plot> {
             let of = table.iter().filter(|r| &r[0] == *name);
             let points = of.filter_map(|r| Some((r[1].parse::<f64>().ok()?, r[column].parse::<f64>().ok()?)));
             let (x, y) = points.unzip();
-            Curve { label: (*name).to_owned(), style, x, y, marked: false }
+            Curve { label: (*name).to_owned(), style, x, y, marked: false, apart: false }
         })
     };
     let pane = |title: &str, y_label: &str, column: usize, limits: (f64, f64)| Pane {

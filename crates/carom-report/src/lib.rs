@@ -15,6 +15,7 @@ mod convergence;
 mod design;
 mod digits;
 mod document;
+mod ensemble;
 mod figures;
 mod integrity;
 mod labels;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_record::{FieldFormat, Run, Status, metrics};
+use carom_record::{FieldFormat, Run, Status, Warning, metrics};
 use maud::{Markup, Render, html};
 use serde_json::Value;
 
@@ -30,7 +30,7 @@ pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, no
     let (setup, others): (Vec<_>, Vec<_>) = figures.iter().enumerate().partition(|(_, f)| f.name == "setup");
     let body = html! {
         (header(run))
-        @for warning in &run.manifest.warnings { p { b.miss { "Warning:" } " " (warning) "." } }
+        @for warning in &run.manifest.warnings { (warning_line(warning)) }
         @for note in notes { p.small { (note) } }
         @for f in setup { (figure(f)) }
         @if let Some(animation) = animation { (animation) }
@@ -43,6 +43,16 @@ pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, no
         (reproduce(run))
     };
     document(title, "", &body)
+}
+
+fn warning_line(warning: &Warning) -> Markup {
+    let Warning { id, place, what, why, advice } = warning;
+    html! {
+        p {
+            b.miss { "Warning" } " (" code { (id) } "), " (place) ": " (what) "; " (why) ". Try "
+            (advice) "."
+        }
+    }
 }
 
 fn header(run: &Run) -> Markup {

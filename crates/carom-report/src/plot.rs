@@ -25,7 +25,19 @@ pub(crate) struct Curve {
     pub(crate) y: Vec<f64>,
     /// Whether the points have markers.
     pub(crate) marked: bool,
+    /// Whether it is of an unsound run: dashed and grey, and without influence on the axes.
+    pub(crate) apart: bool,
 }
+
+impl Curve {
+    /// Colour, dashes and marker number.
+    pub(crate) fn style(&self) -> (&'static str, &'static str, usize) {
+        if self.apart { APART } else { style(self.style) }
+    }
+}
+
+/// The style of every unsound run.
+pub(crate) const APART: (&str, &str, usize) = ("#b0b0b0", "4 3", 0);
 
 /// One panel: axes and curves.
 #[derive(Clone, Debug, Default)]
@@ -114,6 +126,14 @@ impl Scale {
     }
 }
 
+impl Pane {
+    /// The curves that set the axes: those of unsound runs do only where there is no other.
+    fn setting_axes(&self) -> impl Iterator<Item = &Curve> {
+        let all_apart = self.curves.iter().all(|curve| curve.apart);
+        self.curves.iter().filter(move |curve| all_apart || !curve.apart)
+    }
+}
+
 impl Plot {
     fn shown<'a>(&self, values: impl Iterator<Item = &'a f64>, axis: usize) -> (f64, f64) {
         let log = self.log[axis];
@@ -121,7 +141,7 @@ impl Plot {
     }
 
     fn x_range(&self) -> (f64, f64) {
-        self.shown(self.panes.iter().flat_map(|p| &p.curves).flat_map(|c| &c.x), 0)
+        self.shown(self.panes.iter().flat_map(Pane::setting_axes).flat_map(|c| &c.x), 0)
     }
 
     fn y_range(&self, pane: &Pane) -> (f64, f64) {
@@ -133,7 +153,7 @@ impl Plot {
             let middle: Vec<f64> = band.collect();
             let floor = pane.floor.as_ref().map(|f| f.0);
             pane.limits.unwrap_or_else(|| {
-                self.shown(pane.curves.iter().flat_map(|c| &c.y).chain(&middle).chain(&floor), 1)
+                self.shown(pane.setting_axes().flat_map(|c| &c.y).chain(&middle).chain(&floor), 1)
             })
         };
         if !self.same {
@@ -145,12 +165,12 @@ impl Plot {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (c, d)| (a.min(c), b.max(d)))
     }
 
-    /// Distinct labels with their styles.
-    pub(crate) fn legend(&self) -> Vec<(&str, usize, bool)> {
-        let mut found: Vec<(&str, usize, bool)> = Vec::new();
+    /// A curve of each distinct label.
+    pub(crate) fn legend(&self) -> Vec<&Curve> {
+        let mut found: Vec<&Curve> = Vec::new();
         for curve in self.panes.iter().flat_map(|p| &p.curves).filter(|c| !c.label.is_empty()) {
-            if !found.iter().any(|(label, ..)| *label == curve.label) {
-                found.push((&curve.label, curve.style, curve.marked));
+            if !found.iter().any(|known| known.label == curve.label) {
+                found.push(curve);
             }
         }
         found
@@ -235,7 +255,9 @@ impl Plot {
                 "<path d=\"M{x0:.1} {y0:.1}v{high:.1}h{wide:.1}\" fill=\"none\" stroke=\"#222\" \
                  stroke-width=\"0.9\"/>"
             );
-            for curve in &pane.curves {
+            // Unsound runs lie behind the others.
+            let (behind, front): (Vec<_>, Vec<_>) = pane.curves.iter().partition(|curve| curve.apart);
+            for curve in behind.into_iter().chain(front) {
                 draw(&mut out, curve, &id, &to_x, &to_y);
             }
             let size = if across > 2.0 { 10.5 } else { 12.0 };
@@ -268,15 +290,15 @@ impl Plot {
         for (row, line) in lines.iter().enumerate() {
             let (mut x, y) = (LEFT, end + 24.0 + 18.0 * row as f64);
             for i in line {
-                let (label, number, marked) = legend[*i];
-                let (color, dashes, marker) = style(number);
-                let dashes = if marked { "" } else { dashes };
+                let Curve { label, marked, .. } = legend[*i];
+                let (color, dashes, marker) = legend[*i].style();
+                let dashes = if *marked { "" } else { dashes };
                 let _ = writeln!(
                     out,
                     "<path d=\"M{x:.1} {y:.1}h26\" stroke=\"{color}\" stroke-width=\"1.8\" \
                      stroke-dasharray=\"{dashes}\"/>"
                 );
-                if marked {
+                if *marked {
                     mark(&mut out, marker, color, x + 13.0, y);
                 }
                 write_text(&mut out, x + 32.0, y + 4.0, "font-size=\"12\"", label);
@@ -309,10 +331,10 @@ fn entry(label: &str) -> f64 {
     50.0 + text::width(label) * 12.0
 }
 
-fn legend_lines(legend: &[(&str, usize, bool)]) -> Vec<Vec<usize>> {
+fn legend_lines(legend: &[&Curve]) -> Vec<Vec<usize>> {
     let mut lines: Vec<Vec<usize>> = Vec::new();
     let mut used = f64::INFINITY;
-    for (i, (label, ..)) in legend.iter().enumerate() {
+    for (i, Curve { label, .. }) in legend.iter().enumerate() {
         if used + entry(label) > WIDTH - LEFT {
             lines.push(Vec::new());
             used = 0.0;
@@ -355,11 +377,12 @@ fn marks(
 }
 
 fn draw(out: &mut String, curve: &Curve, id: &str, to_x: &dyn Fn(f64) -> f64, to_y: &dyn Fn(f64) -> f64) {
-    let (color, dashes, marker) = style(curve.style);
+    let (color, dashes, marker) = curve.style();
     let points: Vec<(f64, f64)> = curve.x.iter().zip(&curve.y).map(|(x, y)| (to_x(*x), to_y(*y))).collect();
     let d = trace::path(points.iter().copied());
     // A curve alone in its pane needs no dashes to be identified.
-    let dashes = if curve.marked || curve.label.is_empty() { "" } else { dashes };
+    let alone = curve.label.is_empty() && !curve.apart;
+    let dashes = if curve.marked || alone { "" } else { dashes };
     let _ = writeln!(
         out,
         "<path clip-path=\"url(#{id})\" d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.4\" \
@@ -399,6 +422,7 @@ pub(crate) mod tests {
             x: vec![1e-3, 1e-2],
             y: vec![0.0, 2e-4],
             marked: true,
+            apart: false,
         };
         Plot {
             name: "error-cost".into(),
@@ -427,5 +451,29 @@ pub(crate) mod tests {
     #[test]
     fn forty_styles_differ() {
         assert_eq!((0..40).map(style).collect::<std::collections::HashSet<_>>().len(), 40);
+    }
+
+    #[test]
+    fn an_unsound_run_is_grey_and_does_not_set_the_axes() {
+        let mut plot = plot();
+        plot.log = [false, false];
+        let curve = |label: &str, apart: bool, high: f64| Curve {
+            label: label.into(),
+            style: 0,
+            x: vec![0.0, 1.0],
+            y: vec![0.0, high],
+            marked: false,
+            apart,
+        };
+        let with = |plot: &Plot, curves: Vec<Curve>| {
+            let panes = vec![Pane { curves, ..plot.panes[0].clone() }];
+            Plot { panes, ..plot.clone() }
+        };
+        let fails = curve("fails", true, 50.0);
+        let both = with(&plot, vec![curve("finishes", false, 1.0), fails.clone()]);
+        assert_eq!((both.y_range(&both.panes[0]), both.legend().len()), ((0.0, 1.0), 2));
+        assert!(both.svg().contains(&format!("stroke=\"{}\"", APART.0)));
+        let alone = with(&plot, vec![fails]);
+        assert_eq!(alone.y_range(&alone.panes[0]), (0.0, 50.0));
     }
 }

@@ -130,7 +130,15 @@ impl Ranked<'_> {
 /// The tables.
 pub(crate) fn tables(study: &Study, ranking: &Ranking) -> Markup {
     let ranked = Ranked { study, arms: ranking.levels.iter().flatten().map(|r| r.arm).collect() };
-    let errors: Vec<f64> = ranking.levels.iter().flatten().map(|r| r.error).collect();
+    let errors: Vec<String> = ranking
+        .levels
+        .iter()
+        .flatten()
+        .map(|r| match r.uncertainty {
+            0.0 => three(r.error),
+            range => format!("{} ± {}", three(r.error), three(range)),
+        })
+        .collect();
     let place = |arm: usize| ranked.arms.iter().position(|a| *a == arm);
     let matched = study
         .manifest
@@ -139,7 +147,7 @@ pub(crate) fn tables(study: &Study, ranking: &Ranking) -> Markup {
         .filter(|_| study.manifest.arms.iter().any(|a| study.manifest.by_cost(a)));
     let mut first = vec![
         ranked.column("Δt", |arm| step(&study.manifest.arms[arm], "time.step").map(five)),
-        ranked.column("Error", |arm| place(arm).map(|i| three(errors[i]))),
+        ranked.column("Error", |arm| place(arm).map(|i| errors[i].clone())),
         ranked.delay(),
         ranked.metric("Steps", "steps"),
         ranked.metric("Newton iterations", "newton_iterations"),

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use crate::plot::{Pane, Plot, style};
+use crate::plot::{APART, Pane, Plot, style};
 
 /// The script; every `@WORD@` is replaced.
 const SCRIPT: &str = r##"#!/usr/bin/env python3
@@ -21,12 +21,15 @@ with open(here / "@NAME@.csv", encoding="utf-8", newline="") as file:
 colors = @COLORS@
 dashes = @DASHES@
 styles = @STYLES@
+apart = @APART@  # dashed grey, without influence on the axes
 y_labels = @Y_LABELS@
 limits, floors = @LIMITS@, @FLOORS@
 marks = @MARKS@
 marked, across = @MARKED@, @ACROSS@
 
 def style(label):
+    if label in apart:
+        return {"color": "@APART_COLOR@", "ls": @APART_DASHES@, "zorder": 1}
     i = styles[label]
     if marked:
         return {"color": colors[i % 8], "marker": "os^Dv"[i % 5], "ms": 4}
@@ -42,8 +45,10 @@ for k, (title, curves) in enumerate(panes.items()):
     low, high = curves.pop("reference, low", None), curves.pop("reference, high", None)
     if low:
         ax.fill_between(low[0], low[1], high[1], color="#cfcfcf")
-    for label, (x, y) in curves.items():
-        ax.plot(x, y, lw=1.2, label=label, **style(label))
+    for label in sorted(curves, key=lambda label: label in apart):
+        if label in apart and not apart.issuperset(curves):
+            ax.set(xlim=ax.get_xlim(), ylim=ax.get_ylim())
+        ax.plot(*curves[label], lw=1.2, label=label, **style(label))
     for x, word in marks[k]:
         ax.axvline(x, color="#777777", lw=0.7, ls=":")
         ax.annotate(
@@ -101,6 +106,8 @@ impl Plot {
         let mut styles: Vec<String> = curves().map(|c| format!("{:?}: {}", c.label, c.style)).collect();
         styles.sort_unstable();
         styles.dedup();
+        let mut apart: Vec<String> = curves().filter(|c| c.apart).map(|c| format!("{:?}", c.label)).collect();
+        apart.dedup();
         let truth = |yes: bool| if yes { "True" } else { "False" }.to_owned();
         let scale = |axis: usize| if self.log[axis] { "log" } else { "linear" }.to_owned();
         let dashes: Vec<String> = (0..8).map(|i| dashes(style(i).1)).collect();
@@ -109,6 +116,12 @@ impl Plot {
             ("COLORS", format!("{:?}", [0, 1, 2, 3, 4, 5, 6, 7].map(|i| style(i).0))),
             ("DASHES", format!("[{}]", dashes.join(", "))),
             ("STYLES", format!("{{{}}}", styles.join(", "))),
+            (
+                "APART",
+                if apart.is_empty() { "set()".to_owned() } else { format!("{{{}}}", apart.join(", ")) },
+            ),
+            ("APART_COLOR", APART.0.to_owned()),
+            ("APART_DASHES", self::dashes(APART.1)),
             ("Y_LABELS", list(&|p| format!("{:?}", plain(&p.y_label)))),
             ("LIMITS", list(&|p| p.limits.map_or("None".into(), |l| format!("{l:?}")))),
             ("FLOORS", list(&|p| p.floor.as_ref().map_or("None".into(), mark))),

@@ -74,11 +74,18 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
             x: x.clone(),
             y: y.clone(),
             marked: false,
+            apart: study.rows[*arm].is_unsound(),
         });
         let curves: Vec<Curve> = curves.collect();
         if curves.is_empty() {
             return None;
         }
+        let apart = if curves.iter().any(|curve| curve.apart) {
+            " Dashed grey: arms that failed, up to where they stopped, and arms that created more energy than the \
+             default guard allows; they do not set the axes."
+        } else {
+            ""
+        };
         let file = file_name(&column.name);
         let (name, part) = match (groups.len(), &members[..]) {
             (2.., [first, .., last]) => {
@@ -89,7 +96,7 @@ fn overlays(column: &Column, study: &Study, time: &str) -> Vec<Plot> {
         };
         Some(Plot {
             name,
-            caption: format!("{}{part}.", capitalised(&what)),
+            caption: format!("{}{part}.{apart}", capitalised(&what)),
             x_label: with_unit("time t", time),
             log: [false, false],
             across: 1,

@@ -1,16 +1,17 @@
 //! `study.html`: recommendation, arms, ranking, figures and metrics of a study as a single
 //! self-contained page.
 
-use carom_record::Status;
-use carom_record::study::{Row, Study, Verdict};
+use carom_record::study::ensemble::Spread;
+use carom_record::study::{Held, Row, Study, Verdict};
+use carom_record::{Status, Warning};
 use maud::{Markup, PreEscaped, Render, html};
 
 use crate::collected::Origin;
-use crate::digits::five;
+use crate::digits::{five, three};
 use crate::document::{document, figure, file, joined, minus, or_dash};
-use crate::plot::{Plot, style};
+use crate::plot::{APART, Plot, style};
 use crate::text::{Label, Prose};
-use crate::{convergence, design, integrity, verdict};
+use crate::{convergence, design, ensemble, integrity, verdict};
 
 /// Arms in one table of metrics; more arms need more tables.
 const ACROSS: usize = 8;
@@ -38,8 +39,10 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
         (setup(study, picture))
         (arms(study))
         (verdict::rankings(study))
-        (claims(&study.verdicts))
+        (claims(study))
+        (ensemble::section(study))
         (expectations(study))
+        (warnings(study, origins))
         h2 { "Figures" }
         @for (i, plot) in plots.iter().enumerate() {
             (figure(i + 1, &plot.name, &["svg", "csv", "py"], &plot.caption, &plot.svg()))
@@ -114,7 +117,7 @@ fn arms(study: &Study) -> Markup {
                 @for (i, (row, arm)) in study.rows.iter().zip(&m.arms).enumerate() {
                     tr {
                         td.n { (i + 1) }
-                        td { (line(i)) }
+                        td { (line(i, row.is_unsound())) }
                         td {
                             a href={ (arm.directory) "/report.html" } { (row.name) }
                             @if m.reference.as_ref() == Some(&row.name) { " (reference)" }
@@ -125,7 +128,7 @@ fn arms(study: &Study) -> Markup {
                             (codes(&arm.sets, html! { br; }))
                         }
                         td.n { (arm.steps) }
-                        (ended(row))
+                        (ended(study, i, row))
                     }
                 }
             }
@@ -134,7 +137,7 @@ fn arms(study: &Study) -> Markup {
 }
 
 /// How an arm ended, and why.
-fn ended(row: &Row) -> Markup {
+fn ended(study: &Study, arm: usize, row: &Row) -> Markup {
     let (class, word) = match row.status {
         Some(Status::Finished) => ("pass", "finished"),
         Some(Status::Failed) => ("miss", "failed"),
@@ -145,13 +148,14 @@ fn ended(row: &Row) -> Markup {
         td.(class) {
             (word)
             @if let Some(reason) = &row.reason { br; span.small { (reason) } }
+            @if let Some(others) = study.finished_alike(arm) { br; span.small { (others) } }
         }
     }
 }
 
 /// The line of an arm in the figures.
-fn line(arm: usize) -> Markup {
-    let (color, dashes, _) = style(arm);
+fn line(arm: usize, apart: bool) -> Markup {
+    let (color, dashes, _) = if apart { APART } else { style(arm) };
     html! {
         svg.line width="44" height="10" {
             path d="M1 5h42" stroke=(color) stroke-width="2" stroke-dasharray=(dashes) {}
@@ -159,24 +163,59 @@ fn line(arm: usize) -> Markup {
     }
 }
 
-fn claims(verdicts: &[Verdict]) -> Markup {
-    let class = |v: &Verdict| match v.holds {
-        Some(true) => "pass",
-        Some(false) => "miss",
-        None => "undecided",
+fn claims(study: &Study) -> Markup {
+    let class = |v: &Verdict| match (&v.held, v.holds) {
+        (Some(held), _) if held.held == held.of => "pass",
+        (Some(held), _) if held.held == 0 => "miss",
+        (None, Some(true)) => "pass",
+        (None, Some(false)) => "miss",
+        _ => "undecided",
     };
+    let ratio = |held: &Held| {
+        let of = |spread: &Spread| {
+            let (low, high) = spread.range();
+            format!("{} ({} to {})", three(spread.median()), three(low), three(high))
+        };
+        held.ratio.as_ref().map_or_else(String::new, of)
+    };
+    let all = study.manifest.ensemble.is_some();
     html! {
-        @if !verdicts.is_empty() {
+        @if !study.verdicts.is_empty() {
             h2 { "Claims" }
             table {
-                thead { tr { th { "Claim" } th.n { "Left side" } th.n { "Right side" } th { "Result" } } }
-                @for v in verdicts {
+                thead {
+                    tr {
+                        th { "Claim" }
+                        @if all { th { "Held in" } th.n { "Left/right: median (range)" } }
+                        th.n { "Left side" } th.n { "Right side" } th { "Result" }
+                    }
+                }
+                @for v in &study.verdicts {
                     tr {
                         td { (v.claim.text) br; code { (v.claim.compare) } }
+                        @if all {
+                            @match &v.held {
+                                Some(held) => {
+                                    td { (held.held) " of " (held.of) } td.n { (ratio(held)) }
+                                },
+                                None => { td { "–" } td.n { "–" } },
+                            }
+                        }
                         td.n { (or_dash(v.left, five)) }
                         td.n { (or_dash(v.right, five)) }
-                        td.(class(v)) { (v.word()) }
+                        td.(class(v)) {
+                            @match &v.held {
+                                Some(held) => { "holds " (held.word()) },
+                                None => (v.word()),
+                            }
+                        }
                     }
+                }
+            }
+            @if all {
+                p.small {
+                    "Held in: members of the ensemble in which the comparison is true, of those in which it \
+                     can be decided. Left and right side: of the arms as given."
                 }
             }
         }
@@ -217,6 +256,37 @@ fn expectations(study: &Study) -> Markup {
                     }
                 }
             }
+        }
+    }
+}
+
+/// The warnings of all arms; one that several arms share is listed once.
+fn warnings(study: &Study, origins: &[Origin]) -> Markup {
+    let mut shared: Vec<(&Warning, Vec<usize>)> = Vec::new();
+    for (arm, warning) in origins.iter().flat_map(|o| o.warnings.iter().map(|warning| (o.arm, warning))) {
+        match shared.iter_mut().find(|(known, _)| *known == warning) {
+            Some((_, arms)) => arms.push(arm),
+            None => shared.push((warning, vec![arm])),
+        }
+    }
+    html! {
+        @if !shared.is_empty() {
+            h2 { "Warnings" }
+            table {
+                thead { tr { th { "Warning" } th { "What was found, and why it matters" } th { "Try" } th { "Arms" } } }
+                @for (warning, arms) in shared {
+                    tr {
+                        td { code { (warning.id) } }
+                        td { (warning.place) ": " (warning.what) "; " (warning.why) "." }
+                        td { (warning.advice) }
+                        td {
+                            @if arms.len() == study.rows.len() && arms.len() > 1 { "all" }
+                            @else { (joined(arms.iter().map(|arm| arm + 1), ", ")) }
+                        }
+                    }
+                }
+            }
+            p.small { "Arms by their number." }
         }
     }
 }

@@ -2,8 +2,8 @@
 //! the first contact.
 
 use carom_record::metrics::WORK;
-use carom_record::study::design::Goal;
-use carom_record::study::ranking::{Ranking, error, standing};
+use carom_record::study::design::{Goal, Kind};
+use carom_record::study::ranking::{Crosscheck, Ranking, error, standing};
 use carom_record::study::reference::{Reference, Standing};
 use carom_record::study::{Arm, Study, step};
 use maud::{Markup, html};
@@ -45,17 +45,20 @@ const COLUMNS: [&str; 11] = [
 pub(crate) fn summary(study: &Study) -> Markup {
     let Some(ranking) = &study.ranking else { return Markup::default() };
     let goal = format!("Goal: {} ({}).", ranking.goal.word(), ranking.goal.meaning());
-    let Some(verdict) = &ranking.verdict else {
-        let why = match &ranking.measure {
-            Err(why) => why.clone(),
-            Ok(measure) => format!("not available in any arm: {}", measure.words),
-        };
-        return html! {
-            section.verdict.none {
-                h2 { "No recommendation" }
-                p { (Prose(&goal)) " The arms cannot be ranked: " (Label(&why)) "." }
-            }
-        };
+    let verdict = match &ranking.verdict {
+        Ok(verdict) => verdict,
+        Err(reasons) => {
+            return html! {
+                section.verdict.none {
+                    h2 { "No recommendation" }
+                    p { (Prose(&goal)) }
+                    ul {
+                        @for reason in reasons { li { (Label(reason)) } }
+                        @if let Err(why) = &ranking.measure { li { (Label(why)) } }
+                    }
+                }
+            };
+        }
     };
     let arm = &study.manifest.arms[verdict.arm];
     let sets: Vec<&String> =
@@ -150,6 +153,7 @@ pub(crate) fn rankings(study: &Study) -> Markup {
             @let uncertainty = three(measure.uncertainty);
             p { "Ranked by " (Label(&measure.words)) " (uncertainty of the errors: " (uncertainty) ")." }
             (ranked_table(study, ranking))
+            (crosschecks(study, ranking))
         }
         (other_goals(study))
         @match &study.reference {
@@ -158,6 +162,49 @@ pub(crate) fn rankings(study: &Study) -> Markup {
                 "The study has no finished reference: only quantities whose exact value is known, such as \
                  the energy, can be ranked."
             },
+        }
+    }
+}
+
+/// Which conclusions change between equal steps and equal cost.
+fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
+    let Some(design) = study.manifest.design.as_ref().filter(|_| !ranking.crosschecks.is_empty()) else {
+        return Markup::default();
+    };
+    let other = if design.kind == Kind::MatchedCost { "equal steps" } else { "equal cost" };
+    let value = |check: &Crosscheck| match check.at {
+        "step" => format!("Δt = {}", five(check.value)),
+        _ => format!("{} s of processor time", three(check.value)),
+    };
+    let best = |check: &Crosscheck| {
+        let shown = check.errors.iter().take(5).map(|(method, error)| format!("{method} {}", three(*error)));
+        shown.collect::<Vec<_>>().join(" · ")
+    };
+    html! {
+        h3 { "The same at " (other) }
+        table {
+            thead {
+                tr {
+                    th { "Level" } th { "Ranked first" } th { "Compared at" } th { "Smallest errors there" }
+                    th { "Conclusion" }
+                }
+            }
+            @for check in &ranking.crosschecks {
+                tr {
+                    td { "Δt " (or_dash(design.steps.get(check.level).copied(), five)) }
+                    td { (check.first) } td { (value(check)) } td { (best(check)) }
+                    td {
+                        @match check.changes() {
+                            Some(method) => { "changes: " (method) " is better" },
+                            None => "does not change",
+                        }
+                    }
+                }
+            }
+        }
+        p.small {
+            "Errors of every method interpolated between its levels (linearly in logarithms) at the value of \
+             the arm that is ranked first; a method whose levels do not reach it is left out."
         }
     }
 }
@@ -180,13 +227,25 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
         details {
             summary { "Reference values and their uncertainties" }
             table {
-                thead { tr { th { "Metric" } th { "Unit" } th.n { "Value" } th.n { "Uncertainty" } } }
+                thead {
+                    tr {
+                        th { "Metric" } th { "Unit" } th.n { "Value" } th.n { "Uncertainty" }
+                        th.n { "Observed order" } th.n { "Range of members" }
+                    }
+                }
                 @for (metric, value, uncertainty) in yes {
+                    @let estimate = reference.estimate(&metric.name).ok();
                     tr {
                         td { code { (metric.name) } } td { (Label(&metric.unit)) }
                         td.n { (three(value)) } td.n { (three(uncertainty)) }
+                        td.n { (or_dash(estimate.and_then(|e| e.order), |p| format!("{p:.2}"))) }
+                        td.n { (or_dash(estimate.map(|e| e.spread).filter(|s| *s > 0.0), three)) }
                     }
                 }
+            }
+            p.small {
+                "The uncertainty is that of the refinement (grid convergence index), plus the range of the \
+                 members of the ensemble, plus a step for instants."
             }
         }
         details open {
@@ -211,7 +270,7 @@ fn other_goals(study: &Study) -> Markup {
                 tr {
                     td { (ranking.goal.word()) }
                     @match (&ranking.verdict, &ranking.measure) {
-                        (Some(verdict), Ok(measure)) => {
+                        (Ok(verdict), Ok(measure)) => {
                             @let arm = &study.manifest.arms[verdict.arm];
                             td {
                                 (name(arm))
@@ -223,8 +282,8 @@ fn other_goals(study: &Study) -> Markup {
                             td { (verdict.confidence.word()) } td { (Label(&measure.words)) }
                         }
                         (_, Err(why)) => td colspan="4" { "no ranking: " span.small { (why) } },
-                        (None, Ok(measure)) => td colspan="4" {
-                            "not available in any arm: " span.small { (Label(&measure.words)) }
+                        (Err(reasons), Ok(_)) => td colspan="4" {
+                            "no recommendation: " span.small { (Label(&reasons.join("; "))) }
                         },
                     }
                 }
@@ -243,7 +302,8 @@ fn ranked_table(study: &Study, ranking: &Ranking) -> Markup {
         @if !without.is_empty() { p.small { "Not ranked (" (why) "): " (without.join("; ")) "." } }
         p.small {
             "Arms share a place where their errors differ by no more than the uncertainty of the reference, \
-             or by 5 %."
+             than their ranges over the ensemble together, or than 5 %; within a place they are in the \
+             order of their cost."
             @if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) {
                 " An exclamation mark means more than 10 % off the budget."
             }

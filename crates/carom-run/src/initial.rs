@@ -17,8 +17,13 @@ pub(crate) fn given(motion: &Manufactured, model: &Model) -> Result<Before, Vec<
     let (mut y, mut v) = (Vec::new(), Vec::new());
     for place in model.reference.chunks_exact(model.dimension) {
         let [position, velocity] = motion.motion(place, 0.0).map_err(|error| {
-            let help = "change the formula so that it has a value in the whole body";
-            vec![Problem::new("manufactured.y", "the motion has no value at t = 0", error.to_string(), help)]
+            let help = "change the formula so that it has a finite value in the whole body";
+            vec![Problem::new(
+                "manufactured.y",
+                "the motion has no finite value at t = 0",
+                error.to_string(),
+                help,
+            )]
         })?;
         y.extend(position);
         v.extend(velocity);
@@ -35,8 +40,8 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<B
     let directory = spec.from.display();
     let wrong = |what: String, why: String, help: &str| vec![Problem::new("initial.from", what, why, help)];
     let unreadable = |why: String| {
-        let help = "name the directory of a finished run; the path counts from the folder of the case";
-        wrong(format!("the run {directory} cannot be started from"), why, help)
+        let help = "give the directory of a finished run, relative to the folder of the case";
+        wrong(format!("the final state of the run {directory} cannot be used"), why, help)
     };
     let manifest = Manifest::read(&spec.from).map_err(|e| unreadable(e.to_string()))?;
     if manifest.status != Status::Finished {
@@ -48,12 +53,12 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<B
         ));
     }
     let payload = last_checkpoint(&spec.from).map_err(|e| unreadable(e.to_string()))?;
-    let version = |e: String| unreadable(format!("it was made by Carom {}: {e}", manifest.version));
+    let version = |e: String| unreadable(format!("it was written by Carom {}: {e}", manifest.version));
     let old: Case = serde_json::from_value(manifest.case.clone()).map_err(|e| version(e.to_string()))?;
     let state: State = postcard::from_bytes(&payload).map_err(|e| version(e.to_string()))?;
     let steps = old.time.steps();
     if state.step as usize != steps {
-        let why = format!("its newest intact checkpoint is of step {} of {steps}", state.step);
+        let why = format!("its last intact checkpoint is that of step {} of {steps}", state.step);
         return Err(wrong(format!("the run {directory} is damaged"), why, "run its case again"));
     }
     let d = model.dimension;

@@ -5,6 +5,7 @@ mod build;
 mod initial;
 pub mod recording;
 mod setup;
+mod warnings;
 
 pub use build::overlaps;
 pub use carom_case as case;
@@ -14,3 +15,4 @@ pub use carom_mechanics::{
     StepReport, Stepper, Stopped, Tangent, Timings, Workspace, frequencies, model, stability,
 };
 pub use setup::{Setup, too_long};
+pub use warnings::{Entry, Found, Rule, WARNINGS, warnings, wave_speed};

@@ -156,24 +156,25 @@ fn grid(case: &Case) -> Grid {
     // Load steps create no energy: the difference between works and energies is the error of a sum
     // over few steps.
     let guard = case.time.energy_guard.filter(|_| !case.time.scheme.is_static());
-    Grid { dt: case.time.step, steps: (case.time.end / case.time.step).round() as u64, guard }
+    Grid { dt: case.time.step, steps: case.time.steps() as u64, phase: case.time.phase, guard }
 }
 
 /// Why a case has no initial state, with its key and a suggestion.
 fn no_start(case: &Case, placed: bool, rejected: &Rejected) -> Problem {
     let (path, what, help) = match rejected {
         Rejected::NoValue(_) => {
-            ("load".into(), "a formula has no value at t = 0", "change it so that it has one")
+            ("load".into(), "a formula has no finite value at t = 0", "change it so that it has one")
         }
         Rejected::Jump { .. } => {
             ("support".into(), "a support would jump at the start", "let its `move` begin where the body is")
         }
         Rejected::Inverted { body, .. } if !placed => {
             let k = case.bodies.iter().position(|b| b.name == *body).unwrap_or_default();
-            let help = "let neighbouring places stay neighbours, the determinant of the formulas' derivatives positive";
-            (format!("body[{k}].position"), "the initial position turns a cell inside out", help)
+            let help =
+                "change the formulas so that the determinant of their derivatives is positive everywhere";
+            (format!("body[{k}].position"), "the initial position inverts a cell", help)
         }
-        _ => ("body".into(), "the start has no acceleration", "check masses and supports"),
+        _ => ("body".into(), "the initial acceleration cannot be computed", "check masses and supports"),
     };
     Problem::new(path, what, rejected.to_string(), help)
 }
@@ -194,7 +195,7 @@ fn stepper(
             path,
             "the scheme cannot be used",
             error.to_string(),
-            "carom explain lists schemes",
+            "list the schemes with carom explain",
         )]
     })?;
     Ok(match integrator {
@@ -239,9 +240,9 @@ pub fn too_long(case: &Case, model: &Model) -> Vec<Problem> {
         return Vec::new();
     }
     let what =
-        format!("the step {step:e} is longer than {} is stable with: {longest:.4e}", case.time.scheme.kind);
+        format!("the step {step} is too long for {}: at most {longest:.4e} is stable", case.time.scheme.kind);
     let why = format!(
-        "an explicit step must stay below 2/ω_max = {:.4e} (bound by single cells {:.4e}); {SAFETY} of it is accepted",
+        "the step of an explicit scheme must be less than 2/ω_max = {:.4e} (estimate from single cells: {:.4e}); at most {SAFETY} of it is accepted",
         stable.power, stable.cell
     );
     let divided = case.time.end / (case.time.end / longest).ceil();
@@ -249,6 +250,8 @@ pub fn too_long(case: &Case, model: &Model) -> Vec<Problem> {
         "time.step",
         what,
         why,
-        format!("step = {divided:.6e} divides the end time; an implicit scheme has no such limit"),
+        format!(
+            "use step = {divided:.6e}, which divides the end time, or an implicit scheme, which has no such limit"
+        ),
     )]
 }

@@ -3,7 +3,6 @@
 
 mod body;
 mod bounds;
-mod cover;
 mod discrete_gradient;
 mod facet;
 mod factory;
@@ -13,23 +12,25 @@ mod loaded_side;
 mod lumping;
 pub mod material;
 mod mesh;
+mod point_locator;
 mod points;
 mod positions;
 pub mod quadrature;
 mod reference;
 pub mod shape;
 mod solid;
+mod subdivide;
 mod tree;
 
 pub use body::{Body, Inverted, PointState};
 pub use bounds::Bounds;
-pub use cover::Cover;
 pub use facet::FacetShape;
 pub use factory::{Constitutive, body, plane_stress_body};
 pub use loaded_side::LoadedSide;
 pub use lumping::cell_lumped_mass;
 pub use material::Law;
 pub use mesh::{Element, Facet, Mesh};
+pub use point_locator::PointLocator;
 pub use points::LANES;
 pub use positions::Positions;
 pub use shape::{Hull, LineShape, line_shape};

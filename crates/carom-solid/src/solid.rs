@@ -33,11 +33,11 @@ use crate::tree::Tree;
 pub enum SolidError {
     #[error("element {element:?} has dimension {}, the space has {dimension}", .element.dimension())]
     Dimension { element: Element, dimension: usize },
-    #[error("{length} node numbers do not make cells of {nodes} nodes")]
+    #[error("{length} node numbers are not a multiple of the {nodes} nodes of a cell")]
     Ragged { length: usize, nodes: usize },
-    #[error("cell {cell} names node {node}, but there are {count} nodes")]
+    #[error("cell {cell} refers to node {node}, but there are {count} nodes")]
     MissingNode { cell: usize, node: usize, count: usize },
-    #[error("node {node} is not at a finite place")]
+    #[error("the coordinates of node {node} are not finite")]
     NotFinite { node: usize },
     #[error(
         "cell {cell} is degenerate at {place:.4?}: the Jacobian of its reference shape is {jacobian:.3e}"

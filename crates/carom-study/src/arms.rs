@@ -2,7 +2,8 @@
 //! are reported at its place in the study file.
 
 use carom_record::study::design::{Kind, Role};
-use carom_run::case::{Diagnostic, Document, Problem};
+use carom_record::study::ensemble::{Ensemble, Member};
+use carom_run::case::{Case, Diagnostic, Document, PrimarySpec, Problem};
 use toml_edit::Value;
 
 use crate::file::{FINE_NAME, StudyFile};
@@ -105,24 +106,92 @@ pub(crate) fn computes_reference(file: &StudyFile, drafts: &[Draft]) -> bool {
     file.reference.as_deref() == Some(FINE_NAME) && drafts.iter().all(|d| d.name != FINE_NAME)
 }
 
-/// The three runs of the computed reference, the coarsest first. The finest step is at most `step`
-/// over `refine`; the others are twice and four times as long. All divide `end`.
-pub(crate) fn fine(file: &StudyFile, step: f64, end: f64) -> Vec<Draft> {
-    let steps = 4.0 * (end / step * f64::from(file.refine.unwrap_or(REFINE)) / 4.0).ceil();
+/// Steps and mesh factors of the computed reference, the coarsest first. The finest step is at most
+/// `step` over `refine`. Without factors, the others are twice and four times as long, on the given
+/// mesh; with them, steps and cells are in the same ratios. All steps divide `end`; none if no number
+/// of steps fits the factors.
+fn levels_of_reference(file: &StudyFile, step: f64, end: f64) -> Option<Vec<(f64, f64)>> {
+    let least = (end / step * f64::from(file.refine.unwrap_or(REFINE)) * (1.0 - 1e-9)).ceil();
+    let factors = if file.fine_mesh.is_empty() { vec![1.0, 2.0, 4.0] } else { file.fine_mesh.clone() };
+    let finest = factors[factors.len() - 1];
+    let fits = |steps: &f64| {
+        factors.iter().all(|factor| {
+            let count = steps * factor / finest;
+            (count - count.round()).abs() < 1e-9 * count && count >= 1.0
+        })
+    };
+    let steps = (0..10_000).map(|more| least + f64::from(more)).find(fits)?;
+    let level = |factor: &f64| {
+        let mesh = if file.fine_mesh.is_empty() { 1.0 } else { *factor };
+        (end / (steps * factor / finest).round(), mesh)
+    };
+    Some(factors.iter().map(level).collect())
+}
+
+/// The runs of the computed reference, the coarsest first; none if no steps fit its factors.
+/// `refine`: refinement of the case's meshes.
+pub(crate) fn fine(file: &StudyFile, step: f64, end: f64, refine: f64) -> Option<Vec<Draft>> {
     let default =
         || vec![("time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.1 }".to_owned(), "fine".to_owned())];
-    let run = |times: f64| {
+    let levels = levels_of_reference(file, step, end)?;
+    let finest = levels.last()?.0;
+    let run = |&(step, mesh): &(f64, f64)| {
         let mut sets = with_common(file, file.fine.iter().map(|entry| entry_at(entry, "fine")).collect());
         if !file.fine.iter().any(|(key, _)| key.starts_with("time.scheme")) {
             sets.extend(default());
         }
-        sets.push((format!("time.step={:?}", end * times / steps), "fine".to_owned()));
-        let name = if times == 1.0 { FINE_NAME.to_owned() } else { format!("{FINE_NAME}, {times} Δt") };
+        sets.push((format!("time.step={step:?}"), "fine".to_owned()));
+        if mesh != 1.0 {
+            sets.push((format!("refine={:?}", refine * mesh), "fine.mesh".to_owned()));
+        }
+        let times = (step / finest * 1e4).round() / 1e4;
+        let on = if file.fine_mesh.is_empty() { String::new() } else { format!(", mesh {mesh}") };
+        let name = if times == 1.0 { FINE_NAME.to_owned() } else { format!("{FINE_NAME}, {times} Δt{on}") };
         let role = Role { fine: true, ..Role::default() };
         let expect = ("expect=[]".to_owned(), "fine".to_owned());
         Draft { name, path: "reference".into(), sets, case: None, expect, role }
     };
-    [4.0, 2.0, 1.0].map(run).into()
+    Some(levels.iter().map(run).collect())
+}
+
+/// The members of an arm's ensemble, except for itself, with the changes that make them from the
+/// arm's case. Sides cannot be swapped against a rigid primary: a case that has no others has no
+/// swapped members. The meshes of the reference are its own.
+pub(crate) fn members(ensemble: &Ensemble, draft: &Draft, case: &Case) -> Vec<(Member, Draft)> {
+    let swaps: Vec<String> = case
+        .contacts
+        .iter()
+        .filter_map(|contact| match &contact.primary {
+            PrimarySpec::Side(side) => Some([
+                format!("contact.{}.secondary=\"{side}\"", contact.name),
+                format!("contact.{}.primary=\"{}\"", contact.name, contact.secondary),
+            ]),
+            PrimarySpec::Plane { .. } => None,
+        })
+        .flatten()
+        .collect();
+    let possible =
+        |member: &Member| !(member.swapped && swaps.is_empty() || draft.role.fine && member.mesh != 1.0);
+    let member = |member: Member| {
+        let mut sets = Vec::new();
+        if member.phase != 0.0 {
+            sets.push(format!("time.phase={:?}", (case.time.phase + member.phase).fract()));
+        }
+        if member.swapped {
+            sets.extend(swaps.iter().cloned());
+        }
+        if member.mesh != 1.0 {
+            sets.push(format!("refine={:?}", case.refine * member.mesh));
+        }
+        let sets = sets.into_iter().map(|set| (set, "ensemble".to_owned()));
+        let sets = draft.sets.iter().cloned().chain(sets).collect();
+        let name = format!("{} ({})", draft.name, member.name());
+        (
+            member,
+            Draft { name, sets, expect: ("expect=[]".to_owned(), "ensemble".to_owned()), ..draft.clone() },
+        )
+    };
+    ensemble.members().into_iter().skip(1).filter(possible).map(member).collect()
 }
 
 /// What every arm changes, except for what this one changes itself, then its own.

@@ -10,7 +10,7 @@ use carom_run::recording::{self, Options, Progress};
 use crate::error::StudyError;
 use crate::jobs::Ended;
 
-/// Computes an arm to its end; `begun`: resumes it.
+/// Computes a run to its end; `begun`: resumes it.
 pub(crate) fn compute(
     manifest: &StudyManifest,
     directory: &Path,
@@ -19,7 +19,7 @@ pub(crate) fn compute(
     observe: &mut dyn FnMut(&Progress),
     stop: &AtomicBool,
 ) -> Result<Ended, StudyError> {
-    let arm = &manifest.arms[i];
+    let arm = manifest.run(i);
     let path = directory.join(&arm.directory);
     let options = Options { threads: 1 };
     let done = if begun {

@@ -3,10 +3,11 @@
 
 use carom_record::Expect;
 use carom_record::study::design::{Goal, Kind};
+use carom_record::study::ensemble::Ensemble;
 use carom_run::case::{Asked, Document, Problem, read_expects};
 use toml_edit::{Item, TableLike, Value};
 
-pub(crate) const KEYS: [&str; 14] = [
+pub(crate) const KEYS: [&str; 15] = [
     "title",
     "case",
     "set",
@@ -17,12 +18,14 @@ pub(crate) const KEYS: [&str; 14] = [
     "accuracy",
     "reference",
     "fine",
+    "ensemble",
     "arm",
     "grid",
     "claim",
     "expect",
 ];
-pub(crate) const FINE: [&str; 2] = ["set", "refine"];
+pub(crate) const FINE: [&str; 3] = ["set", "refine", "mesh"];
+pub(crate) const ENSEMBLE: [&str; 3] = ["phases", "swapped", "mesh"];
 pub(crate) const ARM: [&str; 5] = ["name", "case", "set", "expect", "match"];
 pub(crate) const CLAIM: [&str; 2] = ["text", "compare"];
 
@@ -50,6 +53,10 @@ pub(crate) struct StudyFile {
     pub(crate) fine: Vec<(String, Value)>,
     /// Factor by which its step is smaller than the smallest one.
     pub(crate) refine: Option<u32>,
+    /// Factors by which its meshes are finer, from the coarsest to the finest; empty: the given mesh.
+    pub(crate) fine_mesh: Vec<f64>,
+    /// What the members of every arm differ in.
+    pub(crate) ensemble: Option<Ensemble>,
     pub(crate) arms: Vec<ArmEntry>,
     /// Keys with their values.
     pub(crate) grid: Vec<(String, Vec<Value>)>,
@@ -88,6 +95,7 @@ pub(crate) fn read(document: &Document, problems: &mut Vec<Problem>) -> StudyFil
     file.reference = text(root, "reference", "", problems);
     file.set = values(root, "", "{ \"output.fields_every\" = 0 }", problems);
     comparison(root, &mut file, problems);
+    file.ensemble = ensemble(root, problems);
     let arms = tables(root, "arm", problems);
     let named =
         !arms.is_empty() && !root.contains_key("grid") && arms.iter().all(|arm| arm.contains_key("case"));
@@ -206,12 +214,79 @@ fn comparison(root: &dyn TableLike, file: &mut StudyFile, problems: &mut Vec<Pro
             None => problems.push(not("fine.refine", "a positive integer", "refine = 8")),
         }
     }
+    file.fine_mesh = factors(table, "fine", problems);
     if file.reference.as_deref() != Some(FINE_NAME) {
         let help = format!("add `reference = \"{FINE_NAME}\"`");
         problems.push(
             Problem::new("fine", "[fine] is not used", "it defines the computed reference", help).at_key(),
         );
     }
+}
+
+/// Most phases of an ensemble: beyond it, intervals no longer change.
+const MOST_PHASES: u32 = 100;
+
+/// The table [ensemble].
+fn ensemble(root: &dyn TableLike, problems: &mut Vec<Problem>) -> Option<Ensemble> {
+    let item = root.get("ensemble")?;
+    let Some(table) = item.as_table_like() else {
+        problems.push(not("ensemble", "a table", "[ensemble]"));
+        return None;
+    };
+    known(table, &ENSEMBLE, "[ensemble]", "ensemble", problems);
+    let phases = table.get("phases").map_or(Some(1), |item| {
+        item.as_integer().and_then(|n| u32::try_from(n).ok()).filter(|n| (1..=MOST_PHASES).contains(n))
+    });
+    if phases.is_none() {
+        problems.push(not("ensemble.phases", &format!("an integer from 1 to {MOST_PHASES}"), "phases = 5"));
+    }
+    let swapped = table.get("swapped").map_or(Some(false), Item::as_bool);
+    if swapped.is_none() {
+        problems.push(not("ensemble.swapped", "true or false", "swapped = true"));
+    }
+    let mut mesh = factors(table, "ensemble", problems);
+    if mesh.is_empty() {
+        mesh.push(1.0);
+    }
+    if mesh[0] != 1.0 {
+        problems.push(Problem::new(
+            "ensemble.mesh",
+            format!("the first factor is {}, not 1", mesh[0]),
+            "the arms themselves are members, on the given mesh",
+            "write for example `mesh = [1, 1.5, 2]`",
+        ));
+    }
+    let ensemble = Ensemble { phases: phases?, swapped: swapped?, mesh };
+    if ensemble.members().len() < 2 && problems.is_empty() {
+        problems.push(
+            Problem::new(
+                "ensemble",
+                "the ensemble has one member",
+                "its members are all combinations of phases, roles and meshes",
+                "add `phases = 5`",
+            )
+            .at_key(),
+        );
+    }
+    Some(ensemble)
+}
+
+/// `mesh`, a list of increasing factors of at least 1; empty if it is not given.
+fn factors(table: &dyn TableLike, path: &str, problems: &mut Vec<Problem>) -> Vec<f64> {
+    let Some(item) = table.get("mesh") else { return Vec::new() };
+    let number = |v: &Value| v.as_float().or_else(|| v.as_integer().map(|i| i as f64));
+    let list = item.as_array().and_then(|list| list.iter().map(number).collect::<Option<Vec<f64>>>());
+    let valid = |list: &Vec<f64>| {
+        !list.is_empty()
+            && list[0] >= 1.0
+            && list.windows(2).all(|f| f[0] < f[1])
+            && list[list.len() - 1] <= 64.0
+    };
+    list.filter(valid).unwrap_or_else(|| {
+        let what = "a list of increasing numbers from 1 to 64";
+        problems.push(not(&format!("{path}.mesh"), what, "mesh = [1, 2, 4]"));
+        Vec::new()
+    })
 }
 
 fn one_of<T: Copy>(

@@ -222,24 +222,32 @@ pub(crate) fn settle(
     for (i, steps, share) in settled {
         place(manifest, i, steps)?;
         manifest.arms[i].role.cost = share;
+        // Members have the step of their arm.
+        for member in manifest.runs_of(i).into_iter().skip(1) {
+            place(manifest, member, steps)?;
+        }
     }
     manifest.write(directory)?;
     Ok(all_settled)
 }
 
-/// Sets the number of steps of an arm, in its case and in its changes.
+/// Sets the number of steps of a run, in its case and in its changes.
 fn place(manifest: &mut StudyManifest, i: usize, steps: u64) -> Result<(), StudyError> {
     let case = case_with(manifest, i, steps)?;
-    let arm = &mut manifest.arms[i];
+    let first_member = manifest.arms.len();
+    let arm = match i.checked_sub(first_member) {
+        None => &mut manifest.arms[i],
+        Some(member) => &mut manifest.members[member],
+    };
     arm.sets.retain(|set| !set.trim_start().starts_with("time.step="));
     arm.sets.push(format!("time.step={:?}", case.time.step));
-    arm.steps = steps;
+    arm.steps = case.time.steps() as u64;
     arm.case = serde_json::to_value(&case).unwrap_or_default();
     Ok(())
 }
 
 fn case_with(manifest: &StudyManifest, i: usize, steps: u64) -> Result<Case, StudyError> {
-    let arm = &manifest.arms[i];
+    let arm = manifest.run(i);
     let mut case: Case = serde_json::from_value(arm.case.clone())
         .map_err(|e| StudyError::Incompatible { arm: arm.name.clone(), what: e.to_string() })?;
     if steps != arm.steps {

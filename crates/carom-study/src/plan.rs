@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 
-use carom_record::study::design::{Design, Goal};
+use carom_record::study::design::{Design, Goal, MemberOf, Role};
 use carom_record::study::{Arm, Comparison, StudyManifest, StudySource};
 use carom_record::{Machine, Source, Status, now};
 use carom_run::Setup;
@@ -77,7 +77,11 @@ impl Plan {
                     if computed && planned.len() == methods {
                         let times = planned.iter().map(|(_, _, case, _)| case.time.step);
                         let step = times.fold(f64::INFINITY, f64::min);
-                        waiting.extend(arms::fine(&file, step, planned[0].2.time.end));
+                        let (end, refine) = (planned[0].2.time.end, planned[0].2.refine);
+                        match arms::fine(&file, step, end, refine) {
+                            Some(levels) => waiting.extend(levels),
+                            None => found.push(study.diagnose(&no_steps())),
+                        }
                         methods = 0;
                     }
                 }
@@ -124,6 +128,40 @@ impl Plan {
             case_path: draft.case.clone(),
             case: serde_json::to_value(case).unwrap_or_default(),
         };
+        let mut members = Vec::new();
+        for (i, (draft, _, case, base)) in planned.iter().enumerate() {
+            let all = file.ensemble.iter().flat_map(|ensemble| arms::members(ensemble, draft, case));
+            for (j, (member, draft)) in all.enumerate() {
+                let mut sets: Vec<String> = draft.sets.iter().map(|(set, _)| set.clone()).collect();
+                sets.push(draft.expect.0.clone());
+                let case = match resolved(&base.path, &sets) {
+                    Ok(case) => case,
+                    Err(error) => {
+                        for diagnostic in diagnostics(error)? {
+                            let placed = arms::placed(&study, &draft, &diagnostic, &base.diagnostics);
+                            if !found.contains(&placed) {
+                                found.push(placed);
+                            }
+                        }
+                        continue;
+                    }
+                };
+                sets.pop();
+                let role = Role { member: Some(MemberOf { arm: i, member }), ..draft.role };
+                members.push(Arm {
+                    directory: format!("members/{:02}-{:03}", i + 1, j + 1),
+                    sets,
+                    steps: case.time.steps() as u64,
+                    role,
+                    case_path: draft.case,
+                    case: serde_json::to_value(&case).unwrap_or_default(),
+                    name: draft.name,
+                });
+            }
+        }
+        if !found.is_empty() {
+            return Err(CaseError::Wrong(found));
+        }
         let design = file.design.map(|kind| {
             let of = |level: usize| planned.iter().find(|(d, ..)| d.role.level == level && !d.role.fine);
             let cost_of = file.cost_of.clone().or_else(|| of(0)?.0.role.method.clone()).unwrap_or_default();
@@ -146,6 +184,8 @@ impl Plan {
             machine: Machine::current(),
             reference: file.reference,
             arms: planned.iter().enumerate().map(arm).collect(),
+            ensemble: file.ensemble,
+            members,
             claims: file.claims,
             expects: file.expects,
             source: sources,
@@ -156,6 +196,16 @@ impl Plan {
         };
         Ok(Self { manifest, arms: planned.into_iter().map(arm).collect() })
     }
+}
+
+/// The steps of the computed reference do not divide the end time in the ratios of its meshes.
+fn no_steps() -> Problem {
+    Problem::new(
+        "fine.mesh",
+        "no steps of the reference are in the ratios of these factors",
+        "step and mesh are refined together, and every step divides the end time",
+        "choose simple ratios, for example `mesh = [1, 1.5, 2]`",
+    )
 }
 
 /// A case file that arms change.

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use carom_record::study::{Study, StudyManifest};
+use carom_record::study::{Arm, Study, StudyManifest};
 use carom_record::{RecordError, Status};
 use carom_run::recording::Progress;
 
@@ -51,6 +51,13 @@ pub fn start(
     resume(directory, jobs, observe, stop)
 }
 
+/// Relative duration of a run: its steps, times the growth of the number of unknowns under refinement
+/// of a plane mesh.
+fn work(run: &Arm) -> u64 {
+    let refine = run.case.get("refine").and_then(serde_json::Value::as_f64).unwrap_or(1.0);
+    (run.steps as f64 * refine * refine) as u64
+}
+
 /// Runs the arms that have not ended, `jobs` of them concurrently, and writes the tables.
 ///
 /// # Errors
@@ -67,7 +74,7 @@ pub fn resume(
     manifest.write(directory)?;
     let settled = matched::settle(&mut manifest, directory, jobs, observe, stop)?;
     let mut waiting = Vec::new();
-    for (i, arm) in manifest.arms.iter().enumerate() {
+    for (i, arm) in manifest.runs().enumerate() {
         match manifest.state(directory, arm)?.0 {
             Some(Status::Finished | Status::Failed) => observe(&Event::AlreadyDone(i)),
             // If the steps of matched cost are not settled, no other arm is run.
@@ -75,7 +82,7 @@ pub fn resume(
             state => waiting.push((i, state.is_some())),
         }
     }
-    waiting.sort_by_key(|(i, _)| std::cmp::Reverse(manifest.arms[*i].steps));
+    waiting.sort_by_key(|(i, _)| std::cmp::Reverse(work(manifest.run(*i))));
     let begun: BTreeMap<usize, bool> = waiting.iter().copied().collect();
     let order = waiting.into_iter().map(|(i, _)| i).collect();
     let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
@@ -88,7 +95,7 @@ pub fn resume(
     let study = Study::open(directory, &mut |_, _| ())?;
     let ended =
         |row: &carom_record::study::Row| matches!(row.status, Some(Status::Finished | Status::Failed));
-    let interrupted = !study.rows.iter().all(ended);
+    let interrupted = !study.rows.iter().chain(&study.members).all(ended);
     manifest.status = if interrupted { Status::Stopped } else { Status::Finished };
     manifest.write(directory)?;
     study.write_tables()?;

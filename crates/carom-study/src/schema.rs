@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use carom_record::study::design::Goal;
 
-use crate::file::{ARM, CLAIM, FINE, KEYS};
+use crate::file::{ARM, CLAIM, ENSEMBLE, FINE, KEYS};
 
 /// The schema of a study file.
 pub fn schema() -> Value {
@@ -56,6 +56,19 @@ pub fn schema() -> Value {
                     "Values of the case that it replaces. Default scheme: that of Chung and Hulbert with ρ∞ = 0.1.",
                 ),
                 json!({ "type": "integer", "minimum": 1, "description": "Factor by which its step is smaller than the smallest one of the study. Default: 8." }),
+                factors(
+                    "Factors by which its meshes are finer than that of the case, one for each run, the coarsest first; the steps shrink by the same factors, down to the finest one. Default: three steps, each half of the one before, on the given mesh.",
+                ),
+            ],
+            &[],
+        ),
+        object(
+            "Every arm is run several times, with all combinations of these changes; claims and rankings are then medians with intervals.",
+            &ENSEMBLE,
+            [
+                json!({ "type": "integer", "minimum": 1, "maximum": 100, "description": "Number of phases: shifts of the instants of the steps by 0, 1/n, … of a step (time.phase). Default: 1." }),
+                json!({ "type": "boolean", "description": "Whether every run is repeated with secondary and primary sides swapped. Default: false." }),
+                factors("Factors by which all meshes are refined; the first one is 1. Default: [1]."),
             ],
             &[],
         ),
@@ -68,6 +81,10 @@ pub fn schema() -> Value {
     schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
     schema["title"] = json!("Carom study");
     schema
+}
+
+fn factors(doc: &str) -> Value {
+    json!({ "type": "array", "minItems": 1, "items": { "type": "number", "minimum": 1, "maximum": 64 }, "description": doc })
 }
 
 fn object<const N: usize>(doc: &str, keys: &[&str; N], values: [Value; N], required: &[&str]) -> Value {

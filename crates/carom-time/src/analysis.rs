@@ -97,12 +97,12 @@ impl Scheme {
 
     /// The map (Δt v, Δt² a)_s → (Δt v, Δt² a)_{s+1} of a dof whose position is constrained, as by
     /// contact. Row-major.
-    pub fn held_map(&self) -> [[f64; 2]; 2] {
+    pub fn constrained_map(&self) -> [[f64; 2]; 2] {
         let Self { beta, gamma, .. } = *self;
         [[1.0 - gamma / beta, 1.0 - 0.5 * gamma / beta], [-1.0 / beta, 1.0 - 0.5 / beta]]
     }
 
-    /// Eigenvalues of [`Scheme::held_map`], which are those at Ω → ∞ except −α_f/(1 − α_f): from 1
+    /// Eigenvalues of [`Scheme::constrained_map`], which are those at Ω → ∞ except −α_f/(1 − α_f): from 1
     /// + gs + hs² = 0.
     pub fn constrained_roots(&self) -> [Root; 2] {
         let [_, _, g, h] = self.coefficients();

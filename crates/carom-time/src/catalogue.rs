@@ -36,13 +36,13 @@ pub fn scheme(
 }
 
 impl Name {
-    /// The integrator of this name. `forces` is for the α family.
+    /// The integrator of this name.
     ///
     /// # Errors
     /// As [`scheme`].
-    pub fn integrator(&self, forces: ForceRule) -> Result<Integrator, SchemeError> {
+    pub fn integrator(&self) -> Result<Integrator, SchemeError> {
         let given = self.parameters.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();
-        scheme(self.kind, &given, forces)
+        scheme(self.kind, &given, self.forces)
     }
 }
 
@@ -55,7 +55,7 @@ mod tests {
         scheme(kind, &parameters, ForceRule::AverageForces)
     }
 
-    /// theory.md §3.1, from the papers named there.
+    /// Against the papers that each scheme names.
     #[test]
     fn parameters_are_the_published_ones() {
         let table: &[(&str, &[(&str, f64)], [f64; 4])] = &[
@@ -89,11 +89,14 @@ mod tests {
         assert!(matches!(error, SchemeError::Missing { key: "rho_inf", .. }));
         let error = build("newmark", &[("beta", 0.25)]).unwrap_err();
         assert!(matches!(error, SchemeError::Missing { key: "gamma", .. }));
-        assert_eq!(error.to_string(), "scheme `newmark` needs `gamma`; it takes beta + gamma, or rho_inf");
+        assert_eq!(
+            error.to_string(),
+            "scheme `newmark` requires `beta` and `gamma`, or `rho_inf`; `gamma` is missing"
+        );
         let error = build("newmark", &[("beta", 0.25), ("gamma", 0.5), ("rho_inf", 1.0)]).unwrap_err();
         assert!(matches!(&error, SchemeError::Superfluous { key, .. } if key == "rho_inf"));
         let error = build("hu", &[("rho_inf", 0.0)]).unwrap_err();
-        assert_eq!(error.to_string(), "scheme `hu` does not take `rho_inf`; it takes no parameter");
+        assert_eq!(error.to_string(), "`rho_inf` cannot be given here: scheme `hu` requires no parameters");
         for value in [1.2, -0.1, f64::NAN, f64::INFINITY] {
             let error = build("chung-hulbert", &[("rho_inf", value)]).unwrap_err();
             assert!(

@@ -13,7 +13,7 @@ pub enum SchemeError {
         known: Vec<&'static str>,
     },
     /// A parameter the kind needs was not given.
-    #[error("scheme `{kind}` needs `{key}`; it takes {expected}")]
+    #[error("scheme `{kind}` requires {expected}; `{key}` is missing")]
     Missing {
         /// Name of the scheme.
         kind: &'static str,
@@ -21,11 +21,13 @@ pub enum SchemeError {
         key: &'static str,
         /// Key sets of the kind, in words.
         expected: String,
+        /// An example for each of them.
+        examples: Vec<String>,
         /// Keys of the kind.
         known: Vec<&'static str>,
     },
-    /// A parameter that the kind does not take, alone or together with the others.
-    #[error("scheme `{kind}` does not take `{key}`; it takes {expected}")]
+    /// A parameter that the kind does not have, alone or together with the others.
+    #[error("`{key}` cannot be given here: scheme `{kind}` requires {expected}")]
     Superfluous {
         /// Name of the scheme.
         kind: &'static str,
@@ -33,6 +35,8 @@ pub enum SchemeError {
         key: String,
         /// Key sets of the kind, in words.
         expected: String,
+        /// An example for each of them.
+        examples: Vec<String>,
         /// Keys of the kind.
         known: Vec<&'static str>,
     },

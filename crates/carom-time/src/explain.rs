@@ -80,9 +80,9 @@ pub struct Explanation {
 /// Explains a scheme.
 ///
 /// ```
-/// let told = carom_time::explain(&carom_time::Scheme::chung_hulbert(0.1)?);
-/// assert_eq!((told.order, told.constrained.steps), (2, Some(6)));
-/// assert!(told.to_string().contains("chung-hulbert"));
+/// let hulbert = carom_time::explain(&carom_time::Scheme::chung_hulbert(0.1)?);
+/// assert_eq!((hulbert.order, hulbert.constrained.steps), (2, Some(6)));
+/// assert!(hulbert.to_string().contains("chung-hulbert"));
 /// # Ok::<(), carom_time::SchemeError>(())
 /// ```
 pub fn explain(scheme: &Scheme) -> Explanation {
@@ -129,20 +129,21 @@ pub(crate) fn explain_kernel(kernel: &dyn Kernel, name: &Name) -> Explanation {
     let energy = if lossless {
         "energy: no mode of linear motion is damped"
     } else {
-        "energy: dissipates, high frequencies most; see the damping above"
+        "energy: dissipated, most strongly at high frequencies (damping ratio above)"
     };
     Explanation {
         scheme: None,
         names: vec![name.clone()],
         references: info(name.kind).map(|info| info.reference).into_iter().collect(),
         conventions: vec![Convention {
-            name: "spectral radius at infinity", values: vec![("ρ∞", rho_inf)]
+            name: "spectral radius at infinite frequency",
+            values: vec![("ρ∞", rho_inf)],
         }],
         order: map::order(kernel),
         a_stable: sweep().all(|rho| rho <= 1.0 + 1e-7),
         rho_inf,
         accuracy: [5, 10, 20, 50, 100].map(|steps| accuracy_of(kernel, steps)).into(),
-        conserves: vec!["momentum: exactly", energy],
+        conserves: vec!["momentum: conserved exactly", energy],
         constrained: constrained_of(kernel),
         remarks: kernel.notes().iter().map(ToString::to_string).collect(),
         elsewhere: Vec::new(),
@@ -165,14 +166,14 @@ pub(crate) fn accuracy_of(kernel: &dyn Kernel, steps_per_period: u32) -> Accurac
 pub(crate) fn constrained_of(kernel: &dyn Kernel) -> Constrained {
     let radius = map::spectral_radius_at_infinity(kernel);
     if radius >= 1.0 - NOTHING {
-        let text = "its velocity and acceleration do not settle: needs persistency = \"project\", law = \"predictor\" or a penalty";
+        let text = "its velocity and acceleration do not settle: use persistency = \"project\", law = \"predictor\" or a penalty";
         return Constrained { radius, steps: None, text: text.to_owned() };
     }
     let share = if radius < NOTHING { NOTHING } else { 0.01 };
     let free = Oscillator { mass: 1.0, stiffness: 0.0, force: 0.0 };
     let (mut motion, mut before, mut last) = ([0.0, 1.0, 0.0], None, 0);
     for n in 1..=10_000 {
-        let next = free.held_step_after(kernel, 1.0, before, motion, &mut Stage::default(), 0.0);
+        let next = free.constrained_step_after(kernel, 1.0, before, motion, &mut Stage::default(), 0.0);
         before = kernel.two_step().then_some([next[0] - motion[0], motion[1]]);
         if next[2].abs() >= share {
             last = n;
@@ -181,10 +182,11 @@ pub(crate) fn constrained_of(kernel: &dyn Kernel) -> Constrained {
     }
     let steps = last + 1;
     let text = if radius < NOTHING {
-        format!("its acceleration and contact force are clean after {steps} steps")
+        format!("the transient of its acceleration and contact force ends after {steps} steps")
     } else {
         format!(
-            "its acceleration and contact force fade by {radius:.3} a step after impact, below 1 % of v₀/Δt after {steps} steps"
+            "after an impact at speed v₀, its acceleration and contact force decrease by a factor of {radius:.3} per step, \
+             to below 1 % of v₀/Δt after {steps} steps"
         )
     };
     Constrained { radius, steps: Some(steps), text }
@@ -206,52 +208,53 @@ fn conventions(scheme: &Scheme, names: &[Name]) -> Vec<Convention> {
     let is = |kind: &str| names.iter().any(|name| name.kind == kind);
     let mut list = vec![
         Convention {
-            name: "index s + 1 − α, shares of the old terms (here; Chung and Hulbert)",
+            name: "index s + 1 − α: weights of the old terms (Carom, Chung and Hulbert)",
             values: vec![("α_m", alpha_m), ("α_f", alpha_f), ("β", beta), ("γ", gamma)],
         },
         Convention {
-            name: "index n + α, shares of the new terms",
+            name: "index n + α: weights of the new terms",
             values: vec![("α_m", 1.0 - alpha_m), ("α_f", 1.0 - alpha_f), ("β", beta), ("γ", gamma)],
         },
     ];
     if is("hht") {
         list.push(Convention {
-            name: "Hilber, Hughes and Taylor's own", values: vec![("α", 0.0 - alpha_f)]
+            name: "notation of Hilber, Hughes and Taylor",
+            values: vec![("α", 0.0 - alpha_f)],
         });
     }
     if is("wbz") {
         list.push(Convention {
-            name: "Wood, Bossak and Zienkiewicz's own",
+            name: "notation of Wood, Bossak and Zienkiewicz",
             values: vec![("α_B = α_m", alpha_m)],
         });
     }
     list.push(Convention {
-        name: "spectral radius at infinity",
+        name: "spectral radius at infinite frequency",
         values: vec![("ρ∞", scheme.spectral_radius_at_infinity())],
     });
     list
 }
 
 fn conserves(scheme: &Scheme) -> Vec<&'static str> {
-    let mut list = vec!["momentum: exactly"];
+    let mut list = vec!["momentum: conserved exactly"];
     let lossless = scheme.order() == 2 && scheme.rho_is_one_everywhere();
     let midpoint = lossless
         && scheme.alpha_m == 0.5
         && scheme.alpha_f == 0.5
         && scheme.forces == ForceRule::AverageState;
     list.push(if midpoint {
-        "moment of momentum: exactly but for contact (this is the midpoint rule)"
+        "angular momentum: conserved exactly, except in contact (this is the midpoint rule)"
     } else {
-        "moment of momentum: to the order of the scheme"
+        "angular momentum: conserved to the order of the scheme"
     });
     list.push(if lossless {
-        "energy: no mode of linear motion is damped; not exact for nonlinear forces or contact"
+        "energy: no mode of linear motion is damped; not conserved exactly with nonlinear forces or contact"
     } else {
-        "energy: dissipates, high frequencies most; see the damping above"
+        "energy: dissipated, most strongly at high frequencies (damping ratio above)"
     });
     if !scheme.is_a_stable() {
         list.pop();
-        list.push("energy: may grow, the scheme is not stable at every step");
+        list.push("energy: may grow, because the scheme is not unconditionally stable");
     }
     list
 }
@@ -268,24 +271,25 @@ pub(crate) fn constrained(scheme: &Scheme) -> Constrained {
     let power = usize::from(double) + usize::from((multiplier - own).abs() < NOTHING);
     let (steps, text) = if radius < NOTHING {
         let steps = ringing(scheme, NOTHING);
-        (Some(steps), format!("its acceleration and contact force are clean after {steps} steps"))
+        (Some(steps), format!("the transient of its acceleration and contact force ends after {steps} steps"))
     } else if radius < 1.0 - NOTHING {
         let steps = ringing(scheme, 0.01);
         let text = format!(
-            "its acceleration and contact force ring as {}({})ⁿ v₀/Δt after impact at v₀, below 1 % of v₀/Δt after {steps} steps; steps count, \
-             not time: a finer Δt makes it shorter and higher",
+            "after an impact at speed v₀, its acceleration and contact force oscillate in proportion to {}({})ⁿ v₀/Δt, where n is \
+             the number of steps, and are below 1 % of v₀/Δt after {steps} steps; a smaller Δt makes this transient shorter and higher",
             ["", "n ", "n² "][power],
             short(-radius)
         );
         (Some(steps), text)
     } else if (scheme.beta - 0.25).abs() < NOTHING && (scheme.gamma - 0.5).abs() < NOTHING {
-        let text = "its velocity flips sign for ever and its acceleration grows by 4 v₀/Δt per step: needs persistency = \"project\"";
+        let text = "its velocity changes sign at every step indefinitely, and its acceleration grows by 4 v₀/Δt per step: use \
+                    persistency = \"project\"";
         (None, text.to_owned())
     } else {
         (
             None,
             format!(
-                "its velocity and acceleration do not settle (root of modulus {radius:.3}): needs persistency = \"project\""
+                "its velocity and acceleration do not settle (largest root {radius:.3} in modulus): use persistency = \"project\""
             ),
         )
     };
@@ -295,7 +299,7 @@ pub(crate) fn constrained(scheme: &Scheme) -> Constrained {
 /// Steps until |Δt a| and |Δt λ/m| of a mass stopped at v₀ remain below `share` of v₀. Eq. (15)
 /// gives λ with the constraint active from the step's start.
 fn ringing(scheme: &Scheme, share: f64) -> u32 {
-    let [[vv, va], [av, aa]] = scheme.held_map();
+    let [[vv, va], [av, aa]] = scheme.constrained_map();
     let Scheme { alpha_m, alpha_f, .. } = *scheme;
     let (mut v, mut a, mut force) = (1.0, 0.0, 0.0f64);
     let mut last = 0;
@@ -327,12 +331,12 @@ impl Scheme {
         let mut list = Vec::new();
         if self.order() == 0 {
             list.push(format!(
-                "α_m = {alpha_m} > ½: errors of the acceleration grow from step to step; it does not converge"
+                "α_m = {alpha_m} > ½: errors of the acceleration grow from step to step, and the scheme does not converge"
             ));
         } else if self.order() == 1 {
             let needed = 0.5 - alpha_m + alpha_f;
             list.push(format!(
-                "first order: second order needs γ = ½ − α_m + α_f = {}, not {}",
+                "first order: second order requires γ = ½ − α_m + α_f = {}, not {}",
                 short(needed),
                 short(gamma)
             ));
@@ -344,21 +348,21 @@ impl Scheme {
             );
         }
         if !self.is_a_stable() {
-            list.push("not unconditionally stable: some Ω = ωΔt grows".to_owned());
+            list.push("not unconditionally stable: modes with some values of Ω = ωΔt grow".to_owned());
         }
         let constrained = self.constrained_roots().iter().map(|root| root.modulus()).fold(0.0, f64::max);
         let averaged = alpha_f / (1.0 - alpha_f);
         if averaged > constrained + NOTHING {
             list.push(format!(
-                "α_f/(1 − α_f) = {averaged:.3} exceeds the other roots at infinity ({constrained:.3}): ρ∞ rises again with α_f"
+                "α_f/(1 − α_f) = {averaged:.3} exceeds the other roots at infinite frequency ({constrained:.3}): ρ∞ rises again with α_f"
             ));
         }
         let overshoot = self.velocity_overshoot();
         if overshoot > NOTHING {
-            list.push(format!("overshoot: a stiff mode released from u₀ has velocity {overshoot:.3} Ω ω u₀ after a step; displacements stay bounded"));
+            list.push(format!("overshoot: a stiff mode released from rest at displacement u₀ has the velocity {overshoot:.3} Ω ω u₀ after one step; displacements remain bounded"));
         }
         if self.forces == ForceRule::AverageState && alpha_f != 0.0 {
-            list.push("averaged state and averaged forces differ as soon as forces are nonlinear; linear analysis cannot tell them apart".to_owned());
+            list.push("averaging the state differs from averaging the forces where forces are nonlinear; the linear analysis above is the same for both".to_owned());
         }
         list
     }

@@ -33,7 +33,7 @@ impl Integrator {
     /// ```
     /// use carom_time::{Explained, ForceRule, scheme};
     /// let made = scheme("central-difference", &[].into(), ForceRule::default())?;
-    /// assert!(matches!(made.explain(), Explained::Nonsmooth(told) if told.order == 2 && told.stable_omega_dt == Some(2.0)));
+    /// assert!(matches!(made.explain(), Explained::Nonsmooth(properties) if properties.order == 2 && properties.stable_omega_dt == Some(2.0)));
     /// # Ok::<(), carom_time::SchemeError>(())
     /// ```
     pub fn explain(&self) -> Explained {

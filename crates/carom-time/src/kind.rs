@@ -95,16 +95,34 @@ impl KindInfo {
 
     /// The name by which a member is requested.
     pub fn named(&self, member: &Member) -> Name {
-        Name { kind: self.name, parameters: member.parameters.iter().copied().collect() }
+        Name {
+            kind: self.name,
+            parameters: member.parameters.iter().copied().collect(),
+            forces: ForceRule::default(),
+        }
     }
 
-    /// The sets of keys in words: "beta + gamma, or rho_inf".
+    /// The sets of keys in words: "`beta` and `gamma`, or `rho_inf`".
     fn expected(&self) -> String {
-        let words = |set: &&[Parameter]| match set {
-            [] => "no parameter".to_owned(),
-            set => set.iter().map(|parameter| parameter.key).collect::<Vec<_>>().join(" + "),
+        let words = |set: &&[Parameter]| {
+            let keys: Vec<_> = set.iter().map(|parameter| format!("`{}`", parameter.key)).collect();
+            match keys.split_last() {
+                None => "no parameters".to_owned(),
+                Some((last, [])) => last.clone(),
+                Some((last, others)) => format!("{} and {last}", others.join(", ")),
+            }
         };
         self.sets.iter().map(words).collect::<Vec<_>>().join(", or ")
+    }
+
+    /// The kind with the example of each parameter, once per set.
+    fn examples(&self) -> Vec<String> {
+        let example = |set: &&[Parameter]| {
+            let kind = format!("kind = \"{}\"", self.name);
+            let keys = set.iter().map(|p| format!("{} = {}", p.key, p.example));
+            format!("{{ {} }}", std::iter::once(kind).chain(keys).collect::<Vec<_>>().join(", "))
+        };
+        self.sets.iter().map(example).collect()
     }
 
     fn keys(&self) -> Vec<&'static str> {
@@ -127,21 +145,30 @@ impl KindInfo {
         }
         let (number, set, _) = best;
         let (kind, expected, known) = (self.name, || self.expected(), || self.keys());
+        let examples = || self.examples();
         if let Some(key) = given.keys().find(|key| !set.iter().any(|parameter| parameter.key == **key)) {
             return Err(SchemeError::Superfluous {
                 kind,
                 key: key.clone(),
                 expected: expected(),
+                examples: examples(),
                 known: known(),
             });
         }
         let value = |&Parameter { key, .. }: &Parameter| {
-            let missing = || SchemeError::Missing { kind, key, expected: expected(), known: known() };
+            let missing = || SchemeError::Missing {
+                kind,
+                key,
+                expected: expected(),
+                examples: examples(),
+                known: known(),
+            };
             given.get(key).copied().ok_or_else(missing)
         };
         let values: Vec<f64> = set.iter().map(value).collect::<Result<_, _>>()?;
         let parameters = set.iter().map(|parameter| parameter.key).zip(values.iter().copied()).collect();
-        let name = Name { kind, parameters };
+        let forces = if self.is_alpha() { forces } else { ForceRule::default() };
+        let name = Name { kind, parameters, forces };
         Ok(match self.build {
             Build::Alpha(build) => Integrator::Alpha(build(number, &values)?.with_forces(forces), name),
             Build::Stages(build) => Integrator::Stages(build(&values)?, name),

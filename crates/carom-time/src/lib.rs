@@ -11,6 +11,7 @@ mod explained;
 mod explicit;
 mod integrator;
 mod kind;
+mod layout;
 pub mod map;
 mod name;
 mod names;

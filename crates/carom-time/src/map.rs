@@ -19,9 +19,11 @@ pub fn amplification(kernel: &dyn Kernel, omega_dt: f64) -> Vec<Vec<f64>> {
 
 /// The map of a dof whose position is constrained to zero at every stage's end, as by contact; A as
 /// Ω → ∞.
-pub fn held_amplification(kernel: &dyn Kernel) -> Vec<Vec<f64>> {
+pub fn constrained_amplification(kernel: &dyn Kernel) -> Vec<Vec<f64>> {
     let free = Oscillator { mass: 1.0, stiffness: 0.0, force: 0.0 };
-    columns(kernel, |before, start, stage| free.held_step_after(kernel, 1.0, before, start, stage, 0.0))
+    columns(kernel, |before, start, stage| {
+        free.constrained_step_after(kernel, 1.0, before, start, stage, 0.0)
+    })
 }
 
 fn columns(
@@ -63,7 +65,7 @@ pub fn spectral_radius(kernel: &dyn Kernel, omega_dt: f64) -> f64 {
 
 /// ρ∞, from the constrained map.
 pub fn spectral_radius_at_infinity(kernel: &dyn Kernel) -> f64 {
-    largest(&eigenvalues(held_amplification(kernel), 1.0))
+    largest(&eigenvalues(constrained_amplification(kernel), 1.0))
 }
 
 /// The oscillating pair at Ω, if it exists: the least damped one.

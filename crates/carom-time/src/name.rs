@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::scheme::ForceRule;
+
 /// The name of a scheme with its parameters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Name {
@@ -11,6 +13,8 @@ pub struct Name {
     pub kind: &'static str,
     /// Parameters by key.
     pub parameters: BTreeMap<&'static str, f64>,
+    /// What α_f averages; of the α family only.
+    pub forces: ForceRule,
 }
 
 impl std::fmt::Display for Name {
@@ -19,6 +23,9 @@ impl std::fmt::Display for Name {
         write!(f, "{{ kind = \"{}\"", self.kind)?;
         for (key, value) in &self.parameters {
             write!(f, ", {key} = {}", short(*value))?;
+        }
+        if self.forces == ForceRule::AverageState {
+            write!(f, ", forces = \"average-state\"")?;
         }
         write!(f, " }}")
     }

@@ -39,9 +39,9 @@ pub(crate) fn names(of: &Scheme) -> Vec<Name> {
         // ρ∞ from a quotient may leave [0, 1] by round-off.
         let clean = |x: f64| if (x - x.round()).abs() < 1e-14 { x.round() + 0.0 } else { x };
         let parameters = parameters.iter().map(|&(key, value)| (key, clean(value))).collect();
-        let name = Name { kind, parameters };
-        let made = name.integrator(of.forces).ok()?.alpha().filter(same)?;
-        (made.forces == of.forces).then_some(name)
+        let name = Name { kind, parameters, forces: of.forces };
+        name.integrator().ok()?.alpha().filter(same)?;
+        Some(name)
     });
     made.collect()
 }
@@ -60,35 +60,39 @@ pub(crate) fn elsewhere(of: &Scheme, names: &[Name]) -> Vec<Elsewhere> {
         (
             averaged,
             "MFEM",
-            "index n + α; forces of the averaged state, taken at t + Δt; clamps ρ∞ silently; its HHT α lies in [2/3, 1]",
+            "index n + α; forces of the averaged state, evaluated at t + Δt; ρ∞ is limited to [0, 1] without a message; its HHT α lies in [2/3, 1]",
         ),
         (averaged, "PETSc", "index n + α; forces of the averaged state"),
         (
             averaged,
             "FEBio",
-            "index n + α; ρ∞ = −1 stands for Euler, −2 (the default) for the other parameters",
+            "index n + α; ρ∞ = −1 selects the Euler scheme, −2 (the default) uses the other parameters as given",
         ),
         (
             averaged,
             "SciML",
-            "index n + 1 − α; forces of the averaged state; a_n is derived anew from the balance, which costs an order",
+            "index n + 1 − α; forces of the averaged state; a_n is recomputed from the balance equation, which loses one order",
         ),
         (averaged, "Gridap", "index n + 1 − α; forces of the averaged state"),
-        (hht, "Chrono", "writes α = −alpha in [−1/3, 0]; averages forces"),
+        (hht, "Chrono", "its α is −alpha, in [−1/3, 0]; forces are averaged"),
         (hht, "CalculiX; Abaqus, transient fidelity", "default α = −0.05, here alpha = 0.05: ρ∞ = 0.905"),
         (hht, "CalculiX impact example", "α = −0.3, here alpha = 0.3: ρ∞ = 0.54"),
         (hht, "Code_Aster", "default α = −0.1, here alpha = 0.1: ρ∞ = 0.818"),
         (hht, "Flexcom", "default α = −0.25, here alpha = 0.25: ρ∞ = 0.60"),
-        (wbz, "Bossak −0.3, as often written", "that number is α_m: here rho_inf = 0.54"),
-        (chung_hulbert, "suanPan", "default ρ∞ = 0.5, 0.5 to 0.8 advised"),
+        (wbz, "Bossak −0.3, as often written", "that number is α_m; here rho_inf = 0.54"),
+        (chung_hulbert, "suanPan", "default ρ∞ = 0.5; 0.5 to 0.8 recommended"),
         (chung_hulbert, "Flexcom", "default ρ∞ = 0.4"),
         (chung_hulbert, "Moreira, Carvalho, Sanches", "ρ∞ = 0.6 and 0.1"),
         (newmark && !steep, "PolyFEM, FEBio, LS-DYNA implicit", "default γ = ½, β = ¼: ρ∞ = 1"),
-        (newmark && !steep, "LS-DYNA", "γ = 0.6, β = 0.38 advised for quasi-static use: ρ∞ = 0.858, order 1"),
+        (
+            newmark && !steep,
+            "LS-DYNA",
+            "γ = 0.6, β = 0.38 recommended for quasi-static problems: ρ∞ = 0.858, order 1",
+        ),
         (newmark, "PolyFEM", "reads β from the key gamma and γ from the key beta"),
-        (outside_drake, "Drake", "refuses it: demands ½ ≤ γ ≤ 1 and β ≤ ½"),
-        (steep, "SciML", "refuses it: asserts γ ≤ 1"),
-        (steep, "Gridap", "clamps γ to 1 with a warning: another method"),
+        (outside_drake, "Drake", "rejects it: requires ½ ≤ γ ≤ 1 and β ≤ ½"),
+        (steep, "SciML", "rejects it: asserts γ ≤ 1"),
+        (steep, "Gridap", "limits γ to 1 with a warning, which gives another method"),
     ];
     facts.into_iter().filter(|fact| fact.0).map(|(_, code, note)| Elsewhere { code, note }).collect()
 }

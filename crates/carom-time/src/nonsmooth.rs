@@ -113,11 +113,11 @@ mod tests {
     use super::*;
     use crate::integrator::Integrator;
     use crate::schemes::KINDS;
-    use crate::{ForceRule, Memory, Stage};
+    use crate::{Memory, Stage};
 
     fn impulses() -> impl Iterator<Item = Box<dyn Impulse>> {
         let named = KINDS.iter().flat_map(|kind| kind.members.iter().map(|member| kind.named(member)));
-        named.filter_map(|name| match name.integrator(ForceRule::AverageForces).unwrap() {
+        named.filter_map(|name| match name.integrator().unwrap() {
             Integrator::Nonsmooth(Nonsmooth::Impulse(scheme), _) => Some(scheme),
             _ => None,
         })

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::catalogue::info;
 use crate::explain::Accuracy;
+use crate::layout::{accuracy_table, write_wrapped};
 use crate::name::{Name, short};
 use crate::nonsmooth::Nonsmooth;
 
@@ -41,14 +42,14 @@ pub(crate) fn explain_nonsmooth(scheme: &Nonsmooth, name: &Name) -> NonsmoothExp
     let (contact, energy) = match scheme {
         Nonsmooth::Explicit(scheme) => (
             scheme.contact,
-            "energy: no mode of linear motion is damped below the stable step; each impact of a node takes its share",
+            "energy: below the stability limit no mode of linear motion is damped; each impact of a node dissipates some energy",
         ),
         Nonsmooth::Impulse(_) if lossless => (
             IMPULSES,
-            "energy: no mode of linear motion is damped; an impact with e = 0 takes what the node had",
+            "energy: no mode of linear motion is damped; an impact with e = 0 removes the energy of the node's impact velocity",
         ),
         Nonsmooth::Impulse(_) => {
-            (IMPULSES, "energy: dissipates, high frequencies most; see the damping above")
+            (IMPULSES, "energy: dissipated, most strongly at high frequencies (damping ratio above)")
         }
     };
     NonsmoothExplanation {
@@ -61,13 +62,13 @@ pub(crate) fn explain_nonsmooth(scheme: &Nonsmooth, name: &Name) -> NonsmoothExp
         rho_inf: scheme.rho_inf(),
         accuracy,
         contact,
-        conserves: vec!["momentum: exactly", energy],
+        conserves: vec!["momentum: conserved exactly", energy],
     }
 }
 
 const IMPULSES: &[&str] = &[
-    "an impulse P per step where the gap is predicted closed: 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0; recorded as the force P/Δt",
-    "velocities, not positions, are constrained: penetration of the order of Δt·speed stays",
+    "an impulse P per step where the gap is predicted to be closed: 0 ≤ G v_{n+1} + e G v_n ⊥ P ≥ 0; it is recorded as the force P/Δt",
+    "velocities are constrained, not positions: a penetration of the order of Δt·speed remains",
 ];
 
 fn accuracy(scheme: &Nonsmooth, steps_per_period: u32) -> Option<Accuracy> {
@@ -86,24 +87,19 @@ impl Display for NonsmoothExplanation {
     fn fmt(&self, f: &mut Formatter) -> Result {
         write!(f, "{{ kind = \"{}\"", self.kind)?;
         self.parameters.iter().try_for_each(|(key, value)| write!(f, ", {key} = {}", short(*value)))?;
-        writeln!(f, " }}   {}\n  {}", self.reference, self.summary)?;
+        writeln!(f, " }}   {}", self.reference)?;
+        write_wrapped(f, self.summary)?;
         write!(f, "\norder {}   ", self.order)?;
         match (self.stable_omega_dt, self.rho_inf) {
-            (Some(limit), _) => writeln!(f, "stable for ωΔt ≤ {limit} (linear motion)")?,
+            (Some(limit), _) => writeln!(f, "stable for ωΔt ≤ {limit} in linear motion")?,
             (None, rho) => {
-                writeln!(f, "ρ∞ = {:.4}   unconditionally stable (linear motion)", rho.unwrap_or(1.0))?;
+                writeln!(f, "ρ∞ = {:.4}   unconditionally stable in linear motion", rho.unwrap_or(1.0))?;
             }
         }
-        writeln!(f, "\n  {:>6} {:>10} {:>12} {:>10}", "T/Δt", "ρ", "damping ξ", "PE %")?;
-        for row in &self.accuracy {
-            // Without the sign of round-off.
-            let xi = row.damping_ratio.filter(|xi| xi.abs() > 1e-12).unwrap_or(0.0);
-            let pe = 100.0 * row.period_error.unwrap_or(0.0);
-            writeln!(f, "  {:>6} {:>10.6} {xi:>12.4} {pe:>10.4}", row.steps_per_period, row.spectral_radius)?;
-        }
-        for (title, lines) in [("contact", self.contact), ("conserves", &self.conserves)] {
+        accuracy_table(f, &self.accuracy)?;
+        for (title, lines) in [("contact", self.contact), ("conservation", &self.conserves)] {
             writeln!(f, "\n{title}")?;
-            lines.iter().try_for_each(|line| writeln!(f, "  {line}"))?;
+            lines.iter().try_for_each(|line| write_wrapped(f, line))?;
         }
         Ok(())
     }

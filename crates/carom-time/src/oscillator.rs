@@ -49,7 +49,7 @@ impl Oscillator {
     }
 
     /// One step with the position imposed at the end of every stage: a dof constrained by contact.
-    pub fn held_step(
+    pub fn constrained_step(
         &self,
         kernel: &dyn Kernel,
         dt: f64,
@@ -57,11 +57,11 @@ impl Oscillator {
         stage: &mut Stage,
         u: f64,
     ) -> Motion {
-        self.held_step_after(kernel, dt, None, start, stage, u)
+        self.constrained_step_after(kernel, dt, None, start, stage, u)
     }
 
-    /// As [`Self::held_step`], for a two-step kernel.
-    pub fn held_step_after(
+    /// As [`Self::constrained_step`], for a two-step kernel.
+    pub fn constrained_step_after(
         &self,
         kernel: &dyn Kernel,
         dt: f64,

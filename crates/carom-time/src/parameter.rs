@@ -24,9 +24,17 @@ pub(crate) const RHO_INF: Parameter = Parameter {
 };
 
 /// Newmark's β.
-pub(crate) const BETA: Parameter =
-    Parameter { key: "beta", range: (Excluded(0.0), Unbounded), meaning: "Newmark's β.", example: "0.25" };
+pub(crate) const BETA: Parameter = Parameter {
+    key: "beta",
+    range: (Excluded(0.0), Unbounded),
+    meaning: "Newmark's β: weight of the new acceleration in the new position.",
+    example: "0.25",
+};
 
 /// Newmark's γ.
-pub(crate) const GAMMA: Parameter =
-    Parameter { key: "gamma", range: (Excluded(0.0), Unbounded), meaning: "Newmark's γ.", example: "0.5" };
+pub(crate) const GAMMA: Parameter = Parameter {
+    key: "gamma",
+    range: (Excluded(0.0), Unbounded),
+    meaning: "Newmark's γ: weight of the new acceleration in the new velocity.",
+    example: "0.5",
+};

@@ -59,8 +59,8 @@ impl Scheme {
             finite(key, value)?;
         }
         if self.beta <= 0.0 {
-            let hint = "with β = 0 the new position does not depend on the new acceleration: an explicit scheme, which this \
-                        implicit family cannot solve for; the trapezoidal rule has beta = 0.25";
+            let hint = "with β = 0 the new position does not depend on the new acceleration: this would be an explicit scheme, and \
+                        the family is implicit; the trapezoidal rule has beta = 0.25";
             return Err(SchemeError::OutOfRange {
                 key: "beta",
                 value: self.beta,
@@ -69,7 +69,7 @@ impl Scheme {
             });
         }
         if self.gamma <= 0.0 {
-            let hint = "γ is the share of the new acceleration in the new velocity; below ½ motion grows, the trapezoidal rule has gamma = 0.5";
+            let hint = "γ is the weight of the new acceleration in the new velocity; below ½ the motion grows, and the trapezoidal rule has gamma = 0.5";
             return Err(SchemeError::OutOfRange {
                 key: "gamma",
                 value: self.gamma,
@@ -79,8 +79,9 @@ impl Scheme {
         }
         for (key, value, what) in [("alpha_m", self.alpha_m, "inertia"), ("alpha_f", self.alpha_f, "force")] {
             if value >= 1.0 {
-                let hint =
-                    format!("at 1 the balance holds no new {what} term, above it one of the wrong sign");
+                let hint = format!(
+                    "at 1 the balance equation contains no new {what} term, and above 1 one with the wrong sign"
+                );
                 return Err(SchemeError::OutOfRange { key, value, range: "< 1", hint });
             }
         }
@@ -100,7 +101,8 @@ pub(crate) fn in_unit_interval(rho_inf: f64) -> Result<f64, SchemeError> {
     if (0.0..=1.0).contains(&rho_inf) {
         Ok(rho_inf)
     } else {
-        let hint = "ρ∞ = 1 keeps the highest frequencies, ρ∞ = 0 removes them in a step".to_owned();
+        let hint =
+            "ρ∞ = 1 preserves the highest frequencies, ρ∞ = 0 removes them within a few steps".to_owned();
         Err(SchemeError::OutOfRange { key: "rho_inf", value: rho_inf, range: "[0, 1]", hint })
     }
 }

@@ -5,39 +5,28 @@ use serde::Serialize;
 
 use crate::explain::{Accuracy, Explanation};
 use crate::explained::Explained;
+use crate::layout::{accuracy_table, cell, write_wrapped};
 use crate::name::short;
 use crate::nonsmooth_text::NonsmoothExplanation;
 use crate::scheme::{ForceRule, Scheme};
 use crate::schemes::KINDS;
-
-/// ξ and PE without noise in the last digits.
-fn cell(x: Option<f64>, scale: f64) -> String {
-    match x.map(|x| x * scale) {
-        None => "–".to_owned(),
-        Some(x) if x.abs() < 1e-12 => "0".to_owned(),
-        Some(x) if x.abs() < 1e-3 => format!("{x:.1e}"),
-        Some(x) => format!("{x:.4}"),
-    }
-}
 
 fn list<T: Display>(f: &mut Formatter, title: &str, items: &[T]) -> Result {
     if items.is_empty() {
         return Ok(());
     }
     writeln!(f, "\n{title}")?;
-    items.iter().try_for_each(|item| writeln!(f, "  {item}"))
+    items.iter().try_for_each(|item| write_wrapped(f, &item.to_string()))
 }
 
 impl Display for Explanation {
     fn fmt(&self, f: &mut Formatter) -> Result {
-        let rule = match self.scheme.map(|scheme| scheme.forces) {
-            None => "",
-            Some(ForceRule::AverageForces) => "forces averaged   ",
-            Some(ForceRule::AverageState) => "state averaged   ",
-        };
         if let Some((name, others)) = self.names.split_first() {
-            writeln!(f, "{name}   {rule}{}", self.references.join("; "))?;
-            list(f, "the same as", others)?;
+            writeln!(f, "{name}   {}", self.references.join("; "))?;
+            if !others.is_empty() {
+                writeln!(f, "\nidentical to")?;
+            }
+            others.iter().try_for_each(|other| writeln!(f, "  {other}"))?;
         }
         writeln!(f, "\nparameters")?;
         for convention in &self.conventions {
@@ -48,24 +37,27 @@ impl Display for Explanation {
                 .collect();
             writeln!(f, "  {}\n      {}", convention.name, values.join("   "))?;
         }
+        if let Some(scheme) = self.scheme.filter(|scheme| scheme.alpha_f != 0.0) {
+            let averaged = match scheme.forces {
+                ForceRule::AverageForces => "the forces",
+                ForceRule::AverageState => "the state at which forces are evaluated",
+            };
+            writeln!(f, "  α_f averages {averaged}")?;
+        }
         let stable = if self.a_stable { "unconditionally stable" } else { "not unconditionally stable" };
         writeln!(
             f,
-            "\norder {}   ρ∞ = {}   {stable} (linear motion)",
+            "\norder {}   ρ∞ = {}   {stable} in linear motion",
             self.order,
             cell(Some(self.rho_inf), 1.0)
         )?;
-        writeln!(f, "\n  {:>6} {:>10} {:>12} {:>10}", "T/Δt", "ρ", "damping ξ", "PE %")?;
-        for Accuracy { steps_per_period, spectral_radius, damping_ratio, period_error } in &self.accuracy {
-            let (damping, period) = (cell(*damping_ratio, 1.0), cell(*period_error, 100.0));
-            writeln!(f, "  {steps_per_period:>6} {spectral_radius:>10.6} {damping:>12} {period:>10}")?;
-        }
-        list(f, "conserves", &self.conserves)?;
+        accuracy_table(f, &self.accuracy)?;
+        list(f, "conservation", &self.conserves)?;
         list(f, "a dof constrained by contact", &[&self.constrained.text])?;
         list(f, "remarks", &self.remarks)?;
         let elsewhere: Vec<_> =
             self.elsewhere.iter().map(|fact| format!("{}: {}", fact.code, fact.note)).collect();
-        list(f, "elsewhere", &elsewhere)
+        list(f, "in other codes", &elsewhere)
     }
 }
 
@@ -84,7 +76,7 @@ pub struct CatalogueRow {
     pub rho_inf: f64,
     /// Accuracy at ten steps per period.
     pub accuracy: Accuracy,
-    /// Steps for which a constrained dof rings; none: for ever.
+    /// Steps for which the transient of a constrained dof lasts; none: it does not end.
     pub constrained_steps: Option<u32>,
 }
 
@@ -107,7 +99,7 @@ pub fn explain_all() -> Catalogue {
     let mut table = Catalogue { rows: Vec::new(), nonsmooth: Vec::new() };
     let shown = KINDS.iter().flat_map(|kind| kind.members.iter().map(move |member| (kind, member)));
     for (kind, member) in shown.filter(|(_, member)| member.shown) {
-        match kind.named(member).integrator(ForceRule::AverageForces).map(|made| made.explain()) {
+        match kind.named(member).integrator().map(|made| made.explain()) {
             Ok(Explained::Stages(scheme)) => table.rows.extend(row(kind.name, member.parameters, *scheme)),
             Ok(Explained::Nonsmooth(scheme)) => table.nonsmooth.push(scheme),
             Err(_) => {}
@@ -131,12 +123,26 @@ fn row(kind: &'static str, parameters: &[(&str, f64)], explanation: Explanation)
     })
 }
 
+/// Headings of [`at_ten_steps`].
+const ACCURACY: &str = "     order        ρ∞   ξ(T/10)  PE(T/10)";
+
+const NOTES: &str = "\
+α_m, α_f: weights of the old terms (index s + 1 − α)
+ρ∞: spectral radius at infinite frequency; ωΔt ≤ 2: explicit, stable up to this step only
+ξ(T/10), PE(T/10): damping ratio and period error of a mode with ten steps per period
+constrained: number of steps for which the transient of a dof constrained by contact exceeds 1 % of v₀/Δt";
+
+/// Order, ρ∞, damping ratio and period error of a scheme, as columns.
+fn at_ten_steps(order: u8, rho_inf: &str, accuracy: Option<&Accuracy>) -> String {
+    let (xi, pe) = accuracy.map_or((None, None), |row| (row.damping_ratio, row.period_error));
+    let pe = format!("{} %", cell(pe, 100.0));
+    format!("{order:>10}{rho_inf:>10}{:>10}{pe:>10}", cell(xi, 1.0))
+}
+
 impl Display for Catalogue {
     fn fmt(&self, f: &mut Formatter) -> Result {
-        let heads = ["α_m", "α_f", "β", "γ", "order", "ρ∞", "ξ(T/10)", "PE(T/10)", "constrained"];
         write!(f, "{:<18}{:<24}", "kind", "parameters")?;
-        heads.iter().try_for_each(|head| write!(f, "{head:>10}"))?;
-        writeln!(f)?;
+        writeln!(f, "{:>10}{:>10}{:>10}{:>10}{ACCURACY}{:>13}", "α_m", "α_f", "β", "γ", "constrained")?;
         for row in &self.rows {
             write!(f, "{:<18}{:<24}", row.kind, row.parameters)?;
             match row.scheme {
@@ -145,34 +151,24 @@ impl Display for Catalogue {
                 }
                 None => write!(f, "{:>10}{:>10}{:>10}{:>10}", "–", "–", "–", "–")?,
             }
-            let (xi, pe) = (cell(row.accuracy.damping_ratio, 1.0), cell(row.accuracy.period_error, 100.0));
             let constrained = row.constrained_steps.map_or("∞".to_owned(), |steps| steps.to_string());
-            writeln!(
-                f,
-                "{:>10}{:>10.3}{xi:>10}{:>10}{constrained:>10}",
-                row.order,
-                row.rho_inf,
-                format!("{pe} %")
-            )?;
+            let rho = format!("{:.3}", row.rho_inf);
+            writeln!(f, "{}{constrained:>13}", at_ten_steps(row.order, &rho, Some(&row.accuracy)))?;
         }
-        writeln!(
-            f,
-            "\nwith a contact law of their own{:>51}{:>10}{:>10}{:>10}",
-            "order", "ρ∞", "ξ(T/10)", "PE(T/10)"
-        )?;
+        writeln!(f, "\nschemes with their own contact law\n")?;
+        writeln!(f, "{:<32}{:<50}{ACCURACY}", "kind", "parameters")?;
         for explanation in &self.nonsmooth {
-            let words: Vec<_> =
-                explanation.parameters.iter().map(|(key, value)| format!("{key} {value:.3}")).collect();
+            let words: Vec<_> = explanation
+                .parameters
+                .iter()
+                .map(|(key, value)| format!("{key} {}", short(*value)))
+                .collect();
             let rho = explanation.rho_inf.map_or("ωΔt ≤ 2".to_owned(), |rho| format!("{rho:.3}"));
             let tenth = explanation.accuracy.iter().find(|row| row.steps_per_period == 10);
-            let (xi, pe) = tenth.map_or((None, None), |row| (row.damping_ratio, row.period_error));
-            write!(f, "{:<32}{:<42}{:>8}{rho:>10}", explanation.kind, words.join(", "), explanation.order)?;
-            writeln!(f, "{:>10}{:>10}", cell(xi, 1.0), format!("{} %", cell(pe, 100.0)))?;
+            let accuracy = at_ten_steps(explanation.order, &rho, tenth);
+            writeln!(f, "{:<32}{:<50}{accuracy}", explanation.kind, words.join(", "))?;
         }
-        write!(
-            f,
-            "\nIndex s + 1 − α. ξ, PE: damping and lengthening of a period of ten steps. constrained: steps a dof constrained by contact rings above 1 % of v₀/Δt."
-        )
+        write!(f, "\n{NOTES}")
     }
 }
 
@@ -194,21 +190,23 @@ mod tests {
 
     #[test]
     fn the_text_says_what_matters() {
-        let hu = explain(&Scheme::hu()).to_string();
+        let words =
+            |scheme: &Scheme| explain(scheme).to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+        let hu = words(&Scheme::hu());
         for part in [
             "order 1",
             "ρ∞ = 0 ",
-            "clean after 2 steps",
+            "ends after 2 steps",
             "asserts γ ≤ 1",
             "Hu 1997",
             "α_m = −1 would make it second order",
         ] {
             assert!(hu.contains(part), "no {part:?} in\n{hu}");
         }
-        let hht = explain(&Scheme::hht(0.05).unwrap()).to_string();
+        let hht = words(&Scheme::hht(0.05).unwrap());
         assert!(hht.contains("α = -0.05") && hht.contains("α_f = 0.95"), "{hht}");
-        let trapezoidal = explain(&Scheme::newmark(0.25, 0.5).unwrap());
-        assert_eq!(trapezoidal.constrained.steps, None);
-        assert!(trapezoidal.to_string().contains("grows by 4 v₀/Δt per step"));
+        let trapezoidal = Scheme::newmark(0.25, 0.5).unwrap();
+        assert_eq!(explain(&trapezoidal).constrained.steps, None);
+        assert!(words(&trapezoidal).contains("grows by 4 v₀/Δt per step"));
     }
 }

@@ -1,7 +1,7 @@
 //! Checks of contacts: two different bodies, each pair once, mass where the projection needs it,
-//! laws that are compatible with each other and with the scheme.
+//! laws that are compatible with each other and with the scheme, and what a frozen ξ needs.
 
-use super::super::{ContactLaw, ContactSpec, Enforcement, Persistency, PrimarySpec};
+use super::super::{ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Persistency, PrimarySpec};
 use super::Check;
 
 impl Check<'_> {
@@ -59,11 +59,45 @@ impl Check<'_> {
         }
     }
 
+    /// What a frozen contact point needs: a detection that finds one, a constraint whose gap may be
+    /// that of the tangent line, and one stage per step.
+    fn frozen_point(&mut self, i: usize, contact: &ContactSpec) {
+        if contact.xi != ContactPoint::Frozen {
+            return;
+        }
+        let mut add = |what: &str, why: &str, hint: &str| {
+            self.add(format!("contact[{i}].xi"), format!("xi = \"frozen\" cannot be used {what}"), why, hint);
+        };
+        if contact.detection != Detection::Trajectory {
+            let why =
+                "the ξ that is frozen in the first step of a contact is that of the trajectory crossing";
+            add("with this detection", why, "give detection = \"trajectory\", or xi = \"closest\"");
+        }
+        if contact.enforcement == Enforcement::Penalty {
+            let why = "ξ changes at the start of every step, and the energy of a spring would change with it";
+            add("with a penalty", why, "give enforcement = \"multiplier\", or xi = \"closest\"");
+        }
+        let predictor = contact.law == Some(ContactLaw::Predictor);
+        if let Some(scheme) = self.draft.time.as_ref().map(|time| &time.scheme)
+            && (predictor || !scheme.is_alpha())
+        {
+            let what = if predictor {
+                "with law = \"predictor\"".to_owned()
+            } else {
+                format!("with scheme `{}`", scheme.kind)
+            };
+            let why = "it is the paper's method: ξ is kept during the one solve of a step of the generalised-α family";
+            let hint = "use a scheme such as chung-hulbert with law = \"position\", or xi = \"closest\"";
+            self.add(format!("contact[{i}].xi"), format!("xi = \"frozen\" cannot be used {what}"), why, hint);
+        }
+    }
+
     pub(super) fn contacts(&mut self) {
         let contacts = &self.draft.contacts;
         for (i, contact) in contacts.iter().enumerate() {
             let Some(contact) = contact else { continue };
             self.law(i, contact);
+            self.frozen_point(i, contact);
             let path = |key: &str| format!("contact[{i}].{key}");
             let secondary = self.side(&contact.secondary, path("secondary"));
             let primary = match &contact.primary {

@@ -59,8 +59,8 @@ impl<'a> Check<'a> {
         self.document.root().get(list).and_then(Node::list).unwrap_or(&[])
     }
 
-    /// Names of a list of tables; `None` if one of them cannot be read or its header is misspelt,
-    /// because a reference might be to that one.
+    /// Names of a list of tables; `None` if one of them cannot be read, occurs twice or has a
+    /// misspelt header, because a reference might be to that one.
     fn names(&self, list: &str) -> Option<Vec<&'a str>> {
         let tables = self.tables(list);
         let root = &self.document.root().0;
@@ -69,7 +69,8 @@ impl<'a> Check<'a> {
             return None;
         }
         let names: Option<Vec<_>> = tables.iter().map(|n| n.table()?.get("name")?.text()).collect();
-        names.filter(|names| !names.is_empty())
+        let twice = |names: &[&str]| names.iter().enumerate().any(|(i, name)| names[..i].contains(name));
+        names.filter(|names| !names.is_empty() && !twice(names))
     }
 
     fn dimension(&mut self) {
@@ -106,16 +107,20 @@ impl<'a> Check<'a> {
         }
     }
 
+    /// Adds a problem with a reference, unless an earlier reference had the same one: the mistake
+    /// is then probably in the name that both refer to.
+    fn add_once(&mut self, path: String, what: String, why: &str, help: String) {
+        if !self.problems.iter().any(|known| known.what == what) {
+            self.add(path, what, why, help);
+        }
+    }
+
     /// Reports a reference to a name that does not exist.
     fn reference(&mut self, list: &str, name: &str, path: String) {
         let Some(names) = self.names(list).filter(|names| !names.contains(&name)) else { return };
-        let why = format!("it must be the name of a table [[{list}]]; the names are: {}", names.join(", "));
-        self.add(
-            path,
-            format!("there is no {list} `{name}`"),
-            why,
-            suggest::help(name, names.iter().copied()),
-        );
+        let why = format!("it must be the name of a table [[{list}]]");
+        let help = suggest::help(name, names.iter().copied());
+        self.add_once(path, format!("there is no {list} `{name}`"), &why, help);
     }
 
     /// The body that a side belongs to; reports a side that does not exist.
@@ -135,7 +140,7 @@ impl<'a> Check<'a> {
                 || format!("the bodies are: {}", bodies.join(", ")),
                 |near| format!("did you mean `{near}.{part}`?"),
             );
-            self.add(path, format!("there is no body `{name}`"), "a side is written body.side", help);
+            self.add_once(path, format!("there is no body `{name}`"), "a side is written body.side", help);
             return None;
         }
         let body = self.body(name)?;
@@ -143,10 +148,10 @@ impl<'a> Check<'a> {
         if !sides.iter().any(|s| s == part) {
             let why = format!("its mesh has the sides: {}", all_sides(body));
             let help = suggest::nearest(part, sides.iter().map(String::as_str)).map_or_else(
-                || format!("use one of: {}", all_sides(body)),
+                || "use one of these sides".to_owned(),
                 |near| format!("did you mean `{name}.{near}`?"),
             );
-            self.add(path, format!("body `{name}` has no side `{part}`"), why, help);
+            self.add_once(path, format!("body `{name}` has no side `{part}`"), &why, help);
             return None;
         }
         Some(body)

@@ -10,9 +10,9 @@ const MOST_STEPS: f64 = 1e9;
 
 impl TimeSpec {
     /// Number of steps to the end; the reader has checked that `end` is a multiple of `step`, up to
-    /// a relative error of 10⁻⁶.
+    /// a relative error of 10⁻⁶. With a phase, the first and the last step are parts of one.
     pub fn steps(&self) -> usize {
-        (self.end / self.step).round() as usize
+        (self.end / self.step).round() as usize + usize::from(self.phase > 0.0)
     }
 }
 
@@ -45,7 +45,7 @@ impl Check<'_> {
             let (below, above) = ((end / step).floor(), (end / step).ceil());
             let why = format!("a run has a whole number of steps, and end / step = {}", rounded(end / step));
             let help = format!(
-                "try step = {} or step = {}, or end = {} or end = {}",
+                "use step = {} or step = {}, or end = {} or end = {}",
                 rounded(end / above),
                 rounded(end / below),
                 rounded(below * step),

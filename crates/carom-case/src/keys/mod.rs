@@ -146,6 +146,12 @@ impl Range {
             && self.high.is_none_or(|(high, closed)| x < high || closed && x == high)
     }
 
+    /// The end nearest to a number outside, if that end is included.
+    pub fn end_next_to(&self, x: f64) -> Option<f64> {
+        let closed = |end: Option<(f64, bool)>| end.filter(|end| end.1).map(|end| end.0);
+        closed(self.high).filter(|high| x > *high).or_else(|| closed(self.low).filter(|low| x < *low))
+    }
+
     /// `a number > 0`, `a number in [0, 1]`.
     pub fn described(&self) -> String {
         match (self.low, self.high) {

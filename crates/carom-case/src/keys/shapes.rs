@@ -67,7 +67,7 @@ const SHAPES: Variants = Variants {
                     key(
                         "size",
                         Number(POSITIVE),
-                        "Edge length of the cells; smaller where the ring is thinner than that, or where the inner circle would have fewer than twelve edges.",
+                        "Edge length of the cells; smaller if the ring is thinner than this length, or if the inner circle would have fewer than twelve edges.",
                     )
                     .unit("length")
                     .example("0.05"),

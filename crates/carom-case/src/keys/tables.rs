@@ -26,6 +26,12 @@ pub const CASE: Table = Table {
         key("thickness", Number(POSITIVE), "Out-of-plane thickness; in dimension 1, the area of the cross-section.")
             .unit("length, or length² in dimension 1")
             .default("1.0"),
+        key(
+            "refine",
+            Number(AT_LEAST_ONE),
+            "Refinement of all meshes: built-in shapes are made with cells smaller by this factor; for meshes of files it must be an integer, the number of parts into which every edge is divided.",
+        )
+        .default("1.0"),
         key("units", Kind::Table(&UNITS), "Unit labels in figures and columns; values are not converted.")
             .optional()
             .example("{ length = \"m\", time = \"s\", mass = \"kg\" }"),
@@ -104,10 +110,10 @@ const MATERIAL: Table = Table {
         key(
             "poisson",
             Number(Range { low: Some((-1.0, false)), high: Some((0.5, false)) }),
-            "Poisson's ratio; given together with young.",
+            "Poisson's ratio; given together with young. At 0.5 the material would be incompressible and its bulk modulus infinite.",
         )
         .optional()
-        .example("0.465"),
+        .example("0.49"),
     ],
     later: &[],
 };
@@ -148,9 +154,9 @@ const BODY: Table = Table {
         key(
             "mass",
             Choice(&["consistent", "lumped", "redistributed", "redistributed-nearest"], &[]),
-            "Mass matrix: consistent; lumped (diagonal, by HRZ scaling); redistributed: no mass on contact nodes, the smallest change of the other \
-             nodes preserves total mass, centre of mass and second moments; or redistributed-nearest: no mass on contact nodes, their mass is \
-             added to the nearest other nodes.",
+            "Mass matrix. consistent; lumped: diagonal, by HRZ scaling; redistributed: no mass on contact nodes, and the smallest change at the other \
+             nodes that preserves the total mass, the centre of mass and the second moments; redistributed-nearest: no mass on contact nodes, and \
+             their mass is added to the nearest other nodes.",
         )
         .default("\"consistent\""),
     ],
@@ -228,7 +234,7 @@ const MOVE: Table = Table {
 
 const LOAD: Table = Table {
     name: "[[load]]",
-    doc: "A load on sides (`on` with `traction` or `pressure`) or in a body (`body` with `body_force`). Formulas are in the reference position X, Y and the time t.",
+    doc: "A load on sides (`on` with `traction` or `pressure`) or in a body (`body` with `body_force`). Formulas are functions of the reference position X, Y and the time t.",
     keys: &[
         key("name", Name, "Name used in messages.").optional().example("\"press\""),
         key("on", Sides, "Loaded sides, with `traction` or `pressure`.")
@@ -268,8 +274,12 @@ const INITIAL: Table = Table {
     keys: &[
         key("from", Text, "Directory of the finished run, relative to the folder of the case.")
             .example("\"runs/preload\""),
-        key("velocities", Choice(&["keep", "zero"], &[]), "Initial velocities: those of that run, or zero.")
-            .default("\"keep\""),
+        key(
+            "velocities",
+            Choice(&["keep", "zero"], &[]),
+            "Initial velocities: those at the end of the other run, or zero.",
+        )
+        .default("\"keep\""),
     ],
     later: &[],
 };
@@ -303,7 +313,7 @@ const CONTACT: Table = Table {
         key(
             "law",
             Choice(&["position", "predictor", "velocity"], &[]),
-            "What contact constrains: positions at the end of the step; these and the predictor y + Δt v (contact-stabilised); or velocities, \
+            "What contact constrains: positions at the end of the step; positions and the predictor y + Δt v (contact-stabilised); or velocities, \
              by impulses. Default: the law of the scheme.",
         )
         .optional()
@@ -311,7 +321,7 @@ const CONTACT: Table = Table {
         key(
             "force",
             Choice(&["alpha_f", "end"], &[]),
-            "When the contact force acts in a step: averaged with α_f (eq. 15), or at the end of the step.",
+            "How the contact force enters the balance of a step: averaged with α_f (eq. 15), or at the end of the step.",
         )
         .default("\"alpha_f\""),
         key(
@@ -331,10 +341,17 @@ const CONTACT: Table = Table {
         key(
             "detection",
             Choice(&["closest-point", "trajectory"], &[]),
-            "Gap that decides about activation: at the closest point, or at the ξ of the trajectory crossing (eq. 8 as printed).",
+            "Gap that decides whether a pair becomes active: at the closest point, or at the ξ where the trajectories cross (eq. 8 as printed in the paper).",
         )
         .default("\"closest-point\"")
         .paper("\"trajectory\""),
+        key(
+            "xi",
+            Choice(&["closest", "frozen"], &[]),
+            "Point of the primary facet at which the gap is measured during a step: the closest point, recomputed in every iteration; or, as printed \
+             in the paper, that of the trajectory crossing in the first step of a contact and the closest point at the start of the step in later ones.",
+        )
+        .default("\"closest\""),
         key(
             "restitution",
             Number(RESTITUTION),
@@ -346,6 +363,8 @@ const CONTACT: Table = Table {
     later: &["passes", "normals", "overlap", "between", "friction"],
 };
 
+const FRACTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, false)) };
+const AT_LEAST_ONE: Range = Range { low: Some((1.0, true)), high: None };
 const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };
 
 const RIGID: Table = Table {
@@ -375,12 +394,18 @@ const TIME: Table = Table {
             .unit("time")
             .example("1.875e-3")
             .later("a table { initial, min, max, … }"),
+        key(
+            "phase",
+            Number(FRACTION),
+            "Fraction of a step by which all instants are earlier: the first step is shorter by it, and the last one has this length. Runs that differ in it meet contact at different instants of a step.",
+        )
+        .default("0.0"),
         key("scheme", Variant(schemes), "Time integrator.")
             .example("{ kind = \"chung-hulbert\", rho_inf = 0.1 }"),
         key(
             "energy_guard",
             NumberOrFalse(POSITIVE),
-            "Fraction of the largest energy so far by which total − external_work may rise above its running minimum before the run stops; false: never.",
+            "The run stops if total − external_work rises above its running minimum by more than this fraction of the largest energy so far; false: the run never stops for this reason.",
         )
         .default("0.02")
         .paper("false"),
@@ -402,13 +427,13 @@ const NEWTON: Table = Table {
         key(
             "tangent",
             Choice(&["frozen", "frozen-double", "full"], &[]),
-            "When the tangent is factorised. frozen: the factorisation is reused over iterations and steps as a preconditioner as long as that pays; from 10 000 unknowns on it is in single precision where that suffices. frozen-double: the same, always in double precision. full: in every iteration.",
+            "When the tangent is factorised. frozen: the factorisation is reused as a preconditioner over iterations and steps as long as this reduces the cost; with 10 000 unknowns or more it is in single precision where this suffices. frozen-double: the same, always in double precision. full: in every iteration.",
         )
         .default("\"frozen\""),
         key(
             "mixing",
             Count(0),
-            "Number of earlier corrections with the same factorisation that improve the next one (the restart length of the Krylov method); 0 disables it.",
+            "Number of earlier corrections with the same factorisation that accelerate the next one (the restart length of the Krylov method); 0 disables mixing.",
         )
         .default("4"),
     ],
@@ -464,7 +489,7 @@ const OUTPUT: Table = Table {
 /// One expected value, of a case, an arm or a study.
 pub const EXPECT: Table = Table {
     name: "[[expect]]",
-    doc: "An expected value with one bound: value and tolerance, value and relative, at_most, or at_least. With a formula, tolerance alone is enough.",
+    doc: "An expected value with one bound: `value` and `tolerance`, `value` and `relative`, `at_most`, or `at_least`. With a `formula`, `tolerance` alone is sufficient.",
     keys: &[
         key(
             "what",

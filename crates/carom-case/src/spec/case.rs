@@ -13,6 +13,10 @@ use super::load::{LoadSpec, SupportSpec};
 use super::output::{OutputSpec, ProbeSpec};
 use super::time::{NewtonSpec, TimeSpec};
 
+fn unrefined() -> f64 {
+    1.0
+}
+
 /// One simulation, fully resolved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Case {
@@ -24,6 +28,9 @@ pub struct Case {
     pub plane: Plane,
     /// Out-of-plane thickness; in dimension 1 the area of the cross-section.
     pub thickness: f64,
+    /// Factor by which all meshes were refined.
+    #[serde(default = "unrefined")]
+    pub refine: f64,
     /// Unit labels in figures and columns; values are not converted.
     pub units: Units,
     /// Set of default values that the case was resolved with.

@@ -23,6 +23,8 @@ pub struct ContactSpec {
     pub active_set: ActiveSetRule,
     /// Which gap decides about activation.
     pub detection: Detection,
+    /// Where the gap is measured during a step.
+    pub xi: ContactPoint,
     /// What contact constrains; once resolved, the default is the law of the scheme.
     pub law: Option<ContactLaw>,
     /// Newton's coefficient of restitution e, 0 … 1.
@@ -104,4 +106,14 @@ pub enum Detection {
     ClosestPoint,
     /// The gap at the ξ of the trajectory crossing, eq. (8) as printed.
     Trajectory,
+}
+
+/// The point of the primary facet at which the gap is measured during a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ContactPoint {
+    /// The closest point of the iterate.
+    Closest,
+    /// The crossing of the paths, then the closest point at the start of the step, as in the paper.
+    Frozen,
 }

@@ -84,10 +84,37 @@ pub enum MeshSpec {
         sides: Vec<String>,
         /// What was repaired when the mesh was read.
         repairs: Vec<String>,
+        /// Parts into which every edge is divided.
+        #[serde(default = "whole")]
+        parts: usize,
     },
 }
 
+/// Edges as they are in the file.
+fn whole() -> usize {
+    1
+}
+
 impl MeshSpec {
+    /// The mesh with cells smaller by a factor: a built-in shape is made anew with smaller cells, the
+    /// cells of a file are divided, for which the factor must be an integer; otherwise none.
+    pub fn refined(mut self, factor: f64) -> Option<Self> {
+        let more = |cells: usize| (cells as f64 * factor).round().max(1.0) as usize;
+        match &mut self {
+            Self::Interval { cells, .. } => *cells = more(*cells),
+            Self::Rectangle { cells, .. } => *cells = cells.map(more),
+            Self::Disc { size, .. } | Self::HalfDisc { size, .. } | Self::Ring { size, .. } => {
+                *size /= factor
+            }
+            Self::Polygon { size, refine, .. } => {
+                *size /= factor;
+                refine.iter_mut().for_each(|region| region.size /= factor);
+            }
+            Self::File { parts, .. } => *parts = Some(factor).filter(|f| f.fract() == 0.0)? as usize,
+        }
+        Some(self)
+    }
+
     /// Names of the sides, in order along the boundary.
     pub fn sides(&self) -> Vec<String> {
         let words: &[&str] = match self {
@@ -124,7 +151,10 @@ impl MeshSpec {
                 let place = |r: &RefineSpec| filled(area.min(PI * (r.radius + 3.0 * r.size).powi(2)), r.size);
                 nodes(filled(area, size) + refine.iter().map(place).sum::<f64>())
             }
-            Self::File { nodes, cells, .. } => (cells as f64, nodes as f64),
+            Self::File { nodes, cells, parts, .. } => {
+                let times = (parts as f64).powi(element.dimension() as i32);
+                (cells as f64 * times, nodes as f64 * times)
+            }
             Self::Interval { cells, .. } => (cells as f64, k * cells as f64 + 1.0),
             Self::Rectangle { cells: [nx, ny], .. } => {
                 let (nx, ny) = (nx as f64, ny as f64);

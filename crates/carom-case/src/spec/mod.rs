@@ -12,7 +12,8 @@ mod time;
 pub use body::{BodySpec, Law, MassKind, MaterialSpec, PlaceSpec};
 pub use case::{Case, InitialSpec, Plane, Preset, Units, Velocities};
 pub use contact::{
-    ActiveSetRule, ContactLaw, ContactSpec, Detection, Enforcement, ForceTime, Persistency, PrimarySpec,
+    ActiveSetRule, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime, Persistency,
+    PrimarySpec,
 };
 pub use formula::FormulaSpec;
 pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec};

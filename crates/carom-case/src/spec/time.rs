@@ -9,8 +9,11 @@ use serde::{Deserialize, Serialize};
 pub struct TimeSpec {
     /// End time.
     pub end: f64,
-    /// Time step; the grid is n·step.
+    /// Time step; the grid is n·step if the phase is 0.
     pub step: f64,
+    /// Shift of the grid, as a fraction of a step.
+    #[serde(default)]
+    pub phase: f64,
     /// Time integrator as given.
     pub scheme: SchemeSpec,
     /// Fraction of the largest energy so far that may be created before the run stops; none: the

@@ -29,6 +29,15 @@ fn the_shipped_case_stores_its_meshes() {
     assert_eq!(case.bodies[1].mesh.verify(), Ok(()));
 }
 
+/// With `refine = 2` every triangle of the file becomes four; half a cell is no part.
+#[test]
+fn a_mesh_is_divided() {
+    let cells = |sets: &[&str]| resolved(GMSH, sets).unwrap().bodies[1].make_mesh(2).unwrap().cell_count();
+    assert_eq!(cells(&["refine=2"]), 4 * cells(&[]));
+    let fraction = problem("refine=1.5");
+    assert!(fraction.what.contains("not an integer") && fraction.help.contains("refine = 2"), "{fraction}");
+}
+
 #[test]
 fn errors_are_reported_at_their_key() {
     let missing = problem("body.prism.mesh.file=nowhere.msh");
@@ -36,7 +45,7 @@ fn errors_are_reported_at_their_key() {
         missing.what.contains("\"nowhere.msh\" cannot be read") && missing.why.contains("there is no file")
     );
     assert!(problem("body.prism.mesh.file=../gmsh").why.contains("is not a file"));
-    assert!(problem("body.prism.mesh.file=gmsh.toml").what.contains("this is no Gmsh mesh"));
+    assert!(problem("body.prism.mesh.file=gmsh.toml").what.contains("this is not a Gmsh mesh"));
     let name = problem("body.prism.mesh.surface=prisma");
     assert!(name.what.contains("\"prisma\"") && name.why.contains("cylinder, prism"), "{name}");
     assert!(problem("body.prism.element=T6").help.contains("element = \"T10\""));

@@ -32,7 +32,7 @@ try: did you mean `prism.top`?"
   time.scheme.rho_inf=1.2
                       ^^^
 why: Spectral radius at infinite frequency: 0 removes the highest frequencies within a few steps, 1 does not damp them.
-try: write for example `rho_inf = 0.8`"
+try: write for example `rho_inf = 1`"
     );
 }
 
@@ -65,6 +65,11 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["material.rubber.mu=0"], &["`mu` must be a number > 0"]),
     (&["material.rubber.lambda=-10"], &["Λ = -10, μ = 15 are not positive definite", "lambda must be > -10"]),
     (&["material.rubber.young=3.0"], &["not a valid pair: lambda, mu, young"]),
+    (
+        &["material.rubber.poisson=0.5"],
+        &["0.49 for `lambda = 735`", "must be a number in (-1, 0.5), not 0.5", "`poisson = 0.49`"],
+    ),
+    (&["material.rubber.poisson=0.3"], &["not a valid pair", "0.3 for `lambda = 22.5`"]),
     (&["body.cylinder.element=T7"], &["`element` cannot be \"T7\"", "T10"]),
     (&["body.cylinder.element=L2"], &["the element L2 has dimension 1", "use T3, T6 or T10"]),
     (&["dimension=3"], &["dimension 3 is not supported", "later version"]),
@@ -73,12 +78,19 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["time.energy_guard=true"], &["a number > 0, or false, not `true`"]),
     // schemes
     (&["time.scheme.kind=chung-hulber"], &["did you mean `chung-hulbert`?"]),
-    (&["time.scheme={ kind = \"bathe\", rho_inf = 1.5 }"], &["`rho_inf` must be a number in [0, 1]"]),
+    (
+        &["time.scheme={ kind = \"bathe\", rho_inf = 1.5 }"],
+        &["`rho_inf` must be a number in [0, 1]", "write for example `rho_inf = 1`"],
+    ),
+    (&["contact.strike.restitution=1.5"], &["write for example `restitution = 1`"]),
     (
         &["time.scheme={ kind = \"hu\", rho_inf = 0.5 }"],
         &["unknown key `rho_inf` in scheme \"hu\"", "scheme \"wbz\""],
     ),
-    (&["time.scheme={ kind = \"newmark\", beta = 0.25 }"], &["needs `gamma`"]),
+    (
+        &["time.scheme={ kind = \"newmark\", beta = 0.25 }"],
+        &["requires `beta` and `gamma`, or `rho_inf`; `gamma` is missing", "kind = \"newmark\", rho_inf"],
+    ),
     (&["time.scheme={ kind = \"hht\", alpha = -0.1 }"], &["did you mean `alpha = 0.1`?"]),
     (&["time.scheme=hu"], &["`scheme` must be a table { kind = \"…\", … }, not the string \"hu\""]),
     // steps
@@ -89,6 +101,21 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["time.step=1.0"], &["the step 1 is longer than the run"]),
     (&["time.step=7.5e-13"], &["too many steps"]),
     (&["output.at_times=[0.1, 0.8]"], &["the time 0.8 is outside the run"]),
+    // a frozen contact point
+    (&["contact.strike.xi=froze"], &["`xi` cannot be \"froze\"", "did you mean `frozen`?"]),
+    (&["contact.strike.xi=frozen"], &["cannot be used with this detection", "xi = \"closest\""]),
+    (
+        &["preset=paper", "contact.strike.xi=frozen", "contact.strike.enforcement=penalty"],
+        &["xi = \"frozen\" cannot be used with a penalty"],
+    ),
+    (
+        &["preset=paper", "contact.strike.xi=frozen", "time.scheme={ kind = \"bathe\", rho_inf = 0.5 }"],
+        &["xi = \"frozen\" cannot be used with scheme `bathe`"],
+    ),
+    (
+        &["preset=paper", "contact.strike.xi=frozen", "contact.strike.law=predictor"],
+        &["xi = \"frozen\" cannot be used with law = \"predictor\""],
+    ),
     // names
     (&["body.cylinder.material=ruber"], &["there is no material `ruber`", "did you mean `rubber`?"]),
     (&["body.prism.name=cylinder"], &["two tables [[body]] are named `cylinder`"]),
@@ -325,7 +352,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     ),
     (
         &["body.cylinder.mesh.refine=[{ near = [0.0, 0.0], size = 0.1 }]"],
-        &["unknown key `refine`", "is a key of mesh of shape \"polygon\""],
+        &["unknown key `refine`", "is a key of the case, mesh of shape \"polygon\""],
     ),
     (&["body.cylinder.place={ turn = 30 }"], &["unknown key `turn` in place", "rotate, about, shift"]),
     // keys of other tables

@@ -42,20 +42,6 @@ fn bodies_are_placed() {
 }
 
 #[test]
-fn nearly_incompressible_t3_give_a_warning() {
-    let warned = |sets: &[&str]| resolved(IMPACT, sets).unwrap().warnings();
-    let soft = "material.rubber.lambda=100.0";
-    assert!(warned(&[]).is_empty());
-    assert!(warned(&["body.prism.element=T3", soft]).is_empty());
-    let warnings = warned(&["body.prism.element=T3"]);
-    assert!(
-        warnings.len() == 1 && warnings[0].contains("\"prism\"") && warnings[0].contains("0.4651"),
-        "{warnings:?}"
-    );
-    assert!(warned(&["body.prism.element=T3", "plane=stress"]).is_empty());
-}
-
-#[test]
 fn plane_stress_needs_dimension_two() {
     assert_eq!(resolved(IMPACT, &["plane=stress"]).unwrap().plane, Plane::Stress);
     assert!(resolved(BARS, &["plane=stress"]).unwrap_err()[0].what.contains("needs dimension = 2"));

@@ -3,13 +3,14 @@
 //!
 //! Positions are flat over all nodes, `dimension` components each.
 
+mod gap;
 mod node_to_facet;
 mod node_to_plane;
 mod projection;
 mod surface;
 mod trajectory;
 
-pub use node_to_facet::{Detection, NodeToFacet};
+pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
 pub use node_to_plane::NodeToPlane;
 pub use surface::Surface;
 
@@ -45,7 +46,14 @@ pub trait Kinematics: Send + Sync {
         false
     }
 
-    /// Adds the row of a pair at positions `y` to `rows`. Sets `pair.xi` to the closest point.
+    /// Prepares a pair for a step from positions `y`: moves its contact point to the closest point,
+    /// where [`measure`](Self::measure) does not.
+    fn start_step(&self, pair: &mut Pair, y: &[f64]) {
+        let _ = (pair, y);
+    }
+
+    /// Adds the row of a pair at positions `y` to `rows`. Sets `pair.xi` to the closest point,
+    /// unless contact points are frozen.
     ///
     /// # Errors
     /// If there is no unique closest point; no row is added.

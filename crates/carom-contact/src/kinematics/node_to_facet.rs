@@ -1,24 +1,18 @@
 //! Secondary nodes against a primary side of facets: curved ones of any order in the plane, a point
 //! at the end of a bar.
 //!
-//! Gap at the closest point ξ of the pair's facet, with t = y_S', J = |t|, n = t rotated right / J,
-//! κ = n·y_S'', a = J² − gκ (theory.md §1):
+//! The gap and its derivatives are in `gap.rs`. ξ is that of the closest point, solved for in every
+//! call up to |ξ| = 1.2 beyond an end. With [`ContactPoint::Frozen`] it is that of the crossing of
+//! the paths in the first step of a pair, and of the closest point at the start of the step in the
+//! later ones; a step leaves it unchanged.
 //!
-//! ```text
-//! g = (y_N − y_S(ξ))·n        ∇g = N_n = (n; −φᵅ n)
-//! ∇²g = −(N_t T_nᵀ + T_n N_tᵀ)/a − κ/(a J²) N_t N_tᵀ − (g/a) T_n T_nᵀ,    N_t = (t; −φᵅ t),  T_n = (0; φ'ᵅ n)
-//! ```
-//!
-//! For a point n = ±1, the outward direction, and ∇²g = 0. ξ is solved for in every call, up to
-//! |ξ| = 1.2 beyond an end. The pair is handed to the neighbour only between solves, and never
-//! back within a step.
+//! A pair is handed to the neighbour only between solves, and never back within a step.
 
 use std::sync::{Mutex, PoisonError};
 
-use carom_algebra::Mat;
 use carom_solid::FacetShape;
 
-use super::projection::FacetPoint;
+use super::gap::Gap;
 use super::surface::{Search, Surface};
 use super::trajectory::crossing;
 use super::{Kinematics, watch_every_node};
@@ -49,12 +43,22 @@ pub enum Detection {
     Trajectory,
 }
 
+/// The point of a facet at which the gap is measured during the iterations of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactPoint {
+    /// The closest point, which follows the iterate.
+    Closest,
+    /// The point found by the detection, or the closest point at the start of the step.
+    Frozen,
+}
+
 /// Secondary nodes against a primary side of facets.
 #[derive(Debug)]
 pub struct NodeToFacet {
     secondary: Vec<usize>,
     primary: Surface,
     detection: Detection,
+    point: ContactPoint,
     search: Mutex<Search>,
 }
 
@@ -63,7 +67,18 @@ impl NodeToFacet {
     /// from the secondary.
     pub fn new(secondary: Vec<usize>, primary: Surface, detection: Detection) -> Self {
         let search = Mutex::new(Search::new(&primary));
-        Self { secondary, primary, detection, search }
+        Self { secondary, primary, detection, point: ContactPoint::Closest, search }
+    }
+
+    /// The same with another rule for the contact point. Only [`Detection::Trajectory`] finds a
+    /// point that can be frozen.
+    #[must_use]
+    pub fn with_point(self, point: ContactPoint) -> Self {
+        Self { point, ..self }
+    }
+
+    fn is_frozen(&self) -> bool {
+        self.point == ContactPoint::Frozen
     }
 
     fn places<'a>(&self, y: &'a [f64]) -> Places<'a> {
@@ -73,6 +88,21 @@ impl NodeToFacet {
     fn gap(&self, node: usize, facet: usize, xi: f64, y: Places) -> f64 {
         let c = self.primary.facet(facet).at(y, xi);
         (y.at(node) - c.position).dot(&c.normal)
+    }
+
+    /// ξ of the point of a pair's facet closest to its node, from the last one.
+    fn closest(&self, pair: &Pair, y: Places) -> Option<f64> {
+        let (facet, from) = (self.primary.facet(pair.facet), y.at(self.secondary[pair.node]));
+        facet.closest_from(y, from, pair.xi, WANDER).or_else(|| facet.closest_point(y, from, REACH))
+    }
+
+    /// The gap of a pair at its ξ.
+    fn gap_of(&self, pair: &Pair, y: Places) -> Gap {
+        let (facet, from) = (self.primary.facet(pair.facet), y.at(self.secondary[pair.node]));
+        match self.point {
+            ContactPoint::Closest => Gap::closest(facet, y, from, pair.xi),
+            ContactPoint::Frozen => Gap::fixed(facet, y, from, pair.xi),
+        }
     }
 
     /// Facet and ξ of possible contact of a node: the first crossing of trajectories, else the
@@ -183,12 +213,14 @@ impl Kinematics for NodeToFacet {
         let (before, now) = (self.places(before), self.places(now));
         let Pairing { pairs, margin, left } = pairing;
         let mut changed = false;
+        // A frozen contact point belongs to the positions at the start of the step.
+        let placed = if self.is_frozen() { before } else { now };
         pairs.retain_mut(|pair| {
             let node = self.secondary[pair.node];
             // Moves on to neighbours until the closest point lies on the facet, at most as many
             // times as there are facets.
             for _ in 0..=self.primary.facets() {
-                match self.next_facet(pair, left.get(&pair.node).copied(), now) {
+                match self.next_facet(pair, left.get(&pair.node).copied(), placed) {
                     Next::Stay => return true,
                     Next::HandOver(facet, xi) => {
                         if pair.active {
@@ -247,6 +279,9 @@ impl Kinematics for NodeToFacet {
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
+        if self.is_frozen() {
+            return false;
+        }
         let now = self.places(now);
         let Pairing { pairs, left, .. } = pairing;
         let mut changed = false;
@@ -270,52 +305,36 @@ impl Kinematics for NodeToFacet {
         changed
     }
 
+    fn start_step(&self, pair: &mut Pair, y: &[f64]) {
+        if self.is_frozen() {
+            let y = self.places(y);
+            // Without a unique closest point the pair keeps its point.
+            pair.xi = self.closest(pair, y).unwrap_or(pair.xi);
+        }
+    }
+
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let (node, y) = (self.secondary[pair.node], self.places(y));
         let facet = self.primary.facet(pair.facet);
-        let from = y.at(node);
-        let lost = ContactError::Lost { node, facet: pair.facet, xi: pair.xi };
-        pair.xi = facet
-            .closest_from(y, from, pair.xi, WANDER)
-            .or_else(|| facet.closest_point(y, from, REACH))
-            .ok_or(lost)?;
-        let c = facet.at(y, pair.xi);
-        let gap = (from - c.position).dot(&c.normal);
-        let a = c.measure * c.measure - gap * c.normal.dot(&c.second);
-        if a <= 0.0 || !a.is_finite() {
-            return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a });
+        if !self.is_frozen() {
+            let lost = ContactError::Lost { node, facet: pair.facet, xi: pair.xi };
+            pair.xi = self.closest(pair, y).ok_or(lost)?;
         }
-        let values = facet.shape.at(pair.xi).values;
-        let of_facet = facet.nodes.iter().zip(values).map(|(&n, value)| (n, (c.normal * -value).0));
-        rows.push(gap, std::iter::once((node, c.normal.0)).chain(of_facet));
+        let gap = self.gap_of(pair, y);
+        if gap.a <= 0.0 || !gap.a.is_finite() {
+            return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a: gap.a });
+        }
+        let nodes = std::iter::once(&node).chain(facet.nodes);
+        rows.push(gap.distance, nodes.zip(gap.gradient(facet.nodes.len())).map(|(&n, slope)| (n, slope.0)));
         Ok(())
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
-        let (node, y) = (self.secondary[pair.node], self.places(y));
         let facet = self.primary.facet(pair.facet);
-        let (count, d) = (1 + facet.nodes.len(), facet.shape.dimension());
-        let FacetPoint { position, tangent: t, second, normal: n, measure: j } = facet.at(y, pair.xi);
-        let gap = (y.at(node) - position).dot(&n);
-        let kappa = n.dot(&second);
-        let a = j * j - gap * kappa;
-        let shape = facet.shape.at(pair.xi);
-        // Every vector of the stencil is a scalar per node times n or t.
-        let phi = |p: usize| if p == 0 { 1.0 } else { -shape.values[p - 1] };
-        let slope = |p: usize| if p == 0 { 0.0 } else { shape.first[p - 1] };
-        let (nn, tt, tn, nt) = (n.outer(&n), t.outer(&t), t.outer(&n), n.outer(&t));
-        for p in 0..count {
-            for q in 0..count {
-                let mut block: Mat<2> = tn * (-phi(p) * slope(q) / a);
-                block += nt * (-slope(p) * phi(q) / a);
-                block += tt * (-kappa / (a * j * j) * phi(p) * phi(q));
-                block += nn * (-gap / a * slope(p) * slope(q));
-                for i in 0..d {
-                    for k in 0..d {
-                        curvature[(p * d + i) * count * d + q * d + k] = block.0[i][k];
-                    }
-                }
-            }
-        }
+        self.gap_of(pair, self.places(y)).curvature_into(
+            facet.nodes.len(),
+            facet.shape.dimension(),
+            curvature,
+        );
     }
 }

@@ -1,14 +1,18 @@
-//! Gap derivatives of contact with curved facets of every order against differences; balance of
-//! force and moment; objectivity.
+//! Gap derivatives of contact with curved facets of every order against differences, at the closest
+//! point and at a frozen one; balance of force and moment; objectivity.
 
 use carom_algebra::{Vector, jacobian_error};
-use carom_contact::{Detection, Kinematics, NodeToFacet, Pair, PairEvent, Pairing, Rows, Surface};
+use carom_contact::{
+    ContactPoint, Detection, Kinematics, NodeToFacet, Pair, PairEvent, Pairing, Rows, Surface,
+};
 use carom_solid::FacetShape;
 
 const SHAPES: [FacetShape; 3] = [FacetShape::L2, FacetShape::L3, FacetShape::L4];
 
+const POINTS: [ContactPoint; 2] = [ContactPoint::Closest, ContactPoint::Frozen];
+
 /// A curved facet of 2, 3 or 4 nodes (1 …) and a node (0) near it, inside or outside.
-fn scene(shape: FacetShape, height: f64) -> (NodeToFacet, Vec<f64>) {
+fn scene(shape: FacetShape, point: ContactPoint, height: f64) -> (NodeToFacet, Vec<f64>) {
     let mut y = vec![0.23, height, 1.0, 0.1, -1.1, -0.05];
     match shape {
         FacetShape::L3 => y.extend([0.05, 0.21]),
@@ -16,14 +20,15 @@ fn scene(shape: FacetShape, height: f64) -> (NodeToFacet, Vec<f64>) {
         FacetShape::L2 | FacetShape::Point => {}
     }
     let facet: Vec<usize> = (1..y.len() / 2).collect();
-    (NodeToFacet::new(vec![0], Surface::new(shape, &[facet], &[1.0]), Detection::ClosestPoint), y)
+    let contact = NodeToFacet::new(vec![0], Surface::new(shape, &[facet], &[1.0]), Detection::Trajectory);
+    (contact.with_point(point), y)
 }
 
 fn pair() -> Pair {
     Pair { node: 0, facet: 0, xi: 0.1, active: true, lambda: -3.0, start: None }
 }
 
-/// The row of the scene's pair, and the pair at its closest point.
+/// The row of the scene's pair, and the pair at its contact point.
 fn measured(contact: &NodeToFacet, y: &[f64]) -> (Rows, Pair) {
     let (mut rows, mut pair) = (Rows::new(2), pair());
     contact.measure(&mut pair, y, &mut rows).unwrap();
@@ -58,16 +63,16 @@ fn stiffness(contact: &NodeToFacet, y: &[f64], lambda: f64) -> Vec<f64> {
 
 #[test]
 fn gradient_and_second_derivative_agree_with_differences() {
-    for shape in SHAPES {
+    for (shape, point) in SHAPES.into_iter().flat_map(|shape| POINTS.map(|point| (shape, point))) {
         for height in [0.4, 0.17, 0.02] {
-            let (contact, y) = scene(shape, height);
+            let (contact, y) = scene(shape, point, height);
             let error = jacobian_error(&y, 1e-3, |y| vec![gap(&contact, y)], &force(&contact, &y, 1.0));
-            assert!(error < 1e-9, "{shape:?}: gradient {error:e}");
+            assert!(error < 1e-9, "{shape:?} {point:?}: gradient {error:e}");
 
             let (lambda, n) = (-2.5, y.len());
             let hessian = stiffness(&contact, &y, lambda);
             let error = jacobian_error(&y, 1e-3, |y| force(&contact, y, lambda), &hessian);
-            assert!(error < 1e-8, "{shape:?}: second derivative {error:e}");
+            assert!(error < 1e-8, "{shape:?} {point:?}: second derivative {error:e}");
             for a in 0..n {
                 for b in 0..n {
                     assert!((hessian[a * n + b] - hessian[b * n + a]).abs() < 1e-12);
@@ -77,27 +82,71 @@ fn gradient_and_second_derivative_agree_with_differences() {
     }
 }
 
+/// With a frozen ξ this needs the extra term of eq. (11): without it the moment would be that of λ
+/// on the arm of the slip.
 #[test]
 fn force_and_moment_balance() {
-    for shape in SHAPES {
-        let (contact, y) = scene(shape, 0.05);
+    for (shape, point) in SHAPES.into_iter().flat_map(|shape| POINTS.map(|point| (shape, point))) {
+        let (contact, y) = scene(shape, point, 0.05);
         let f = force(&contact, &y, -7.0);
         let (mut sum, mut moment) = (Vector::ZERO, 0.0);
         for (y, f) in y.as_chunks::<2>().0.iter().zip(f.as_chunks::<2>().0) {
             sum += Vector(*f);
             moment += y[0] * f[1] - y[1] * f[0];
         }
-        assert!(sum.norm() < 7e-12 && moment.abs() < 7e-12, "{shape:?}: {sum:?} {moment:e}");
+        assert!(sum.norm() < 7e-12 && moment.abs() < 7e-12, "{shape:?} {point:?}: {sum:?} {moment:e}");
     }
 }
 
 #[test]
 fn the_gap_does_not_see_a_rigid_motion() {
-    let (contact, y) = scene(FacetShape::L4, 0.3);
-    let (s, c) = 2.1_f64.sin_cos();
-    let motion = |x: &[f64]| [c * x[0] - s * x[1] + 5.0, s * x[0] + c * x[1] - 3.0];
-    let moved: Vec<f64> = y.chunks(2).flat_map(motion).collect();
-    assert!((gap(&contact, &y) - gap(&contact, &moved)).abs() < 1e-13);
+    for point in POINTS {
+        let (contact, y) = scene(FacetShape::L4, point, 0.3);
+        let (s, c) = 2.1_f64.sin_cos();
+        let motion = |x: &[f64]| [c * x[0] - s * x[1] + 5.0, s * x[0] + c * x[1] - 3.0];
+        let moved: Vec<f64> = y.chunks(2).flat_map(motion).collect();
+        assert!((gap(&contact, &y) - gap(&contact, &moved)).abs() < 1e-13);
+    }
+}
+
+/// A node that slides by s on a circle's tangent is κs²/2 off the circle, to fourth order in s.
+#[test]
+fn a_frozen_point_leaves_the_node_on_the_tangent_line() {
+    let radius = 2.0;
+    // An arc of ±0.2 rad by a cubic through four of its points, traversed with the body below.
+    let arc =
+        [-0.2, 0.2, -0.2 / 3.0, 0.2 / 3.0].map(|angle: f64| [-radius * angle.sin(), radius * angle.cos()]);
+    let surface = Surface::new(FacetShape::L4, &[vec![1, 2, 3, 4]], &[1.0]);
+    let contact = NodeToFacet::new(vec![0], surface, Detection::Trajectory).with_point(ContactPoint::Frozen);
+    for slip in [0.01, 0.02, 0.04] {
+        let y = [&[slip, radius][..], arc.as_flattened()].concat();
+        let mut rows = Rows::new(2);
+        let mut pair = Pair { xi: 0.0, ..pair() };
+        contact.measure(&mut pair, &y, &mut rows).unwrap();
+        let printed = rows.row(0).gap;
+        contact.start_step(&mut pair, &y);
+        contact.measure(&mut pair, &y, &mut rows).unwrap();
+        let distance = rows.row(1).gap - printed;
+        // The cubic misses the circle by 0.2⁴/216 of its radius, on both lines of this difference.
+        let expected = (radius * radius + slip * slip).sqrt() - radius;
+        assert!((distance - expected).abs() < 0.05 * expected, "{slip}: {distance:e}, {expected:e}");
+        assert!((expected - slip * slip / (2.0 * radius)).abs() < 1e-3 * expected);
+    }
+}
+
+/// The contact point of a step is the closest point at its start, on the facet where that lies.
+#[test]
+fn a_frozen_point_changes_facets_between_steps_only() {
+    let (surface, mut y) = chain(0.0);
+    y.extend([-0.3, 0.0]);
+    let contact = NodeToFacet::new(vec![3], surface, Detection::Trajectory).with_point(ContactPoint::Frozen);
+    let mut pairing = Pairing::new(vec![Pair { xi: 0.9, ..pair() }]);
+    let mut events = Vec::new();
+    assert!(!contact.search(&y, &y, &mut pairing, &mut events) && events.is_empty());
+    assert!(!contact.update_facets(&y, &mut pairing, &mut events) && events.is_empty());
+    contact.start_step(&mut pairing.pairs[0], &y);
+    assert!(contact.search(&y, &y, &mut pairing, &mut events));
+    assert!(pairing.pairs[0].facet == 1 && (pairing.pairs[0].xi - -0.4).abs() < 1e-12);
 }
 
 /// A chain of straight facets traversed from right to left (body below): y = 0 for x > 0, rising to

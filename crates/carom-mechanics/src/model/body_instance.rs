@@ -35,7 +35,7 @@ impl BodyInstance {
         Self { name, first_node, body, total_mass, dofs }
     }
 
-    /// Whether its density is zero: its balance holds at s + 1 without inertia.
+    /// Whether its density is zero: its balance is enforced at s + 1, without inertia.
     pub fn is_massless(&self) -> bool {
         self.body.density() == 0.0
     }
@@ -69,12 +69,12 @@ impl BodyInstance {
         let mesh = self.body.mesh();
         let d = mesh.dimension();
         let (mut local, mut b) = (vec![0.0; mesh.element.dofs()], vec![0.0; d]);
-        let mut refused = Ok(());
+        let mut failure = Ok(());
         for cell in 0..mesh.cell_count() {
             local.fill(0.0);
             self.body.each_volume_point(cell, &mut |shape, place, volume| {
-                if refused.is_ok() {
-                    refused = density(place, &mut b);
+                if failure.is_ok() {
+                    failure = density(place, &mut b);
                 }
                 for (local, phi) in local.chunks_exact_mut(d).zip(shape) {
                     local.iter_mut().zip(&b).for_each(|(f, b)| *f += phi * volume * b);
@@ -84,6 +84,6 @@ impl BodyInstance {
                 force[*dof as usize] += f;
             }
         }
-        refused
+        failure
     }
 }

@@ -21,6 +21,6 @@ pub use mass::Mass;
 pub use motion::{Motions, Prescribed};
 pub use probe::{Probe, Quantity, von_mises};
 pub use redistribution::redistribute;
-pub(crate) use rigid::check_held;
+pub(crate) use rigid::check_rigid_modes;
 pub use rigid::{Mode, Unconstrained, free_motions};
 pub use whole::{Model, Support};

@@ -50,7 +50,7 @@ pub fn redistribute(
             if nearest {
                 match (light[n], light[m]) {
                     (true, true) if heavy.is_empty() => {
-                        return Err("a contact node has no neighbour that keeps its mass".into());
+                        return Err("a contact node has no neighbour that retains its mass".into());
                     }
                     (true, true) => heavy.iter().for_each(|&h| given[h] += *value / heavy.len() as f64),
                     (true, false) => given[m] += *value,
@@ -101,7 +101,10 @@ fn least_change(
         // Symmetric and positive definite: no pivoting is needed.
         let pivot = system[k].clone();
         if pivot[k] <= 1e-12 * largest {
-            return Err("too few nodes keep their mass to keep its centre and second moments".into());
+            return Err(
+                "too few nodes retain their mass to preserve the centre of mass and the second moments"
+                    .into(),
+            );
         }
         for row in system.iter_mut().skip(k + 1) {
             let factor = row[k] / pivot[k];

@@ -27,8 +27,8 @@ pub struct Mode {
 /// An unconstrained body.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "body \"{body}\" is free to {motion}: supports do not hold it there, and no closed contact does. Hold it with a [[support]], press it with \
-     a support's `move` instead of a force, let it touch at the start, or take a scheme with inertia"
+    "body \"{body}\" is free to {motion}: neither supports nor closed contacts constrain this motion. Add a [[support]], press the body \
+     with the `move` of a support instead of a force, start with the contact closed, or use a scheme with inertia"
 )]
 pub struct Unconstrained {
     /// Its name.
@@ -142,7 +142,7 @@ fn null_space(size: usize, rows: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>
 ///
 /// # Errors
 /// The body and its motion.
-pub(crate) fn check_held<'a>(
+pub(crate) fn check_rigid_modes<'a>(
     parts: &[BodyInstance],
     free: &[Mode],
     y: &[f64],

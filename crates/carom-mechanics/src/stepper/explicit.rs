@@ -92,7 +92,7 @@ impl Stepper for Explicit {
         model.loads_into(to, &next.y, &mut work.explicit.loads, &mut next.f_external)?;
         next.time = to;
         self.advance_half_step(model, &mut next, &start.half_step.velocity, dt, work, &mut report)?;
-        self.book(model, start, &mut next, dt);
+        self.record_work(model, start, &mut next, dt);
 
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
@@ -109,7 +109,7 @@ impl Stepper for Explicit {
 
 impl Explicit {
     /// Works and the impulse of contact over a step, by the trapezoidal rule.
-    fn book(&self, model: &Model, start: &State, next: &mut State, dt: f64) {
+    fn record_work(&self, model: &Model, start: &State, next: &mut State, dt: f64) {
         let ledger = &mut next.ledger;
         if !model.loads.is_empty() {
             for (i, (before, now)) in start.f_external.iter().zip(&next.f_external).enumerate() {

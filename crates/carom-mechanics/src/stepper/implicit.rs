@@ -6,7 +6,7 @@ use carom_time::{Before, Kernel, Memory, Stage, Weights};
 
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::carried;
-use crate::contact_update::{GAP_TOLERANCE, search};
+use crate::contact_update::{GAP_TOLERANCE, search, start_step};
 use crate::equations::{Equations, Iterate};
 use crate::ledger;
 use crate::model::{Contact, LoadsAt, Model};
@@ -56,6 +56,7 @@ impl Stepper for Implicit {
         let mut finished: Vec<Point> = Vec::new();
         let mut means = Means::new(model.dofs(), model.contacts.len());
         let mut guess = Iterate::at_start(state);
+        start_step(model, &state.y, &mut guess.pairings);
         let shift = self.predictor_shift(model, state, dt, to, work)?;
         let (mut end, mut last) = (0.0, None);
         for k in 0..self.kernel.stages() {

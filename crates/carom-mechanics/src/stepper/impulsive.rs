@@ -133,7 +133,7 @@ impl Stepper for Impulsive {
         for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
             pair.lambda = 0.0;
         }
-        impulses.book(dt, &mut next);
+        impulses.record(dt, &mut next);
         for (&(k, p), impulse) in impulses.rows.places.iter().zip(&impulses.values) {
             pairings[k].pairs[p].lambda = -impulse / dt;
         }
@@ -347,7 +347,7 @@ impl Impulses {
 
     /// Adds impulses to the ledger and, as forces P/Δt, to those of the contacts: work ½(Gv⁻ +
     /// Gv⁺)·P.
-    fn book(&self, dt: f64, next: &mut State) {
+    fn record(&self, dt: f64, next: &mut State) {
         next.contact_forces.fill([0.0; 3]);
         for (r, (row, impulse)) in self.rows.rows.iter().zip(&self.values).enumerate() {
             let normal = row.normal();

@@ -13,6 +13,10 @@ use super::episode::Episode;
 use super::facts::Facts;
 use crate::History;
 
+/// Share of created energy from which a run is not to be trusted: the default of
+/// `time.energy_guard`.
+pub const MUCH_CREATED: f64 = 0.02;
+
 /// ΔE of every row, and the largest kinetic + strain energy.
 fn changes(history: &History) -> Option<(Vec<f64>, f64)> {
     let [kinetic, strain, total, work] =

@@ -7,6 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::arms::ArmRecords;
+use super::ensemble::Spread;
 use crate::expression::{Token, tokens};
 use crate::question::{Question, Window};
 
@@ -30,14 +31,63 @@ pub struct Verdict {
     pub right: Option<f64>,
     /// Whether it holds; none if it cannot be decided.
     pub holds: Option<bool>,
+    /// How it fares over an ensemble, if the study has one.
+    pub held: Option<Held>,
+}
+
+/// A claim over the members of an ensemble in which it can be decided.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Held {
+    /// Members in which it holds.
+    pub held: usize,
+    /// Members in which it can be decided.
+    pub of: usize,
+    /// The left number divided by the right one.
+    pub ratio: Option<Spread>,
+}
+
+impl Held {
+    /// `in all`, `in most`, `in some` or `in none` of the members; most are three quarters.
+    pub fn word(&self) -> &'static str {
+        match self.held {
+            held if held == self.of => "in all",
+            0 => "in none",
+            held if 4 * held >= 3 * self.of => "in most",
+            _ => "in some",
+        }
+    }
 }
 
 impl Verdict {
-    pub(super) fn of(claim: &Claim, comparison: Option<&Comparison>, records: &ArmRecords) -> Self {
-        let value = |side: usize| comparison?.sides[side].answer(records, Window::default()).ok();
-        let (left, right) = (value(0), value(1));
-        let holds = left.zip(right).zip(comparison).map(|((l, r), c)| c.operator.holds(l, r));
-        Self { claim: claim.clone(), left, right, holds }
+    /// From the records of the arms, and those of the members of their ensemble, the arms included.
+    pub(super) fn of(
+        claim: &Claim,
+        comparison: Option<&Comparison>,
+        records: &ArmRecords,
+        members: &[ArmRecords],
+    ) -> Self {
+        let sides = |records: &ArmRecords| {
+            let value = |side: usize| comparison?.sides[side].answer(records, Window::default()).ok();
+            (value(0), value(1))
+        };
+        let holds = |(left, right): (Option<f64>, Option<f64>)| {
+            left.zip(right).zip(comparison).map(|((l, r), c)| c.operator.holds(l, r))
+        };
+        let (left, right) = sides(records);
+        let decided: Vec<(f64, f64)> =
+            members.iter().map(sides).filter_map(|(left, right)| left.zip(right)).collect();
+        let held = || Held {
+            held: decided.iter().filter(|(l, r)| holds((Some(*l), Some(*r))) == Some(true)).count(),
+            of: decided.len(),
+            ratio: Spread::of(decided.iter().map(|(l, r)| l / r)),
+        };
+        Self {
+            claim: claim.clone(),
+            left,
+            right,
+            holds: holds((left, right)),
+            held: (decided.len() > 1).then(held),
+        }
     }
 
     /// `confirmed`, `denied` or `undecided`.
@@ -126,7 +176,7 @@ mod tests {
             records.put_metric(arm, metric, *value);
         }
         let claim = Claim { text: String::new(), compare: text.into() };
-        let v = Verdict::of(&claim, Some(&comparison), &records);
+        let v = Verdict::of(&claim, Some(&comparison), &records, &[]);
         (v.left, v.right, v.word())
     }
 
@@ -138,6 +188,24 @@ mod tests {
         assert_eq!(of("r of 'Hu, a' / r of 'b > c' - 1 <= 1.5"), (Some(2.0), Some(1.5), "denied"));
         assert_eq!(of("1 - 2 - 3 < q of 'b > c'"), (Some(-4.0), Some(-0.5), "confirmed"));
         assert_eq!(of("r of 'nobody' < 1"), (None, Some(1.0), "undecided"));
+    }
+
+    /// By hand: of three members with the ratios 2, 1.5 and 0.5 the claim holds in two.
+    #[test]
+    fn held_in_k_of_n() {
+        let members = [2.0, 3.0, 0.5].map(|left| {
+            let mut records = ArmRecords::default();
+            records.put_metric("a", "r", left);
+            records.put_metric("b", "r", if left == 3.0 { 2.0 } else { 1.0 });
+            records
+        });
+        let claim = Claim { text: String::new(), compare: "r of 'a' > r of 'b'".into() };
+        let comparison = Comparison::parse(&claim.compare).unwrap();
+        let verdict = Verdict::of(&claim, Some(&comparison), &members[0], &members);
+        let held = verdict.held.unwrap();
+        assert_eq!((held.held, held.of, held.word(), verdict.holds), (2, 3, "in some", Some(true)));
+        let ratio = held.ratio.unwrap();
+        assert_eq!((ratio.median(), ratio.range()), (1.5, (0.5, 2.0)));
     }
 
     #[test]

@@ -174,7 +174,8 @@ mod tests {
     #[test]
     fn orders_of_the_phases() {
         let exact = || sampled(64, |t| t);
-        let reference = Reference::of_runs("r".into(), vec![exact(), exact(), exact()]);
+        let levels = [4.0, 2.0, 1.0].map(|step| super::super::reference::Level::single(step, exact()));
+        let reference = Reference::of_levels("r".into(), levels.into());
         let arm = |h: f64| {
             Compared::of(&sampled(32, |t| t + if t < 0.5 { h * h } else { h }), &reference, Some((0.5, 0.5)))
         };

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::ensemble::Member;
+
 /// The quantity in which methods are matched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -90,7 +92,20 @@ pub struct Role {
     /// Its counted cost divided by the budget of its level, if its cost is matched.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cost: Option<f64>,
-    /// Whether it is one of the three runs of the computed reference.
+    /// Whether it is one of the runs of the computed reference.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub fine: bool,
+    /// The arm that it is a member of, in an ensemble.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub member: Option<MemberOf>,
+}
+
+/// A member of an ensemble.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MemberOf {
+    /// Number of the arm.
+    pub arm: usize,
+    /// What it changes.
+    #[serde(flatten)]
+    pub member: Member,
 }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::arm::Arm;
 use super::claim::Claim;
 use super::design::{Design, Goal, Kind};
+use super::ensemble::Ensemble;
 use crate::{Expect, Machine, Manifest, RecordError, Source, Status, files};
 
 /// The files a study was made from.
@@ -52,6 +53,12 @@ pub struct StudyManifest {
     pub accuracy: Option<f64>,
     /// The simulations.
     pub arms: Vec<Arm>,
+    /// What the members of an arm differ in, if arms are run several times.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ensemble: Option<Ensemble>,
+    /// The members of all arms, except for the arms themselves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub members: Vec<Arm>,
     /// Claims to be decided.
     pub claims: Vec<Claim>,
     /// Expected values.
@@ -90,6 +97,23 @@ impl StudyManifest {
             serde_json::to_vec_pretty(self).map_err(|e| RecordError::io("write", &path)(e.into()))?;
         text.push(b'\n');
         files::write_atomically(&path, &[&text])
+    }
+
+    /// The arms, and after them the members of their ensembles.
+    pub fn runs(&self) -> impl Iterator<Item = &Arm> {
+        self.arms.iter().chain(&self.members)
+    }
+
+    /// The run of this number.
+    pub fn run(&self, i: usize) -> &Arm {
+        self.arms.get(i).unwrap_or_else(|| &self.members[i - self.arms.len()])
+    }
+
+    /// Numbers of the runs of an arm: its own, then those of its members.
+    pub fn runs_of(&self, arm: usize) -> Vec<usize> {
+        let of = |(_, run): &(usize, &Arm)| run.role.member.is_some_and(|m| m.arm == arm);
+        let members = self.members.iter().enumerate().filter(of);
+        std::iter::once(arm).chain(members.map(|(i, _)| self.arms.len() + i)).collect()
     }
 
     /// The methods of a design, in order.

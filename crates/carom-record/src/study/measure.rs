@@ -13,8 +13,10 @@ pub struct Measure {
     pub name: String,
     /// In words.
     pub words: String,
-    /// Uncertainty of the errors.
+    /// Uncertainty of the errors that comes from the reference.
     pub uncertainty: f64,
+    /// Quantities of the same kind that the reference does not establish, which are left out.
+    pub left_out: Vec<String>,
     /// Preferred measures that are not established, and why.
     pub passed_over: Vec<(String, String)>,
 }
@@ -67,7 +69,7 @@ pub(super) struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// The measure of a candidate with the errors of all arms, or the reason why there is none.
+    /// The measure of a candidate with the errors of all runs, or the reason why there is none.
     pub(super) fn measured(
         &self,
         candidate: &Candidate,
@@ -76,6 +78,7 @@ impl Judge<'_> {
             name: name.into(),
             words,
             uncertainty,
+            left_out: Vec::new(),
             passed_over: Vec::new(),
         };
         match candidate {
@@ -117,17 +120,22 @@ impl Judge<'_> {
                     self.compared.iter().map(|c| c.as_ref().and_then(|c| c.mean(&columns))).collect();
                 let words =
                     format!("deviation of {} from the reference, relative to the range", columns.join(", "));
-                Ok((measure(&format!("deviation of {name}"), words, uncertainty), errors))
+                let all = reference.columns().into_iter().filter(|c| kind(c));
+                let left_out = all.filter(|c| reference.uncertainty(c).established().is_none());
+                let left_out = left_out.map(str::to_owned).collect();
+                let measure = measure(&format!("deviation of {name}"), words, uncertainty);
+                Ok((Measure { left_out, ..measure }, errors))
             }
             Candidate::OfColumns(what, kind) => {
                 let none = |why: &str| Err((format!("{what} of stresses"), why.to_owned()));
                 let Some(reference) = self.reference else { return none("the study has no reference") };
-                let names =
-                    reference.columns().into_iter().filter(|c| kind(c)).map(|c| format!("{c}:{what}"));
+                let columns = reference.columns().into_iter().filter(|c| kind(c));
+                let names: Vec<String> = columns.map(|c| format!("{c}:{what}")).collect();
                 let known: Vec<(String, f64, f64)> = names
+                    .iter()
                     .filter_map(|n| {
                         let (value, off) = reference.metric(&n).established().filter(|(v, _)| *v > 0.0)?;
-                        Some((n, value, off / value))
+                        Some((n.clone(), value, off / value))
                     })
                     .collect();
                 if known.is_empty() {
@@ -141,10 +149,9 @@ impl Judge<'_> {
                 let uncertainty = known.iter().map(|k| k.2).fold(0.0, f64::max);
                 let words =
                     format!("error of {}", known.iter().map(|k| k.0.as_str()).collect::<Vec<_>>().join(", "));
-                Ok((
-                    measure(&format!("{what} of stresses"), words, uncertainty),
-                    self.rows.iter().map(mean).collect(),
-                ))
+                let left_out = names.into_iter().filter(|n| known.iter().all(|k| k.0 != *n)).collect();
+                let measure = measure(&format!("{what} of stresses"), words, uncertainty);
+                Ok((Measure { left_out, ..measure }, self.rows.iter().map(mean).collect()))
             }
         }
     }

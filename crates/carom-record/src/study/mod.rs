@@ -10,13 +10,17 @@
 //!            study.html figures/     the page
 //! ```
 
+mod alike;
 mod arm;
 mod arms;
 pub mod checks;
 mod claim;
 pub mod compared;
+mod convergence;
+mod crosscheck;
 pub mod design;
 mod digits;
+pub mod ensemble;
 mod manifest;
 mod measure;
 mod orders;
@@ -33,9 +37,10 @@ use crate::{Expectation, RecordError, Run, Status, judge};
 pub use arm::{Arm, step};
 pub use arms::ArmRecords;
 use checks::Checks;
-pub use claim::{Claim, Comparison, Verdict};
+pub use claim::{Claim, Comparison, Held, Verdict};
 use compared::{Compared, PhaseOrders, orders_by_phase};
 use design::Goal;
+use ensemble::{Ensemble, Spread};
 pub use manifest::{StudyManifest, StudySource};
 pub use orders::{Refinement, numeric_keys, refinements};
 use ranking::Ranking;
@@ -51,6 +56,8 @@ pub struct Study {
     pub manifest: StudyManifest,
     /// One per arm.
     pub rows: Vec<Row>,
+    /// One per member of an ensemble, in the order of the manifest.
+    pub members: Vec<Row>,
     /// One per claim.
     pub verdicts: Vec<Verdict>,
     /// Outcomes of the expectations of the study as a whole; an order may have one per group of
@@ -85,26 +92,38 @@ impl Study {
         let claimed = comparisons.iter().flatten().flat_map(Comparison::questions);
         let questions: Vec<&Question> = claimed.chain(expected.iter().flatten()).collect();
         let series: Vec<&Series> = series.iter().flatten().collect();
-        let mut records = ArmRecords::default();
+        // Of the arms, and of each member of the ensemble, the arms being the first.
+        let kinds = manifest.ensemble.as_ref().map_or_else(Vec::new, Ensemble::members);
+        let mut records = vec![ArmRecords::default(); kinds.len().max(1)];
         let reference = manifest.reference(directory)?;
         let contact = reference.as_ref().and_then(|r| {
             let time = |name: &str| r.metric(name).established().map(|x| x.0);
             time("contact_start").zip(time("contact_end"))
         });
         let (mut rows, mut compared) = (Vec::new(), Vec::new());
-        for (i, arm) in manifest.arms.iter().enumerate() {
+        for (i, arm) in manifest.runs().enumerate() {
             let (status, reason) = manifest.state(directory, arm)?;
             let (mut metrics, mut expectations, mut had_contact) = (Vec::new(), Vec::new(), false);
             let mut comparison = None;
             if status.is_some() {
                 let run = Run::open(&directory.join(&arm.directory))?;
-                visit(i, &run);
+                if i < manifest.arms.len() {
+                    visit(i, &run);
+                }
                 if status == Some(Status::Finished) {
                     metrics = metrics::of_run(&run);
                     comparison =
                         reference.as_ref().map(|r| Compared::of(&Trajectory::of(&run, &[]), r, contact));
                 }
-                records.gather(&arm.name, &run, &metrics, &questions, &series);
+                let (kind, name) = match &arm.role.member {
+                    None => (Some(0), &arm.name),
+                    Some(of) => {
+                        (kinds.iter().position(|kind| *kind == of.member), &manifest.arms[of.arm].name)
+                    }
+                };
+                if let Some(kind) = kind {
+                    records[kind].gather(name, &run, &metrics, &questions, &series);
+                }
                 expectations = judge(&run, &arm.expects());
                 had_contact = run.had_dynamic_contact();
             }
@@ -122,10 +141,10 @@ impl Study {
             .claims
             .iter()
             .zip(&comparisons)
-            .map(|(claim, c)| Verdict::of(claim, c.as_ref(), &records));
+            .map(|(claim, c)| Verdict::of(claim, c.as_ref(), &records[0], &records));
         let judged = manifest.expects.iter().flat_map(|expect| match &expect.order {
-            Some(order) => orders::judge(expect, order, &manifest, &records),
-            None => vec![expect.verdict(expect.got(&records))],
+            Some(order) => orders::judge(expect, order, &manifest, &records[0]),
+            None => vec![expect.verdict(expect.got(&records[0]))],
         });
         let (expectations, verdicts) = (judged.collect(), verdicts.collect());
         let ranking =
@@ -133,6 +152,8 @@ impl Study {
         let others = Goal::all().filter(|goal| manifest.goal.is_some_and(|own| own != *goal));
         let other_rankings: Vec<Ranking> =
             others.map(|goal| Ranking::of(goal, &manifest, &rows, &compared, reference.as_ref())).collect();
+        let members = rows.split_off(manifest.arms.len());
+        compared.truncate(manifest.arms.len());
         let phase_orders =
             reference.as_ref().map(|r| orders_by_phase(&manifest, &compared, r)).unwrap_or_default();
         let checks = Checks::read(directory)?;
@@ -141,6 +162,7 @@ impl Study {
             directory,
             manifest,
             rows,
+            members,
             verdicts,
             expectations,
             reference,
@@ -150,6 +172,13 @@ impl Study {
             other_rankings,
             checks,
         })
+    }
+
+    /// The values of a metric over the members of an arm's ensemble, the arm included.
+    pub fn spread(&self, arm: usize, metric: &str) -> Option<Spread> {
+        let row = |run: usize| self.rows.get(run).or_else(|| self.members.get(run - self.rows.len()));
+        let runs = self.manifest.runs_of(arm);
+        Spread::of(runs.into_iter().filter_map(|run| row(run)?.value(metric)))
     }
 
     /// Every metric that an arm has, in order: name, unit, definition.

@@ -1,16 +1,26 @@
-//! Ranking of the arms by the goal of a study, with a recommendation and its confidence.
+//! Ranking of the arms by the goal of a study, with a recommendation and its confidence, or why there
+//! is none.
 //!
 //! Every goal has measures in order of preference, and the first established one is used. The error
-//! of an arm is |m − r|/|r| (|m| if r = 0) for a metric m, or the root mean square deviation of
-//! columns. Arms are ranked within a level only, that is, at the same step or the same cost.
-//! Methods are ordered by their mean rank over the levels. Two arms of a level are not
-//! distinguished if their errors differ by no more than the uncertainty of the reference, or by
-//! 5 %. Of the methods that are not distinguished from the best, the cheapest is recommended.
-//! Processor times within 10 % of the smallest count as equal; the smaller error then decides.
+//! of a run is |m − r|/|r| (|m| if r = 0) for a metric m, or the root mean square deviation of
+//! columns; that of an arm is the median over its ensemble, with the largest distance of a member
+//! from it as its uncertainty. Arms are ranked within a level only, that is, at the same step or the
+//! same cost. Two arms of a level are not distinguished, and share a place, if their errors differ by
+//! no more than the sum of their uncertainties, than that of the reference, or than 5 %; within a
+//! place they are in the order of their cost.
+//!
+//! Methods are ordered by their mean place over the levels. Of those that are not distinguished from
+//! the best, the cheapest is recommended; processor times within 10 % of the smallest count as equal,
+//! and the smaller error then decides. Nothing is recommended if only a substitute for the measure of
+//! the goal is established, or if no arm has the required accuracy.
 
+use super::arm::Arm;
 use super::compared::Compared;
+use super::crosscheck;
+pub use super::crosscheck::Crosscheck;
 use super::design::{Goal, Kind};
 use super::digits::short;
+use super::ensemble::Spread;
 use super::manifest::StudyManifest;
 use super::measure::{Judge, candidates};
 pub use super::measure::{Measure, error, standing};
@@ -28,8 +38,10 @@ const EQUAL_COST: f64 = 0.1;
 pub struct Ranked {
     /// Number of the arm.
     pub arm: usize,
-    /// Its error.
+    /// Its error: the median over its ensemble.
     pub error: f64,
+    /// Largest distance of a member of its ensemble from the median.
+    pub uncertainty: f64,
     /// Place, from 1; arms that are not distinguished share one.
     pub place: usize,
 }
@@ -80,8 +92,11 @@ pub struct Ranking {
     pub measure: Result<Measure, String>,
     /// Ranked arms per level, the best first.
     pub levels: Vec<Vec<Ranked>>,
-    /// The recommendation; none if nothing can be ranked.
-    pub verdict: Option<Verdict>,
+    /// Per level, whether the conclusion is another one at equal cost (at equal steps, in a design of
+    /// matched cost).
+    pub crosschecks: Vec<Crosscheck>,
+    /// The recommendation, or the reasons why there is none.
+    pub verdict: Result<Verdict, Vec<String>>,
 }
 
 impl Ranking {
@@ -108,7 +123,14 @@ impl Ranking {
         let Some((measure, mut errors)) = found else {
             let why =
                 passed_over.iter().map(|(name, why)| format!("{name}: {why}")).collect::<Vec<_>>().join("; ");
-            return Self { goal, measure: Err(why), levels: Vec::new(), verdict: None };
+            let reasons = vec!["the reference establishes no measure of this goal".to_owned()];
+            return Self {
+                goal,
+                measure: Err(why),
+                levels: Vec::new(),
+                crosschecks: Vec::new(),
+                verdict: Err(reasons),
+            };
         };
         let mut measure = Measure { passed_over, ..measure };
         if goal == Goal::Cost {
@@ -128,29 +150,37 @@ impl Ranking {
             let arms =
                 manifest.arms.iter().enumerate().filter(|(_, a)| a.role.level == level && !a.role.fine);
             let not_reference = arms.filter(|(_, a)| manifest.reference.as_ref() != Some(&a.name));
-            let mut ranked: Vec<Ranked> = not_reference
-                .filter_map(|(i, _)| Some(Ranked { arm: i, error: errors[i]?, place: 0 }))
-                .collect();
+            let one = |(i, _): (usize, &Arm)| {
+                errors[i]?;
+                let members = Spread::of(manifest.runs_of(i).into_iter().filter_map(|run| errors[run]))?;
+                let (error, uncertainty) = (members.median(), members.half_width());
+                Some(Ranked { arm: i, error, uncertainty, place: 0 })
+            };
+            let mut ranked: Vec<Ranked> = not_reference.filter_map(one).collect();
             ranked.sort_by(|a, b| a.error.total_cmp(&b.error));
             places(&mut ranked, measure.uncertainty);
+            let cost = |r: &Ranked| rows[r.arm].value("cpu_time").unwrap_or(f64::INFINITY);
+            ranked.sort_by(|a, b| a.place.cmp(&b.place).then(cost(a).total_cmp(&cost(b))));
             ranked
         };
         let levels: Vec<Vec<Ranked>> = (0..count).map(level).collect();
-        let verdict = verdict(goal, manifest, &measure, &levels, rows);
-        Self { goal, measure: Ok(measure), levels, verdict }
+        let verdict = verdict(goal, manifest, &measure, &levels, rows, reference);
+        let crosschecks =
+            if goal == Goal::Cost { Vec::new() } else { crosscheck::of(manifest, rows, &levels) };
+        Self { goal, measure: Ok(measure), levels, crosschecks, verdict }
     }
-}
-
-fn alike(a: f64, b: f64, uncertainty: f64) -> bool {
-    (a - b).abs() <= f64::max(uncertainty, ALIKE * f64::min(a, b))
 }
 
 /// Assigns places: an arm shares the place of the first arm of its group as long as the two are not
 /// distinguished.
 fn places(ranked: &mut [Ranked], uncertainty: f64) {
+    let alike = |a: &Ranked, b: &Ranked| {
+        let own = f64::max(a.uncertainty + b.uncertainty, ALIKE * f64::min(a.error, b.error));
+        (a.error - b.error).abs() <= f64::max(uncertainty, own)
+    };
     let mut first = 0;
     for i in 0..ranked.len() {
-        if !alike(ranked[first].error, ranked[i].error, uncertainty) {
+        if !alike(&ranked[first], &ranked[i]) {
             first = i;
         }
         ranked[i].place = first + 1;
@@ -163,7 +193,8 @@ fn verdict(
     measure: &Measure,
     levels: &[Vec<Ranked>],
     rows: &[Row],
-) -> Option<Verdict> {
+    reference: Option<&Reference>,
+) -> Result<Verdict, Vec<String>> {
     let name = |arm: usize| manifest.arms[arm].role.method.as_ref().unwrap_or(&manifest.arms[arm].name);
     let full: Vec<&Vec<Ranked>> = levels.iter().filter(|l| !l.is_empty()).collect();
     let mut methods: Vec<&String> = Vec::new();
@@ -186,7 +217,8 @@ fn verdict(
             .map_or(f64::INFINITY, |r| r.error)
     };
     methods.sort_by(|a, b| places(a).total_cmp(&places(b)).then(finest(a).total_cmp(&finest(b))));
-    let least = places(methods.first()?);
+    let nothing = || vec![format!("no arm has a value for: {}", measure.words)];
+    let least = places(methods.first().ok_or_else(nothing)?);
     let tied: Vec<&String> = methods.into_iter().filter(|m| places(m) <= least).collect();
     let accuracy = manifest.accuracy();
     // The arm of a method that would be recommended.
@@ -204,7 +236,24 @@ fn verdict(
     let best = tied[picked];
     let alike_ones: Vec<String> =
         tied.iter().enumerate().filter(|(i, _)| *i != picked).map(|(_, m)| (*m).clone()).collect();
-    let chosen = arm_of(best)?;
+    let chosen = arm_of(best).ok_or_else(nothing)?;
+    let mut against = Vec::new();
+    if let Some((name, _)) = measure.passed_over.first() {
+        against.push(format!(
+            "the reference does not establish {name}, the measure of this goal; the arms are ranked by a substitute, {}",
+            measure.name
+        ));
+    }
+    if goal != Goal::Cost && chosen.error > accuracy {
+        against.push(format!(
+            "no arm has the required accuracy, {accuracy}; the best one, {}, has an error of {}",
+            manifest.arms[chosen.arm].name,
+            short(chosen.error)
+        ));
+    }
+    if !against.is_empty() {
+        return Err(against);
+    }
     let first_at = full.iter().filter(|l| l.iter().any(|r| r.place == 1 && name(r.arm) == best)).count();
     let mut reasons = vec![format!("{}: {}", measure.words, short(chosen.error))];
     let others = full
@@ -232,23 +281,23 @@ fn verdict(
         reasons.push(format!("{words}: {} s of processor time; {}: {} s", short(own), tied[i], short(other)));
     }
     if goal != Goal::Cost {
-        reasons.push(if chosen.error <= accuracy {
-            format!("the coarsest level at which its error is at most {accuracy}")
-        } else {
-            format!("its finest level; its error is above {accuracy} at every level")
-        });
+        reasons.push(format!("the coarsest level at which its error is at most {accuracy}"));
+    }
+    if let Some(depth) = penetration(manifest, chosen.arm, rows) {
+        reasons.push(format!("its contact is a penalty: it penetrates by up to {}", short(depth)));
+    }
+    if !measure.left_out.is_empty() {
+        reasons
+            .push(format!("not established by the reference, and left out: {}", measure.left_out.join(", ")));
     }
     let dearer = times.is_some_and(|times| times > 1.0 + EQUAL_COST) && goal != Goal::Cost;
     let alone = Alone { method: alike_ones.is_empty(), by_cost: dearer };
-    let (mut confidence, mut confidence_reasons) = confidence(manifest, measure, &full, first_at, &alone);
-    if goal != Goal::Cost && chosen.error > accuracy {
-        confidence = Confidence::Low;
-        let why = format!(
-            "the error of the recommended arm, {}, is larger than the required accuracy, {accuracy}",
-            short(chosen.error)
-        );
-        confidence_reasons.push(why);
-    }
+    let evidence = Evidence {
+        mesh: reference.is_some_and(Reference::refines_mesh),
+        ensemble: manifest.ensemble.is_some(),
+    };
+    let (mut confidence, mut confidence_reasons) =
+        confidence(manifest, measure, &full, first_at, &alone, &evidence);
     let arm = &manifest.arms[chosen.arm];
     if let Some(design) =
         manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedStep && manifest.by_cost(arm))
@@ -259,7 +308,14 @@ fn verdict(
             design.cost_of
         ));
     }
-    Some(Verdict { arm: chosen.arm, alike: alike_ones, reasons, confidence, confidence_reasons })
+    Ok(Verdict { arm: chosen.arm, alike: alike_ones, reasons, confidence, confidence_reasons })
+}
+
+/// Penetration of an arm whose contact is enforced by a penalty.
+fn penetration(manifest: &StudyManifest, arm: usize, rows: &[Row]) -> Option<f64> {
+    let contacts = manifest.arms[arm].case.get("contacts")?.as_array()?;
+    let penalty = contacts.iter().any(|c| c.get("enforcement").is_some_and(|e| e == "penalty"));
+    rows.get(arm)?.value("penetration").filter(|_| penalty)
 }
 
 /// Index of the first method whose cost is within 10 % of the smallest; 0 if no cost is known.
@@ -276,12 +332,21 @@ struct Alone {
     by_cost: bool,
 }
 
+/// What the errors are known to be independent of.
+struct Evidence {
+    /// The reference was computed on finer meshes.
+    mesh: bool,
+    /// The arms were run with several phases, roles or meshes.
+    ensemble: bool,
+}
+
 fn confidence(
     manifest: &StudyManifest,
     measure: &Measure,
     levels: &[&Vec<Ranked>],
     first_at: usize,
     alone: &Alone,
+    evidence: &Evidence,
 ) -> (Confidence, Vec<String>) {
     let (mut confidence, mut reasons) = (Confidence::High, Vec::new());
     let mut at_most = |most: Confidence, why: String| {
@@ -311,15 +376,21 @@ fn confidence(
             "there is only one level; the ranking may be different at another step".to_owned(),
         );
     }
-    if !measure.passed_over.is_empty() {
-        let names: Vec<&str> = measure.passed_over.iter().map(|(name, _)| name.as_str()).collect();
-        at_most(
-            Confidence::Medium,
-            format!(
-                "preferred measures are not established by the reference: {}; a substitute is used",
-                names.join(", ")
-            ),
-        );
+    let unseen = |what: &str, cure: &str| format!("{what}; {cure}");
+    let mesh = unseen(
+        "the reference was computed on the given mesh only",
+        "`mesh = [1, 2, 4]` in [fine] refines it",
+    );
+    let ensemble = unseen(
+        "every arm was run once, so that chance is not told from method",
+        "[ensemble] runs it with several phases, roles and meshes",
+    );
+    // One of them alone leaves the ranking of this mesh, or of these instants, open.
+    let most = if evidence.mesh || evidence.ensemble { Confidence::Medium } else { Confidence::Low };
+    for why in [(evidence.mesh, mesh), (evidence.ensemble, ensemble)] {
+        if !why.0 {
+            at_most(most, why.1);
+        }
     }
     let off = manifest
         .arms
@@ -340,7 +411,7 @@ fn confidence(
     }
     if reasons.is_empty() {
         reasons.push(
-            "it is ranked first at every level, by more than the uncertainty of the reference and 5 %"
+            "it is ranked first at every level, by more than the uncertainties of arms and reference and 5 %"
                 .to_owned(),
         );
     }
@@ -358,12 +429,16 @@ mod tests {
             let mut ranked: Vec<Ranked> = [1.0, 1.04, 1.2]
                 .iter()
                 .enumerate()
-                .map(|(arm, e)| Ranked { arm, error: *e, place: 0 })
+                .map(|(arm, e)| Ranked { arm, error: *e, uncertainty: 0.01, place: 0 })
                 .collect();
             places(&mut ranked, uncertainty);
             ranked.iter().map(|r| r.place).collect::<Vec<_>>()
         };
         assert_eq!((of(0.0), of(0.3)), (vec![1, 1, 3], vec![1, 1, 1]));
+        // Ranges of 0.15 about 1 and 1.2 overlap.
+        let mut wide = [1.0, 1.2].map(|error| Ranked { arm: 0, error, uncertainty: 0.15, place: 0 });
+        places(&mut wide, 0.0);
+        assert_eq!(wide.map(|r| r.place), [1, 1]);
     }
 
     /// 1.05 is equal to 1, 1.2 is not; unknown costs are ignored.

@@ -1,15 +1,19 @@
 //! The reference that the arms of a study are compared with, and its uncertainty.
 //!
 //! ```text
-//! computed    three runs at h, 2h and 4h; value f(h), uncertainty |f(h) − f(2h)|
-//!             established if |f(h) − f(2h)| ≤ 0.7 |f(2h) − f(4h)|, or ≤ 1 % of |f(h)|
-//! an arm      the same with the arms that differ from it only in the step; with a single run nothing is established
+//! computed    runs at decreasing steps, and on finer meshes where `mesh` of [fine] says so; each level
+//!             is run with every member of the study's ensemble. Value: the median of the members at the
+//!             finest level. Uncertainty: that of the refinement (convergence.rs), plus the largest
+//!             distance of a member from the median, plus half a step for an instant, plus 5/4 of what
+//!             averaging over a short time changes, for extremes and variations (metrics/averaged.rs)
+//! an arm      the same with the arms that differ from it only in the step; with a single run nothing is known
 //! exact       the formulas of [exact], and the metrics that can be computed from these columns; uncertainty 0
 //! ideal       the values for elastic bodies: no change or dissipation of energy, no penetration
 //! ```
 //!
-//! A column is established in the same way, with the deviation of f(2h) from f(h) as its
-//! uncertainty. Only established values are used for rankings.
+//! A value is established if its uncertainty is less than half of it. A column is established in the
+//! same way, with the root mean square deviation between levels in the place of differences. Only
+//! established values are used for rankings.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,15 +21,16 @@ use std::path::Path;
 use carom_formula::Formula;
 
 use super::arm::{Arm, step};
+use super::convergence::{SAFE, converged};
 use super::digits::short;
+use super::ensemble::Spread;
 use super::manifest::StudyManifest;
 use crate::metrics::{self, Metric};
 use crate::{Column, History, RecordError, Run, Status};
 
-/// Largest ratio of successive differences under refinement.
-pub const FALL: f64 = 0.7;
-/// Relative difference that is negligible.
-pub const SMALL: f64 = 0.01;
+/// Largest uncertainty of an established value, relative to the value; of a column, relative to its
+/// range.
+const RESOLVED: f64 = 0.5;
 
 /// Metrics whose exact value is zero in every case.
 pub const IDEAL: [&str; 8] = [
@@ -38,6 +43,9 @@ pub const IDEAL: [&str; 8] = [
     "penetration",
     "penetration_mean",
 ];
+
+/// Metrics that are instants or differences of instants, which a record shows to a step.
+const INSTANTS: [&str; 5] = ["contact_start", "contact_end", "contact_duration", "turning_time", "apex_time"];
 
 /// A reference value, or why there is none.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,29 +69,19 @@ impl Standing {
             Self::Not(_) => None,
         }
     }
+}
 
-    /// From values at decreasing steps, the finest last.
-    pub fn of(values: &[f64]) -> Self {
-        match *values {
-            [.., coarse, middle, fine] => {
-                let (before, last) = ((middle - coarse).abs(), (fine - middle).abs());
-                if last <= FALL * before || last <= SMALL * fine.abs() {
-                    Self::Established { value: fine, uncertainty: last }
-                } else {
-                    Self::Not(format!(
-                        "the last halving of the step changed it by {}, the one before by {}",
-                        short(last),
-                        short(before)
-                    ))
-                }
-            }
-            [middle, fine] if (fine - middle).abs() <= SMALL * fine.abs() => {
-                Self::Established { value: fine, uncertainty: (fine - middle).abs() }
-            }
-            [_, _] => Self::Not("two runs differ by more than 1 %, and there is no third run".to_owned()),
-            _ => Self::Not("a single run gives no error estimate".to_owned()),
-        }
-    }
+/// A value from refinement, with what its uncertainty consists of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Median of the members at the finest level.
+    pub value: f64,
+    /// Half-width of the interval that should contain the limit in 95 of 100 cases.
+    pub uncertainty: f64,
+    /// Observed order of convergence, where it is monotone.
+    pub order: Option<f64>,
+    /// Largest distance of a member from the median, at the finest level.
+    pub spread: f64,
 }
 
 /// The part of a run that is used for comparisons.
@@ -123,20 +121,58 @@ impl Trajectory {
     }
 }
 
+/// The runs of one level of refinement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Level {
+    /// Time step; cells shrink with it where the mesh is refined too.
+    pub step: f64,
+    /// Factor of mesh refinement.
+    pub mesh: f64,
+    /// The members of its ensemble, the run as given first.
+    pub members: Vec<Trajectory>,
+}
+
+impl Level {
+    /// A single run on the given mesh.
+    pub fn single(step: f64, run: Trajectory) -> Self {
+        Self { step, mesh: 1.0, members: vec![run] }
+    }
+}
+
 /// A reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     /// Description in words.
     pub what: String,
-    /// Its runs, the finest last; for exact formulas, one sampled from them.
-    runs: Vec<Trajectory>,
+    /// Its levels, the finest last; for exact formulas, one sampled from them.
+    levels: Vec<Level>,
+    /// Metrics of the finest run after averaging over a short time.
+    averaged: Vec<Metric>,
     exact: bool,
 }
 
 impl Reference {
-    /// Of runs at decreasing steps, the finest last.
-    pub fn of_runs(what: String, runs: Vec<Trajectory>) -> Self {
-        Self { what, runs, exact: false }
+    /// Of levels of decreasing steps, the finest last.
+    pub fn of_levels(what: String, levels: Vec<Level>) -> Self {
+        Self { what, levels, averaged: Vec::new(), exact: false }
+    }
+
+    /// Whether its uncertainty includes that of the mesh: it is exact, or its mesh was refined.
+    pub fn refines_mesh(&self) -> bool {
+        self.exact || self.levels.windows(2).any(|pair| pair[1].mesh > pair[0].mesh)
+    }
+
+    /// Whether its uncertainty includes the spread of an ensemble: it is exact, or has one.
+    pub fn has_ensemble(&self) -> bool {
+        self.exact || self.levels.last().is_some_and(|level| level.members.len() > 1)
+    }
+
+    fn sizes(&self) -> Vec<f64> {
+        self.levels.iter().map(|level| level.step).collect()
+    }
+
+    fn finest(&self) -> Option<&Trajectory> {
+        self.levels.last()?.members.first()
     }
 
     /// Of formulas in t by column, sampled at `rows` + 1 times from 0 to `end`.
@@ -170,77 +206,134 @@ impl Reference {
             columns.insert(FORCE.to_owned(), metrics::contact_force(&history));
         }
         let sampled = Trajectory { times, columns, metrics: known };
-        Some(Self { what: "the exact formulas of [exact]".to_owned(), runs: vec![sampled], exact: true })
+        let levels = vec![Level::single(0.0, sampled)];
+        Some(Self {
+            what: "the exact formulas of [exact]".to_owned(),
+            levels,
+            averaged: Vec::new(),
+            exact: true,
+        })
+    }
+
+    /// Value of a metric with its uncertainty.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn estimate(&self, name: &str) -> Result<Estimate, String> {
+        if self.exact {
+            let value = self.finest().and_then(|run| run.value(name));
+            let value = value.ok_or("[exact] has no columns to compute it from")?;
+            return Ok(Estimate { value, uncertainty: 0.0, order: None, spread: 0.0 });
+        }
+        let of = |level: &Level| Spread::of(level.members.iter().filter_map(|run| run.value(name)));
+        let levels: Option<Vec<Spread>> = self.levels.iter().map(of).collect();
+        let levels = levels.ok_or("a run of the reference has no value")?;
+        let medians: Vec<f64> = levels.iter().map(Spread::median).collect();
+        let found = converged(&self.sizes(), &medians).ok_or("a single run gives no error estimate")?;
+        let (value, spread) = levels.last().map_or((0.0, 0.0), |s| (s.median(), s.half_width()));
+        // A recorded instant is late by up to a step; the median of several phases by half of one.
+        let late = |level: &Level| if level.members.len() > 1 { level.step / 2.0 } else { level.step };
+        let instant = self.levels.last().filter(|_| INSTANTS.contains(&name)).map_or(0.0, late);
+        let single = self.levels.last().and_then(|level| level.members.first()?.value(name));
+        let averaged =
+            self.averaged.iter().find(|metric| metric.name == name).and_then(|metric| metric.value);
+        let smoothed = single.zip(averaged).map_or(0.0, |(one, other)| SAFE * (one - other).abs());
+        let uncertainty = found.uncertainty + spread + instant + smoothed;
+        Ok(Estimate { value, uncertainty, order: found.order, spread })
     }
 
     /// Reference value of a metric.
     pub fn metric(&self, name: &str) -> Standing {
-        let values: Vec<Option<f64>> = self.runs.iter().map(|run| run.value(name)).collect();
-        if self.exact {
-            return match values.first() {
-                Some(Some(value)) => Standing::Established { value: *value, uncertainty: 0.0 },
-                _ => Standing::Not("[exact] has no columns to compute it from".to_owned()),
-            };
-        }
-        match values.into_iter().collect::<Option<Vec<f64>>>() {
-            Some(values) => Standing::of(&values),
-            None => Standing::Not("a run of the reference has no value".to_owned()),
+        match self.estimate(name) {
+            Err(why) => Standing::Not(why),
+            Ok(Estimate { value, uncertainty, .. }) if uncertainty <= RESOLVED * value.abs() => {
+                Standing::Established { value, uncertainty }
+            }
+            Ok(Estimate { value, uncertainty, .. }) => Standing::Not(format!(
+                "its uncertainty, {}, is more than half of its value, {}",
+                short(uncertainty),
+                short(value)
+            )),
         }
     }
 
     /// Times and values of a column.
     pub fn column(&self, name: &str) -> Option<(&[f64], &[f64])> {
-        let run = self.runs.last()?;
+        let run = self.finest()?;
         Some((&run.times, run.columns.get(name)?))
     }
 
     /// Names of its columns.
     pub fn columns(&self) -> Vec<&str> {
-        self.runs.last().map_or_else(Vec::new, |run| run.columns.keys().map(String::as_str).collect())
+        self.finest().map_or_else(Vec::new, |run| run.columns.keys().map(String::as_str).collect())
     }
 
-    /// Deviation of a column from the same column at twice the step, if the runs establish it.
-    pub fn uncertainty(&self, column: &str) -> Standing {
-        if self.exact {
-            return Standing::Established { value: 0.0, uncertainty: 0.0 };
-        }
+    /// Root mean square deviations of a column between successive levels, and the largest one of a
+    /// member at the finest level, relative to the range.
+    fn deviations(&self, column: &str) -> Option<(Vec<f64>, f64)> {
         let apart = |a: &Trajectory, b: &Trajectory| {
             let (fine, coarse) = (b.columns.get(column)?, a.columns.get(column)?);
             metrics::deviation(&a.times, coarse, (&b.times, fine))
         };
-        let apart: Option<Vec<f64>> = self.runs.windows(2).map(|pair| apart(&pair[0], &pair[1])).collect();
-        match apart.as_deref() {
-            Some([.., before, last]) if *last <= FALL * before || *last <= SMALL => {
-                Standing::Established { value: 0.0, uncertainty: *last }
-            }
-            Some([.., before, last]) => Standing::Not(format!(
-                "the last halving of the step changed it by {} of its range, the one before by {}",
-                short(*last),
-                short(*before)
-            )),
-            Some([last]) if *last <= SMALL => Standing::Established { value: 0.0, uncertainty: *last },
-            Some([_]) => {
-                Standing::Not("two runs differ by more than 1 %, and there is no third run".to_owned())
-            }
-            _ => Standing::Not("a single run gives no error estimate".to_owned()),
+        let first = |level: &Level| level.members.first().cloned();
+        let between: Option<Vec<f64>> =
+            self.levels.windows(2).map(|pair| apart(&first(&pair[0])?, &first(&pair[1])?)).collect();
+        let finest = self.levels.last()?;
+        let (one, others) = finest.members.split_first()?;
+        let spread = others.iter().map(|other| apart(other, one)).collect::<Option<Vec<f64>>>()?;
+        Some((between?, spread.into_iter().fold(0.0, f64::max)))
+    }
+
+    /// Uncertainty of a column, relative to its range: root mean square over its rows.
+    pub fn uncertainty(&self, column: &str) -> Standing {
+        if self.exact {
+            return Standing::Established { value: 0.0, uncertainty: 0.0 };
+        }
+        let Some((apart, spread)) = self.deviations(column) else {
+            return Standing::Not("a run of the reference has no such column".to_owned());
+        };
+        // Values whose differences are these deviations.
+        let mut values = vec![0.0];
+        for deviation in apart.iter().rev() {
+            values.push(values[values.len() - 1] + deviation);
+        }
+        values.reverse();
+        let Some(found) = converged(&self.sizes(), &values) else {
+            return Standing::Not("a single run gives no error estimate".to_owned());
+        };
+        let uncertainty = found.uncertainty + spread;
+        if uncertainty <= RESOLVED {
+            Standing::Established { value: 0.0, uncertainty }
+        } else {
+            Standing::Not(format!(
+                "its uncertainty, {} of its range, is more than half of it",
+                short(uncertainty)
+            ))
         }
     }
 
-    /// Uncertainty of a column at the times of the reference.
+    /// Uncertainty of a column at the times of the reference: the difference of the two finest
+    /// levels, scaled to the uncertainty of the column.
     pub fn band(&self, column: &str) -> Vec<f64> {
         let Some((times, values)) = self.column(column) else { return Vec::new() };
-        let before = self.runs.len().checked_sub(2).and_then(|i| self.runs.get(i));
+        let before = self.levels.len().checked_sub(2).and_then(|i| self.levels[i].members.first());
         let other = before.and_then(|run| Some((&run.times, run.columns.get(column)?)));
+        let last = self.deviations(column).and_then(|(apart, _)| apart.last().copied());
+        let scale = match (self.uncertainty(column).established(), last) {
+            (Some((_, uncertainty)), Some(last)) if last > 0.0 => uncertainty / last,
+            _ => 1.0,
+        };
         let off = |(t, v): (&f64, &f64)| {
-            other.and_then(|(times, values)| metrics::at(times, values, *t)).map_or(0.0, |x| (x - v).abs())
+            let there = other.and_then(|(times, values)| metrics::at(times, values, *t));
+            there.map_or(0.0, |x| scale * (x - v).abs())
         };
         times.iter().zip(values).map(off).collect()
     }
 }
 
 impl StudyManifest {
-    /// Indices of the arms of the reference, the finest last: the three of a computed reference, or
-    /// the named arm after those arms that differ from it only in a longer step.
+    /// Indices of the arms of the reference, the finest last: those of a computed reference, or at
+    /// most three: the named arm after those arms that differ from it only in a longer step.
     fn reference_arms(&self) -> Vec<usize> {
         let Some(named) = self.arms.iter().position(|a| self.reference.as_ref() == Some(&a.name)) else {
             return Vec::new();
@@ -255,6 +348,11 @@ impl StudyManifest {
             (sets, a.case_path.clone(), a.role.fine)
         };
         let size = |i: &usize| step(&self.arms[*i], "time.step").unwrap_or_default();
+        if self.arms[named].role.fine {
+            let mut found: Vec<usize> = (0..self.arms.len()).filter(|i| self.arms[*i].role.fine).collect();
+            found.sort_by(|a, b| size(b).total_cmp(&size(a)));
+            return found;
+        }
         let alike =
             |i: &usize| others(&self.arms[*i]) == others(&self.arms[named]) && size(i) >= size(&named);
         let mut found: Vec<usize> = (0..self.arms.len()).filter(alike).collect();
@@ -274,20 +372,36 @@ impl StudyManifest {
             let end = case.pointer("/time/end").and_then(serde_json::Value::as_f64).unwrap_or_default();
             return Ok(Reference::of_formulas(&formulas, end, 8000));
         }
-        let mut runs = Vec::new();
         let arms = self.reference_arms();
-        for i in &arms {
-            if self.state(directory, &self.arms[*i])?.0 == Some(Status::Finished) {
-                let run = Run::open(&directory.join(&self.arms[*i].directory))?;
-                runs.push(Trajectory::of(&run, &metrics::of_run(&run)));
+        let (mut levels, mut averaged) = (Vec::new(), Vec::new());
+        for &i in &arms {
+            let mut members = Vec::new();
+            for run in self.runs_of(i) {
+                if self.state(directory, self.run(run))?.0 == Some(Status::Finished) {
+                    let run = Run::open(&directory.join(&self.run(run).directory))?;
+                    if members.is_empty() && Some(&i) == arms.last() {
+                        averaged = metrics::of_averages(&run);
+                    }
+                    members.push(Trajectory::of(&run, &metrics::of_run(&run)));
+                } else if run == i {
+                    return Ok(None);
+                }
             }
+            let arm = &self.arms[i];
+            let mesh = arm.case.get("refine").and_then(serde_json::Value::as_f64).unwrap_or(1.0);
+            levels.push(Level { step: step(arm, "time.step").unwrap_or_default(), mesh, members });
         }
-        let Some(last) = arms.last().filter(|_| runs.len() == arms.len()) else { return Ok(None) };
-        let count = match runs.len() {
+        let Some(last) = arms.last() else { return Ok(None) };
+        let reference = Reference::of_levels(String::new(), levels);
+        let count = match arms.len() {
             1 => "a single run, whose error is not known".to_owned(),
-            n => format!("the finest of {n} runs whose steps double"),
+            n if reference.refines_mesh() => format!("the finest of {n} levels of step and mesh"),
+            n => format!("the finest of {n} steps on the given mesh"),
         };
-        Ok(Some(Reference::of_runs(format!("\"{}\", {count}", self.arms[*last].name), runs)))
+        let members = reference.levels.last().map_or(1, |level| level.members.len());
+        let ensemble = if members > 1 { format!(", {members} members each") } else { String::new() };
+        let what = format!("\"{}\", {count}{ensemble}", self.arms[*last].name);
+        Ok(Some(Reference { what, averaged, ..reference }))
     }
 }
 
@@ -295,18 +409,36 @@ impl StudyManifest {
 mod tests {
     use super::*;
 
-    /// By hand: differences that halve establish a value, differences that do not decrease do not,
-    /// and differences below 1 % do.
+    fn with(values: &[f64]) -> Trajectory {
+        let metric = |value: &f64| Metric {
+            name: "m".into(),
+            value: Some(*value),
+            unit: String::new(),
+            definition: "",
+        };
+        Trajectory { metrics: values.iter().map(metric).collect(), ..Trajectory::default() }
+    }
+
+    /// By hand: 1.4, 1.2, 1.1 at halved steps converge with first order to 1.0; members at the
+    /// finest level that differ by 0.05 from their median widen the interval by as much.
     #[test]
-    fn what_a_refinement_establishes() {
-        assert_eq!(
-            Standing::of(&[1.4, 1.2, 1.1]),
-            Standing::Established { value: 1.1, uncertainty: 1.2 - 1.1 }
-        );
-        assert!(matches!(Standing::of(&[1.4, 1.2, 1.4]), Standing::Not(_)));
-        assert_eq!(Standing::of(&[1.0, 1.0, 1.0 + 0.005]).established().map(|x| x.0), Some(1.005));
-        assert!(matches!(Standing::of(&[1.0]), Standing::Not(_)));
-        assert!(matches!(Standing::of(&[1.0, 1.1]), Standing::Not(_)));
+    fn refinement_and_spread_add_up() {
+        let level = |step: f64, values: &[f64]| Level {
+            step,
+            mesh: 1.0,
+            members: values.iter().map(|v| with(&[*v])).collect(),
+        };
+        let of = |finest: &[f64]| {
+            let levels = vec![level(4.0, &[1.4]), level(2.0, &[1.2]), level(1.0, finest)];
+            Reference::of_levels(String::new(), levels)
+        };
+        let found = of(&[1.1]).estimate("m").unwrap();
+        assert!((found.order.unwrap() - 1.0).abs() < 1e-9 && (found.uncertainty - 0.125).abs() < 1e-9);
+        let spread = of(&[1.1, 1.05, 1.15]).estimate("m").unwrap();
+        assert!((spread.uncertainty - 0.175).abs() < 1e-9 && (spread.spread - 0.05).abs() < 1e-12);
+        assert!(matches!(of(&[3.0]).metric("m"), Standing::Not(_)));
+        let single = Reference::of_levels(String::new(), vec![level(1.0, &[1.0])]);
+        assert!(matches!(single.metric("m"), Standing::Not(_)) && !single.has_ensemble());
     }
 
     /// The bar on a wall: a force of 300 from 0.5 to 7/6. Its variation is 600; its impulse is a

@@ -1,6 +1,6 @@
 //! Results of an arm: a row of the tables.
 
-use crate::metrics::Metric;
+use crate::metrics::{MUCH_CREATED, Metric};
 use crate::{Expectation, Status};
 
 /// An arm with its metrics.
@@ -22,6 +22,12 @@ pub struct Row {
 }
 
 impl Row {
+    /// Whether it failed, or created so much energy that the default guard would have stopped it.
+    pub fn is_unsound(&self) -> bool {
+        self.status == Some(Status::Failed)
+            || self.value("energy_created").is_some_and(|share| share > MUCH_CREATED)
+    }
+
     /// Value of a metric.
     pub fn value(&self, metric: &str) -> Option<f64> {
         self.metrics.iter().find(|m| m.name == metric)?.value

@@ -2,6 +2,7 @@
 //! is an empty cell; numbers read back to the same bits.
 
 use super::arm::step;
+use super::ensemble::Spread;
 use super::measure::standing;
 use super::reference::Standing;
 use super::{Study, Verdict};
@@ -46,45 +47,106 @@ impl Study {
         });
         self.write("study_tidy.csv", std::iter::once(header).chain(tidy))?;
 
+        self.write_ensemble()?;
         self.write_ranking()?;
         if self.verdicts.is_empty() {
             return Ok(());
         }
-        let header = ["claim", "compare", "left", "right", "verdict"].map(String::from).to_vec();
+        let header = [
+            "claim",
+            "compare",
+            "left",
+            "right",
+            "verdict",
+            "held",
+            "of",
+            "ratio",
+            "ratio_low",
+            "ratio_high",
+        ]
+        .map(String::from)
+        .to_vec();
         let line = |v: &Verdict| {
+            let held = v.held.as_ref();
+            let count = |n: Option<usize>| n.map_or_else(String::new, |n| n.to_string());
+            let ratio = held.and_then(|held| held.ratio.as_ref());
             vec![
                 v.claim.text.clone(),
                 v.claim.compare.clone(),
                 cell(v.left),
                 cell(v.right),
                 v.word().to_string(),
+                count(held.map(|held| held.held)),
+                count(held.map(|held| held.of)),
+                cell(ratio.map(Spread::median)),
+                cell(ratio.map(|r| r.range().0)),
+                cell(ratio.map(|r| r.range().1)),
             ]
         };
         self.write("claims.csv", std::iter::once(header).chain(self.verdicts.iter().map(line)))
+    }
+
+    /// `ensemble.csv`: median and range of every metric over the members of every arm.
+    fn write_ensemble(&self) -> Result<(), RecordError> {
+        if self.manifest.ensemble.is_none() {
+            return Ok(());
+        }
+        let header = ["arm", "metric", "unit", "members", "median", "low", "high"].map(String::from).to_vec();
+        let lines = self.rows.iter().enumerate().flat_map(|(arm, row)| {
+            row.metrics.iter().filter_map(move |m| {
+                let spread = self.spread(arm, &m.name)?;
+                let (low, high) = spread.range();
+                let first =
+                    [row.name.clone(), m.name.to_string(), m.unit.clone(), spread.count().to_string()];
+                let numbers = [spread.median(), low, high].map(|x| cell(Some(x)));
+                Some(first.into_iter().chain(numbers).collect())
+            })
+        });
+        self.write("ensemble.csv", std::iter::once(header).chain(lines))
     }
 
     /// `reference.csv`: reference value and uncertainty of every metric; `ranking.csv`: level,
     /// place and error of every arm.
     fn write_ranking(&self) -> Result<(), RecordError> {
         if let Some(reference) = &self.reference {
-            let header = ["metric", "unit", "established", "value", "uncertainty", "why not"]
-                .map(String::from)
-                .to_vec();
+            let header = [
+                "metric",
+                "unit",
+                "established",
+                "value",
+                "uncertainty",
+                "order",
+                "members_half_width",
+                "why not",
+            ]
+            .map(String::from)
+            .to_vec();
             let metrics = self.metrics().into_iter().filter(|m| !WORK.iter().any(|(d, _)| d.name == m.name));
             let line = |m: &Metric| {
-                let end = match standing(Some(reference), &m.name) {
+                let estimate = reference.estimate(&m.name).ok();
+                let (yes, known, why) = match standing(Some(reference), &m.name) {
                     Standing::Established { value, uncertainty } => {
-                        ["yes".to_owned(), cell(Some(value)), cell(Some(uncertainty)), String::new()]
+                        ("yes", Some((value, uncertainty)), String::new())
                     }
-                    Standing::Not(why) => ["no".to_owned(), String::new(), String::new(), why],
+                    Standing::Not(why) => ("no", estimate.map(|e| (e.value, e.uncertainty)), why),
                 };
-                [m.name.to_string(), m.unit.clone()].into_iter().chain(end).collect()
+                vec![
+                    m.name.to_string(),
+                    m.unit.clone(),
+                    yes.to_owned(),
+                    cell(known.map(|k| k.0)),
+                    cell(known.map(|k| k.1)),
+                    cell(estimate.and_then(|e| e.order)),
+                    cell(estimate.map(|e| e.spread)),
+                    why,
+                ]
             };
             self.write("reference.csv", std::iter::once(header).chain(metrics.map(line)))?;
         }
         let Some(ranking) = &self.ranking else { return Ok(()) };
-        let header =
-            ["level", "place", "arm", "method", "step", "error", "cpu_time"].map(String::from).to_vec();
+        let header = ["level", "place", "arm", "method", "step", "error", "error_half_width", "cpu_time"]
+            .map(String::from)
+            .to_vec();
         let lines = ranking.levels.iter().enumerate().flat_map(|(level, ranked)| {
             ranked.iter().map(move |r| {
                 let arm = &self.manifest.arms[r.arm];
@@ -97,6 +159,7 @@ impl Study {
                     method,
                     cell(step),
                     cell(Some(r.error)),
+                    cell(Some(r.uncertainty)),
                     cell(cpu),
                 ]
             })

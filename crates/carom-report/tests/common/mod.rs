@@ -8,6 +8,7 @@ use std::path::Path;
 
 use carom_record::{
     Block, Cell, Column, Event, Expectation, FieldSet, Manifest, PointArray, RunWriter, Source, Status,
+    Warning,
 };
 
 const N: usize = 7;
@@ -223,6 +224,10 @@ pub(crate) fn write(directory: &Path, title: &str, reason: Option<&str>) {
     }
     manifest.status = if reason.is_some() { Status::Failed } else { Status::Finished };
     manifest.reason = reason.map(String::from);
+    let words =
+        ["coarse-secondary", "contact \"strike\"", "0.2 against 0.1", "nodes may slip through", "to swap"];
+    let [id, place, what, why, advice] = words.map(String::from);
+    manifest.warnings = vec![Warning { id, place, what, why, advice }];
     manifest.counters = [("steps".into(), 400), ("newton".into(), 1532)].into();
     manifest.timings =
         [("assembly".into(), 1.25), ("factor".into(), 0.75), ("cpu".into(), 2.25), ("total".into(), 2.5)]

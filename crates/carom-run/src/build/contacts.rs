@@ -5,11 +5,11 @@ use carom_case::{
     ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, Persistency, PrimarySpec, Problem,
 };
 use carom_contact::{
-    ConservingPenalty, ConservingUnilateral, Detection, Kinematics, NodeToFacet, NodeToPlane, Penalty,
-    Surface, Unilateral,
+    ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet, NodeToPlane,
+    Penalty, Surface, Unilateral,
 };
 use carom_mechanics::model::{BodyInstance, Contact, Model};
-use carom_solid::Cover;
+use carom_solid::PointLocator;
 
 use super::side::side;
 
@@ -42,11 +42,11 @@ pub(super) fn contacts(
                     problems.push(Problem::new(
                         format!("contact[{k}].primary"),
                         format!(
-                            "contact \"{}\" is of body \"{}\" with itself",
+                            "both sides of contact \"{}\" belong to body \"{}\"",
                             spec.name, parts[primary.part].name
                         ),
-                        "self-contact is not in this version",
-                        "name sides of two bodies",
+                        "self-contact is planned for a later version of Carom",
+                        "give a side of another body",
                     ));
                     continue;
                 }
@@ -57,8 +57,13 @@ pub(super) fn contacts(
                         carom_case::Detection::ClosestPoint => Detection::ClosestPoint,
                         carom_case::Detection::Trajectory => Detection::Trajectory,
                     };
+                    let point = match spec.xi {
+                        carom_case::ContactPoint::Closest => ContactPoint::Closest,
+                        carom_case::ContactPoint::Frozen => ContactPoint::Frozen,
+                    };
                     let side = Surface::new(primary.shape, &primary.facets, &primary.orientations);
-                    Box::new(NodeToFacet::new(secondary.nodes.clone(), side, detection))
+                    let contact = NodeToFacet::new(secondary.nodes.clone(), side, detection);
+                    Box::new(contact.with_point(point))
                 }
                 Err(problem) => {
                     problems.push(problem);
@@ -116,8 +121,8 @@ pub(super) fn contacts(
             problems.push(Problem::new(
                 format!("contact[{k}]"),
                 format!("no node of contact \"{}\" has mass", spec.name),
-                "velocities where contact begins are projected with the mass as weight, and there is none",
-                "persistency = \"none\" for this contact",
+                "persistency = \"project\" projects velocities with the mass matrix, which is zero for these nodes",
+                "give this contact persistency = \"none\"",
             ));
         }
         contacts.push(contact);
@@ -141,9 +146,15 @@ fn node_stiffness(parts: &[BodyInstance], node: usize) -> f64 {
     sum
 }
 
+/// A position for messages, without the noise of its last digits.
+fn coordinates(place: &[f64]) -> String {
+    let places: Vec<_> = place.iter().map(|x| ((x * 1e9).round() / 1e9 + 0.0).to_string()).collect();
+    format!("[{}]", places.join(", "))
+}
+
 /// Initial overlaps deeper than round-off: a problem per contact with the deepest point.
 ///
-/// Closing an overlap in one step would throw the bodies apart, so it is an error.
+/// Closing an overlap within one step would drive the bodies apart, so it is an error.
 pub fn overlaps(model: &Model) -> Vec<Problem> {
     let x = &model.initial_position;
     let at = |node: usize| &x[node * model.dimension..(node + 1) * model.dimension];
@@ -152,9 +163,9 @@ pub fn overlaps(model: &Model) -> Vec<Problem> {
         let mut deepest: Option<(f64, usize)> = None;
         // A node behind a side need not be inside its body: a plate also has a lower side.
         let primary = contact.primary_part.filter(|_| model.dimension > 1).map(|p| &model.parts[p]);
-        let cover = primary.map(|part| Cover::new(&*part.body, part.of(x)));
+        let locator = primary.map(|part| PointLocator::new(&*part.body, part.of(x)));
         for (place, &node) in contact.kinematics.secondary().iter().enumerate() {
-            if cover.as_ref().is_some_and(|cover| !cover.contains(at(node))) {
+            if locator.as_ref().is_some_and(|locator| !locator.contains(at(node))) {
                 continue;
             }
             let Some(gap) = contact.kinematics.signed_distance(place, x) else { continue };
@@ -167,10 +178,10 @@ pub fn overlaps(model: &Model) -> Vec<Problem> {
                 format!("contact[{k}]"),
                 format!("the bodies of contact \"{}\" overlap at the start by {:.6e}", contact.name, -gap),
                 format!(
-                    "the node of the secondary side at {:?} lies inside the primary; closing an overlap in one step would throw the bodies apart",
-                    at(node)
+                    "the secondary node at {} lies inside the primary; closing the overlap within one step would drive the bodies apart",
+                    coordinates(at(node))
                 ),
-                format!("move a body by at least {:.6e}, or swap secondary and primary if the wrong side was named", -gap),
+                format!("move a body by at least {:.6e}, or swap secondary and primary if they were confused", -gap),
             ));
         }
     }

@@ -4,8 +4,8 @@
 mod contacts;
 mod loads;
 mod motions;
-mod refusals;
-mod side;
+pub(crate) mod side;
+mod unsolvable;
 
 use std::collections::BTreeMap;
 
@@ -87,8 +87,8 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     let probes = probes(case, &parts, &mut problems);
     let is_static = case.time.scheme.is_static();
     let unconstrained = if is_static { free_motions(&parts, &fixed) } else { Vec::new() };
-    problems.extend(refusals::unconstrained(&parts, &unconstrained, &contacts));
-    problems.extend(refusals::massless(case, &parts, &massless));
+    problems.extend(unsolvable::unconstrained(&parts, &unconstrained, &contacts));
+    problems.extend(unsolvable::massless(case, &parts, &massless));
 
     let free: Vec<usize> = (0..dofs).filter(|&i| !fixed[i]).collect();
     let mut unknown = vec![usize::MAX; dofs];
@@ -147,8 +147,8 @@ fn nodal(
             match value(formula, &what, place, 0.0) {
                 Ok(value) => values.push(value),
                 Err(error) => {
-                    let help = "change the formula so that it has a value in the whole body";
-                    let what = format!("the initial {key} has no value");
+                    let help = "change the formula so that it has a finite value in the whole body";
+                    let what = format!("the initial {key} has no finite value");
                     return problems.push(Problem::new(path, what, error.to_string(), help));
                 }
             }
@@ -184,9 +184,9 @@ fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Pr
             }
             Err(why) => problems.push(Problem::new(
                 format!("body[{k}].mesh"),
-                format!("the mesh of body \"{}\" cannot be made", spec.name),
+                format!("the mesh of body \"{}\" cannot be generated", spec.name),
                 why,
-                "change what `mesh` names",
+                "change the values of `mesh`",
             )),
         }
     }
@@ -226,10 +226,10 @@ fn redistributions(case: &Case, parts: &[BodyInstance], reference: &[f64], mass:
         let path = format!("body[{k}].mass");
         if !part.nodes().any(|node| light[node]) {
             let why = "none of its sides belongs to a contact";
-            problems.push(Problem::new(path, what, why, "mass = \"consistent\""));
+            problems.push(Problem::new(path, what, why, "use mass = \"consistent\""));
         } else if let Err(why) = redistribute(mass, part.nodes(), &light, case.dimension, reference, nearest)
         {
-            problems.push(Problem::new(path, what, why, "a finer mesh, or mass = \"consistent\""));
+            problems.push(Problem::new(path, what, why, "use a finer mesh, or mass = \"consistent\""));
         }
     }
     problems
@@ -255,7 +255,7 @@ fn probes(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Problem>) -> V
             problems.push(Problem::new(
                 format!("probe[{k}].record[{j}]"),
                 format!(
-                    "probe \"{}\" asks for a quantity that dimension {} does not have",
+                    "probe \"{}\" records a quantity that does not exist in dimension {}",
                     spec.name, case.dimension
                 ),
                 "a bar has ux, vx, ax, sigma_xx and det_f",

@@ -46,7 +46,7 @@ pub(super) fn motions(
                         path.clone(),
                         format!("a node of {label} is moved along {} and also {with}", AXES[*axis]),
                         format!("the node at {:?} is on two supports", place_of(parts, node)),
-                        "take one of the sides out, or give both the same motion",
+                        "remove one of the sides, or give both the same motion",
                     ));
                     break;
                 }

@@ -5,16 +5,16 @@ use carom_mechanics::model::BodyInstance;
 use carom_solid::FacetShape;
 
 /// A side in global node numbers.
-pub(super) struct Side {
-    pub(super) part: usize,
-    pub(super) nodes: Vec<usize>,
-    pub(super) facets: Vec<Vec<usize>>,
-    pub(super) orientations: Vec<f64>,
-    pub(super) shape: FacetShape,
+pub(crate) struct Side {
+    pub(crate) part: usize,
+    pub(crate) nodes: Vec<usize>,
+    pub(crate) facets: Vec<Vec<usize>>,
+    pub(crate) orientations: Vec<f64>,
+    pub(crate) shape: FacetShape,
 }
 
 /// The side of a name; a missing one is a problem with the key `path`.
-pub(super) fn side(parts: &[BodyInstance], name: &str, path: &str) -> Result<Side, Problem> {
+pub(crate) fn side(parts: &[BodyInstance], name: &str, path: &str) -> Result<Side, Problem> {
     let missing =
         |why: String, help: String| Problem::new(path, format!("there is no side \"{name}\""), why, help);
     let bodies = || parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");

@@ -29,13 +29,16 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
         ("strain", "strain energy"),
         ("potential", "potential of constant conservative loads"),
         ("total", "kinetic + strain + potential"),
-        ("external_work", "work of the other loads and of supports, cumulative"),
+        ("external_work", "work of the loads without potential and of the supports, cumulative"),
         ("contact_work", "work of the contact forces on the bodies and of projections, cumulative"),
-        ("dissipation", "external_work + contact_work − (total − total at the start); negative: created"),
+        (
+            "dissipation",
+            "external_work + contact_work − (total − total at the start); negative if energy was created",
+        ),
         ("energy_created", "largest rise of total − external_work above its running minimum so far"),
         (
             "energy_scale",
-            "largest kinetic + strain energy so far, or Σ |change of external_work| where that is more",
+            "largest kinetic + strain energy so far, or Σ |change of external_work| if that is larger",
         ),
     ] {
         add(name.into(), &label.energy, what, false);
@@ -44,13 +47,13 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
         add(format!("momentum_{axis}"), &label.momentum, "momentum of all bodies", false);
     }
     if model.dimension == 2 {
-        add("angular_momentum".into(), &label.angular_momentum, "moment of momentum about the origin", false);
+        add("angular_momentum".into(), &label.angular_momentum, "angular momentum about the origin", false);
     }
     for axis in axes {
         add(
             format!("contact_force_{axis}"),
             &label.force,
-            "contact force on the secondary sides, end of the step",
+            "contact force on the secondary sides at the end of the step",
             false,
         );
     }
@@ -58,7 +61,7 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
         add(
             format!("contact_impulse_{axis}"),
             &label.momentum,
-            "its time integral so far, projections included",
+            "time integral of the contact force, including projections",
             false,
         );
     }
@@ -66,7 +69,7 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
         add(
             format!("algorithmic_impulse_{axis}"),
             &label.momentum,
-            "part of it moved between velocities and algorithmic accelerations by projections and changes of the step",
+            "part of contact_impulse that projections and changes of the step move between velocities and algorithmic accelerations",
             false,
         );
     }
@@ -82,7 +85,7 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
     add(
         "penetration".into(),
         &label.length,
-        "largest depth of a secondary node since the previous row",
+        "largest penetration of a secondary node since the previous row",
         false,
     );
     add("min_det_f".into(), "", "smallest J over all quadrature points", false);
@@ -150,7 +153,7 @@ fn quantity_column(quantity: Quantity, label: &Labels) -> (String, String, Strin
             (format!("sigma_{}{}", AXES[i], AXES[j]), label.stress.clone(), "Cauchy stress".into())
         }
         Quantity::VonMises => {
-            ("von_mises".into(), label.stress.clone(), "von Mises stress of the Cauchy stress".into())
+            ("von_mises".into(), label.stress.clone(), "von Mises stress (from the Cauchy stress)".into())
         }
         Quantity::DetF => ("det_f".into(), label.none.clone(), "volume ratio J".into()),
     }
@@ -261,8 +264,11 @@ fn penetration(model: &Model, state: &State) -> f64 {
     let mut rows = Rows::new(model.dimension);
     for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
         for pair in pairs {
-            // A pair without a closest point is remote.
-            let _ = contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows);
+            // At the closest point, even where the step has measured the gap at a frozen one. A pair
+            // without a closest point is remote.
+            let mut pair = *pair;
+            contact.kinematics.start_step(&mut pair, &state.y);
+            let _ = contact.kinematics.measure(&mut pair, &state.y, &mut rows);
         }
     }
     rows.iter().map(|row| -row.gap).fold(0.0, f64::max)

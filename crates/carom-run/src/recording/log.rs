@@ -60,7 +60,7 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
         }
         LogEvent::Projection { time, jump } => {
             let message =
-                format!("velocities projected where contact begins: kinetic energy changes by {jump:.6e}");
+                format!("velocities projected at contact activation: kinetic energy changes by {jump:.6e}");
             Event::new(step, *time, "projection", message).with("kinetic_jump", *jump)
         }
     }

@@ -49,7 +49,7 @@ pub enum End {
     Finished,
     /// By the user; resumable.
     Interrupted,
-    /// The simulation cannot continue; its last accepted state is kept.
+    /// The simulation cannot continue; its last accepted state is saved.
     Stopped(Stopped),
 }
 

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use carom_case::Case;
 use carom_mechanics::{GridReport, Simulation, State};
-use carom_record::{ContactRow, Event, Manifest, RunWriter, Source, Status};
+use carom_record::{ContactRow, Event, Manifest, Run, RunWriter, Source, Status};
 use cpu_time::{ProcessTime, ThreadTime};
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +17,7 @@ use super::log::{entry, repairs};
 use super::outcome::{End, Options, Outcome, Progress, RunError};
 use super::verdicts::judge;
 use crate::setup::Setup;
+use crate::warnings::{warnings, warnings_of_record};
 
 /// What a run has counted, and where its time went, up to a checkpoint.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -66,7 +67,7 @@ pub fn run(
     let mut manifest =
         Manifest::new(version, resolved, source, columns(case, simulation.model()), options.threads);
     manifest.sides = sides(simulation.model());
-    manifest.warnings = case.warnings();
+    manifest.warnings = warnings(case, simulation.model());
     let writer = RunWriter::create(
         directory,
         &manifest,
@@ -107,9 +108,9 @@ pub fn resume(
             directory: directory.to_path_buf(),
             end: End::Finished,
             steps: steps as u64,
-            time: steps as f64 * case.time.step,
+            time: case.time.end,
             wall: 0.0,
-            remarks: vec!["the run is finished: nothing was computed".into()],
+            remarks: vec!["the run was already finished; nothing was computed".into()],
         });
     }
     let reopened = RunWriter::reopen(directory)?;
@@ -147,7 +148,7 @@ pub fn resume(
 impl<'a> Session<'a> {
     fn new(case: &'a Case, simulation: Simulation, mut writer: RunWriter, manifest: Manifest) -> Self {
         writer.field_format(case.output.format);
-        let at = |time: &f64| (time / simulation.dt()).round() as u64;
+        let at = |time: &f64| simulation.grid().nearest(*time);
         let field_steps = case.output.at_times.iter().map(at).collect();
         let weights = center_weights(simulation.model());
         let first_step = simulation.state().step;
@@ -176,12 +177,31 @@ impl<'a> Session<'a> {
         for event in repairs(self.case) {
             self.writer.log(&event)?;
         }
-        for warning in &self.manifest.warnings {
-            self.writer.log(&Event::new(0, 0.0, "warning", warning.clone()))?;
-        }
+        self.log_warnings(0)?;
         self.since.add(&GridReport::default(), self.simulation.model(), self.simulation.state());
         self.write_row()?;
         self.write_fields()
+    }
+
+    /// Logs the warnings from number `first` on.
+    fn log_warnings(&mut self, first: usize) -> Result<(), RunError> {
+        let state = self.simulation.state();
+        for warning in &self.manifest.warnings[first..] {
+            let event = Event::new(state.step, state.time, "warning", warning.to_string());
+            self.writer.log(&event.with("id", warning.id.as_str()))?;
+        }
+        Ok(())
+    }
+
+    /// Adds the warnings that only the record of a finished run shows.
+    fn add_warnings(&mut self) -> Result<(), RunError> {
+        if self.case.contacts.is_empty() {
+            return Ok(());
+        }
+        let run = Run::open(self.writer.directory())?;
+        let known = self.manifest.warnings.len();
+        self.manifest.warnings.extend(warnings_of_record(self.case, &run));
+        self.log_warnings(known)
     }
 
     fn go(
@@ -257,7 +277,8 @@ impl<'a> Session<'a> {
     }
 
     fn write_row(&mut self) -> Result<(), RunError> {
-        let (model, state, dt) = (self.simulation.model(), self.simulation.state(), self.simulation.dt());
+        let (model, state) = (self.simulation.model(), self.simulation.state());
+        let dt = self.simulation.grid().length(state.step);
         row(model, state, dt, &self.since, &self.weights, &mut self.values);
         self.since = Since::default();
         self.writer.history(&self.values)?;
@@ -362,6 +383,9 @@ impl<'a> Session<'a> {
     /// Writes the last checkpoint and manifest.
     fn close(mut self, end: End, remarks: Vec<String>) -> Result<Outcome, RunError> {
         self.checkpoint()?;
+        if end == End::Finished {
+            self.add_warnings()?;
+        }
         let state = self.simulation.state();
         let wall = self.began.elapsed().as_secs_f64();
         let manifest = &mut self.manifest;

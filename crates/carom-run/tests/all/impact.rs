@@ -73,7 +73,7 @@ fn ledger_balance_and_gaps_hold_under_loads() {
 fn ledger_balance_and_gaps_hold(case: &Case, least: usize) {
     let scheme = case.time.scheme.integrator().unwrap().alpha().unwrap();
     let mut sim = carom_run::Setup::new(case).start().unwrap();
-    let (mut worst_ledger, mut touched) = (0.0_f64, 0);
+    let (mut worst_ledger, mut pairs_in_contact) = (0.0_f64, 0);
     while !sim.finished() {
         let before = sim.state().clone();
         let mut report = GridReport::default();
@@ -86,12 +86,12 @@ fn ledger_balance_and_gaps_hold(case: &Case, least: usize) {
         let rows = gaps(&sim);
         assert!(rows.iter().all(|row| row.gap > -2e-12), "step {}: {rows:?}", sim.state().step);
         let pressing = || sim.state().pairs[0].iter().filter(|pair| pair.active);
-        touched += pressing().count();
+        pairs_in_contact += pressing().count();
         let size: f64 = pressing().map(|pair| pair.lambda.abs()).sum();
         let lost: f64 = sums(&contact_force(&sim), &sim.state().y).iter().map(|sum| sum.abs()).sum();
         assert!(lost <= 1e-12 * size, "step {}: {lost:e} of {size:e}", sim.state().step);
     }
-    assert!(touched > least, "{touched}");
+    assert!(pairs_in_contact > least, "{pairs_in_contact}");
     assert!(worst_ledger < 1e-12, "{worst_ledger:e}");
 }
 

@@ -19,3 +19,4 @@ mod restart;
 mod reversal;
 mod statics;
 mod tangent;
+mod warnings;

@@ -216,9 +216,9 @@ fn the_stable_step_is_where_central_differences_blow_up() {
     let step = format!("time.step={:e}", 0.75 / (0.75 / (0.99 * stable.power)).floor());
     let long =
         case(IMPACT, &[&COARSE[..], &["time.scheme={ kind = \"central-difference\" }", &step]].concat());
-    let refused = carom_run::Setup::new(&long).start().err().unwrap();
-    assert!(refused.len() == 1 && refused[0].path == "time.step", "{refused:?}");
-    assert!(refused[0].what.contains(&format!("{:.4e}", SAFETY * stable.power)), "{refused:?}");
+    let rejected = carom_run::Setup::new(&long).start().err().unwrap();
+    assert!(rejected.len() == 1 && rejected[0].path == "time.step", "{rejected:?}");
+    assert!(rejected[0].what.contains(&format!("{:.4e}", SAFETY * stable.power)), "{rejected:?}");
 }
 
 /// The explicit impact of the paper: indentation and end of contact agree with two unrelated codes.

@@ -91,12 +91,12 @@ fn bodies_must_not_overlap_where_they_start() {
     );
     assert_eq!(
         problems(&["body.tube.position=[\"X\", \"1.04 - Y\"]"]),
-        ["body[0].position: the initial position turns a cell inside out"]
+        ["body[0].position: the initial position inverts a cell"]
     );
     // No value at a node of a constrained side.
     assert_eq!(
         problems(&["body.anvil.velocity=[\"1/(X + 1)\", \"0\"]"]),
-        ["body[1].velocity: the initial velocity has no value"]
+        ["body[1].velocity: the initial velocity has no finite value"]
     );
     // No overlap with the primary out of the way.
     assert!(problems(&[LOWER, "body.anvil.position=[\"X\", \"1.1*(Y + 0.5) - 0.6\"]"]).is_empty());

@@ -124,7 +124,7 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
     for (text, expected) in [
         (again("0"), "a support would jump at the start"),
         (again("-0.1").replace("cells = [3, 3]", "cells = [3, 4]"), "body \"block\" has another mesh in"),
-        (again("-0.1").replace("/preload", "/nowhere"), "cannot be started from"),
+        (again("-0.1").replace("/preload", "/nowhere"), "cannot be used"),
     ] {
         let problems = carom_run::Setup::new(&case_of(&text, &[""; 0])).start().err().unwrap();
         assert!(problems[0].what.contains(expected), "{problems:?}");

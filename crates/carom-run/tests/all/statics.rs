@@ -73,7 +73,7 @@ fn a_bar_hangs_under_its_own_weight() {
 /// An unconstrained body is reported by name; one that contact can constrain is accepted, and
 /// reported if contact does not.
 #[test]
-fn a_body_held_by_nothing_is_said_by_name() {
+fn an_unconstrained_body_is_named() {
     let text = |support: &str, at: f64| {
         format!(
             r#"

@@ -22,25 +22,25 @@ use crate::mesh::{Element, Facet, Mesh};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs)]
 pub enum MeshError {
-    #[error("min {min:?} is not below max {max:?} by a finite amount")]
+    #[error("min {min:?} must be less than max {max:?}, and both finite")]
     Extent { min: Vec<f64>, max: Vec<f64> },
     #[error("a mesh needs at least one cell in each direction, not {cells:?}")]
     Cells { cells: Vec<usize> },
     #[error("radius {radius} and size {size} must be finite and > 0, the centre {center:?} finite")]
     Disc { radius: f64, size: f64, center: [f64; 2] },
     #[error(
-        "inner {inner} < outer {outer} and size {size} must be finite and > 0, the centre {center:?} finite"
+        "inner {inner}, outer {outer} and size {size} must be finite and > 0, with inner < outer, and the centre {center:?} finite"
     )]
     Ring { inner: f64, outer: f64, size: f64, center: [f64; 2] },
     #[error("a polygon has at least 3 points, not {count}")]
     Points { count: usize },
-    #[error("point {point} of the polygon is not finite or coincides with the one before")]
+    #[error("point {point} of the polygon is not finite or coincides with the previous point")]
     Point { point: usize },
     #[error("side{first} and side{second} of the polygon cross, touch or fold back onto each other")]
     Crossing { first: usize, second: usize },
     #[error("{what} = {value} must be finite and > 0")]
     Size { what: &'static str, value: f64 },
-    #[error("a refined place must be finite and its radius ≥ 0, not {near:?} and {radius}")]
+    #[error("a region of refinement must have a finite centre and a radius ≥ 0, not {near:?} and {radius}")]
     Place { near: [f64; 2], radius: f64 },
     #[error("the polygon could not be meshed with angles of {angle}° or more")]
     Angles { angle: f64 },

@@ -37,11 +37,11 @@ pub struct MshError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs)]
 pub enum Fault {
-    #[error("this is no Gmsh mesh: it does not begin with $MeshFormat")]
+    #[error("this is not a Gmsh mesh: it does not begin with $MeshFormat")]
     NotMsh,
-    #[error("Gmsh format version {0} is not read")]
+    #[error("Gmsh format version {0} is not supported")]
     Version(String),
-    #[error("the header cannot be true: {0}")]
+    #[error("the header is invalid: {0}")]
     Header(&'static str),
     #[error("the file ends within {0}")]
     Truncated(&'static str),
@@ -49,25 +49,25 @@ pub enum Fault {
     Unexpected { wanted: String, found: String },
     #[error("the line ends before {0}")]
     ShortLine(&'static str),
-    #[error("the line goes on with `{0}`")]
+    #[error("unexpected `{0}` at the end of the line")]
     LongLine(String),
-    #[error("{count} {what} are announced, but {left} bytes are left")]
+    #[error("the file states {count} {what}, but only {left} bytes are left")]
     Count { what: &'static str, count: u64, left: usize },
-    #[error("{count} {what} are announced, and {found} follow")]
+    #[error("the file states {count} {what}, but {found} follow")]
     Total { what: &'static str, count: u64, found: u64 },
-    #[error("section ${0} comes a second time")]
+    #[error("section ${0} occurs twice")]
     SectionTwice(&'static str),
     #[error("there is no section ${0}")]
     NoSection(&'static str),
     #[error("the mesh is partitioned")]
     Partitioned,
-    #[error("{what} {tag} comes a second time")]
+    #[error("{what} {tag} occurs twice")]
     TagTwice { what: &'static str, tag: i64 },
-    #[error("node {0} is not at a finite place")]
+    #[error("the coordinates of node {0} are not finite")]
     NotFinite(i64),
-    #[error("cell {cell} is of the unknown type {kind}")]
+    #[error("cell {cell} has the unknown type {kind}")]
     UnknownType { cell: i64, kind: i64 },
-    #[error("cell {cell} names node {node}, which is not in the file")]
+    #[error("cell {cell} refers to node {node}, which is not in the file")]
     NoNode { cell: i64, node: i64 },
     #[error("there is no physical {what} \"{name}\"")]
     NoName { what: &'static str, name: String, names: Vec<String> },
@@ -75,7 +75,7 @@ pub enum Fault {
     NoCells { what: &'static str, name: String },
     #[error("cell {cell} of \"{name}\" is {kind}")]
     Unsupported { name: String, cell: i64, kind: String },
-    #[error("cell {cell} of \"{name}\" is of order {order}, the cells before are of order {before}")]
+    #[error("cell {cell} of \"{name}\" has order {order}, but the previous cells have order {before}")]
     MixedOrders { name: String, cell: i64, order: usize, before: usize },
     #[error("node {node} of \"{name}\" is at {axis} = {value:e}, another at {axis} = {other:e}")]
     NotFlat { name: String, node: i64, axis: char, value: f64, other: f64 },
@@ -85,7 +85,7 @@ pub enum Fault {
     Coincident { name: String, a: i64, b: i64, at: Vec<f64> },
     #[error("cells {a} and {b} of \"{name}\" lie on the same side of the edge {start}–{end}")]
     Overlap { name: String, a: i64, b: i64, start: i64, end: i64 },
-    #[error("the edge {start}–{end} has other nodes between its ends in {a} than in {b}")]
+    #[error("the edge {start}–{end} has different interior nodes in {a} and in {b}")]
     EdgeNodes { a: String, b: String, start: i64, end: i64 },
     #[error("node {node} of \"{name}\" belongs to {cells} cells")]
     Branching { name: String, node: i64, cells: usize },
@@ -100,9 +100,9 @@ impl MshError {
     pub fn why(&self) -> String {
         match &self.fault {
             Fault::NotMsh => "a .msh file of Gmsh begins with the line $MeshFormat".into(),
-            Fault::Version(_) => "versions 4.1 and 2.2 are read, as text and as binary".into(),
+            Fault::Version(_) => "versions 4.1 and 2.2 are supported, as text and as binary".into(),
             Fault::Header(_) => {
-                "$MeshFormat holds version, 0 (text) or 1 (binary), the size of a number, and in binary files a one"
+                "$MeshFormat contains the version, 0 (text) or 1 (binary), the size of a number and, in binary files, the integer 1"
                     .into()
             }
             Fault::Truncated(_) | Fault::Count { .. } | Fault::Total { .. } => {
@@ -111,27 +111,27 @@ impl MshError {
             Fault::Unexpected { .. } | Fault::ShortLine(_) | Fault::LongLine(_) => {
                 "the file does not follow the format of its version".into()
             }
-            Fault::SectionTwice(_) => "it would be unclear which one holds".into(),
+            Fault::SectionTwice(_) => "it would be unclear which of them is valid".into(),
             Fault::NoSection(_) => "bodies need nodes, cells and the names of physical groups".into(),
-            Fault::Partitioned => "its cells belong to parts instead of physical groups".into(),
-            Fault::TagTwice { .. } => "whatever names it could mean either".into(),
-            Fault::NotFinite(_) => "a position is made of finite numbers".into(),
+            Fault::Partitioned => "its cells belong to partitions instead of physical groups".into(),
+            Fault::TagTwice { .. } => "a reference to it would be ambiguous".into(),
+            Fault::NotFinite(_) => "coordinates must be finite numbers".into(),
             Fault::UnknownType { .. } => "the number of its nodes is unknown, so nothing after it can be read".into(),
-            Fault::NoNode { .. } => "every cell is made of nodes of $Nodes".into(),
+            Fault::NoNode { .. } => "every cell refers to nodes of $Nodes".into(),
             Fault::NoName { what, names, .. } if names.is_empty() => {
-                format!("the file names no physical {what} at all")
+                format!("the file contains no physical {what}")
             }
             Fault::NoName { what, names, .. } => format!("the physical {what}s are: {}", names.join(", ")),
-            Fault::NoCells { .. } => "the name is there, but no cell belongs to it".into(),
-            Fault::Unsupported { .. } => "bodies are made of triangles of order 1, 2 or 3; bars of lines".into(),
-            Fault::MixedOrders { .. } => "a body is made of one element type".into(),
+            Fault::NoCells { .. } => "the name is defined, but no cell belongs to it".into(),
+            Fault::Unsupported { .. } => "bodies consist of triangles of order 1, 2 or 3, bars of lines".into(),
+            Fault::MixedOrders { .. } => "all cells of a body must have the same type".into(),
             Fault::NotFlat { .. } => "a body of dimension 2 lies in a plane z = constant, a bar on the x axis".into(),
             Fault::Folded { .. } => "the Jacobian of a cell must be positive everywhere in it".into(),
             Fault::Coincident { .. } => {
-                "cells on the two nodes are not connected: the body would fall apart there".into()
+                "cells at the two nodes are not connected, so the body would separate there".into()
             }
             Fault::Overlap { .. } => "an edge separates at most two cells, one on each side".into(),
-            Fault::EdgeNodes { .. } => "neighbours share every node of their edge, or the body gapes".into(),
+            Fault::EdgeNodes { .. } => "neighbouring cells must share every node of their edge; otherwise the body would have a gap there".into(),
             Fault::Branching { .. } => "a node of a bar joins at most two cells".into(),
         }
     }
@@ -148,7 +148,7 @@ impl MshError {
             }
             Fault::Unsupported { .. } => "mesh with triangles (in Gmsh without Recombine), order at most 3",
             Fault::MixedOrders { .. } => "set one Mesh.ElementOrder for the whole mesh",
-            Fault::NotFlat { .. } => "put the geometry into the plane z = 0",
+            Fault::NotFlat { .. } => "draw the geometry in the plane z = 0",
             Fault::Folded { .. } => {
                 "optimise high-order cells in Gmsh (Mesh.HighOrderOptimize = 2), or mesh finer"
             }

@@ -1,5 +1,5 @@
 //! Compressible neo-Hookean law Ψ = μ(tr E − ln J) + Λ/2 (ln J)², E = (FᵀF − I)/2 (Simo, Hughes,
-//! Computational Inelasticity, §9.2.1; the seed paper's eq. (3)):
+//! Computational Inelasticity, §9.2.1; the paper's eq. (3)):
 //!
 //!   P = μ(F − F⁻ᵀ) + Λ ln J F⁻ᵀ,   K(a, b) = μ (a·b) I + (μ − Λ ln J) b̃⊗ã + Λ ã⊗b̃,   ã = F⁻ᵀa.
 //!

@@ -2,7 +2,7 @@
 //! location of points.
 
 use carom_solid::{
-    Body, Bounds, Cover, Element, Law, Mesh, SolidError, body, cell_lumped_mass, generate, line_shape,
+    Body, Bounds, Element, Law, Mesh, PointLocator, SolidError, body, cell_lumped_mass, generate, line_shape,
 };
 
 const LAMBDA: f64 = 2.0;
@@ -342,13 +342,13 @@ fn bad_bodies_are_refused_with_cell_and_place() {
 /// Ray casting: a point lies in a polygon if a ray from it crosses its boundary an odd number of
 /// times.
 #[test]
-fn a_cover_is_what_its_boundary_encloses() {
+fn a_body_contains_what_its_boundary_encloses() {
     for element in TRIANGLES {
         for mesh in meshes(element) {
             let body = body(mesh, LAWS[0], 1.0, 1.0).unwrap();
             let mesh = body.mesh();
             let y = moved(&*body, |x| [x[0] - 0.3 * x[1] + 0.1 * x[0] * x[0], 0.2 * x[0] + 1.1 * x[1]]);
-            let cover = Cover::new(&*body, &y);
+            let locator = PointLocator::new(&*body, &y);
             let mut boundary = Vec::new();
             for facet in mesh.sides.values().flatten() {
                 let at = |xi: f64| {
@@ -370,14 +370,14 @@ fn a_cover_is_what_its_boundary_encloses() {
                 let odd = crossed.count() % 2 == 1;
                 inside += usize::from(odd);
                 let cells = (0..mesh.cell_count()).any(|cell| body.invert(cell, &y, &[p, q]).is_some());
-                assert_eq!(cover.contains(&[p, q]), cells, "the boxes have left out a cell");
+                assert_eq!(locator.contains(&[p, q]), cells, "the boxes have left out a cell");
                 // Too near to the polygon to be distinguished from the curve.
                 let near = boundary.iter().any(|[a, _]| (a[0] - p).hypot(a[1] - q) < 0.02 * bounds.size());
-                assert!(near || cover.contains(&[p, q]) == odd, "{element:?} at {p}, {q}");
+                assert!(near || locator.contains(&[p, q]) == odd, "{element:?} at {p}, {q}");
             }
             assert!(inside > 200, "{inside}");
-            assert!(y.chunks(2).all(|node| cover.contains(node)));
-            assert!(!cover.contains(&[f64::NAN, 0.0]));
+            assert!(y.chunks(2).all(|node| locator.contains(node)));
+            assert!(!locator.contains(&[f64::NAN, 0.0]));
         }
     }
 }

@@ -74,6 +74,25 @@ text = "The trapezoidal rule keeps its energy"
 compare = 'energy_lost of "guarded" < 1e-6'
 "#;
 
+/// Where nodes begin to touch less often, less energy is created.
+#[test]
+fn a_failed_arm_names_the_arms_of_its_method_that_finished() {
+    let trapezoidal = r#""time.scheme" = { kind = "newmark", beta = 0.25, gamma = 0.5 }, "contact.wall.persistency" = "none", "time.energy_guard" = 0.05"#;
+    let arm = |name: &str, set: &str| format!("[[arm]]\nname = \"{name}\"\nset = {{ {set} }}\n");
+    let step = |step: &str| format!("{trapezoidal}, \"time.step\" = {step}");
+    let arms =
+        [arm("fine", &step("0.01")), arm("coarse", &step("0.02")), arm("damped", "\"time.step\" = 0.02")];
+    let (folder, path) = folder(&arms.concat());
+    let directory = folder.path().join("study");
+    let plan = Plan::read(&path).unwrap();
+    let study = start(&plan, &directory, 1, &mut |_| {}, &AtomicBool::new(false)).unwrap().study;
+    let known = "the same method finished with a longer step: \"coarse\"";
+    assert_eq!(study.finished_alike(0).as_deref(), Some(known));
+    assert!(study.finished_alike(1).is_none() && study.finished_alike(2).is_none());
+    // The coarse arm created 3 % of energy.
+    assert_eq!([0, 1, 2].map(|arm| study.rows[arm].is_unsound()), [true, true, false]);
+}
+
 #[test]
 fn rows_failures_and_claims() {
     let (folder, path) = folder(THREE);
@@ -191,7 +210,7 @@ fn wrong_study_files() {
 #[test]
 fn a_design_builds_its_arms_and_ranks_them() {
     let (folder, path) = folder(
-        "design = \"matched-step\"\nsteps = [0.01, 0.005]\ngoal = \"energy\"\nreference = \"fine\"\n\
+        "design = \"matched-step\"\nsteps = [0.01, 0.005]\ngoal = \"energy\"\naccuracy = 0.1\nreference = \"fine\"\n\
          [[arm]]\nname = \"Hu\"\nset = { \"time.scheme\" = { kind = \"hu\" } }\n[[arm]]\nname = \"CH\"\n",
     );
     let plan = Plan::read(&path).unwrap();
@@ -221,6 +240,8 @@ fn a_design_builds_its_arms_and_ranks_them() {
     let verdict = ranking.verdict.unwrap();
     assert_eq!(study.manifest.arms[verdict.arm].role.method.as_deref(), Some("CH"));
     assert!(out.join("ranking.csv").is_file() && out.join("reference.csv").is_file());
+    // Neither a finer mesh nor an ensemble: the ranking may be accidental.
+    assert_eq!(verdict.confidence.word(), "low");
     // If the checks cannot be made, the study is still valid; later they are made.
     let (checked, repeated) = (out.join("checks.json"), out.join("checks"));
     let again = || resume(&out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap();
@@ -230,6 +251,49 @@ fn a_design_builds_its_arms_and_ranks_them() {
     assert!(!hindered.interrupted && hindered.study.checks.is_none() && !checked.exists());
     fs::remove_file(&repeated).unwrap();
     assert_eq!(again().study.checks, study.checks);
+}
+
+/// Meshes of 1 and 2 times the cells with steps in the same ratio; every arm for two phases on two
+/// meshes, the reference for two phases only. Sides cannot be swapped against a rigid wall.
+#[test]
+fn a_reference_refines_its_mesh_and_an_ensemble_repeats_every_arm() {
+    let (folder, path) = folder(
+        "goal = \"energy\"\nreference = \"fine\"\n[fine]\nrefine = 2\nmesh = [1, 2]\n\
+         [ensemble]\nphases = 2\nmesh = [1, 2]\nswapped = true\n[[arm]]\nname = \"Hu\"\nset = { \"time.scheme\" = { kind = \"hu\" } }\n\
+         [[arm]]\nname = \"CH\"\n[[claim]]\ntext = \"t\"\ncompare = 'energy_lost of \"Hu\" > energy_lost of \"CH\"'\n",
+    );
+    let plan = Plan::read(&path).unwrap();
+    let arms = &plan.manifest.arms;
+    let fine: Vec<(&str, u64, f64)> =
+        arms[2..].iter().map(|a| (a.name.as_str(), a.steps, a.case["refine"].as_f64().unwrap())).collect();
+    assert_eq!(fine, [("fine, 2 Δt, mesh 1", 40, 1.0), ("fine", 80, 2.0)]);
+    let members: Vec<&str> = plan.manifest.members.iter().map(|m| m.name.as_str()).collect();
+    assert_eq!(members[..3], ["Hu (phase 0.5)", "Hu (mesh 2)", "Hu (mesh 2, phase 0.5)"]);
+    assert_eq!(members[6..], ["fine, 2 Δt, mesh 1 (phase 0.5)", "fine (phase 0.5)"]);
+    // With a phase, the first and the last step are parts of one.
+    assert_eq!((plan.manifest.members[0].steps, plan.manifest.members[1].steps), (41, 40));
+    let out = folder.path().join("out");
+    let study = start(&plan, &out, 2, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
+    let held = study.verdicts[0].held.as_ref().unwrap();
+    assert_eq!((held.held, held.of), (4, 4));
+    let reference = study.reference.as_ref().unwrap();
+    assert!(reference.refines_mesh() && reference.has_ensemble() && reference.what.contains("2 members"));
+    assert_eq!(study.spread(0, "energy_lost").unwrap().count(), 4);
+    let text = fs::read_to_string(out.join("ensemble.csv")).unwrap();
+    assert!(text.starts_with("arm,metric,unit,members,median,low,high\n"));
+    // Resumed, nothing is computed again, and the tables are the same.
+    let again = resume(&out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
+    assert_eq!(again.members, study.members);
+}
+
+#[test]
+fn wrong_ensembles_are_reported() {
+    let first = |table: &str| wrong(&format!("[[arm]]\nname = \"a\"\n[ensemble]\n{table}\n"))[0].clone();
+    assert!(first("phases = 0").what.contains("not an integer from 1 to 100"));
+    assert!(first("mesh = [2, 3]").why.contains("are members, on the given mesh"));
+    assert!(first("mesh = [1, 1]").what.contains("not a list of increasing numbers"));
+    assert!(first("phases = 1").help.contains("phases = 5"));
+    assert_eq!(first("phase = 5").help, "did you mean `phases`?");
 }
 
 /// Two methods of similar cost: the second starts at twice the step of the case, and matched cost

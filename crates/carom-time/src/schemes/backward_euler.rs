@@ -11,7 +11,7 @@ use crate::stage::{Kernel, Memory, Stage};
 
 pub(super) const KIND: KindInfo = KindInfo {
     name: "backward-euler",
-    summary: "All forces at the end; first order, ρ∞ = 0.",
+    summary: "All forces at the end of the step; first order, ρ∞ = 0.",
     reference: "Hairer, Wanner 1996",
     sets: &[&[]],
     // Free fall exceeds the exact one by g Δt²/2 per step.

@@ -61,7 +61,7 @@ impl Kernel for Bathe {
 
     fn notes(&self) -> &'static [&'static str] {
         &[
-            "two solves a step; the multiplier reported is that of the second, the first one's spikes at impact",
+            "two solves per step; the recorded multiplier is that of the second stage, because that of the first has spikes at impact",
         ]
     }
 

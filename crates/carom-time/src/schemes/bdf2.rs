@@ -37,7 +37,7 @@ impl Kernel for Bdf2 {
 
     fn notes(&self) -> &'static [&'static str] {
         &[
-            "two-step: begins with backward Euler, at the start, after a bisected step, and wherever contact begins",
+            "two-step method: uses backward Euler at the start, after a bisected step, and at contact activation",
         ]
     }
 

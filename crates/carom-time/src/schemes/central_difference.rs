@@ -16,15 +16,15 @@ pub(super) const KIND: KindInfo = KindInfo {
     sets: &[&[]],
     members: &[Member::new(&[], 2, f64::INFINITY)],
     build: Build::Explicit(Explicit {
-        summary: "explicit, with a lumped mass; the contact force of a step keeps the positions at its end out of contact",
+        summary: "explicit, with a lumped mass; the contact force at the start of a step prevents penetration at its end",
         order: 2,
         restitution: false,
         contact: &[
-            "the force at a step's start keeps the positions at its end out (forward increment): no penetration but for hand-overs of facets",
+            "the force at the start of a step prevents penetration at its end (forward increment), except where a node changes facets",
             LUMPED,
         ],
     }),
 };
 
 pub(super) const LUMPED: &str =
-    "needs mass = \"lumped\" on every body; the stable step is computed, a longer one refused";
+    "requires mass = \"lumped\" on every body; the stable step is computed, and a longer one is rejected";

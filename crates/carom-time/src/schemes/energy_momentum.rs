@@ -35,9 +35,9 @@ impl Kernel for EnergyMomentum {
 
     fn notes(&self) -> &'static [&'static str] {
         &[
-            "energy, momentum and moment of momentum of free motion: exactly, nonlinear too",
-            "moment of momentum in contact: exactly, except with law = \"predictor\"",
-            "energy of contact: exactly with enforcement = \"penalty\", and with multipliers while gaps stay closed",
+            "in free motion energy, momentum and angular momentum are conserved exactly, also with nonlinear forces",
+            "in contact momentum and angular momentum are conserved exactly, except with law = \"predictor\"",
+            "energy is conserved exactly in contact with enforcement = \"penalty\", and with multipliers while gaps stay closed",
         ]
     }
 

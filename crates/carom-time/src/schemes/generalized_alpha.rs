@@ -10,17 +10,17 @@ use crate::scheme::{ForceRule, Scheme};
 const SHARE: Parameter = Parameter {
     key: "alpha_m",
     range: (Unbounded, Excluded(1.0)),
-    meaning: "Share of the old inertia force.",
+    meaning: "Weight of the old inertia force.",
     example: "0.0",
 };
 
 pub(super) const KIND: KindInfo = KindInfo {
     name: "generalized-alpha",
-    summary: "The four parameters as they are.",
+    summary: "The generalised-α family, given by its four parameters.",
     reference: "Chung, Hulbert 1993",
     sets: &[&[
         SHARE,
-        Parameter { key: "alpha_f", meaning: "Share of the old other forces.", ..SHARE },
+        Parameter { key: "alpha_f", meaning: "Weight of the old internal, contact and external forces.", ..SHARE },
         BETA,
         GAMMA,
     ]],

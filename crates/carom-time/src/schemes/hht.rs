@@ -19,7 +19,7 @@ pub(super) const KIND: KindInfo = KindInfo {
     sets: &[&[Parameter {
         key: "alpha",
         range: (Included(0.0), Excluded(1.0)),
-        meaning: "α = α_f ≥ 0: the share of the old forces.",
+        meaning: "Weight α = α_f ≥ 0 of the old forces; the opposite of the α of Hilber, Hughes and Taylor.",
         example: "0.1",
     }]],
     members: &[
@@ -38,14 +38,14 @@ impl Scheme {
     /// ```
     /// let hht = carom_time::Scheme::hht(0.25)?;
     /// assert_eq!((hht.gamma, hht.beta), (0.75, 0.390625));
-    /// let refused = carom_time::Scheme::hht(-0.05).unwrap_err().to_string();
-    /// assert!(refused.contains("write alpha = 0.05"));
+    /// let rejected = carom_time::Scheme::hht(-0.05).unwrap_err().to_string();
+    /// assert!(rejected.contains("write alpha = 0.05"));
     /// # Ok::<(), carom_time::SchemeError>(())
     /// ```
     pub fn hht(alpha: f64) -> Result<Self, SchemeError> {
         if alpha < 0.0 && alpha.is_finite() {
             let hint = format!(
-                "write alpha = {}: here alpha is the share of the old forces, the opposite of the α of the 1977 paper",
+                "write alpha = {}: here alpha is the weight of the old forces, the opposite of the α of the 1977 paper",
                 -alpha
             );
             return Err(SchemeError::OutOfRange { key: "alpha", value: alpha, range: "[0, 1)", hint });

@@ -15,12 +15,12 @@ use crate::stage::{Kernel, Memory, Stage};
 
 pub(super) const KIND: KindInfo = KindInfo {
     name: "moreau-jean",
-    summary: "The θ-method with impulses: contact holds velocities.",
+    summary: "The θ-method with impulses: contact constrains velocities.",
     reference: "Moreau 1999; Jean 1999",
     sets: &[&[Parameter {
         key: "theta",
         range: (Included(0.5), Included(1.0)),
-        meaning: "Share of the new velocity and force: ½ is of order 2, 1 damps most.",
+        meaning: "Weight of the new velocity and force: ½ gives second order, 1 the strongest damping.",
         example: "0.5",
     }]],
     // Free fall exceeds the exact one by (θ − ½) g Δt² per step.
@@ -48,7 +48,7 @@ impl MoreauJean {
         if (0.5..=1.0).contains(&theta) {
             return Ok(Self { theta });
         }
-        let hint = "below ½ every mode grows; ½ is of order 2, 1 damps most".to_owned();
+        let hint = "below ½ every mode grows; ½ gives second order, 1 the strongest damping".to_owned();
         Err(SchemeError::OutOfRange { key: "theta", value: theta, range: "[0.5, 1]", hint })
     }
 }
@@ -73,7 +73,7 @@ impl Kernel for MoreauJean {
 
 impl Impulse for MoreauJean {
     fn summary(&self) -> &'static str {
-        "the θ-method with impulses: contact holds velocities, with Newton's restitution"
+        "the θ-method with impulses: contact constrains velocities, with Newton's coefficient of restitution"
     }
 
     fn shares(&self, dt: f64) -> ImpulseShares {

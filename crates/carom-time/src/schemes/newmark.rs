@@ -10,7 +10,7 @@ use crate::scheme::{Scheme, in_unit_interval};
 
 pub(super) const KIND: KindInfo = KindInfo {
     name: "newmark",
-    summary: "Newmark: beta and gamma, or rho_inf.",
+    summary: "Newmark's scheme, given by beta and gamma or by rho_inf.",
     reference: "Newmark 1959",
     sets: &[
         &[BETA, GAMMA],

@@ -15,7 +15,7 @@ use crate::stage::{Kernel, Memory, Stage};
 
 pub(super) const KIND: KindInfo = KindInfo {
     name: "nonsmooth-generalized-alpha",
-    summary: "Chung–Hulbert between impacts, impulses at them.",
+    summary: "Chung–Hulbert between impacts, impulses at impacts.",
     reference: "Chen, Acary, Virlez, Brüls 2013",
     sets: &[&[RHO_INF]],
     members: &[Member::new(&[("rho_inf", 0.1)], 2, 0.1), Member::new(&[("rho_inf", 0.8)], 2, 0.8)],
@@ -39,7 +39,7 @@ impl Kernel for NonsmoothAlpha {
 
 impl Impulse for NonsmoothAlpha {
     fn summary(&self) -> &'static str {
-        "Chung and Hulbert's scheme between impacts, impulses and Newton's restitution at them"
+        "Chung and Hulbert's scheme between impacts; impulses with Newton's coefficient of restitution at impacts"
     }
 
     fn shares(&self, dt: f64) -> ImpulseShares {

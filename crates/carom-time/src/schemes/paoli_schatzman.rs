@@ -13,17 +13,17 @@ use crate::kind::{Build, KindInfo, Member};
 
 pub(super) const KIND: KindInfo = KindInfo {
     name: "paoli-schatzman",
-    summary: "Explicit, lumped mass; contact with the restitution of [[contact]].",
+    summary: "Explicit, lumped mass; contact with the coefficient of restitution of [[contact]].",
     reference: "Paoli, Schatzman 2002",
     sets: &[&[]],
     members: &[Member::new(&[], 2, f64::INFINITY)],
     build: Build::Explicit(Explicit {
-        summary: "explicit, with a lumped mass; what contact keeps out is (y_{n+1} + e y_{n−1})/(1 + e), e the contact's restitution",
+        summary: "explicit, with a lumped mass; contact constrains the position (y_{n+1} + e y_{n−1})/(1 + e), where e is the restitution of the contact",
         order: 2,
         restitution: true,
         contact: &[
-            "restitution e of the contact, 0: the same as central-difference; positions penetrate by Δt·speed where e > 0",
-            "with e = 1 and finite elements energy alternates from step to step during contact and high modes are excited",
+            "with e = 0 the scheme is identical to central-difference; with e > 0 a penetration of up to Δt·speed remains",
+            "with e = 1 on a mesh, the energy alternates from step to step during contact, and high modes are excited",
             LUMPED,
         ],
     }),

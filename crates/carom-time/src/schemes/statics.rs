@@ -9,7 +9,7 @@ pub const STATIC: &str = "static";
 
 pub(super) const KIND: KindInfo = KindInfo {
     name: STATIC,
-    summary: "Equilibrium at every step, without inertia: t is the load parameter.",
+    summary: "Static equilibrium at every step, without inertia; t is the load parameter.",
     reference: "",
     sets: &[&[]],
     // Nothing is integrated, so there is nothing to claim.

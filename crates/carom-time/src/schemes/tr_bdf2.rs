@@ -6,7 +6,7 @@ use crate::kind::{Build, KindInfo, Member};
 pub(super) const KIND: KindInfo = KindInfo {
     name: "tr-bdf2",
     summary: "Trapezoidal rule, then backward differentiation; second order, ρ∞ = 0.",
-    reference: "Bank and others 1985",
+    reference: "Bank et al. 1985",
     sets: &[&[]],
     members: &[Member::new(&[], 2, 0.0)],
     build: Build::Stages(|_| Ok(Box::new(Bathe::new(0.0)?))),

@@ -19,7 +19,7 @@ fn many() -> Vec<Scheme> {
         .flat_map(|&r| [ch(r), Scheme::wbz(r).unwrap(), Scheme::newmark_damped(r).unwrap()])
         .collect();
     let members = KINDS.iter().flat_map(|kind| kind.members.iter().map(|member| kind.named(member)));
-    all.extend(members.filter_map(|name| name.integrator(ForceRule::AverageForces).unwrap().alpha()));
+    all.extend(members.filter_map(|name| name.integrator().unwrap().alpha()));
     all.push(hht_of(0.9));
     all.extend([
         Scheme::newmark(1.0 / 6.0, 0.5).unwrap(),
@@ -142,12 +142,12 @@ fn the_kernel_amplifies_as_the_matrix_says() {
 
 /// theory.md §2, fact 2: on a constrained dof both eigenvalues are −ρ∞, whatever the step.
 #[test]
-fn a_held_dof_sees_minus_rho_inf() {
+fn a_constrained_dof_sees_minus_rho_inf() {
     for r in [0.1, 0.6, 0.9] {
         for scheme in [ch(r), Scheme::wbz(r).unwrap(), Scheme::newmark_damped(r).unwrap(), hht_of(r.max(0.5))]
         {
             let rho = scheme.spectral_radius_at_infinity();
-            let [[a, b], [c, d]] = scheme.held_map();
+            let [[a, b], [c, d]] = scheme.constrained_map();
             assert!(
                 (a + d + 2.0 * rho).abs() < 1e-12 && (a * d - b * c - rho * rho).abs() < 1e-12,
                 "{scheme:?}"
@@ -163,13 +163,13 @@ fn a_held_dof_sees_minus_rho_inf() {
 }
 
 #[test]
-fn a_held_dof_rings_as_theory_says() {
+fn a_constrained_dof_rings_as_theory_says() {
     let (dt, v0) = (1e-3, 2.0);
     let free = Oscillator { mass: 1.0, stiffness: 0.0, force: 0.0 };
     let after = |scheme: &Scheme, steps: usize| {
         let mut motion = free.start(0.0, v0);
         for _ in 0..steps {
-            motion = free.held_step(scheme, dt, motion, &mut Stage::default(), 0.0);
+            motion = free.constrained_step(scheme, dt, motion, &mut Stage::default(), 0.0);
         }
         motion
     };
@@ -196,7 +196,7 @@ fn the_ringing_told_is_the_kernel_s() {
     for r in [0.1, 0.3, 0.6, 0.8] {
         let (mut motion, mut force, mut stage, mut last) = (free.start(0.0, v0), 0.0, Stage::default(), 0);
         for n in 1..500 {
-            let next = free.held_step(&ch(r), dt, motion, &mut stage, 0.0);
+            let next = free.constrained_step(&ch(r), dt, motion, &mut stage, 0.0);
             let (w, b) = (stage.weights, stage.before);
             force = -(w.mass * next[2] + b.mass * motion[2] + b.contact * force) / w.contact;
             if next[2].abs().max(force.abs()) * dt / v0 >= 0.01 {

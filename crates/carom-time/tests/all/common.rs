@@ -1,6 +1,6 @@
 //! Helpers of the tests of all kernels.
 
-use carom_time::{ForceRule, Integrator, KINDS, Kernel, Member, Nonsmooth, Oscillator, Stage};
+use carom_time::{ForceRule, Integrator, KINDS, Kernel, Member, Name, Nonsmooth, Oscillator, Stage};
 
 /// Members with their kernels; those of the α family under both rules.
 pub(crate) fn all() -> Vec<(&'static Member, String, Box<dyn Kernel>)> {
@@ -9,7 +9,7 @@ pub(crate) fn all() -> Vec<(&'static Member, String, Box<dyn Kernel>)> {
         for member in kind.members {
             let name = kind.named(member);
             for forces in [ForceRule::AverageForces, ForceRule::AverageState] {
-                let kernel: Box<dyn Kernel> = match name.integrator(forces).unwrap() {
+                let kernel: Box<dyn Kernel> = match (Name { forces, ..name.clone() }).integrator().unwrap() {
                     Integrator::Nonsmooth(Nonsmooth::Impulse(scheme), _) => scheme,
                     Integrator::Nonsmooth(Nonsmooth::Explicit(_), _) => continue,
                     other => other.into_kernel().unwrap(),

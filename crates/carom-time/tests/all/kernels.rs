@@ -9,7 +9,7 @@ use carom_time::schemes::bathe::Bathe;
 use carom_time::schemes::bdf2::Bdf2;
 use carom_time::schemes::energy_momentum::EnergyMomentum;
 use carom_time::schemes::moreau_jean::MoreauJean;
-use carom_time::{Explained, ForceRule, KINDS, Kernel, Member, Oscillator, STATIC, Scheme, map};
+use carom_time::{Explained, KINDS, Kernel, Member, Oscillator, STATIC, Scheme, map};
 
 use crate::common::{all, run};
 
@@ -51,13 +51,12 @@ fn order_and_rho_inf_are_the_published_ones() {
 fn what_is_explained_is_what_is_published() {
     for (kind, member) in KINDS.iter().flat_map(|kind| kind.members.iter().map(move |member| (kind, member)))
     {
-        let (order, rho_inf) =
-            match kind.named(member).integrator(ForceRule::AverageForces).unwrap().explain() {
-                Explained::Stages(explanation) => (explanation.order, explanation.rho_inf),
-                Explained::Nonsmooth(explanation) => {
-                    (explanation.order, explanation.rho_inf.unwrap_or(f64::INFINITY))
-                }
-            };
+        let (order, rho_inf) = match kind.named(member).integrator().unwrap().explain() {
+            Explained::Stages(explanation) => (explanation.order, explanation.rho_inf),
+            Explained::Nonsmooth(explanation) => {
+                (explanation.order, explanation.rho_inf.unwrap_or(f64::INFINITY))
+            }
+        };
         assert_eq!(order, member.order, "{}", kind.named(member));
         let same = rho_inf == member.rho_inf || (rho_inf - member.rho_inf).abs() < 1e-7;
         assert!(same, "{}: {rho_inf}", kind.named(member));

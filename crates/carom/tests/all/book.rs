@@ -27,7 +27,7 @@ fn a_run_that_starts_from_another() {
     let missing = place.carom(&["run", &example("struck.toml"), "--set", "initial.from=\"runs/none\""]);
     assert_eq!(missing.status.code(), Some(2));
     let output = text(&missing.stderr);
-    assert!(output.contains("cannot be started from") && output.contains("--set:1:"), "{output}");
+    assert!(output.contains("cannot be used") && output.contains("--set:1:"), "{output}");
 }
 
 /// Every kind of scheme must be documented and verified.

@@ -136,8 +136,8 @@ fn arguments_are_checked() {
         (&["run", "case.toml", "--set", "time.scheme.rho_inf=1.2"], "--set:1:21"),
         (&["run"], "<CASE>"),
         (&["rnu", "case.toml"], "unrecognized subcommand"),
-        (&["resume", "old"], "old is not a run directory"),
-        (&["report", "nowhere"], "nowhere is not a run directory"),
+        (&["resume", "old"], "old is not the directory of a run"),
+        (&["report", "nowhere"], "there is no directory nowhere"),
         (&["explain", "bathe"], "scheme \"bathe\" has no `rho_inf`"),
         (&["explain", "hht", "alpha=-0.1"], "did you mean `alpha = 0.1`?"),
         (&["explain", "wbz", "rho=0.5"], "unknown key `rho`"),
@@ -165,11 +165,16 @@ fn a_study_is_resumed_with_its_own_options() {
         text(&done.stdout) + &text(&done.stderr)
     };
     assert!(code(&["study", "study.toml", "--out", "s", "--no-report"], 0).contains("short"));
-    assert!(code(&["resume", "s", "--threads", "2"], 2).contains("--threads is for a run, and s is a study"));
-    assert!(code(&["resume", "s", "--profile"], 2).contains("--profile is for a run"));
+    assert!(
+        code(&["resume", "s", "--threads", "2"], 2)
+            .contains("--threads is an option for runs, but s is a study")
+    );
+    assert!(code(&["resume", "s", "--profile"], 2).contains("--profile is an option for runs"));
     assert!(!place.0.join("s/study.html").exists() && place.0.join("s/study.csv").exists());
     assert!(code(&["resume", "s", "--jobs", "1"], 0).contains("study.html"));
-    assert!(code(&["resume", "s/arms/01-short", "--jobs", "1"], 2).contains("--jobs is for a study"));
+    assert!(
+        code(&["resume", "s/arms/01-short", "--jobs", "1"], 2).contains("--jobs is an option for studies")
+    );
 }
 
 #[test]

@@ -14,12 +14,10 @@ pub(crate) fn print(failure: &Failure, json: bool) -> Exit {
         Failure::Case(CaseError::Wrong(found)) => found.iter().map(rendered).collect::<Vec<_>>().join("\n\n"),
         Failure::Argument { help, .. } => plain(&failure.to_string(), &[("try", help)]),
         Failure::Stopped { help, directory, .. } => {
-            let note = format!("the last good state is in {}", directory.display());
+            let note = format!("the last valid state is saved in {}", directory.display());
             plain(&failure.to_string(), &[("note", &note), ("try", help)])
         }
-        Failure::Case(CaseError::Refused { .. }) | Failure::Refused { .. } => {
-            plain(&failure.to_string(), &[])
-        }
+        Failure::Case(CaseError::Refused { .. }) | Failure::System { .. } => plain(&failure.to_string(), &[]),
     };
     console::say(text);
     // The event of a run that stopped has been printed already.

@@ -13,10 +13,10 @@ pub(crate) enum Exit {
     Missed = 1,
     /// The case or an argument is wrong.
     Wrong = 2,
-    /// The simulation stopped; its last good state is saved.
+    /// The simulation stopped; its last valid state is saved.
     Stopped = 3,
     /// Input/output or system error: disk, permission, memory.
-    Refused = 4,
+    System = 4,
     /// Stopped by Ctrl-C; `carom resume` continues it.
     Interrupted = 130,
 }
@@ -35,7 +35,7 @@ pub(crate) enum Failure {
     Stopped { reason: String, help: String, directory: PathBuf },
     /// Input/output or system error.
     #[error("{what}")]
-    Refused { what: String },
+    System { what: String },
 }
 
 impl Failure {
@@ -43,13 +43,13 @@ impl Failure {
         match self {
             Self::Case(CaseError::Wrong(_)) | Self::Argument { .. } => Exit::Wrong,
             Self::Stopped { .. } => Exit::Stopped,
-            Self::Case(CaseError::Refused { .. }) | Self::Refused { .. } => Exit::Refused,
+            Self::Case(CaseError::Refused { .. }) | Self::System { .. } => Exit::System,
         }
     }
 }
 
 impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Self {
-        Self::Refused { what: error.to_string() }
+        Self::System { what: error.to_string() }
     }
 }

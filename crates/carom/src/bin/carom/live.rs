@@ -1,10 +1,12 @@
 //! Progress of a simulation: a bar on standard error if it is a terminal, or events on standard
 //! output. Also Ctrl-C.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use carom_record::Manifest;
 use indicatif::ProgressBar;
 use serde::Serialize;
 
@@ -20,6 +22,10 @@ pub(crate) struct Live {
     json: bool,
     bar: ProgressBar,
     last: Option<Instant>,
+    /// The run, whose manifest has the warnings.
+    directory: PathBuf,
+    /// Number of warnings already shown; none before the first step.
+    warned: Option<usize>,
 }
 
 #[derive(Serialize)]
@@ -30,23 +36,30 @@ struct Event<'a> {
 }
 
 impl Live {
-    pub(crate) fn new(json: bool) -> Self {
-        Self { json, bar: console::bar(1), last: None }
+    pub(crate) fn new(json: bool, directory: &Path) -> Self {
+        Self { json, bar: console::bar(1), last: None, directory: directory.to_owned(), warned: None }
     }
 
-    /// Prints the warnings of a case before it runs.
-    pub(crate) fn warn(&self, warnings: &[String]) {
-        for message in warnings {
+    /// Shows the warnings of the run that have not been shown yet.
+    pub(crate) fn warn(&mut self) {
+        // Without a manifest nothing was run.
+        let warnings = Manifest::read(&self.directory).map_or_else(|_| Vec::new(), |m| m.warnings);
+        for warning in warnings.iter().skip(self.warned.unwrap_or(0)) {
             if self.json {
-                let _ = out::event(&serde_json::json!({ "event": "warning", "message": message }));
+                let event = serde_json::json!({ "event": "warning", "message": warning.to_string(), "warning": warning });
+                let _ = out::event(&event);
             } else if !console::is_quiet() {
-                console::say(format_args!("warning: {message}"));
+                self.bar.suspend(|| console::say(format_args!("warning: {warning}")));
             }
         }
+        self.warned = Some(warnings.len());
     }
 
     /// Shows a step. Not every step is an event, but the last one always is.
     pub(crate) fn show(&mut self, progress: &Progress) {
+        if self.warned.is_none() {
+            self.warn();
+        }
         self.bar.set_length(progress.steps as u64);
         self.bar.set_position(progress.step as u64);
         if !self.bar.is_hidden() {
@@ -73,10 +86,10 @@ impl Drop for Live {
     }
 }
 
-/// `t 0.3375  Δt 1.88e-3  Newton 4  contacts 7  created 1.2e-6  left 3 s`
+/// `t 0.3375  Δt 1.88e-3  Newton 4  contacts 7  energy created 1.2e-6  left 3 s`
 fn line(p: &Progress) -> String {
     format!(
-        "t {:.4e}  Δt {:.3e}  Newton {}  contacts {}  created {:.1e}  left {}",
+        "t {:.4e}  Δt {:.3e}  Newton {}  contacts {}  energy created {:.1e}  left {}",
         p.time,
         p.dt,
         p.newton,
@@ -118,7 +131,7 @@ pub(crate) fn stop_on_signal() -> Result<Arc<AtomicBool>, Failure> {
             std::process::exit(Exit::Interrupted as i32);
         }
     });
-    set.map_err(|e| Failure::Refused { what: format!("cannot install the handler of Ctrl-C: {e}") })?;
+    set.map_err(|e| Failure::System { what: format!("cannot install the handler of Ctrl-C: {e}") })?;
     Ok(stop)
 }
 
@@ -142,10 +155,11 @@ mod tests {
             wall: 1.0,
             eta: 130.0,
         };
-        let told = "t 3.3750e-1  Δt 1.875e-3  Newton 4  contacts 7  created 1.2e-6  left 2 min 10 s";
-        assert_eq!(line(&p), told);
-        let told = "step 180  t 3.375000e-1  Newton 4  1 rejected, 2 released";
-        assert_eq!(changes(&p).as_deref(), Some(told));
+        let expected =
+            "t 3.3750e-1  Δt 1.875e-3  Newton 4  contacts 7  energy created 1.2e-6  left 2 min 10 s";
+        assert_eq!(line(&p), expected);
+        let expected = "step 180  t 3.375000e-1  Newton 4  1 rejected, 2 released";
+        assert_eq!(changes(&p).as_deref(), Some(expected));
         assert_eq!([0.26, 61.0, 7300.0, f64::NAN].map(duration), ["0.3 s", "61 s", "2 h 1 min", "?"]);
     }
 }

@@ -28,10 +28,10 @@ Examples:
 Exit codes:
   0    success
   1    an expectation was missed (verify, or --strict)
-  2    the case or an argument is wrong
-  3    the simulation stopped; its last good state is saved
+  2    the case or an argument is invalid
+  3    the simulation stopped; its last valid state is saved
   4    input/output or system error
-  130  stopped by Ctrl-C; continue with carom resume")]
+  130  interrupted by Ctrl-C; continue with carom resume")]
 struct Arguments {
     #[command(flatten)]
     console: console::Options,

@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use carom::case::{Case, Document};
 use carom::recording::{self, RunError};
+use carom_record::Warning;
 use serde::Serialize;
 
 use crate::exit::Failure;
@@ -51,6 +52,7 @@ pub(crate) struct Outcome {
     pub(crate) interrupted: bool,
     pub(crate) steps: usize,
     pub(crate) time: f64,
+    pub(crate) time_unit: String,
     pub(crate) wall: f64,
     pub(crate) extremes: Vec<Extreme>,
     pub(crate) expectations: Vec<Expectation>,
@@ -94,6 +96,9 @@ pub(crate) struct Facts {
     pub(crate) transit_steps: f64,
     /// 2/ω_max, for explicit schemes.
     pub(crate) stable_step: Option<f64>,
+    /// Doubts about the case.
+    #[serde(skip)]
+    pub(crate) warnings: Vec<Warning>,
 }
 
 /// A body's mesh.
@@ -144,7 +149,7 @@ pub(crate) fn facts(case: &Case, document: &Document) -> Result<Facts, Failure> 
 pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
     match carom_report::report(directory) {
         Ok(made) => Ok(made.page),
-        Err(error) if error.exit_code() == 4 => Err(Failure::Refused { what: error.to_string() }),
+        Err(error) if error.exit_code() == 4 => Err(Failure::System { what: error.to_string() }),
         Err(error) => Err(Failure::Argument {
             what: error.to_string(),
             help: "run the case again, or continue with carom resume".into(),
@@ -178,7 +183,7 @@ fn failure(error: RunError, document: Option<&Document>) -> Failure {
                 help: problems.first().map_or(String::new(), |p| p.help.clone()),
             },
         },
-        RunError::Record(error) if error.exit_code() == 4 => Failure::Refused { what: error.to_string() },
+        RunError::Record(error) if error.exit_code() == 4 => Failure::System { what: error.to_string() },
         error => Failure::Argument { what: error.to_string(), help: "run the case again".into() },
     }
 }
@@ -201,6 +206,12 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
         interrupted: done.end == recording::End::Interrupted,
         steps: done.steps as usize,
         time: done.time,
+        time_unit: run
+            .manifest
+            .columns
+            .iter()
+            .find(|c| c.name == "time")
+            .map_or_else(String::new, |c| c.unit.clone()),
         wall: done.wall,
         extremes: extremes(&run),
         expectations: expectations
@@ -221,8 +232,9 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
 /// Wall seconds by phase in the order of a step, then their total and the processor time.
 fn profile(manifest: &carom_record::Manifest) -> Vec<(String, f64)> {
     let phases = manifest.phases().into_iter().map(|(name, _, seconds)| (name.to_owned(), seconds));
-    let sums =
-        ["total", "cpu"].into_iter().filter_map(|name| Some((name.to_owned(), *manifest.timings.get(name)?)));
+    let sums = [("total", "total"), ("processor", "cpu")]
+        .into_iter()
+        .filter_map(|(word, name)| Some((word.to_owned(), *manifest.timings.get(name)?)));
     phases.chain(sums).collect()
 }
 
@@ -236,9 +248,13 @@ fn page(done: &recording::Outcome, options: Options) -> Result<Option<PathBuf>, 
 fn stopped_help(reason: &carom::Stopped) -> String {
     match reason {
         carom::Stopped::EnergyGuard { .. } => {
-            "reduce the step; use a scheme that dissipates (carom explain); keep persistency = \"project\"; or switch the guard off to inspect the run (time.energy_guard = false)"
+            "keep persistency = \"project\"; use a scheme that dissipates (carom explain); change the step (contact creates energy where nodes begin to touch, so that a \
+             longer step may succeed where a shorter one does not); or switch the guard off to inspect the run (time.energy_guard = false)"
         }
-        carom::Stopped::NoStep { .. } => "log.jsonl lists what was tried; a finer mesh, a smaller step or a scheme with more damping may help",
+        carom::Stopped::NoStep { .. } => {
+            "smaller steps from this state were tried (log.jsonl), so the state itself is at fault: use a scheme with more damping (carom explain), \
+             persistency = \"project\" for contacts, a finer mesh, or another step from the start; a longer one may succeed where a shorter one does not"
+        }
     }
     .to_owned()
 }
@@ -288,12 +304,7 @@ fn model_facts(case: &Case) -> Result<Facts, carom::case::Problems> {
         if let Some(m) = case.materials.iter().find(|m| m.name == spec.material)
             && m.density > 0.0
         {
-            // In plane stress Λ is replaced by 2Λμ/(Λ + 2μ).
-            let lambda = match case.plane {
-                carom::case::Plane::Strain => m.lambda,
-                carom::case::Plane::Stress => 2.0 * m.lambda * m.mu / (m.lambda + 2.0 * m.mu),
-            };
-            let speed = ((lambda + 2.0 * m.mu) / m.density).sqrt();
+            let speed = carom::wave_speed(case, m);
             let least = |i: usize| {
                 let at = mesh.nodes.iter().map(|x| x[i]);
                 at.clone().fold(f64::NEG_INFINITY, f64::max) - at.fold(f64::INFINITY, f64::min)
@@ -310,5 +321,5 @@ fn model_facts(case: &Case) -> Result<Facts, carom::case::Problems> {
             dofs: free,
         });
     }
-    Ok(Facts { bodies, transit_steps: transit, stable_step })
+    Ok(Facts { bodies, transit_steps: transit, stable_step, warnings: carom::warnings(case, &model) })
 }

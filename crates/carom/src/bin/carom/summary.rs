@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::exit::{Exit, Failure};
 use crate::live::duration;
-use crate::simulation::{Expectation, Outcome};
+use crate::simulation::{Expectation, Extreme, Outcome};
 use crate::{console, out};
 
 #[derive(Serialize)]
@@ -54,19 +54,20 @@ fn expectation(e: &Expectation) -> String {
 
 fn text(outcome: &Outcome) -> String {
     let directory = outcome.directory.display();
-    let wall = if outcome.wall > 0.0 { format!(" in {}", duration(outcome.wall)) } else { String::new() };
-    let mut lines = vec![format!("{} steps to t = {}{wall}", outcome.steps, short(outcome.time))];
-    let width = outcome.extremes.iter().map(|e| e.column.chars().count()).max().unwrap_or(0);
+    let wall = if outcome.wall > 0.0 {
+        format!(" in {} of wall time", duration(outcome.wall))
+    } else {
+        String::new()
+    };
+    let time = |t| format!("{} {}", short(t), outcome.time_unit).trim_end().to_owned();
+    let mut lines = vec![format!("{} steps to t = {}{wall}", outcome.steps, time(outcome.time))];
+    let widest =
+        |of: fn(&Extreme) -> &str| outcome.extremes.iter().map(|e| of(e).chars().count()).max().unwrap_or(0);
+    let (width, unit) = (widest(|e| &e.column), widest(|e| &e.unit));
     for e in &outcome.extremes {
-        lines.push(format!(
-            "  {:width$}  min {:>12} at {:<9}  max {:>12} at {:<9}  {}",
-            e.column,
-            short(e.min),
-            short(e.min_time),
-            short(e.max),
-            short(e.max_time),
-            e.unit
-        ));
+        let value = |x, t| format!("{:>11} {:unit$} at {:<11}", short(x), e.unit, time(t));
+        let (min, max) = (value(e.min, e.min_time), value(e.max, e.max_time));
+        lines.push(format!("  {:width$}  min {min}  max {max}", e.column).trim_end().to_owned());
     }
     lines.extend(outcome.expectations.iter().map(|e| format!("  {}", expectation(e))));
     for (phase, seconds) in &outcome.profile {
@@ -97,7 +98,6 @@ pub(crate) fn short(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulation::Extreme;
 
     #[test]
     fn summary_names_directory_extremes_and_expectations() {
@@ -106,6 +106,7 @@ mod tests {
             interrupted: false,
             steps: 400,
             time: 0.75,
+            time_unit: "s".into(),
             wall: 3.21,
             extremes: vec![Extreme {
                 column: "A.uy".into(),
@@ -130,8 +131,8 @@ mod tests {
         assert_eq!(
             summary.lines().collect::<Vec<_>>(),
             [
-                "400 steps to t = 0.75 in 3.2 s",
-                "  A.uy  min     -0.78268 at 0.43125    max            0 at 0          m",
+                "400 steps to t = 0.75 s in 3.2 s of wall time",
+                "  A.uy  min    -0.78268 m at 0.43125 s    max           0 m at 0 s",
                 "  min A.uy: -0.78268, as expected (-0.7827 ± 0.004)",
                 "runs/impact-2/report.html",
             ]

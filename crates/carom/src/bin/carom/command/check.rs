@@ -39,7 +39,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let (case, document) = super::case(&arguments.case, &arguments.sets)?;
     let facts = simulation::facts(&case, &document)?;
     if arguments.json {
-        let event = serde_json::json!({ "event": "check", "case": case, "model": facts, "warnings": case.warnings() });
+        let event =
+            serde_json::json!({ "event": "check", "case": case, "model": facts, "warnings": facts.warnings });
         out::event(&event)?;
     } else if !console::is_quiet() {
         out::line(&table(&case, &facts))?;
@@ -52,7 +53,7 @@ fn study(arguments: &Arguments) -> Result<Exit, Failure> {
     if !arguments.sets.is_empty() {
         return Err(Failure::Argument {
             what: "--set cannot be used with a study".into(),
-            help: "put changes of all arms into `set` of the study, and changes of one arm into `set` of its [[arm]]"
+            help: "write changes of all arms in the `set` of the study, and changes of one arm in the `set` of its [[arm]]"
                 .into(),
         });
     }
@@ -74,6 +75,10 @@ fn study(arguments: &Arguments) -> Result<Exit, Failure> {
             short(time.step)
         ));
     }
+    if let Some(ensemble) = &manifest.ensemble {
+        let runs = arms.len() + manifest.members.len();
+        lines.push(format!("  ensemble {}: {runs} runs in all", ensemble.words()));
+    }
     if !console::is_quiet() {
         out::line(&lines.join("\n"))?;
     }
@@ -94,7 +99,7 @@ fn table(case: &Case, facts: &Facts) -> String {
         }
     }
     for support in &case.supports {
-        let fixed: String = support.fix.iter().map(|axis| ["x", "y"][*axis]).collect();
+        let fixed = support.fix.iter().map(|axis| ["x", "y"][*axis]).collect::<Vec<_>>().join(", ");
         let moved = support.moves.iter().map(|(axis, u)| format!("moved along {} by {u}", ["x", "y"][*axis]));
         let fixed = (!fixed.is_empty()).then(|| format!("fixed in {fixed}"));
         lines.push(format!(
@@ -115,13 +120,13 @@ fn table(case: &Case, facts: &Facts) -> String {
         lines.push(format!("  contact  {:12} {} against {primary}", contact.name, contact.secondary));
     }
     for probe in &case.probes {
-        lines.push(format!("  probe    {:12} at {:?} of {}", probe.name, probe.at, probe.body));
+        lines.push(format!("  probe    {:12} at {:?} in {}", probe.name, probe.at, probe.body));
     }
     lines.push(format!("  scheme   {}", scheme_text(&case.time.scheme)));
     let steps = case.time.steps();
     lines.push(format!("  time     {steps} steps of {} to {}", short(case.time.step), short(case.time.end)));
     let transit = short(facts.transit_steps);
-    lines.push(format!("           a pressure wave crosses the smallest body in {transit} steps"));
+    lines.push(format!("           a pressure wave takes {transit} steps to cross the smallest body"));
     if let Some(stable) = facts.stable_step {
         lines.push(format!(
             "           the longest stable step is {}; at most {} of it is accepted",
@@ -129,7 +134,7 @@ fn table(case: &Case, facts: &Facts) -> String {
             SAFETY
         ));
     }
-    lines.extend(case.warnings().iter().map(|warning| format!("  warning  {warning}")));
+    lines.extend(facts.warnings.iter().map(|warning| format!("  warning  {warning}")));
     lines.join("\n")
 }
 

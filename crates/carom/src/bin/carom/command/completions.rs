@@ -6,7 +6,7 @@ use clap_complete::Shell;
 use crate::exit::{Exit, Failure};
 use crate::out;
 
-/// Print a shell's completion script
+/// Print a completion script for a shell
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -19,12 +19,12 @@ Examples:
   carom explain hht alpha=0.05 forces=average-state
   carom explain moreau-jean theta=0.5")]
 pub(crate) struct Arguments {
-    /// Kind, as in a case file; without it, a table of all kinds
+    /// Kind of scheme, as in a case file; without it, all kinds are listed
     scheme: Option<String>,
-    /// Its parameters
+    /// Parameters of the scheme
     #[arg(value_name = "KEY=VALUE")]
     parameters: Vec<String>,
-    /// Print one JSON object instead
+    /// Print one JSON object instead of text
     #[arg(long)]
     pub(crate) json: bool,
 }

@@ -90,12 +90,12 @@ fn vtu(case: &Case, meshes: &[Mesh]) -> Result<Vec<u8>, Failure> {
             connectivity: mesh.cells.iter().map(|n| first + n).collect(),
         });
     }
-    fields.to_vtu(0.0).map_err(|e| Failure::Refused { what: e.to_string() })
+    fields.to_vtu(0.0).map_err(|e| Failure::System { what: e.to_string() })
 }
 
 /// Writes a new file atomically; an existing one is not overwritten.
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let failed = |e: std::io::Error| Failure::Refused { what: format!("{}: {e}", path.display()) };
+    let failed = |e: std::io::Error| Failure::System { what: format!("{}: {e}", path.display()) };
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     // The same permissions as for any other file of the user.

@@ -98,5 +98,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 fn failed(verb: &str, path: &Path, error: &std::io::Error) -> Failure {
-    Failure::Refused { what: format!("cannot {verb} {}: {error}", path.display()) }
+    Failure::System { what: format!("cannot {verb} {}: {error}", path.display()) }
 }

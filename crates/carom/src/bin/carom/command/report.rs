@@ -26,14 +26,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// Checks that a directory is a run directory.
+/// Checks that a directory is that of a run.
 pub(super) fn run_directory(directory: &Path) -> Result<(), Failure> {
     if directory.join("manifest.json").is_file() {
         return Ok(());
     }
-    let what = format!("{} is not a run directory: it has no manifest.json", directory.display());
+    let path = directory.display();
+    let what = if directory.exists() {
+        format!("{path} is not the directory of a run or a study: it has no manifest.json")
+    } else {
+        format!("there is no directory {path}")
+    };
     Err(Failure::Argument {
         what,
-        help: "give a directory that `carom run` created, for example runs/impact".to_owned(),
+        help: "give a directory that `carom run` or `carom study` created, for example runs/impact"
+            .to_owned(),
     })
 }

@@ -21,20 +21,20 @@ Examples:
 pub(crate) struct Arguments {
     /// The directory of the run or study
     directory: PathBuf,
-    /// Threads of a run; results are bitwise identical for any number [default: one per core]
+    /// Number of threads of a run; results are bitwise identical for any number [default: one per core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZero<usize>>,
     /// Number of concurrent arms of a study; results are bitwise identical for any number
     /// [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
-    /// Write no figures and no page
+    /// Do not write figures and report page
     #[arg(long)]
     no_report: bool,
     /// Print a timing profile of a run
     #[arg(long)]
     profile: bool,
-    /// Exit with 1 if an expectation of a run is missed
+    /// Exit with code 1 if an expectation of a run is missed
     #[arg(long)]
     strict: bool,
     /// Print one JSON object per event on standard output, and nothing else
@@ -50,7 +50,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             (arguments.strict, "--strict"),
         ];
         if let Some((_, option)) = of_a_run.iter().find(|(given, _)| *given) {
-            let what = format!("{option} is for a run, and {} is a study", arguments.directory.display());
+            let what =
+                format!("{option} is an option for runs, but {} is a study", arguments.directory.display());
             let help = "each arm of a study uses one thread, and --jobs sets the number of concurrent arms; \
                         the timings of an arm are in its manifest.json";
             return Err(Failure::Argument { what, help: help.to_owned() });
@@ -63,7 +64,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         );
     }
     if arguments.jobs.is_some() {
-        let what = format!("--jobs is for a study, and {} is not a study", arguments.directory.display());
+        let what = format!("--jobs is an option for studies, but {} is a run", arguments.directory.display());
         return Err(Failure::Argument { what, help: "use --threads for a run".to_owned() });
     }
     super::report::run_directory(&arguments.directory)?;
@@ -76,8 +77,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if arguments.json {
         out::event(&json!({ "event": "resume", "directory": arguments.directory }))?;
     }
-    let mut live = Live::new(arguments.json);
+    let mut live = Live::new(arguments.json, &arguments.directory);
     let done = simulation::resume(&arguments.directory, options, &mut |p| live.show(p), &stop);
+    if done.is_ok() {
+        live.warn();
+    }
     drop(live);
     summary::print(done, arguments.json, arguments.strict)
 }

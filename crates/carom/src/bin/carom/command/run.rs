@@ -29,16 +29,16 @@ pub(crate) struct Arguments {
     /// body.cylinder.element=T6
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
-    /// Threads; results are bitwise identical for any number [default: one per core]
+    /// Number of threads; results are bitwise identical for any number [default: one per core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZero<usize>>,
-    /// Write no figures and no page
+    /// Do not write figures and report page
     #[arg(long)]
     no_report: bool,
     /// Print a timing profile
     #[arg(long)]
     profile: bool,
-    /// Exit with 1 if an expectation is missed
+    /// Exit with code 1 if an expectation is missed
     #[arg(long)]
     strict: bool,
     /// Print one JSON object per event on standard output, and nothing else
@@ -61,9 +61,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             &json!({ "event": "start", "title": case.title, "directory": directory, "steps": steps }),
         )?;
     }
-    let mut live = Live::new(arguments.json);
-    live.warn(&case.warnings());
+    let mut live = Live::new(arguments.json, &directory);
     let done = simulation::run(&case, &document, &directory, options, &mut |p| live.show(p), &stop);
+    if matches!(&done, Ok(_) | Err(Failure::Stopped { .. })) {
+        live.warn();
+    }
     drop(live);
     summary::print(done, arguments.json, arguments.strict)
 }

@@ -6,10 +6,12 @@ use crate::out;
 /// Print the JSON Schema of case files or study files, for editors
 #[derive(clap::Args)]
 #[command(after_help = "\
-Example:
+Examples:
   carom schema > carom.schema.json
-  and `#:schema ./carom.schema.json` as the first line of a case
-  carom schema --study > study.schema.json")]
+  carom schema --study > study.schema.json
+
+An editor uses the schema if the first line of a case is
+  #:schema ./carom.schema.json")]
 pub(crate) struct Arguments {
     /// Print the schema of study files
     #[arg(long)]

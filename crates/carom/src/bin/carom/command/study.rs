@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
     /// [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
-    /// Write no figures and no page
+    /// Do not write figures and report page
     #[arg(long)]
     no_report: bool,
     /// Print one JSON object per event on standard output, and nothing else
@@ -82,7 +82,7 @@ pub(crate) fn resume(
 /// Rebuilds tables, figures and page of a study, and the pages of its arms.
 pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
     let made = |error: carom_report::ReportError| match error.exit_code() {
-        4 => Failure::Refused { what: error.to_string() },
+        4 => Failure::System { what: error.to_string() },
         _ => Failure::Argument {
             what: error.to_string(),
             help: "continue with carom resume, or run the study again".into(),
@@ -105,9 +105,9 @@ pub(super) fn jobs(requested: Option<NonZero<usize>>) -> usize {
 
 pub(super) fn failure(error: StudyError) -> Failure {
     match error {
-        StudyError::Record(ref e) if e.exit_code() == 4 => Failure::Refused { what: error.to_string() },
+        StudyError::Record(ref e) if e.exit_code() == 4 => Failure::System { what: error.to_string() },
         StudyError::Arm { source: carom::recording::RunError::Record(ref e), .. } if e.exit_code() == 4 => {
-            Failure::Refused { what: error.to_string() }
+            Failure::System { what: error.to_string() }
         }
         error => Failure::Argument {
             what: error.to_string(),
@@ -131,7 +131,10 @@ fn conclude(
         let claims = study
             .verdicts
             .iter()
-            .map(|v| json!({ "claim": v.claim.text, "left": v.left, "right": v.right, "verdict": v.word() }));
+            .map(|v| {
+                let held = v.held.as_ref().map(|held| json!({ "held": held.held, "of": held.of }));
+                json!({ "claim": v.claim.text, "left": v.left, "right": v.right, "verdict": v.word(), "ensemble": held })
+            });
         let claims: Vec<_> = claims.collect();
         let event = if outcome.interrupted { "interrupted" } else { "done" };
         out::event(&json!({ "event": event, "directory": directory, "report": page, "claims": claims }))?;
@@ -149,12 +152,16 @@ fn text(study: &Study) -> String {
     let width = study.rows.iter().map(|r| r.name.chars().count()).max().unwrap_or(0);
     let heads = SHOWN.iter().fold(String::new(), |row, name| row + &format!("  {name:>17}"));
     let mut lines = vec![format!("{:width$}{heads}", "")];
-    for row in &study.rows {
+    for (arm, row) in study.rows.iter().enumerate() {
         let cells: String = match row.status {
             Some(Status::Finished) => SHOWN.iter().fold(String::new(), |line, name| {
                 line + &format!("  {:>17}", row.value(name).map_or("–".into(), short))
             }),
-            Some(Status::Failed) => format!("  failed: {}", row.reason.as_deref().unwrap_or("?")),
+            Some(Status::Failed) => {
+                let alike =
+                    study.finished_alike(arm).map_or_else(String::new, |others| format!(" ({others})"));
+                format!("  failed: {}{alike}", row.reason.as_deref().unwrap_or("?"))
+            }
             Some(_) => "  not finished".to_owned(),
             None => "  not started".to_owned(),
         };
@@ -162,9 +169,16 @@ fn text(study: &Study) -> String {
     }
     for v in &study.verdicts {
         let value = |x: Option<f64>| x.map_or("–".into(), short);
+        let word = v.held.as_ref().map_or_else(
+            || format!("{:9}", v.word()),
+            |held| format!("held in {} of {}", held.held, held.of),
+        );
+        let ratio = v.held.as_ref().and_then(|held| held.ratio.as_ref()).map_or_else(String::new, |ratio| {
+            let (low, high) = ratio.range();
+            format!("; ratio {}, {} to {}", short(ratio.median()), short(low), short(high))
+        });
         lines.push(format!(
-            "{:9}  {}  ({} against {})",
-            v.word(),
+            "{word}  {}  ({} against {}{ratio})",
             v.claim.text,
             value(v.left),
             value(v.right)
@@ -184,12 +198,14 @@ fn text(study: &Study) -> String {
 /// The recommendation of a study with a goal, as on its page.
 fn recommendation(study: &Study, ranking: &Ranking) -> Vec<String> {
     let goal = ranking.goal.word();
-    let Some(verdict) = &ranking.verdict else {
-        let why = match &ranking.measure {
-            Err(why) => why.clone(),
-            Ok(measure) => format!("no arm has a value for: {}", measure.words),
-        };
-        return vec![String::new(), format!("no recommendation for the goal \"{goal}\": {why}")];
+    let verdict = match &ranking.verdict {
+        Ok(verdict) => verdict,
+        Err(reasons) => {
+            let mut lines = vec![String::new(), format!("no recommendation for the goal \"{goal}\":")];
+            let why = ranking.measure.as_ref().err();
+            lines.extend(reasons.iter().chain(why).map(|reason| format!("  {reason}")));
+            return lines;
+        }
     };
     let name = &study.manifest.arms[verdict.arm].name;
     let mut lines = vec![String::new(), format!("recommended for the goal \"{goal}\": {name}")];
@@ -219,13 +235,13 @@ struct Seen {
 impl Seen {
     fn new(manifest: &StudyManifest, json: bool) -> Self {
         Self {
-            names: manifest.arms.iter().map(|a| a.name.clone()).collect(),
-            steps: manifest.arms.iter().map(|a| a.steps).collect(),
-            done: vec![0; manifest.arms.len()],
-            left: vec![None; manifest.arms.len()],
+            names: manifest.runs().map(|a| a.name.clone()).collect(),
+            steps: manifest.runs().map(|a| a.steps).collect(),
+            done: vec![0; manifest.runs().count()],
+            left: vec![None; manifest.runs().count()],
             ended: BTreeSet::new(),
             json,
-            bar: console::bar(manifest.arms.iter().map(|a| a.steps).sum()),
+            bar: console::bar(manifest.runs().map(|a| a.steps).sum()),
             last: None,
         }
     }
@@ -267,7 +283,7 @@ impl Seen {
     fn line(&self) -> String {
         let left = self.left.iter().flatten().copied().reduce(f64::max);
         let left = left.map_or_else(String::new, |left| format!("  longest left {}", duration(left)));
-        format!("{} of {} arms{left}", self.ended.len(), self.names.len())
+        format!("{} of {} runs{left}", self.ended.len(), self.names.len())
     }
 }
 

@@ -30,7 +30,7 @@ Examples:
   carom verify --fast --csv
   carom verify --verbose | less -S
 
-Exit codes: 0 all met · 1 an expectation was missed · 2 a case is wrong · 3 a run stopped unexpectedly")]
+Exit codes: 0 all met · 1 an expectation was missed · 2 a case is invalid · 3 a run stopped unexpectedly")]
 #[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
     /// Cases, studies, or folders of them [default: cases/, or the fast cases built into the program]
@@ -75,7 +75,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     let suite = Suite::read(&paths, fast)?;
     if suite.items.is_empty() {
-        let help = "name a case or study with [[expect]], or a folder of them".to_owned();
+        let help = "give a case or a study that has an [[expect]], or a folder that contains one".to_owned();
         return Err(Failure::Argument { what: "no expectations found".to_owned(), help });
     }
     std::fs::create_dir_all(&directory)?;
@@ -90,7 +90,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         if arguments.json {
             out::event(&json!({ "event": "interrupted", "directory": directory }))?;
         } else if !console::is_quiet() && !arguments.csv {
-            out::line("stopped by Ctrl-C: nothing was judged")?;
+            out::line("interrupted by Ctrl-C: no expectation was evaluated")?;
         }
         return Ok(Exit::Interrupted);
     };
@@ -117,7 +117,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 fn unwritten(error: &carom_report::ReportError) -> Failure {
-    Failure::Refused { what: error.to_string() }
+    Failure::System { what: error.to_string() }
 }
 
 /// Figures and pages of every run.
@@ -173,15 +173,14 @@ fn summary(v: &Verification, all: bool) -> String {
         counts[1] += 1;
         counts[2] += usize::from(!row.verdict.pass);
     }
-    let counted = |set_ups: usize, values: usize, missed: usize| {
-        format!("{set_ups:4} set-ups {values:6} values {missed:4} missed")
-    };
     for (family, [set_ups, values, missed]) in &families {
-        lines.push(format!("  {family:14}{}", counted(*set_ups, *values, *missed)));
+        let s = if *set_ups == 1 { " " } else { "s" };
+        lines.push(format!("  {family:14}{set_ups:4} set-up{s} {values:6} values {missed:4} missed"));
     }
     lines.push(format!(
-        "{} set-ups, {} with dynamic contact; {} expected values, {} missed; {}",
+        "{} set-up{}, {} with dynamic contact; {} expected values, {} missed; {}",
         v.set_ups.len(),
+        if v.set_ups.len() == 1 { "" } else { "s" },
         v.with_contact(),
         v.rows().count(),
         v.missed(),

@@ -14,32 +14,33 @@ pub(super) fn unconstrained(parts: &[BodyInstance], free: &[Mode], contacts: &[C
         if let Some(mode) = free.iter().find(|m| m.part == place).filter(|_| !contacts.iter().any(involves)) {
             problems.push(Problem::new(
                 format!("body[{place}]"),
-                format!("body \"{}\" is free to {}: it has no equilibrium", part.name, mode.motion()),
-                "the scheme \"static\" has no inertia, and neither a support nor a contact can hold the body",
-                "add a [[support]], or take a scheme with inertia",
+                format!("body \"{}\" is free to {} and has no equilibrium", part.name, mode.motion()),
+                "the scheme \"static\" has no inertia, and neither supports nor contacts constrain this motion",
+                "add a [[support]], or use a scheme with inertia",
             ));
         }
     }
     problems
 }
 
-/// The balance of a massless body holds at s + 1 alone; rules that act within the step do not apply
-/// to it.
+/// The balance of a massless body is enforced at s + 1 only; rules that act within the step do not
+/// apply to it.
 pub(super) fn massless(case: &Case, parts: &[BodyInstance], massless: &[bool]) -> Vec<Problem> {
     let mut problems = Vec::new();
     let light = |part: &BodyInstance| part.nodes().any(|node| massless[node * case.dimension]);
     let Some(part) = parts.iter().find(|p| light(p)) else { return problems };
     let what = |rule: &str| {
         let which = if part.is_massless() { "has no mass" } else { "has nodes without mass" };
-        format!("body \"{}\" {which}, and {rule} needs it", part.name)
+        format!("body \"{}\" {which}, but {rule} requires mass at every node", part.name)
     };
-    let why = "its balance holds at the end of the step, not at the averaged state";
+    let why =
+        "the balance of nodes without mass is enforced at the end of the step, not at the averaged state";
     if case.time.scheme.forces == carom_time::ForceRule::AverageState {
-        let help = "forces = \"average-forces\", or a small density";
+        let help = "use forces = \"average-forces\", or give a small density";
         problems.push(Problem::new("time.scheme.forces", what("forces = \"average-state\""), why, help));
     }
     if case.time.scheme.kind == "energy-momentum" {
-        let help = "a scheme that is not midpoint, such as bathe, or a small density";
+        let help = "use a scheme other than the midpoint rule, such as bathe, or give a small density";
         problems.push(Problem::new("time.scheme.kind", what("kind = \"energy-momentum\""), why, help));
     }
     let involves = |name: &str| {
@@ -47,14 +48,15 @@ pub(super) fn massless(case: &Case, parts: &[BodyInstance], massless: &[bool]) -
     };
     for (k, contact) in case.contacts.iter().enumerate() {
         if contact.law == Some(ContactLaw::Predictor) {
-            let why = "the predictor is projected with the mass as weight";
-            let help = "law = \"position\", which needs no cure where contact nodes have no mass";
+            let why = "the predictor is projected with the mass matrix";
+            let help = "use law = \"position\", which suffices where contact nodes have no mass";
             problems.push(Problem::new(format!("contact[{k}].law"), what("law = \"predictor\""), why, help));
         }
         let primary = matches!(&contact.primary, PrimarySpec::Side(name) if involves(name));
         if contact.force == ForceTime::End && (primary || involves(&contact.secondary)) {
-            let why = "the share of the contact force on a massless side is that of its internal forces";
-            let help = "force = \"alpha_f\", or a small density";
+            let why =
+                "on a massless side, contact and internal forces must act at the same instant of the step";
+            let help = "use force = \"alpha_f\", or give a small density";
             problems.push(Problem::new(format!("contact[{k}].force"), what("force = \"end\""), why, help));
         }
     }

@@ -1,19 +1,19 @@
-//! Which points a body covers, for many points at one configuration: O(log cells) each, after
-//! O(cells log cells).
+//! Tests whether points lie in a body in one configuration: O(log cells) per point, after O(cells
+//! log cells).
 
 use crate::body::Body;
 use crate::bounds::Bounds;
 use crate::tree::Tree;
 
 /// A body in one configuration, with a hierarchy of its cells' boxes.
-pub struct Cover<'a> {
+pub struct PointLocator<'a> {
     body: &'a dyn Body,
     y: &'a [f64],
     tree: Tree,
 }
 
-impl<'a> Cover<'a> {
-    /// The cover of a body whose nodes are at `y`.
+impl<'a> PointLocator<'a> {
+    /// For a body whose nodes are at `y`.
     pub fn new(body: &'a dyn Body, y: &'a [f64]) -> Self {
         Self { body, y, tree: Tree::new(body.mesh().cell_count(), |cell| body.cell_bounds(cell, y)) }
     }

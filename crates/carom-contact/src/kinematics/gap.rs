@@ -1,0 +1,87 @@
+//! Gap of a node over a facet at ξ, with its derivatives. With d = y_N − y_S(ξ), t = y_S', J = |t|,
+//! n = t rotated right / J:
+//!
+//! ```text
+//! g = d·n        ∇g = N_n = (n; −ψᵅ n),        ψᵅ = φᵅ + τ φ'ᵅ
+//! ∇²g = −(N_t T_nᵀ + T_n N_tᵀ)/a − κ/(a J²) N_t N_tᵀ − (g/a) T_n T_nᵀ,    N_t = (t; −ψᵅ t),  T_n = (0; φ'ᵅ n)
+//! ```
+//!
+//! At the closest point τ = 0, κ = n·y_S'' and a = J² − gκ: ξ depends on the positions (theory.md
+//! §1). With ξ fixed, as printed in the paper, the node slides on the tangent line at ξ: κ = 0,
+//! a = J², and τ = d·t/J² is the slip. Then −τ T_n is the extra term d·∂n/∂yᵅ of eqs. (9) and (11);
+//! it moves the force to the point of the line below the node, so that moments are balanced.
+//!
+//! For a point n = ±1, the outward direction, and ∇²g = 0.
+
+use carom_algebra::{Mat, Vector};
+use carom_solid::LineShape;
+
+use super::projection::{Facet, FacetPoint};
+use crate::places::Places;
+
+/// A node over a facet at ξ.
+pub(crate) struct Gap {
+    at: FacetPoint,
+    shape: LineShape,
+    /// The gap g.
+    pub(crate) distance: f64,
+    tau: f64,
+    kappa: f64,
+    /// a; a unique closest point has a > 0.
+    pub(crate) a: f64,
+}
+
+impl Gap {
+    /// At the closest point ξ, which follows the positions.
+    pub(crate) fn closest(facet: Facet, y: Places, from: Vector<2>, xi: f64) -> Self {
+        let at = facet.at(y, xi);
+        let (gap, kappa) = ((from - at.position).dot(&at.normal), at.normal.dot(&at.second));
+        let a = at.measure * at.measure - gap * kappa;
+        Self { at, shape: facet.shape.at(xi), distance: gap, tau: 0.0, kappa, a }
+    }
+
+    /// At a fixed ξ.
+    pub(crate) fn fixed(facet: Facet, y: Places, from: Vector<2>, xi: f64) -> Self {
+        let at = facet.at(y, xi);
+        let (from_point, a) = (from - at.position, at.measure * at.measure);
+        let tau = from_point.dot(&at.tangent) / a;
+        Self { at, shape: facet.shape.at(xi), distance: from_point.dot(&at.normal), tau, kappa: 0.0, a }
+    }
+
+    /// ψᵅ of a node of the facet.
+    fn weight(&self, node: usize) -> f64 {
+        self.shape.values[node] + self.tau * self.shape.first[node]
+    }
+
+    /// ∂g/∂y of the node and of `count` nodes of the facet.
+    pub(crate) fn gradient(&self, count: usize) -> impl Iterator<Item = Vector<2>> {
+        let of_facet = (0..count).map(|k| self.at.normal * -self.weight(k));
+        std::iter::once(self.at.normal).chain(of_facet)
+    }
+
+    /// ∂²g/∂y∂y of the node and of `count` nodes of the facet, `d` components each: overwrites the
+    /// first ((1 + `count`) `d`)² entries, row-major.
+    pub(crate) fn curvature_into(&self, count: usize, d: usize, curvature: &mut [f64]) {
+        let Self {
+            at: FacetPoint { tangent: t, normal: n, measure: j, .. }, distance: gap, kappa, a, ..
+        } = *self;
+        let count = 1 + count;
+        // Every vector of the stencil is a scalar per node times n or t.
+        let phi = |p: usize| if p == 0 { 1.0 } else { -self.weight(p - 1) };
+        let slope = |p: usize| if p == 0 { 0.0 } else { self.shape.first[p - 1] };
+        let (nn, tt, tn, nt) = (n.outer(&n), t.outer(&t), t.outer(&n), n.outer(&t));
+        for p in 0..count {
+            for q in 0..count {
+                let mut block: Mat<2> = tn * (-phi(p) * slope(q) / a);
+                block += nt * (-slope(p) * phi(q) / a);
+                block += tt * (-kappa / (a * j * j) * phi(p) * phi(q));
+                block += nn * (-gap / a * slope(p) * slope(q));
+                for i in 0..d {
+                    for k in 0..d {
+                        curvature[(p * d + i) * count * d + q * d + k] = block.0[i][k];
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Metrics after the contact force and the columns of probes have been averaged over a short time,
+//! 1/16 of the first contact episode. Extremes, total variation and roughness of a smooth signal
+//! hardly change by that. Behind a jump, such as a wave front, a computed signal overshoots by a
+//! fraction of the jump on every mesh (Gibbs), so that these metrics converge under refinement, but to
+//! wrong values; averaging removes most of the overshoot. What it changes is therefore a part of their
+//! uncertainty.
+
+use super::definition::Metric;
+use super::episode::first_episode;
+use super::evaluated::{all, probe_columns};
+use super::samples::at;
+use super::table::COLUMNS;
+use crate::{History, Run};
+
+/// Windows per first contact episode.
+const WINDOWS: f64 = 16.0;
+
+/// Metrics of the history that depend on single rows.
+const OF_FORCE: [&str; 4] = ["peak_force", "force_roughness", "force_variation", "force_high_frequency"];
+/// The same of a column.
+const OF_COLUMN: [&str; 5] = ["min", "max", "roughness", "variation", "high_frequency"];
+
+/// The metrics that depend on single rows, of the averaged record; empty without a contact episode.
+pub fn of_averages(run: &Run) -> Vec<Metric> {
+    let history = &run.history;
+    let end = first_episode(history).and_then(|e| Some((e.start, e.end?)));
+    let Some((start, end)) = end else { return Vec::new() };
+    let times = history.times();
+    let window = (times[end] - times[start]) / WINDOWS;
+    let probes = probe_columns(run);
+    let averaged =
+        averaged(history, window, |name| name.starts_with("contact_force_") || probes.contains(&name));
+    let mut metrics = all(&averaged);
+    metrics.retain(|metric| OF_FORCE.contains(&metric.name.as_ref()));
+    for column in probes {
+        for (definition, value) in COLUMNS.iter().filter(|(d, _)| OF_COLUMN.contains(&d.name)) {
+            metrics.push(Metric {
+                name: format!("{column}:{}", definition.name).into(),
+                value: value(&averaged, column),
+                unit: String::new(),
+                definition: definition.meaning,
+            });
+        }
+    }
+    metrics
+}
+
+/// A history with some columns replaced by their means from t − w/2 to t + w/2, or to the ends of the
+/// record, with the trapezoidal rule between rows.
+fn averaged(history: &History, window: f64, of: impl Fn(&str) -> bool) -> History {
+    let times = history.times();
+    let (first, last) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
+    let mean = |values: &[f64]| -> Vec<f64> {
+        let mut integral = vec![0.0; values.len()];
+        for i in 1..values.len() {
+            integral[i] = integral[i - 1] + 0.5 * (values[i - 1] + values[i]) * (times[i] - times[i - 1]);
+        }
+        let around = |(&time, &value): (&f64, &f64)| {
+            let (from, to) = ((time - window / 2.0).max(first), (time + window / 2.0).min(last));
+            let change = at(times, &integral, to).zip(at(times, &integral, from)).map(|(b, a)| b - a);
+            change.filter(|_| to > from).map_or(value, |change| change / (to - from))
+        };
+        times.iter().zip(values).map(around).collect()
+    };
+    let columns = history.columns.iter().zip(&history.values);
+    let values = columns.map(|(column, values)| if of(&column.name) { mean(values) } else { values.clone() });
+    History::new(history.columns.clone(), values.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Column;
+
+    /// By hand: the mean of t over any window inside is t, at the ends it is that of half a window;
+    /// of a single spike of 1 over two rows of a window of two steps it is 1/2.
+    #[test]
+    fn means_by_hand() {
+        let column = |name: &str| Column {
+            name: name.into(),
+            unit: String::new(),
+            description: String::new(),
+            integer: false,
+        };
+        let times: Vec<f64> = (0..11).map(f64::from).collect();
+        let mut spike = vec![0.0; 11];
+        spike[5] = 1.0;
+        let names = ["time", "ramp", "spike"].map(column).to_vec();
+        let history = History::new(names, vec![times.clone(), times, spike]);
+        let averaged = averaged(&history, 2.0, |name| name != "time");
+        let ramp = averaged.column("ramp").unwrap();
+        assert_eq!((ramp[0], ramp[4], ramp[10]), (0.5, 4.0, 9.5));
+        assert_eq!(averaged.column("spike").unwrap()[4..7], [0.25, 0.5, 0.25]);
+    }
+}

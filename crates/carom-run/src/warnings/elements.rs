@@ -1,0 +1,99 @@
+//! Warnings about elements: T3, the triangles of constant strain.
+//!
+//! A beam of n square cells across its thickness is too stiff in bending by 3/n², as measured on a
+//! cantilever with L/h = 20 and ν = 0 (n = 2, 4, 8, 16: 75 %, 19 %, 4.7 %, 1.2 %). Length L and
+//! thickness h of a body are the roots of x² − (P/2) x + A = 0, with its area A and its perimeter P:
+//! exact for a rectangle, to first order for a strip or ring that is bent.
+
+use std::collections::BTreeSet;
+
+use carom_case::{Case, Plane};
+use carom_mechanics::model::{BodyInstance, Model};
+use carom_solid::{Element, Mesh};
+
+use super::found::{Found, short};
+
+/// Poisson's ratio above which triangles of constant strain lock in plane strain: at 0.45 the bulk
+/// modulus is ten times the shear modulus.
+const LOCKING: f64 = 0.45;
+/// L/h of a body that bends rather than shears: at 5 the shear of a cantilever contributes some
+/// three per cent of its deflection.
+const SLENDER: f64 = 5.0;
+/// Excess of bending stiffness that is warned about.
+const TOO_STIFF: f64 = 0.05;
+
+/// In plane stress the thickness changes freely, so nothing locks.
+pub(super) fn locking(case: &Case, _: &Model) -> Vec<Found> {
+    let mut found = Vec::new();
+    for body in case.bodies.iter().filter(|b| b.element == Element::T3 && case.plane == Plane::Strain) {
+        let Some(material) = case.materials.iter().find(|m| m.name == body.material) else { continue };
+        let poisson = material.lambda / (2.0 * (material.lambda + material.mu));
+        // A ratio given as 0.45 and recomputed from Λ and μ differs in its last digits.
+        if poisson > LOCKING + 1e-9 {
+            let poisson = (poisson * 1e4).round() / 1e4;
+            found.push(Found::of_body(
+                &body.name,
+                format!("T3 in plane strain with Poisson's ratio {poisson}"),
+            ));
+        }
+    }
+    found
+}
+
+pub(super) fn stiff_bending(_: &Case, model: &Model) -> Vec<Found> {
+    let thin = model.parts.iter().filter(|part| part.body.mesh().element == Element::T3);
+    thin.filter_map(|part| Some(Found::of_body(&part.name, too_stiff(part)?))).collect()
+}
+
+fn too_stiff(part: &BodyInstance) -> Option<String> {
+    let mesh = part.body.mesh();
+    let (area, boundary) = (area(mesh), boundary(mesh));
+    let half = 0.5 * boundary.iter().sum::<f64>();
+    // A disc has no such roots.
+    let root = (0.25 * half * half - area).sqrt();
+    let (length, thickness) = (0.5 * half + root, 0.5 * half - root);
+    if root.is_nan() || length < SLENDER * thickness {
+        return None;
+    }
+    // Two triangles make a cell of the length of a facet.
+    let facet = 2.0 * half / boundary.len() as f64;
+    let across = 0.5 * mesh.cell_count() as f64 * facet / length;
+    let excess = 3.0 / (across * across);
+    (excess > TOO_STIFF).then(|| {
+        format!(
+            "T3 in a body {} times as long as thick with about {} cells across its thickness, too stiff in bending by about {} %",
+            short(length / thickness),
+            across.round().max(1.0),
+            short(100.0 * excess)
+        )
+    })
+}
+
+/// Area of triangles with straight sides.
+pub(super) fn area(mesh: &Mesh) -> f64 {
+    let of_cell = |cell: usize| {
+        let [a, b, c] = [0, 1, 2].map(|k| &mesh.nodes[mesh.cell(cell)[k]]);
+        0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs()
+    };
+    (0..mesh.cell_count()).map(of_cell).sum()
+}
+
+/// Lengths of the edges that belong to one triangle only.
+fn boundary(mesh: &Mesh) -> Vec<f64> {
+    let mut open = BTreeSet::new();
+    for cell in 0..mesh.cell_count() {
+        let corners = &mesh.cell(cell)[..3];
+        for k in 0..3 {
+            let (a, b) = (corners[k], corners[(k + 1) % 3]);
+            let edge = (a.min(b), a.max(b));
+            if !open.remove(&edge) {
+                open.insert(edge);
+            }
+        }
+    }
+    let length = |(a, b): (usize, usize)| {
+        let (a, b) = (&mesh.nodes[a], &mesh.nodes[b]);
+        (b[0] - a[0]).hypot(b[1] - a[1])
+    };
+    open.into_iter().map(length).collect()
+}

@@ -1,0 +1,146 @@
+//! Warnings about the meshes of the two sides of a contact, where these are near each other at the
+//! start.
+
+use carom_case::{Case, PrimarySpec, Quantity};
+use carom_mechanics::model::Model;
+
+use super::found::{Found, short};
+use crate::build::side::side;
+
+/// Ratio of spacings up to which two sides count as equally fine: meshers do not meet a size better.
+const ALIKE: f64 = 1.1;
+/// Distance between nodes along the surface, relative to their spacing, up to which they match.
+const MATCH: f64 = 0.01;
+
+type Place = [f64; 2];
+
+/// The facets of a contact's sides that are near the other side.
+struct Zone {
+    /// Of the secondary and the primary side.
+    sides: [Vec<Near>; 2],
+    /// Direction along the surfaces where they are closest.
+    along: Place,
+}
+
+/// A facet near the other side.
+struct Near {
+    nodes: Vec<Place>,
+    length: f64,
+}
+
+fn distance(a: Place, b: Place) -> f64 {
+    (b[0] - a[0]).hypot(b[1] - a[1])
+}
+
+/// The zone of a contact of deformable sides in the plane: facets whose middle is at most two facet
+/// lengths further from the other side than the nearest one.
+fn zone(case: &Case, model: &Model, contact: usize) -> Option<Zone> {
+    let spec = &case.contacts[contact];
+    let PrimarySpec::Side(primary) = &spec.primary else { return None };
+    if case.dimension != 2 {
+        return None;
+    }
+    let at = |n: usize| [model.initial_position[2 * n], model.initial_position[2 * n + 1]];
+    let facets = |name: &str| -> Option<Vec<Near>> {
+        let side = side(&model.parts, name, "").ok()?;
+        let near = |nodes: &Vec<usize>| {
+            let nodes: Vec<Place> = nodes.iter().map(|&n| at(n)).collect();
+            Near { length: distance(nodes[0], nodes[1]), nodes }
+        };
+        Some(side.facets.iter().map(near).collect())
+    };
+    let sides = [facets(&spec.secondary)?, facets(primary)?];
+    let middles = sides.each_ref().map(|side| side.iter().map(Near::middle).collect::<Vec<_>>());
+    let mean = |side: &[Near]| side.iter().map(|f| f.length).sum::<f64>() / side.len() as f64;
+    let reach = 2.0 * f64::max(mean(&sides[0]), mean(&sides[1]));
+    let gap = |middle: Place, other: &[Place]| {
+        other.iter().map(|&o| distance(middle, o)).fold(f64::INFINITY, f64::min)
+    };
+    let gaps: [Vec<f64>; 2] =
+        [0, 1].map(|s| middles[s].iter().map(|&middle| gap(middle, &middles[1 - s])).collect());
+    let (closest, least) =
+        gaps[1].iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).filter(|g| g.1.is_finite())?;
+    let [a, b] = [sides[1][closest].nodes[0], sides[1][closest].nodes[1]];
+    let length = distance(a, b);
+    let along = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
+    let mut gaps = gaps.into_iter();
+    let sides = sides.map(|side| {
+        let near = side.into_iter().zip(gaps.next().unwrap_or_default());
+        near.filter(|(_, gap)| *gap <= least + reach).map(|(facet, _)| facet).collect()
+    });
+    Some(Zone { sides, along })
+}
+
+impl Near {
+    fn middle(&self) -> Place {
+        [0, 1].map(|i| 0.5 * (self.nodes[0][i] + self.nodes[1][i]))
+    }
+}
+
+impl Zone {
+    /// Mean distance between neighbouring nodes of a side.
+    fn spacing(&self, side: usize) -> f64 {
+        let spacing = |facet: &Near| facet.length / (facet.nodes.len() - 1) as f64;
+        self.sides[side].iter().map(spacing).sum::<f64>() / self.sides[side].len() as f64
+    }
+
+    /// Whether every secondary node has a node of the primary at the same place along the surface.
+    fn matches(&self) -> bool {
+        let along = |side: usize| {
+            let places = self.sides[side].iter().flat_map(|facet| &facet.nodes);
+            places.map(|y| y[0] * self.along[0] + y[1] * self.along[1]).collect::<Vec<f64>>()
+        };
+        let (near, tolerance) = (along(1), MATCH * self.spacing(1));
+        along(0).iter().all(|s| near.iter().any(|p| (s - p).abs() <= tolerance))
+    }
+}
+
+pub(super) fn coarse_secondary(case: &Case, model: &Model) -> Vec<Found> {
+    let coarse = |k: usize| {
+        let zone = zone(case, model, k)?;
+        let [secondary, primary] = [0, 1].map(|side| zone.spacing(side));
+        (secondary > ALIKE * primary).then(|| {
+            let (secondary, primary) = (short(secondary), short(primary));
+            let what = format!(
+                "near the contact the nodes of the secondary side are {secondary} apart, those of the primary {primary}"
+            );
+            Found::of_contact(&case.contacts[k].name, what)
+        })
+    };
+    (0..case.contacts.len()).filter_map(coarse).collect()
+}
+
+/// Pressures are read where an expectation names one, and at a probe that records a stress within a
+/// facet's length of the contact.
+pub(super) fn unmatched_pressure(case: &Case, model: &Model) -> Vec<Found> {
+    let mut found = Vec::new();
+    for (k, contact) in case.contacts.iter().enumerate() {
+        let Some(zone) = zone(case, model, k).filter(|zone| !zone.matches()) else { continue };
+        let mut readers = Vec::new();
+        if case.expects.iter().any(|expect| expect.what.contains("pressure")) {
+            readers.push("an expectation".to_owned());
+        }
+        let stress = |q: &Quantity| {
+            matches!(q, Quantity::SigmaXx | Quantity::SigmaYy | Quantity::SigmaXy | Quantity::VonMises)
+        };
+        let near = |at: Place| {
+            let facets = zone.sides.iter().flatten();
+            facets.into_iter().any(|facet| facet.nodes.iter().any(|&y| distance(at, y) <= facet.length))
+        };
+        for probe in case.probes.iter().filter(|probe| probe.record.iter().any(stress)) {
+            if let [x, y] = probe.at[..]
+                && near([x, y])
+            {
+                readers.push(format!("probe \"{}\"", probe.name));
+            }
+        }
+        if !readers.is_empty() {
+            let what = format!(
+                "the nodes of its sides do not match, and {} reads stress or pressure there",
+                readers.join(" and ")
+            );
+            found.push(Found::of_contact(&contact.name, what));
+        }
+    }
+    found
+}

@@ -1,0 +1,125 @@
+//! Warnings: doubts that a reviewer would have about a valid case. None of them stops a run. They are
+//! written into the manifest and the log, and shown by `carom check`, `carom run` and the pages.
+//!
+//! [`WARNINGS`] is the one table; a rule is a function of the case and its model, or of the record.
+
+mod elements;
+mod found;
+mod masses;
+mod meshes;
+mod record;
+mod steps;
+
+use carom_case::Case;
+use carom_mechanics::model::Model;
+use carom_record::{Run, Warning};
+
+pub use found::Found;
+pub use steps::wave_speed;
+
+/// How a warning is found.
+#[derive(Clone, Copy, Debug)]
+pub enum Rule {
+    /// Before the run.
+    Model(fn(&Case, &Model) -> Vec<Found>),
+    /// After it.
+    Record(fn(&Case, &Run) -> Vec<Found>),
+}
+
+/// A warning that may be given.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// Its name.
+    pub id: &'static str,
+    /// Why it matters.
+    pub why: &'static str,
+    /// What to try.
+    pub advice: &'static str,
+    /// When it is given.
+    pub rule: Rule,
+}
+
+/// All warnings.
+pub const WARNINGS: [Entry; 8] = [
+    Entry {
+        id: "coarse-secondary",
+        why: "only nodes of the secondary side are constrained, and nodes of the primary may penetrate between them",
+        advice: "swapping secondary and primary, or a finer secondary side",
+        rule: Rule::Model(meshes::coarse_secondary),
+    },
+    Entry {
+        id: "unmatched-pressure",
+        why: "node-to-segment contact fails the patch test where nodes do not match, so that pressures and stresses at the surface are wrong by a \
+              tenth and more",
+        advice: "matching meshes, resultants, or probes a few cells away from the contact",
+        rule: Rule::Model(meshes::unmatched_pressure),
+    },
+    Entry {
+        id: "long-step",
+        why: "all waves that the step resolves are longer than that; the contact force is the change of momentum in a step over the step, and \
+              depends on the step more than on the body",
+        advice: "a shorter step, or reading only impulse, duration and motion",
+        rule: Rule::Model(steps::long_step),
+    },
+    Entry {
+        id: "locking",
+        why: "triangles of constant strain lock at nearly constant volume, and the response is too stiff",
+        advice: "element = \"T6\" or \"T10\"",
+        rule: Rule::Model(elements::locking),
+    },
+    Entry {
+        id: "stiff-bending",
+        why: "triangles of constant strain shear when they should bend",
+        advice: "element = \"T6\" or \"T10\", or more cells across the thickness",
+        rule: Rule::Model(elements::stiff_bending),
+    },
+    Entry {
+        id: "strained-massless",
+        why: "a node without mass takes its position of equilibrium in the first step, and the strain energy released there is lost",
+        advice: "mass = \"consistent\", smaller cells at the contact, or a start from a state of equilibrium with [initial]",
+        rule: Rule::Model(masses::strained_massless),
+    },
+    Entry {
+        id: "one-node",
+        why: "force and pressure are those of one node and depend on its share of the mesh",
+        advice: "a finer mesh at the contact",
+        rule: Rule::Record(record::one_node),
+    },
+    Entry {
+        id: "energy-created",
+        why: "no elastic body does that, and motion, forces and stresses after it are the scheme's",
+        advice: "persistency = \"project\", a scheme with more damping, another step, or the energy guard, which stops such a run",
+        rule: Rule::Record(record::energy_created),
+    },
+];
+
+impl Entry {
+    fn given(&self, found: Vec<Found>) -> impl Iterator<Item = Warning> + use<> {
+        let Self { id, why, advice, .. } = *self;
+        found.into_iter().map(move |Found { place, what }| Warning {
+            id: id.into(),
+            place,
+            what,
+            why: why.into(),
+            advice: advice.into(),
+        })
+    }
+}
+
+/// The warnings that a case and its model give before the run.
+pub fn warnings(case: &Case, model: &Model) -> Vec<Warning> {
+    let given = |entry: &Entry| match entry.rule {
+        Rule::Model(find) => Some(entry.given(find(case, model))),
+        Rule::Record(_) => None,
+    };
+    WARNINGS.iter().filter_map(given).flatten().collect()
+}
+
+/// The warnings that the record of a finished run gives.
+pub(crate) fn warnings_of_record(case: &Case, run: &Run) -> Vec<Warning> {
+    let given = |entry: &Entry| match entry.rule {
+        Rule::Record(find) => Some(entry.given(find(case, run))),
+        Rule::Model(_) => None,
+    };
+    WARNINGS.iter().filter_map(given).flatten().collect()
+}

@@ -1,0 +1,256 @@
+//! Every warning appears where it is due, and nowhere else; the numbers in them against runs and
+//! closed formulas.
+
+use std::collections::BTreeSet;
+use std::sync::atomic::AtomicBool;
+
+use carom_record::{Manifest, Source};
+use carom_run::recording::{Options, run};
+use carom_run::{Setup, WARNINGS, warnings};
+
+use super::common::{DISCS, case, finish, simulation};
+
+const IMPACT: &str = include_str!("../../../../cases/impact/impact.toml");
+
+/// A cantilever with L/h = 20 of n × 20 n square cells, loaded at its end.
+const CANTILEVER: &str = r#"
+dimension = 2
+plane = "stress"
+[[material]]
+name = "steel"
+law = "linear-elastic"
+density = 1.0
+young = 1e6
+poisson = 0.0
+[[body]]
+name = "beam"
+material = "steel"
+element = "T3"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [20.0, 1.0], cells = [80, 4] }
+[[support]]
+on = ["beam.left"]
+fix = ["x", "y"]
+[[load]]
+on = ["beam.right"]
+traction = [0.0, -1e-3]
+[time]
+end = 1.0
+step = 1.0
+scheme = { kind = "static" }
+"#;
+
+/// A stretched bar whose free end may meet a wall.
+const STRETCHED: &str = r#"
+dimension = 1
+[[material]]
+name = "steel"
+law = "linear-elastic"
+density = 1.0
+young = 100.0
+poisson = 0.0
+[[body]]
+name = "bar"
+material = "steel"
+element = "L2"
+mesh = { shape = "interval", min = 0.0, max = 1.0, cells = 10 }
+mass = "redistributed-nearest"
+position = ["1.01*X"]
+[[support]]
+on = ["bar.left"]
+fix = ["x"]
+[[contact]]
+name = "wall"
+secondary = "bar.right"
+primary = { plane = { point = [2.0], normal = [-1.0] } }
+[time]
+end = 1e-2
+step = 1e-3
+scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
+"#;
+
+/// The warnings before a run: id, place and finding.
+fn found(text: &str, sets: &[&str]) -> Vec<(String, String)> {
+    let case = case(text, sets);
+    let given = warnings(&case, &Setup::new(&case).build().unwrap());
+    given.into_iter().map(|w| (w.id, format!("{}: {}", w.place, w.what))).collect()
+}
+
+fn ids(text: &str, sets: &[&str]) -> Vec<String> {
+    found(text, sets).into_iter().map(|(id, _)| id).collect()
+}
+
+/// The warnings in the manifest of a run, also in its log.
+fn recorded(text: &str, sets: &[&str]) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let directory = folder.path().join("run");
+    let source = Source { text: text.to_owned(), sets: Vec::new() };
+    let options = Options { threads: 1 };
+    run(&case(text, sets), source, &directory, options, &mut |_| {}, &AtomicBool::new(false)).unwrap();
+    let warnings = Manifest::read(&directory).unwrap().warnings;
+    let log = std::fs::read_to_string(directory.join("log.jsonl")).unwrap();
+    assert_eq!(log.matches("\"kind\":\"warning\"").count(), warnings.len(), "{log}");
+    warnings.into_iter().map(|w| w.id).collect()
+}
+
+#[test]
+fn ids_are_distinct() {
+    assert_eq!(WARNINGS.iter().map(|entry| entry.id).collect::<BTreeSet<_>>().len(), WARNINGS.len());
+}
+
+#[test]
+fn a_secondary_side_coarser_than_the_primary() {
+    // T10: three intervals per facet. The cylinder's facets are about 0.1 long.
+    let (id, what) = found(IMPACT, &["body.prism.mesh.cells=[32,16]"]).swap_remove(0);
+    assert_eq!(id, "coarse-secondary");
+    assert!(what.contains("contact \"strike\"") && what.contains("those of the primary 0.0104"), "{what}");
+    assert!(!ids(IMPACT, &[]).contains(&id));
+    // Quadratic facets of the same length have nodes further apart.
+    assert!(ids(IMPACT, &["body.cylinder.element=T3"]).contains(&id));
+}
+
+#[test]
+fn pressures_on_meshes_that_do_not_match() {
+    let unmatched = "unmatched-pressure".to_owned();
+    let at_b = found(IMPACT, &[]);
+    assert!(at_b.iter().any(|(id, what)| *id == unmatched && what.contains("probe \"B\"")), "{at_b:?}");
+    assert!(!ids(IMPACT, &["probe.B.record=[\"uy\"]"]).contains(&unmatched));
+    assert!(!ids(IMPACT, &["probe.B.at=[0.0, -0.3]"]).contains(&unmatched));
+    assert!(
+        ids(IMPACT, &["probe.B.record=[\"uy\"]", "expect=[{ what = \"pressure_max\", at_most = 1 }]"])
+            .contains(&unmatched)
+    );
+    let blocks = |other: usize| {
+        format!(
+            r#"
+dimension = 2
+[[material]]
+name = "rubber"
+law = "neo-hookean"
+density = 1.0
+lambda = 1.0
+mu = 1.0
+[[body]]
+name = "upper"
+material = "rubber"
+element = "T6"
+mesh = {{ shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [4, 4] }}
+[[body]]
+name = "lower"
+material = "rubber"
+element = "T6"
+mesh = {{ shape = "rectangle", min = [0.0, -1.0], max = [1.0, 0.0], cells = [{other}, 4] }}
+[[contact]]
+name = "press"
+secondary = "upper.bottom"
+primary = "lower.top"
+[[probe]]
+name = "P"
+body = "lower"
+at = [0.5, -0.1]
+record = ["von_mises"]
+[time]
+end = 1.0
+step = 1.0
+scheme = {{ kind = "static" }}
+"#
+        )
+    };
+    assert!(ids(&blocks(4), &[]).is_empty());
+    assert_eq!(ids(&blocks(5), &[]), ["coarse-secondary".to_owned(), unmatched]);
+}
+
+#[test]
+fn a_step_in_which_a_wave_crosses_many_cells() {
+    // √((200 + 2·15)/0.25) = 30.3; the prism's cells are squares of 0.125.
+    let long = found(IMPACT, &["time.step=0.075"]);
+    let prism = long.iter().find(|(id, what)| id == "long-step" && what.contains("\"prism\"")).unwrap();
+    assert!(prism.1.contains("crosses 18.2 cells of size 0.125"), "{prism:?}");
+    assert!(!ids(IMPACT, &[]).contains(&"long-step".to_owned()));
+    let long = ["body.bar.mass=consistent", "time.end=1.0", "time.step=1.0"];
+    assert_eq!(ids(STRETCHED, &long), ["long-step"]);
+    let still: Vec<&str> = long.into_iter().chain(["time.scheme={ kind = \"static\" }"]).collect();
+    assert!(ids(STRETCHED, &still).is_empty());
+}
+
+#[test]
+fn nearly_incompressible_t3() {
+    let soft = "material.rubber.lambda=135.0"; // ν = 0.45: the bulk modulus is ten times μ
+    let locking = |sets: &[&str]| found(IMPACT, sets).into_iter().filter(|(id, _)| id == "locking").collect();
+    let none: Vec<(String, String)> = Vec::new();
+    assert_eq!(locking(&[]), none);
+    assert_eq!(locking(&["body.prism.element=T3", soft]), none);
+    assert_eq!(locking(&["body.prism.element=T3", "plane=stress"]), none);
+    let found: Vec<(String, String)> = locking(&["body.prism.element=T3"]);
+    assert!(
+        found.len() == 1 && found[0].1.contains("\"prism\"") && found[0].1.contains("0.4651"),
+        "{found:?}"
+    );
+}
+
+/// The excess of stiffness that the warning states, against the deflection PL³/3EI of beam theory.
+#[test]
+fn triangles_of_constant_strain_in_bending() {
+    let stated = |n: usize| {
+        let cells = format!("body.beam.mesh.cells=[{}, {n}]", 20 * n);
+        let warning = found(CANTILEVER, &[&cells]);
+        let end = finish(simulation(CANTILEVER, &[&cells]));
+        let tip = 20 * n;
+        let deflection = -(end.state().y[2 * tip + 1] - end.model().reference[2 * tip + 1]);
+        // P = 1e-3, I = 1/12.
+        let exact = 1e-3 * 20.0_f64.powi(3) * 12.0 / (3.0 * 1e6);
+        (warning, 100.0 * (exact / deflection - 1.0))
+    };
+    for (n, percent) in [(2, 75.0), (4, 18.8), (6, 8.33)] {
+        let (warning, excess) = stated(n);
+        let [(id, what)] = &warning[..] else { panic!("{warning:?}") };
+        assert!(id == "stiff-bending" && what.contains(&format!("about {n} cells")), "{what}");
+        assert!((excess - percent).abs() < 0.12 * percent, "{n}: {excess} against {percent}");
+    }
+    let (warning, excess) = stated(8);
+    assert!(warning.is_empty() && excess < 6.0, "{excess}: {warning:?}");
+    assert!(found(CANTILEVER, &["body.beam.element=T6"]).is_empty());
+    assert!(found(CANTILEVER, &["body.beam.mesh.max=[4.0, 1.0]"]).is_empty(), "it shears");
+    let disc = "body.beam.mesh={ shape = \"half-disc\", radius = 1.0, center = [0.0, 0.0], size = 0.5 }";
+    let free = ["support=[]", "load=[]", "time.scheme={ kind = \"hu\" }"];
+    let sets: Vec<&str> = free.into_iter().chain([disc]).collect();
+    assert!(found(CANTILEVER, &sets).is_empty(), "it is not slender");
+}
+
+/// The last cell relaxes in the first step: a tenth of the energy is gone, and no more later.
+#[test]
+fn a_strained_body_without_mass_at_its_contact() {
+    let (id, what) = found(STRETCHED, &[]).swap_remove(0);
+    assert!(id == "strained-massless" && what.contains("10.0 %"), "{id} {what}");
+    assert!(ids(STRETCHED, &["body.bar.mass=consistent"]).is_empty());
+    assert!(ids(STRETCHED, &["body.bar.position=[\"X\"]"]).is_empty());
+    let energy = |sim: &carom_run::Simulation| sim.state().ledger.kinetic + sim.state().ledger.strain;
+    let mut sim = simulation(STRETCHED, &["time.scheme.rho_inf=1.0"]);
+    let start = energy(&sim);
+    sim.step().unwrap();
+    let lost = 1.0 - energy(&sim) / start;
+    assert!((0.05..0.15).contains(&lost), "{lost}");
+}
+
+#[test]
+fn one_node_that_carries_a_contact() {
+    let id = "one-node".to_owned();
+    let coarse = ["body.left.element=T3", "body.right.element=T3", "time.end=0.15"];
+    let coarse: Vec<&str> =
+        coarse.into_iter().chain(["body.left.mesh.size=0.5", "body.right.mesh.size=0.5"]).collect();
+    assert!(recorded(DISCS, &coarse).contains(&id));
+    assert!(!recorded(DISCS, &["time.end=0.2"]).contains(&id));
+}
+
+#[test]
+fn energy_that_a_run_without_guard_creates() {
+    let sets = [
+        "time.scheme={ kind = \"newmark\", beta = 0.25, gamma = 0.5 }",
+        "contact.strike.persistency=none",
+        "body.cylinder.mesh.size=0.25",
+        "body.prism.mesh.cells=[4,2]",
+    ];
+    let id = "energy-created".to_owned();
+    let unguarded: Vec<&str> = sets.into_iter().chain(["time.energy_guard=false"]).collect();
+    assert!(recorded(IMPACT, &unguarded).contains(&id));
+    assert!(!recorded(IMPACT, &sets[2..]).contains(&id));
+}

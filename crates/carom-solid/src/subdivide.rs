@@ -1,0 +1,249 @@
+//! Uniform subdivision of a mesh: every edge of a cell becomes `parts` edges, every triangle
+//! `parts`² triangles. New nodes lie on the curved cell that they divide, so the geometry stays that
+//! of the given mesh.
+//!
+//! ```text
+//!  |\            nodes at (i, j)/(degree · parts) in reference coordinates;
+//!  | \           upright triangles at (p, q), inverted ones between them
+//!  |__\
+//!  |\ |\         a node on an edge belongs to all cells that have the edge
+//!  |_\|_\
+//! ```
+
+use std::collections::HashMap;
+
+use carom_algebra::Vector;
+
+use crate::mesh::{Element, Facet, Mesh};
+use crate::positions::Positions;
+use crate::shape::{Line2, Line3, Line4, Shape, Tri3, Tri6, Tri10, line_shape};
+
+impl Mesh {
+    /// The mesh with every edge divided into `parts` edges; a copy for 0 or 1. None for cells in
+    /// space, which cannot be divided yet.
+    pub fn subdivided(&self, parts: usize) -> Option<Self> {
+        if parts < 2 {
+            return Some(self.clone());
+        }
+        match self.element {
+            Element::L2 => Some(lines::<2, Line2>(self, parts)),
+            Element::L3 => Some(lines::<3, Line3>(self, parts)),
+            Element::L4 => Some(lines::<4, Line4>(self, parts)),
+            Element::T3 => Some(triangles::<3, Tri3>(self, parts)),
+            Element::T6 => Some(triangles::<6, Tri6>(self, parts)),
+            Element::T10 => Some(triangles::<10, Tri10>(self, parts)),
+            #[cfg(test)]
+            Element::Tet4 => None,
+        }
+    }
+}
+
+/// What identifies a node of the new mesh.
+#[derive(PartialEq, Eq, Hash)]
+enum Place {
+    Corner(usize),
+    /// Between two corners, counted from the smaller one.
+    Edge([usize; 2], usize),
+    Inside(usize, [usize; 2]),
+}
+
+/// The nodes of the new mesh, each made where it is met first.
+struct Nodes<'a> {
+    mesh: &'a Mesh,
+    numbers: HashMap<Place, usize>,
+    coordinates: Vec<f64>,
+}
+
+impl<'a> Nodes<'a> {
+    fn new(mesh: &'a Mesh) -> Self {
+        Self { mesh, numbers: HashMap::new(), coordinates: Vec::new() }
+    }
+
+    /// The node at a place of a cell, there at Σ φᵃ Xᵃ.
+    fn at(&mut self, place: Place, cell: usize, values: &[f64]) -> usize {
+        let (mesh, coordinates) = (self.mesh, &mut self.coordinates);
+        *self.numbers.entry(place).or_insert_with(|| {
+            let nodes = mesh.cell(cell);
+            let sum = |i: usize| nodes.iter().zip(values).map(|(&n, v)| mesh.nodes[n][i] * v).sum::<f64>();
+            let number = coordinates.len() / mesh.dimension();
+            coordinates.extend((0..mesh.dimension()).map(sum));
+            number
+        })
+    }
+
+    fn into_mesh(self, cells: Vec<usize>, facet: impl Fn(&Facet) -> Vec<Facet>) -> Mesh {
+        let Self { mesh, coordinates, .. } = self;
+        let sides =
+            mesh.sides.iter().map(|(name, facets)| (name.clone(), facets.iter().flat_map(&facet).collect()));
+        Mesh {
+            element: mesh.element,
+            nodes: Positions::new(mesh.dimension(), coordinates),
+            cells,
+            sides: sides.collect(),
+            repairs: mesh.repairs.clone(),
+        }
+    }
+}
+
+fn lines<const N: usize, S: Shape<1, N>>(mesh: &Mesh, parts: usize) -> Mesh {
+    let (degree, count) = (S::DEGREE, S::DEGREE * parts);
+    let mut nodes = Nodes::new(mesh);
+    let mut cells = Vec::with_capacity(mesh.cells.len() * parts);
+    for cell in 0..mesh.cell_count() {
+        let ends = [mesh.cell(cell)[0], mesh.cell(cell)[1]];
+        let lattice: Vec<usize> = (0..=count)
+            .map(|i| {
+                let place = match i {
+                    0 => Place::Corner(ends[0]),
+                    i if i == count => Place::Corner(ends[1]),
+                    i => Place::Inside(cell, [i, 0]),
+                };
+                let xi = 2.0 * i as f64 / count as f64 - 1.0;
+                nodes.at(place, cell, &line_shape(N, xi).values)
+            })
+            .collect();
+        for part in lattice.windows(degree + 1).step_by(degree) {
+            cells.extend([part[0], part[degree]]);
+            cells.extend(&part[1..degree]);
+        }
+    }
+    // A facet of a line is one of its ends.
+    let end = |facet: &Facet| {
+        let last = facet.nodes[0] != mesh.cell(facet.cell)[0];
+        let child = facet.cell * parts + if last { parts - 1 } else { 0 };
+        vec![Facet { cell: child, nodes: vec![cells[child * N + usize::from(last)]] }]
+    };
+    nodes.into_mesh(cells.clone(), end)
+}
+
+fn triangles<const N: usize, S: Shape<2, N>>(mesh: &Mesh, parts: usize) -> Mesh {
+    let (degree, count) = (S::DEGREE, S::DEGREE * parts);
+    let steps = S::NODES.map(|xi| [0, 1].map(|i| (xi[i] * degree as f64).round() as usize));
+    // Upright triangles row by row, each followed by the inverted one on its right.
+    let children: Vec<([usize; 2], bool)> = (0..parts)
+        .flat_map(|q| (0..parts - q).flat_map(move |p| [([p, q], true), ([p, q], false)]))
+        .filter(|([p, q], upright)| *upright || p + q + 2 <= parts)
+        .collect();
+    let child = |at: [usize; 2]| children.iter().position(|c| *c == (at, true)).unwrap_or_default();
+    let mut nodes = Nodes::new(mesh);
+    let mut cells = Vec::with_capacity(mesh.cells.len() * parts * parts);
+    let mut lattice: HashMap<[usize; 2], usize> = HashMap::new();
+    for cell in 0..mesh.cell_count() {
+        let corners = [0, 1, 2].map(|a| mesh.cell(cell)[a]);
+        lattice.clear();
+        for j in 0..=count {
+            for i in 0..=count - j {
+                let xi = Vector([i as f64 / count as f64, j as f64 / count as f64]);
+                let place = place(corners, [i, j], count, cell);
+                lattice.insert([i, j], nodes.at(place, cell, &S::values(&xi)));
+            }
+        }
+        for &([p, q], upright) in &children {
+            cells.extend(steps.iter().map(|&[r, s]| {
+                let at = |origin: usize, step: usize| {
+                    if upright { degree * origin + step } else { degree * (origin + 1) - step }
+                };
+                lattice[&[at(p, r), at(q, s)]]
+            }));
+        }
+    }
+    let divided = |facet: &Facet| {
+        let edge = (0..3).find(|&e| mesh.cell(facet.cell)[e] == facet.nodes[0]).unwrap_or_default();
+        let part = |m: usize| {
+            let at = [[m, 0], [parts - 1 - m, m], [0, parts - 1 - m]][edge];
+            let cell = facet.cell * children.len() + child(at);
+            let local = mesh.element.facets()[edge];
+            Facet { cell, nodes: local.iter().map(|&a| cells[cell * N + a]).collect() }
+        };
+        (0..parts).map(part).collect()
+    };
+    nodes.into_mesh(cells.clone(), divided)
+}
+
+/// What identifies the node (i, j) of a triangle's lattice.
+fn place(corners: [usize; 3], [i, j]: [usize; 2], count: usize, cell: usize) -> Place {
+    let l = [count - i - j, i, j];
+    if let Some(a) = l.iter().position(|&x| x == count) {
+        return Place::Corner(corners[a]);
+    }
+    match l.iter().position(|&x| x == 0) {
+        // On the edge opposite to corner a.
+        Some(a) => {
+            let [b, c] = [(a + 1) % 3, (a + 2) % 3];
+            let (first, second) = if corners[b] < corners[c] { (b, c) } else { (c, b) };
+            Place::Edge([corners[first], corners[second]], l[second])
+        }
+        None => Place::Inside(cell, [i, j]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::NeoHookean;
+    use crate::{Constitutive, generate};
+
+    /// A divided rectangle has the nodes and cells of the finer rectangle and the same sides; on a
+    /// disc the divided cells keep the area of the curved ones, and every facet is an edge of its
+    /// cell.
+    #[test]
+    fn counts_sides_and_area() {
+        for element in [Element::T3, Element::T6, Element::T10] {
+            for parts in [2, 3] {
+                let coarse = generate::rectangle(element, [0.0, 0.0], [2.0, 1.0], [4, 2]).unwrap();
+                let fine =
+                    generate::rectangle(element, [0.0, 0.0], [2.0, 1.0], [4 * parts, 2 * parts]).unwrap();
+                let divided = coarse.subdivided(parts).unwrap();
+                assert_eq!(
+                    (divided.nodes.len(), divided.cell_count()),
+                    (fine.nodes.len(), fine.cell_count())
+                );
+                for side in ["bottom", "right", "top", "left"] {
+                    let at = |mesh: &Mesh| -> Vec<Vec<f64>> {
+                        let nodes = mesh.side_nodes(side).unwrap();
+                        nodes.iter().map(|&n| mesh.nodes[n].to_vec()).collect()
+                    };
+                    for (a, b) in at(&divided).iter().zip(&at(&fine)) {
+                        assert!((a[0] - b[0]).abs() + (a[1] - b[1]).abs() < 1e-14, "{side}: {a:?} {b:?}");
+                    }
+                }
+                let disc = generate::disc(element, 1.0, [0.0, 0.0], 0.5).unwrap();
+                let divided = disc.subdivided(parts).unwrap();
+                let area = |mesh: &Mesh| {
+                    let law = NeoHookean { lambda: 1.0, mu: 1.0 };
+                    let body = law.body(mesh.clone(), 1.0, 1.0).unwrap();
+                    let mut total = 0.0;
+                    for cell in 0..mesh.cell_count() {
+                        body.each_volume_point(cell, &mut |_, _, volume| total += volume);
+                    }
+                    total
+                };
+                assert!((area(&divided) - area(&disc)).abs() < 1e-13);
+                for facet in divided.sides.values().flatten() {
+                    let cell = divided.cell(facet.cell);
+                    assert!(facet.nodes.iter().all(|n| cell.contains(n)));
+                    assert!(divided.on_boundary()[facet.nodes[0]]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_divided_bar_is_the_finer_bar() {
+        for element in [Element::L2, Element::L3, Element::L4] {
+            let coarse = generate::interval(element, 0.0, 2.0, 3).unwrap();
+            let (divided, fine) =
+                (coarse.subdivided(2).unwrap(), generate::interval(element, 0.0, 2.0, 6).unwrap());
+            let ends = |mesh: &Mesh| ["left", "right"].map(|s| mesh.nodes[mesh.sides[s][0].nodes[0]][0]);
+            assert_eq!((divided.nodes.len(), ends(&divided)), (fine.nodes.len(), ends(&fine)));
+            let sorted = |mesh: &Mesh| {
+                let mut x: Vec<f64> = mesh.nodes.iter().map(|p| p[0]).collect();
+                x.sort_by(f64::total_cmp);
+                x
+            };
+            for (a, b) in sorted(&divided).iter().zip(sorted(&fine)) {
+                assert!((a - b).abs() < 1e-14);
+            }
+        }
+    }
+}
