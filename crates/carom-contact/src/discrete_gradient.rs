@@ -12,9 +12,9 @@
 //! gap. d = Δy − (rigid part) needs no invariants. ε suppresses quotients of round-off where the
 //! nodes move as a rigid body: the work is then wrong by less than ε |ΔG − ∇G·Δy| / |d|.
 //!
-//! A closed pair that is handed over to another facet had no gap on the surface, but one to the
-//! extension of its new facet. This jump J is part of ΔG if the motion can account for it, |J| ≤ |d|/2;
-//! otherwise the correction would turn the force by any angle, and λJ remains as work.
+//! Both gaps refer to one facet. A closed pair that is handed over had a gap J to the extension of its
+//! new facet; its force does the work −λJ. With G_n = 0 instead, the correction would have to account
+//! for J too, which it can only by turning the force by any angle where J is not small against d.
 //!
 //! In the plane there is one rotation ω with the arm r = J x, x = y_½ − ȳ_½, J = [0 −1; 1 0], and
 //! with c = Δy − t
@@ -29,8 +29,6 @@ use crate::rows::Row;
 
 /// ε, relative to the size of the stencil.
 const ROUND_OFF: f64 = 1e-7;
-/// Largest |J| / |d| of a jump that is included.
-const STEEPEST: f64 = 0.5;
 
 /// The discrete gradient of one gap, and buffers. All vectors are over the dofs of the gap's row.
 #[derive(Clone, Debug, Default)]
@@ -58,9 +56,8 @@ pub struct DiscreteGradient {
 }
 
 impl DiscreteGradient {
-    /// Evaluates it from the row at y_½, the change ΔG on the facet and the jump J of a hand-over, and
-    /// y_½ and Δy flat over all dofs.
-    pub fn evaluate(&mut self, middle: Row, change: f64, jump: f64, y: &[f64], increment: &[f64]) {
+    /// Evaluates it from the row at y_½ and the change ΔG, with y_½ and Δy flat over all dofs.
+    pub fn evaluate(&mut self, middle: Row, change: f64, y: &[f64], increment: &[f64]) {
         let d = middle.dimension();
         debug_assert!(d <= 2 || middle.nodes.len() == 1, "rotations in space are not there yet");
         self.dimension = d;
@@ -83,8 +80,7 @@ impl DiscreteGradient {
         let stencil: f64 = start.map(|x| x * x).sum();
         let deformed = dot(&self.deforming, &self.deforming);
         self.size = deformed + ROUND_OFF * ROUND_OFF * stencil;
-        let jump = if jump.abs() <= STEEPEST * deformed.sqrt() { jump } else { 0.0 };
-        let missing = change + jump - dot(&self.middle, &self.moved);
+        let missing = change - dot(&self.middle, &self.moved);
         // In one dimension the gap is linear.
         self.factor = if d > 1 && self.size > 0.0 { missing / self.size } else { 0.0 };
         self.gradient.clear();

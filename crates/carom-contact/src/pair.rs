@@ -17,10 +17,8 @@ pub struct Pair {
     pub active: bool,
     /// Multiplier λ ≤ 0; zero unless active.
     pub lambda: f64,
-    /// Gap at the step's start, for an interface whose force depends on the path. A conserving
-    /// penalty accumulates it, since Δg = ∇g·Δy at the midpoint holds to second order only. A closed
-    /// pair that changes facets keeps it: its gap to the side was zero, whatever that to the new
-    /// facet's extension.
+    /// Gap at the step's start for an energy-conserving penalty. It is stored, since Δg = ∇g·Δy at
+    /// the midpoint holds to second order only.
     pub start: Option<f64>,
 }
 

@@ -74,11 +74,12 @@ impl Constraints {
     pub(crate) fn of(equations: &Equations, evaluation: &Evaluation) -> Self {
         let model = equations.model;
         let mut constraints = Self::none(model.dimension);
+        let (mut rows, mut gradient) = (Rows::new(model.dimension), DiscreteGradient::default());
         for place in independent_rows(model, evaluation.pressing(), &evaluation.rows) {
             let (k, p) = place;
             let contact = &model.contacts[k];
             let answer = &evaluation.answers[k][p];
-            let mut curvature = derivative_of_direction(equations, evaluation, place);
+            let mut curvature = derivative_of_direction(equations, evaluation, place, &mut rows, &mut gradient);
             curvature.iter_mut().for_each(|c| *c *= answer.lambda);
             constraints.places.push(place);
             constraints.rows.push_row(evaluation.rows[k].row(p));
@@ -153,11 +154,13 @@ impl Constraints {
 }
 
 /// Derivative of the direction of a pair's force to the positions at the end of the step, over the
-/// nodes of its row, row-major.
+/// nodes of its row, row-major; `rows` and `gradient` are buffers.
 fn derivative_of_direction(
     equations: &Equations,
     evaluation: &Evaluation,
     (k, p): (usize, usize),
+    rows: &mut Rows,
+    gradient: &mut DiscreteGradient,
 ) -> Vec<f64> {
     let contact = &equations.model.contacts[k];
     let (row, pair) = (evaluation.rows[k].row(p), &evaluation.at.pairings[k].pairs[p]);
@@ -170,12 +173,13 @@ fn derivative_of_direction(
             matrix.iter_mut().for_each(|entry| *entry *= 0.5);
         }
         Direction::DiscreteGradient => {
-            let (mut middle, mut rows) = (*pair, Rows::new(equations.model.dimension));
-            let (start, jump) = equations.start_of(k, pair, &mut rows);
-            // It was measured there in the evaluation.
-            if contact.kinematics.measure(&mut middle, place, &mut rows).is_ok() {
-                let mut gradient = DiscreteGradient::default();
-                gradient.evaluate(rows.row(0), row.gap - start, jump, place, &at.increment);
+            // Both were measured in the evaluation.
+            rows.clear();
+            let mut middle = *pair;
+            if let Ok(start) = equations.gap_at_start(k, pair, rows)
+                && contact.kinematics.measure(&mut middle, place, rows).is_ok()
+            {
+                gradient.evaluate(rows.row(0), row.gap - start, place, &at.increment);
                 contact.kinematics.curvature_into(&middle, place, &mut matrix);
                 gradient.derivative_into(row, &mut matrix);
             }

@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use carom_contact::{Answer, Direction, DiscreteGradient, Pair, Pairing, Point, Rows};
+use carom_contact::{Answer, ContactError, Direction, DiscreteGradient, Pair, Pairing, Point, Rows};
 use carom_time::{Internal, Stage};
 
 use crate::balance::{Forces, contact_weights, known_into, mean_acceleration, residual_into};
@@ -308,12 +308,8 @@ impl<'a> Equations<'a> {
             answers.clear();
             for (p, pair) in pairing.pairs.iter_mut().enumerate() {
                 let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
-                let needs_start = match direction {
-                    Direction::End => false,
-                    Direction::Midpoint => true,
-                    Direction::DiscreteGradient => pair.active,
-                };
-                if needs_start && pair.start.is_none() {
+                let at_middle = direction == Direction::Midpoint;
+                if at_middle && pair.start.is_none() {
                     // The initial gap of a new pair; later it is updated.
                     pair.start = match contact.kinematics.measure(&mut pair.clone(), &self.state.y, rows) {
                         Ok(()) => Some(rows.pop()),
@@ -321,7 +317,6 @@ impl<'a> Equations<'a> {
                         Err(_) => None,
                     };
                 }
-                let at_middle = direction == Direction::Midpoint;
                 match contact.kinematics.measure(pair, if at_middle { place } else { y }, rows) {
                     Ok(()) => {}
                     Err(error) if pair.active => return Err(failed(error)),
@@ -339,11 +334,10 @@ impl<'a> Equations<'a> {
                 (pair.active, pair.lambda) = (answer.active, answer.lambda);
                 if direction == Direction::DiscreteGradient {
                     if answer.active {
-                        let at_middle = &mut pair.clone();
-                        let (start, jump) = self.start_of(k, pair, discrete_gradients);
-                        let change = row.gap - start;
-                        contact.kinematics.measure(at_middle, place, discrete_gradients).map_err(failed)?;
-                        gradient.evaluate(discrete_gradients.row(p), change, jump, place, &at.increment);
+                        let start = self.gap_at_start(k, pair, discrete_gradients).map_err(failed)?;
+                        let middle = &mut pair.clone();
+                        contact.kinematics.measure(middle, place, discrete_gradients).map_err(failed)?;
+                        gradient.evaluate(discrete_gradients.row(p), row.gap - start, place, &at.increment);
                         discrete_gradients.gradient_mut(p).copy_from_slice(gradient.gradient());
                     } else {
                         discrete_gradients.push_open();
@@ -361,18 +355,16 @@ impl<'a> Equations<'a> {
         Ok(())
     }
 
-    /// Gap of an active pair to its facet at the step's start; and what it is more than the gap to
-    /// the facet on which the pair was closed then, if that is another one.
-    pub(crate) fn start_of(&self, contact: usize, pair: &Pair, rows: &mut Rows) -> (f64, f64) {
-        let (before, start) = (&self.state.pairs[contact], pair.start.unwrap_or(0.0));
-        let old = before.binary_search_by_key(&pair.node, |old| old.node).map(|p| before[p]);
-        let kinematics = &self.model.contacts[contact].kinematics;
-        let stayed = old.is_ok_and(|old| old.facet == pair.facet);
-        if stayed || kinematics.measure(&mut pair.clone(), &self.state.y, rows).is_err() {
-            return (start, 0.0);
-        }
-        let here = rows.pop();
-        (here, if old.is_ok_and(|old| old.active) { here - start } else { 0.0 })
+    /// Gap of a pair to its present facet at the step's start. That of a closed pair which is handed
+    /// over is not zero there: the gap to the extension of its new facet.
+    pub(crate) fn gap_at_start(
+        &self,
+        contact: usize,
+        pair: &Pair,
+        rows: &mut Rows,
+    ) -> Result<f64, ContactError> {
+        self.model.contacts[contact].kinematics.measure(&mut pair.clone(), &self.state.y, rows)?;
+        Ok(rows.pop())
     }
 
     /// ∂r/∂y · `change` of bodies and loads at an iterate, without contact; exact and not

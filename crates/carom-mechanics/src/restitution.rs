@@ -1,73 +1,51 @@
-//! Restitution where contact begins, for the conserving constraint: a velocity update that returns
-//! energy, after T. A. Laursen and G. R. Love (2002). It follows the projection, with which G v = 0.
+//! Restitution of the conserving constraint: velocity updates that return energy, after T. A. Laursen
+//! and G. R. Love (2002). Contact owes e² of the energy D that it has taken,
 //!
 //! ```text
-//! v⁺ = v + e μ w,        M w + Gᵀq = 0,   G w = s,        ½ μ² w·M w = D
+//! owed = Σ e² D − Σ returned,      D = −Δ contact_work of a step, and what its projection takes
+//! v⁺ = v + μ w,   M w + Gᵀq = 0,   G w = s,      ½ a μ² + b μ = owed,   a = −s·q,   b = v·M w = −q·G v
 //! ```
 //!
-//! s: approach speeds of the pairs that were closed in the step, zero for those that were closed
-//! before; D: the energy that contact took in the step and its projection. Since v·M w = −q·G v = 0,
-//! the kinetic energy grows by e² D: with e = 1 the energy of the step's start is restored to
-//! round-off, and one particle separates with e times its approach speed. Gradients are those at
-//! y_{n+1}, so momentum and moment of momentum do not change.
+//! and returns it where pairs close or open. Where they close, s are their approach speeds, after the
+//! projection, with which b = 0; where they open, s are their separation speeds. s is zero for pairs
+//! that were closed before and remain so. Of two roots μ, nodes separate with that for which w·G v
+//! is not reversed. A negative `owed`, energy that contact created, makes them separate slower, at
+//! most to s = 0; what is then left is carried. Gradients are those at y_{n+1}, so momentum and moment
+//! of momentum do not change.
 
 use carom_contact::Row;
 
-use crate::constraints::Constraints;
+use crate::constraints::{Constraints, independent_rows};
+use crate::ledger::book_kinetic;
 use crate::model::Model;
+use crate::persistency::{measure, pressing};
 use crate::rejected::Rejected;
 use crate::state::State;
 use crate::system::System;
 
-/// The step after which velocities are updated.
+/// The step in which pairs closed.
 pub(crate) struct Impact<'a> {
     /// Its size.
     pub dt: f64,
     /// Velocities at its start.
     pub velocity: &'a [f64],
-    /// Work of contact up to its start.
-    pub contact_work: f64,
-    /// The gaps at its start of pairs that were closed in it: (contact, pair), gap.
+    /// The gaps at its start of pairs that closed in it: (contact, pair), gap.
     pub closed: Vec<((usize, usize), f64)>,
 }
 
 impl Impact<'_> {
-    /// Updates projected velocities. `rows`: the constraints of the projection, with which `system`
-    /// has factored the mass; `lost`: kinetic energy that the projection took.
+    /// Returns energy to projected velocities. `rows`: the constraints of the projection, with which
+    /// `system` has factored the mass.
     pub(crate) fn restitute(
         &self,
         model: &Model,
         state: &mut State,
         rows: &Constraints,
-        lost: f64,
         system: &mut System,
     ) -> Result<(), Rejected> {
-        // The same for all contacts that have one.
-        let of = |&(k, _): &(usize, usize)| model.contacts[k].restitution;
-        let restitution = rows.places.iter().map(of).fold(0.0, f64::max);
-        let taken = self.contact_work - state.ledger.contact_work + lost;
-        if restitution == 0.0 || taken <= 0.0 {
-            return Ok(());
-        }
-        let speeds: Vec<f64> =
-            rows.places.iter().zip(rows.rows.iter()).map(|(place, row)| self.approach(*place, row)).collect();
-        let dofs = model.dofs();
-        let (mut response, mut impulses) = (vec![0.0; dofs], Vec::new());
-        system.factor.solve(model, &vec![0.0; dofs], &speeds, &mut response, &mut impulses)?;
-        // w·M w.
-        let size: f64 = -speeds.iter().zip(&impulses).map(|(s, q)| s * q).sum::<f64>();
-        if size <= 0.0 {
-            return Ok(());
-        }
-        let factor = restitution * (2.0 * taken / size).sqrt();
-        for i in (0..dofs).filter(|&i| !model.massless[i]) {
-            state.v[i] += factor * response[i];
-        }
-        for (&(k, _), (row, impulse)) in rows.places.iter().zip(rows.rows.iter().zip(&impulses)) {
-            let normal = row.normal();
-            (0..3).for_each(|i| state.impulses[k][i] -= factor * impulse * normal[i]);
-        }
-        Ok(())
+        let places = rows.places.iter().zip(rows.rows.iter());
+        let speeds: Vec<f64> = places.map(|(place, row)| self.approach(*place, row)).collect();
+        settle(model, state, rows, &speeds, system)
     }
 
     /// Approach speed of a pair: at the step's start, or the mean over the step if that is larger,
@@ -75,5 +53,110 @@ impl Impact<'_> {
     fn approach(&self, place: (usize, usize), row: Row) -> f64 {
         let gap = self.closed.iter().find(|(closed, _)| *closed == place);
         gap.map_or(0.0, |(_, gap)| (-row.along(self.velocity)).max(gap / self.dt).max(0.0))
+    }
+}
+
+/// Adds e² of the energy that contact took to what it owes.
+pub(crate) fn take(model: &Model, state: &mut State, energy: f64) {
+    let conserving = model.contacts.iter().filter(|contact| contact.conserves());
+    // The same for all contacts that have one.
+    let restitution = conserving.map(|contact| contact.restitution).fold(0.0, f64::max);
+    state.ledger.owed += restitution * restitution * energy;
+}
+
+/// Returns energy where contact ends: `released` are the contacts and secondary nodes of pairs that
+/// opened in the step. The jump of kinetic energy is recorded as contact work and returned.
+pub(crate) fn separate(
+    model: &Model,
+    state: &mut State,
+    released: &[(usize, usize)],
+    system: &mut System,
+) -> Result<f64, Rejected> {
+    if state.ledger.owed == 0.0 {
+        return Ok(0.0);
+    }
+    let opened = |&(k, node): &(usize, usize)| {
+        let secondary = model.contacts[k].kinematics.secondary();
+        let p = state.pairs[k].iter().position(|pair| secondary[pair.node] == node)?;
+        model.contacts[k].conserves().then_some((k, p))
+    };
+    let opened: Vec<(usize, usize)> = released.iter().filter_map(opened).collect();
+    let gaps = measure(model, state, |k, p, pair| pair.active || opened.contains(&(k, p)))?;
+    let mut places: Vec<(usize, usize)> = pressing(state).chain(opened.iter().copied()).collect();
+    places.sort_unstable();
+    let places = independent_rows(model, places.into_iter(), &gaps);
+    let rows = Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), gaps[k].row(p))));
+    let separation = |(place, row): (&(usize, usize), Row)| {
+        if opened.contains(place) { row.along(&state.v).max(0.0) } else { 0.0 }
+    };
+    let speeds: Vec<f64> = rows.places.iter().zip(rows.rows.iter()).map(separation).collect();
+    if speeds.iter().all(|s| *s == 0.0) {
+        return Ok(0.0);
+    }
+    system.factor_mass(model, &rows)?;
+    let before = state.ledger.kinetic;
+    settle(model, state, &rows, &speeds, system)?;
+    book_kinetic(model, state);
+    let jump = state.ledger.kinetic - before;
+    state.ledger.contact_work += jump;
+    Ok(jump)
+}
+
+/// Changes velocities along the response of the mass, factored with these rows, to `speeds`.
+fn settle(
+    model: &Model,
+    state: &mut State,
+    rows: &Constraints,
+    speeds: &[f64],
+    system: &mut System,
+) -> Result<(), Rejected> {
+    if state.ledger.owed == 0.0 {
+        return Ok(());
+    }
+    let dofs = model.dofs();
+    let (mut response, mut impulses) = (vec![0.0; dofs], Vec::new());
+    system.factor.solve(model, &vec![0.0; dofs], speeds, &mut response, &mut impulses)?;
+    let size: f64 = -speeds.iter().zip(&impulses).map(|(s, q)| s * q).sum::<f64>();
+    let slope: f64 = -rows.rows.iter().zip(&impulses).map(|(row, q)| q * row.along(&state.v)).sum::<f64>();
+    if size <= 0.0 {
+        return Ok(());
+    }
+    let factor = root(size, slope, state.ledger.owed);
+    for i in (0..dofs).filter(|&i| !model.massless[i]) {
+        state.v[i] += factor * response[i];
+    }
+    for (&(k, _), (row, impulse)) in rows.places.iter().zip(rows.rows.iter().zip(&impulses)) {
+        let normal = row.normal();
+        (0..3).for_each(|i| state.impulses[k][i] -= factor * impulse * normal[i]);
+    }
+    state.ledger.owed -= factor * (0.5 * size * factor + slope);
+    Ok(())
+}
+
+/// μ of ½ a μ² + b μ = owed, a > 0: the larger root, with which nodes separate; the vertex if there is
+/// none; 0 if nothing can be taken from nodes that do not separate.
+fn root(a: f64, b: f64, owed: f64) -> f64 {
+    let discriminant = (b * b + 2.0 * a * owed).max(0.0).sqrt();
+    match (owed > 0.0, b > 0.0) {
+        (true, true) => 2.0 * owed / (b + discriminant),
+        (true, false) => (discriminant - b) / a,
+        (false, true) => (2.0 * owed / (b + discriminant)).max(-b / a),
+        (false, false) => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::root;
+
+    #[test]
+    fn the_root_returns_the_energy_or_what_nodes_can_lose() {
+        for (a, b, owed) in [(2.0, 3.0, 1.0), (2.0, 0.0, 1.0), (2.0, -3.0, 1.0), (2.0, 3.0, -1.0)] {
+            let factor: f64 = root(a, b, owed);
+            assert!((0.5 * a * factor * factor + b * factor - owed).abs() < 1e-15, "{a} {b} {owed}");
+            assert_eq!(factor > 0.0, owed > 0.0);
+        }
+        assert_eq!(root(2.0, 3.0, -3.0), -1.5);
+        assert_eq!(root(2.0, -3.0, -1.0), 0.0);
     }
 }

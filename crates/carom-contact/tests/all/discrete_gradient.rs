@@ -48,7 +48,7 @@ fn discrete_gradient(contact: &dyn Kinematics, start: &[f64], end: &[f64]) -> (V
     contact.measure(&mut pair.clone(), end, &mut rows).unwrap();
     contact.measure(&mut pair, &middle, &mut rows).unwrap();
     let mut gradient = DiscreteGradient::default();
-    gradient.evaluate(rows.row(1), rows.row(0).gap - gap(contact, start), 0.0, &middle, &moved);
+    gradient.evaluate(rows.row(1), rows.row(0).gap - gap(contact, start), &middle, &moved);
     let dofs: Vec<usize> = rows.row(1).entries().map(|(dof, _)| dof).collect();
     let (n, all) = (dofs.len(), start.len());
     let (mut matrix, mut force, mut full) = (vec![0.0; n * n], vec![0.0; all], vec![0.0; all * all]);

@@ -13,7 +13,7 @@ use crate::model::{Contact, LoadsAt, Model};
 use crate::newton::solve_stage;
 use crate::persistency::{averaged_contact_into, project};
 use crate::rejected::Rejected;
-use crate::restitution::Impact;
+use crate::restitution::{self, Impact, separate};
 use crate::settings::Settings;
 use crate::state::{Means, Previous, State};
 use crate::sums::dot;
@@ -126,28 +126,29 @@ impl Stepper for Implicit {
             model.mass.multiply_into(&change, &mut forces);
             next.ledger.contact_work -= dot(shift, &forces);
         }
-        let of_path = |contact: &Contact| contact.interface.direction() != Direction::End;
-        for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| of_path(contact)) {
+        let accumulates = |contact: &Contact| contact.interface.direction() == Direction::Midpoint;
+        for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| accumulates(contact)) {
             debug_assert_eq!(next.pairs[k].len(), solved.rows[k].len(), "contact {}", contact.name);
-            // The next step continues from this gap.
+            // The next step continues from the accumulated gap.
             let gaps = solved.rows[k].iter().map(|row| Some(row.gap));
             next.pairs[k].iter_mut().zip(gaps).for_each(|(pair, gap)| pair.start = gap);
         }
 
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
+        let taken = state.ledger.contact_work - next.ledger.contact_work;
+        restitution::take(model, &mut next, taken);
         if !report.activations.is_empty() {
-            let impact = Impact {
-                dt,
-                velocity: &state.v,
-                contact_work: state.ledger.contact_work,
-                closed: closed(model, &solved.at.pairings, &report.activations),
-            };
+            let closed = closed(model, state, &solved.at.pairings, &report.activations);
+            let impact = Impact { dt, velocity: &state.v, closed };
             let projected = project(model, &mut next, &impact, &report.activations, &mut work.system)?;
             if let Some(jump) = projected {
                 report.projection = jump;
                 carried::project(&mut next, factor);
             }
+        }
+        if !report.releases.is_empty() {
+            report.projection += separate(model, &mut next, &report.releases, &mut work.system)?;
         }
         next.previous = (self.kernel.two_step() && report.activations.is_empty()).then(|| Previous {
             dt,
@@ -219,14 +220,22 @@ impl Implicit {
     }
 }
 
-/// Contact and pair of new contacts, with the gaps at the step's start where they are known.
-fn closed(model: &Model, pairings: &[Pairing], activations: &[(usize, usize)]) -> Vec<((usize, usize), f64)> {
-    let of = |&(k, node): &(usize, usize)| {
-        let secondary = model.contacts[k].kinematics.secondary();
+/// Contact and pair of new contacts, with the gaps at the step's start where they exist.
+fn closed(
+    model: &Model,
+    state: &State,
+    pairings: &[Pairing],
+    activations: &[(usize, usize)],
+) -> Vec<((usize, usize), f64)> {
+    let mut rows = Rows::new(model.dimension);
+    let mut of = |&(k, node): &(usize, usize)| {
+        let kinematics = &model.contacts[k].kinematics;
+        let secondary = kinematics.secondary();
         let p = pairings[k].pairs.iter().position(|pair| secondary[pair.node] == node)?;
-        Some(((k, p), pairings[k].pairs[p].start?))
+        kinematics.measure(&mut pairings[k].pairs[p].clone(), &state.y, &mut rows).ok()?;
+        Some(((k, p), rows.pop()))
     };
-    activations.iter().filter_map(of).collect()
+    activations.iter().filter_map(&mut of).collect()
 }
 
 /// Moving supports have their own velocities and accelerations, not the scheme's.
