@@ -12,9 +12,10 @@
 //! gap. d = Δy − (rigid part) needs no invariants. ε suppresses quotients of round-off where the
 //! nodes move as a rigid body: the work is then wrong by less than ε |ΔG − ∇G·Δy| / |d|.
 //!
-//! Both gaps refer to one facet. A closed pair that is handed over had a gap J to the extension of its
-//! new facet; its force does the work −λJ. With G_n = 0 instead, the correction would have to account
-//! for J too, which it can only by turning the force by any angle where J is not small against d.
+//! Both gaps refer to one facet. A closed pair that is handed over had a gap J to the extension of
+//! its new facet; its force does the work −λJ. With G_n = 0 instead, the correction would have to
+//! account for J too, which it can only by turning the force by any angle where J is not small
+//! against d.
 //!
 //! In the plane there is one rotation ω with the arm r = J x, x = y_½ − ȳ_½, J = [0 −1; 1 0], and
 //! with c = Δy − t

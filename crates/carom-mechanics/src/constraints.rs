@@ -79,7 +79,8 @@ impl Constraints {
             let (k, p) = place;
             let contact = &model.contacts[k];
             let answer = &evaluation.answers[k][p];
-            let mut curvature = derivative_of_direction(equations, evaluation, place, &mut rows, &mut gradient);
+            let mut curvature =
+                derivative_of_direction(equations, evaluation, place, &mut rows, &mut gradient);
             curvature.iter_mut().for_each(|c| *c *= answer.lambda);
             constraints.places.push(place);
             constraints.rows.push_row(evaluation.rows[k].row(p));
@@ -134,7 +135,8 @@ impl Constraints {
         }
     }
 
-    /// Calls `visit(a, b, value)` for the entries w·λ∇²g of all rows at unknowns a ≥ b, symmetrised.
+    /// Calls `visit(a, b, value)` for the entries w·λ∇²g of all rows at unknowns a ≥ b,
+    /// symmetrised.
     pub(crate) fn each_curvature(&self, model: &Model, mut visit: impl FnMut(usize, usize, f64)) {
         for (r, (row, curvature)) in self.rows.iter().zip(&self.curvatures).enumerate() {
             let count = row.gradient.len();

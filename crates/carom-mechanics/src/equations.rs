@@ -355,8 +355,8 @@ impl<'a> Equations<'a> {
         Ok(())
     }
 
-    /// Gap of a pair to its present facet at the step's start. That of a closed pair which is handed
-    /// over is not zero there: the gap to the extension of its new facet.
+    /// Gap of a pair to its present facet at the step's start. That of a closed pair which is
+    /// handed over is not zero there: the gap to the extension of its new facet.
     pub(crate) fn gap_at_start(
         &self,
         contact: usize,

@@ -1,17 +1,16 @@
-//! Restitution of the conserving constraint: velocity updates that return energy, after T. A. Laursen
-//! and G. R. Love (2002). Contact owes e² of the energy D that it has taken,
+//! Restitution of the conserving constraint: velocity updates that return energy, after T. A.
+//! Laursen and G. R. Love (2002). Contact owes e² of the energy D that it has taken,
 //!
 //! ```text
 //! owed = Σ e² D − Σ returned,      D = −Δ contact_work of a step, and what its projection takes
 //! v⁺ = v + μ w,   M w + Gᵀq = 0,   G w = s,      ½ a μ² + b μ = owed,   a = −s·q,   b = v·M w = −q·G v
 //! ```
 //!
-//! and returns it where pairs close or open. Where they close, s are their approach speeds, after the
-//! projection, with which b = 0; where they open, s are their separation speeds. s is zero for pairs
-//! that were closed before and remain so. Of two roots μ, nodes separate with that for which w·G v
-//! is not reversed. A negative `owed`, energy that contact created, makes them separate slower, at
-//! most to s = 0; what is then left is carried. Gradients are those at y_{n+1}, so momentum and moment
-//! of momentum do not change.
+//! and returns it where pairs close or open. s are their approach speeds, after the projection,
+//! with which b = 0, or their separation speeds; zero for pairs that remain closed. Owed energy makes
+//! nodes separate faster. Energy that contact has created, owed < 0, makes them separate slower, at
+//! most until b + a μ = 0; the rest is carried. Gradients are those at y_{n+1}, so momentum and
+//! moment of momentum do not change.
 
 use carom_contact::Row;
 
@@ -34,8 +33,8 @@ pub(crate) struct Impact<'a> {
 }
 
 impl Impact<'_> {
-    /// Returns energy to projected velocities. `rows`: the constraints of the projection, with which
-    /// `system` has factored the mass.
+    /// Returns energy to projected velocities. `rows`: the constraints of the projection, with
+    /// which `system` has factored the mass.
     pub(crate) fn restitute(
         &self,
         model: &Model,
@@ -133,8 +132,8 @@ fn settle(
     Ok(())
 }
 
-/// μ of ½ a μ² + b μ = owed, a > 0: the larger root, with which nodes separate; the vertex if there is
-/// none; 0 if nothing can be taken from nodes that do not separate.
+/// μ of ½ a μ² + b μ = owed, a > 0: the larger root, with which nodes separate; the vertex if there
+/// is none; 0 if nothing can be taken from nodes that do not separate.
 fn root(a: f64, b: f64, owed: f64) -> f64 {
     let discriminant = (b * b + 2.0 * a * owed).max(0.0).sqrt();
     match (owed > 0.0, b > 0.0) {

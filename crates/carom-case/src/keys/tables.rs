@@ -356,7 +356,7 @@ const CONTACT: Table = Table {
             "restitution",
             Number(RESTITUTION),
             "Coefficient of restitution e: Newton's, for contact laws on velocities; with energy-momentum and multipliers, e² is the fraction of the \
-             energy taken by impacts that is returned (1 elastic, 0 inelastic); with paoli-schatzman, the weight of the previous position.",
+             energy taken by contact that is returned where nodes close or open (1 elastic, 0 inelastic); with paoli-schatzman, the weight of the previous position.",
         )
         .default("0.0"),
     ],

@@ -5,6 +5,7 @@ use carom_run::{GridReport, Simulation};
 use super::common::simulation;
 
 const OFFSET: &str = include_str!("../../../../cases/disc/offset.toml");
+const HEAD_ON: &str = include_str!("../../../../cases/disc/head-on.toml");
 const BAR: &str = include_str!("../../../../cases/bar/single.toml");
 const SCHEME: &str = "time.scheme={ kind = \"energy-momentum\" }";
 const TIGHT: &str = "newton.tolerance=1e-12";
@@ -22,12 +23,13 @@ fn momenta(sim: &Simulation) -> [f64; 3] {
     sums
 }
 
-/// Two discs with an offset: largest drift of the momenta, and of the energy beyond the work of
-/// contact, as fractions of their scales.
-fn collision(sets: &[&str]) -> [f64; 2] {
-    let mut sim = simulation(OFFSET, &[&[SCHEME, TIGHT][..], sets].concat());
+/// Two discs that collide: largest drift of the momenta, and of the energy beyond the work of
+/// contact, and the change of the energy in the end, as fractions of their scales.
+fn collision(case: &str, sets: &[&str]) -> [f64; 3] {
+    let mut sim = simulation(case, &[&[SCHEME, TIGHT][..], sets].concat());
     let (start, energy) = (momenta(&sim), sim.state().ledger.total());
-    let scale = start[2].abs();
+    // p and L of one disc before the impact are of this order.
+    let scale = 1.4;
     let (mut momentum, mut unbooked) = (0.0_f64, 0.0_f64);
     while !sim.finished() {
         sim.advance(&mut GridReport::default()).unwrap();
@@ -36,7 +38,8 @@ fn collision(sets: &[&str]) -> [f64; 2] {
         let ledger = &sim.state().ledger;
         unbooked = unbooked.max(((ledger.total() - energy) - ledger.contact_work).abs() / energy);
     }
-    [momentum, unbooked]
+    assert_eq!(sim.state().contact_forces[0], [0.0; 3], "the discs have parted");
+    [momentum, unbooked, (sim.state().ledger.total() - energy) / energy]
 }
 
 #[test]
@@ -49,9 +52,25 @@ fn two_discs_conserve_momenta_and_lose_what_is_booked() {
         &["body.upper.mass=lumped", "body.lower.mass=lumped"],
         &["time.step=5e-3"],
     ] {
-        let [momentum, unbooked] = collision(sets);
+        let [momentum, unbooked, _] = collision(OFFSET, sets);
         assert!(momentum < 1e-10, "{sets:?}: {momentum:e}");
         assert!(unbooked < 1e-10, "{sets:?}: {unbooked:e}");
+    }
+}
+
+/// Nodes that are handed over between facets do work too, which is returned.
+#[test]
+fn two_discs_part_with_the_energy_of_the_start_after_an_elastic_impact() {
+    let elastic = "contact.strike.restitution=1.0";
+    for (case, sets) in [
+        (OFFSET, &[elastic][..]),
+        (OFFSET, &[elastic, "time.step=5e-3"]),
+        (OFFSET, &[elastic, "body.upper.mass=lumped", "body.lower.mass=lumped"]),
+        (HEAD_ON, &[elastic]),
+    ] {
+        let [momentum, unbooked, change] = collision(case, sets);
+        assert!(momentum < 1e-10 && unbooked < 1e-10, "{sets:?}: {momentum:e} {unbooked:e}");
+        assert!(change.abs() < 1e-10, "{sets:?}: {change:e}");
     }
 }
 
