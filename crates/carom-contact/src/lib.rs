@@ -2,6 +2,7 @@
 //! positions, independent of time integration and matrices.
 
 mod active_set;
+mod discrete_gradient;
 pub mod interface;
 pub mod kinematics;
 mod pair;
@@ -9,7 +10,10 @@ mod places;
 mod rows;
 
 pub use active_set::{ActiveSet, Contender, Cycle};
-pub use interface::{Answer, ConservingPenalty, Interface, Penalty, Point, Unilateral};
+pub use discrete_gradient::DiscreteGradient;
+pub use interface::{
+    Answer, ConservingPenalty, ConservingUnilateral, Direction, Interface, Penalty, Point, Unilateral,
+};
 pub use kinematics::{ContactPoint, Detection, Kinematics, NodeToFacet, NodeToPlane, Surface};
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

@@ -97,6 +97,11 @@ impl Rows {
         (0..self.len()).map(|row| self.row(row))
     }
 
+    /// The gradient of a row, mutable: a discrete gradient replaces that at the midpoint.
+    pub fn gradient_mut(&mut self, row: usize) -> &mut [f64] {
+        &mut self.gradients[self.starts[row] * self.dimension..self.starts[row + 1] * self.dimension]
+    }
+
     /// The gap of a row, mutable: springs have their own.
     pub fn gap_mut(&mut self, row: usize) -> &mut f64 {
         &mut self.gaps[row]

@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_contact::{Row, Rows};
+use carom_contact::{Direction, DiscreteGradient, Row, Rows};
 
 use crate::balance::contact_weights;
 use crate::equations::{Equations, Evaluation};
@@ -23,14 +23,18 @@ const DEPENDENT: f64 = 1e-8;
 pub(crate) struct Constraints {
     /// Contact and pair of each row.
     pub places: Vec<(usize, usize)>,
+    /// Gradients of the gaps.
     pub rows: Rows,
+    /// Directions of the forces.
+    pub directions: Rows,
     /// Weight of the contact force in the balance.
     pub weights: Vec<f64>,
     /// Gap per unit of multiplier.
     pub compliances: Vec<f64>,
     /// Gap still to be closed.
     pub open: Vec<f64>,
-    /// λ∇²g over the nodes of each row, row-major; empty if not requested.
+    /// λ times the derivative of the direction over the nodes of each row, row-major: λ∇²g, or not
+    /// symmetric for a discrete gradient. Empty if not requested.
     pub curvatures: Vec<Vec<f64>>,
 }
 
@@ -40,6 +44,7 @@ impl Constraints {
         Self {
             places: Vec::new(),
             rows: Rows::new(dimension),
+            directions: Rows::new(dimension),
             weights: Vec::new(),
             compliances: Vec::new(),
             open: Vec::new(),
@@ -57,6 +62,7 @@ impl Constraints {
         for (place, row) in rows {
             plain.places.push(place);
             plain.rows.push_row(row);
+            plain.directions.push_row(row);
             plain.weights.push(1.0);
             plain.compliances.push(0.0);
             plain.open.push(0.0);
@@ -68,18 +74,17 @@ impl Constraints {
     pub(crate) fn of(equations: &Equations, evaluation: &Evaluation) -> Self {
         let model = equations.model;
         let mut constraints = Self::none(model.dimension);
+        let (mut rows, mut gradient) = (Rows::new(model.dimension), DiscreteGradient::default());
         for place in independent_rows(model, evaluation.pressing(), &evaluation.rows) {
             let (k, p) = place;
             let contact = &model.contacts[k];
-            let (answer, pair) = (&evaluation.answers[k][p], &evaluation.at.pairings[k].pairs[p]);
-            let between = contact.interface.acts_between();
-            let (positions, share) = if between { (&evaluation.place, 0.5) } else { (&evaluation.y, 1.0) };
-            let row = evaluation.rows[k].row(p);
-            let mut curvature = vec![0.0; row.gradient.len().pow(2)];
-            contact.kinematics.curvature_into(pair, positions, &mut curvature);
-            curvature.iter_mut().for_each(|c| *c *= share * answer.lambda);
+            let answer = &evaluation.answers[k][p];
+            let mut curvature =
+                derivative_of_direction(equations, evaluation, place, &mut rows, &mut gradient);
+            curvature.iter_mut().for_each(|c| *c *= answer.lambda);
             constraints.places.push(place);
-            constraints.rows.push_row(row);
+            constraints.rows.push_row(evaluation.rows[k].row(p));
+            constraints.directions.push_row(evaluation.directions(k).row(p));
             constraints.weights.push(contact_weights(&equations.stage, contact.at_the_end).0);
             constraints.compliances.push(answer.compliance);
             constraints.open.push(answer.open);
@@ -130,7 +135,8 @@ impl Constraints {
         }
     }
 
-    /// Calls `visit(a, b, value)` for the entries w·λ∇²g of all rows at unknowns a ≥ b.
+    /// Calls `visit(a, b, value)` for the entries w·λ∇²g of all rows at unknowns a ≥ b,
+    /// symmetrised.
     pub(crate) fn each_curvature(&self, model: &Model, mut visit: impl FnMut(usize, usize, f64)) {
         for (r, (row, curvature)) in self.rows.iter().zip(&self.curvatures).enumerate() {
             let count = row.gradient.len();
@@ -140,12 +146,48 @@ impl Constraints {
                     if let Some(b) = model.unknown(other)
                         && a >= b
                     {
-                        visit(a, b, self.weights[r] * curvature[i * count + j]);
+                        let mean = 0.5 * (curvature[i * count + j] + curvature[j * count + i]);
+                        visit(a, b, self.weights[r] * mean);
                     }
                 }
             }
         }
     }
+}
+
+/// Derivative of the direction of a pair's force to the positions at the end of the step, over the
+/// nodes of its row, row-major; `rows` and `gradient` are buffers.
+fn derivative_of_direction(
+    equations: &Equations,
+    evaluation: &Evaluation,
+    (k, p): (usize, usize),
+    rows: &mut Rows,
+    gradient: &mut DiscreteGradient,
+) -> Vec<f64> {
+    let contact = &equations.model.contacts[k];
+    let (row, pair) = (evaluation.rows[k].row(p), &evaluation.at.pairings[k].pairs[p]);
+    let Evaluation { y, place, at, .. } = evaluation;
+    let mut matrix = vec![0.0; row.gradient.len().pow(2)];
+    match contact.interface.direction() {
+        Direction::End => contact.kinematics.curvature_into(pair, y, &mut matrix),
+        Direction::Midpoint => {
+            contact.kinematics.curvature_into(pair, place, &mut matrix);
+            matrix.iter_mut().for_each(|entry| *entry *= 0.5);
+        }
+        Direction::DiscreteGradient => {
+            // Both were measured in the evaluation.
+            rows.clear();
+            let mut middle = *pair;
+            if let Ok(start) = equations.gap_at_start(k, pair, rows)
+                && contact.kinematics.measure(&mut middle, place, rows).is_ok()
+            {
+                gradient.evaluate(rows.row(0), row.gap - start, place, &at.increment);
+                contact.kinematics.curvature_into(&middle, place, &mut matrix);
+                gradient.derivative_into(row, &mut matrix);
+            }
+        }
+    }
+    matrix
 }
 
 impl Evaluation {

@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use carom_contact::{Answer, Pairing, Point, Rows};
+use carom_contact::{Answer, ContactError, Direction, DiscreteGradient, Pair, Pairing, Point, Rows};
 use carom_time::{Internal, Stage};
 
 use crate::balance::{Forces, contact_weights, known_into, mean_acceleration, residual_into};
@@ -52,6 +52,9 @@ pub(crate) struct Evaluation {
     pub residual: Vec<f64>,
     /// A row per pair of each contact.
     pub rows: Vec<Rows>,
+    /// Directions of the contact forces where they are not the gradients of these rows: discrete
+    /// gradients, for active pairs; empty for other contacts.
+    pub discrete_gradients: Vec<Rows>,
     /// The interface's response to each row.
     pub answers: Vec<Vec<Answer>>,
     /// Strain energy of the bodies at `y`, or at the averaged positions.
@@ -60,6 +63,16 @@ pub(crate) struct Evaluation {
     pub springs: f64,
     /// Size of the residual and its reference.
     pub measure: Measure,
+    /// Buffers.
+    gradient: DiscreteGradient,
+}
+
+impl Evaluation {
+    /// Directions of the forces of a contact, a row per pair.
+    pub(crate) fn directions(&self, contact: usize) -> &Rows {
+        let discrete = &self.discrete_gradients[contact];
+        if discrete.is_empty() { &self.rows[contact] } else { discrete }
+    }
 }
 
 /// Size of a residual and its reference.
@@ -265,21 +278,38 @@ impl<'a> Equations<'a> {
 
     /// Rows of all pairs, the responses of their interfaces, and the contact forces.
     fn evaluate_contacts(&self, evaluation: &mut Evaluation) -> Result<(), Rejected> {
-        let Evaluation { at, y, place, forces, rows, answers, springs, measure, .. } = evaluation;
+        let Evaluation {
+            at,
+            y,
+            place,
+            forces,
+            rows,
+            discrete_gradients,
+            answers,
+            springs,
+            measure,
+            gradient,
+            ..
+        } = evaluation;
+        let contacts = self.model.contacts.len();
         forces.contact.clear();
         forces.contact.resize(self.model.dofs(), 0.0);
-        rows.resize_with(self.model.contacts.len(), || Rows::new(self.model.dimension));
-        answers.resize_with(self.model.contacts.len(), Vec::new);
+        rows.resize_with(contacts, || Rows::new(self.model.dimension));
+        discrete_gradients.resize_with(contacts, || Rows::new(self.model.dimension));
+        answers.resize_with(contacts, Vec::new);
         (*springs, measure.gap) = (0.0, 0.0);
         for (k, (contact, pairing)) in self.model.contacts.iter().zip(&mut at.pairings).enumerate() {
             let weight = contact_weights(&self.stage, contact.at_the_end).0;
-            let (rows, answers) = (&mut rows[k], &mut answers[k]);
-            let between = contact.interface.acts_between();
+            let (rows, discrete_gradients, answers) =
+                (&mut rows[k], &mut discrete_gradients[k], &mut answers[k]);
+            let direction = contact.interface.direction();
             rows.clear();
+            discrete_gradients.clear();
             answers.clear();
             for (p, pair) in pairing.pairs.iter_mut().enumerate() {
                 let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
-                if between && pair.start.is_none() {
+                let at_middle = direction == Direction::Midpoint;
+                if at_middle && pair.start.is_none() {
                     // The initial gap of a new pair; later it is updated.
                     pair.start = match contact.kinematics.measure(&mut pair.clone(), &self.state.y, rows) {
                         Ok(()) => Some(rows.pop()),
@@ -287,14 +317,14 @@ impl<'a> Equations<'a> {
                         Err(_) => None,
                     };
                 }
-                match contact.kinematics.measure(pair, if between { place } else { y }, rows) {
+                match contact.kinematics.measure(pair, if at_middle { place } else { y }, rows) {
                     Ok(()) => {}
                     Err(error) if pair.active => return Err(failed(error)),
                     // An inactive pair without a unique closest point is remote.
                     Err(_) => rows.push_open(),
                 }
                 let start = pair.start.unwrap_or(f64::INFINITY);
-                if between {
+                if at_middle {
                     *rows.gap_mut(p) = start + rows.row(p).along(&at.increment);
                 }
                 let row = rows.row(p);
@@ -302,8 +332,20 @@ impl<'a> Equations<'a> {
                     Point { node: pair.node, gap: row.gap, start, lambda: pair.lambda, active: pair.active };
                 let answer = contact.interface.respond(&point);
                 (pair.active, pair.lambda) = (answer.active, answer.lambda);
+                if direction == Direction::DiscreteGradient {
+                    if answer.active {
+                        let start = self.gap_at_start(k, pair, discrete_gradients).map_err(failed)?;
+                        let middle = &mut pair.clone();
+                        contact.kinematics.measure(middle, place, discrete_gradients).map_err(failed)?;
+                        gradient.evaluate(discrete_gradients.row(p), row.gap - start, place, &at.increment);
+                        discrete_gradients.gradient_mut(p).copy_from_slice(gradient.gradient());
+                    } else {
+                        discrete_gradients.push_open();
+                    }
+                }
                 if answer.active {
-                    row.add_to(weight * answer.lambda, &mut forces.contact);
+                    let along = if discrete_gradients.is_empty() { row } else { discrete_gradients.row(p) };
+                    along.add_to(weight * answer.lambda, &mut forces.contact);
                     measure.gap = measure.gap.max(answer.open.abs());
                 }
                 *springs += answer.energy;
@@ -311,6 +353,18 @@ impl<'a> Equations<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Gap of a pair to its present facet at the step's start. That of a closed pair which is
+    /// handed over is not zero there: the gap to the extension of its new facet.
+    pub(crate) fn gap_at_start(
+        &self,
+        contact: usize,
+        pair: &Pair,
+        rows: &mut Rows,
+    ) -> Result<f64, ContactError> {
+        self.model.contacts[contact].kinematics.measure(&mut pair.clone(), &self.state.y, rows)?;
+        Ok(rows.pop())
     }
 
     /// ∂r/∂y · `change` of bodies and loads at an iterate, without contact; exact and not

@@ -40,7 +40,7 @@ pub(crate) fn add_stage(
     contact.add(model, stage, &solved.forces.contact, &state.f_contact, &mut means.contact);
     for (k, contact) in model.contacts.iter().enumerate() {
         let (now, start) = if contact.at_the_end { (1.0, 0.0) } else { (now, start) };
-        let force = secondary_force(&solved.at.pairings[k].pairs, solved.rows[k].iter());
+        let force = secondary_force(&solved.at.pairings[k].pairs, solved.directions(k).iter());
         for i in 0..3 {
             means.contact_forces[k][i] += now * force[i] + start * state.contact_forces[k][i];
         }

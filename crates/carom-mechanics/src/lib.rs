@@ -19,6 +19,7 @@ mod newton;
 mod persistency;
 mod rejected;
 mod renewal;
+mod restitution;
 mod settings;
 mod simulation;
 pub mod stability;

@@ -2,8 +2,8 @@
 //! factor.
 //!
 //! ```text
-//! [ K  Gᵀ ] [Δy]   [−r]       K = w.mass a' M + w.internal K_int − w.external K_ext + Σ w.contact λ∇²g   at the iterate
-//! [ G  −C ] [Δλ] = [−c]
+//! [ K  Fᵀ ] [Δy]   [−r]       K = w.mass a' M + w.internal K_int − w.external K_ext + Σ w.contact λ∇F   at the iterate
+//! [ G  −C ] [Δλ] = [−c]       G = ∇g,   F: direction of the forces, G itself or a discrete gradient of g
 //! ```
 //!
 //! Each correction is the factor's solution for the current residual. Mixed (`mixing.rs`) they are
@@ -203,7 +203,7 @@ impl LinearProblem {
             } else {
                 approach / rows.compliances[r]
             };
-            row.add_to(-weight * multiplier, &mut self.forces);
+            rows.directions.row(r).add_to(-weight * multiplier, &mut self.forces);
             let curvature = rows.curvatures[r].chunks_exact(row.gradient.len());
             for ((dof, _), curved) in row.entries().zip(curvature) {
                 let bent: f64 =

@@ -7,22 +7,25 @@
 //!
 //! with all active rows as equalities. Projecting v alone would retain the accelerations of the
 //! impact and does not remove the oscillations (theory.md §5.3). Massless dofs keep their velocity:
-//! they follow the massive side.
+//! they follow the massive side. With a restitution, energy is returned (`restitution.rs`) before
+//! the accelerations are solved for.
 
-use carom_contact::{Row, Rows};
+use carom_contact::{Pair, Row, Rows};
 
 use crate::constraints::{Constraints, independent_rows};
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;
 use crate::rejected::Rejected;
+use crate::restitution::{Impact, take};
 use crate::state::State;
 use crate::system::System;
 
-/// Projects `state` if one of the new contacts (contact, node) requires it. The jump of kinetic
-/// energy is recorded as contact work and returned.
+/// Projects `state`, the end of the step `impact`, if one of the new contacts (contact, node)
+/// requires it. The jump of kinetic energy is recorded as contact work and returned.
 pub(crate) fn project(
     model: &Model,
     state: &mut State,
+    impact: &Impact,
     activations: &[(usize, usize)],
     system: &mut System,
 ) -> Result<Option<f64>, Rejected> {
@@ -48,6 +51,10 @@ pub(crate) fn project(
         (0..3).for_each(|i| state.impulses[k][i] -= impulse * normal[i]);
     }
 
+    let before = state.ledger.kinetic;
+    take(model, state, before - model.kinetic(&state.v));
+    impact.restitute(model, state, &rows, system)?;
+
     let (forces, bending) = drive(model, state, &gaps, &rows);
     system.factor.solve(model, &forces, &bending, &mut change, &mut multipliers)?;
     take_accelerations(model, state, &change);
@@ -57,7 +64,6 @@ pub(crate) fn project(
 
     averaged_contact_into(model, state, &gaps);
     book_contact_forces(model, state);
-    let before = state.ledger.kinetic;
     book_kinetic(model, state);
     let jump = state.ledger.kinetic - before;
     state.ledger.contact_work += jump;
@@ -108,17 +114,26 @@ pub(crate) fn take_accelerations(model: &Model, state: &mut State, solved: &[f64
 
 /// Rows of all active pairs at the state; those of inactive ones are open.
 pub(crate) fn measure_all(model: &Model, state: &mut State) -> Result<Vec<Rows>, Rejected> {
+    measure(model, state, |_, _, pair| pair.active)
+}
+
+/// Rows of these pairs (contact, index) at the state; those of others are open.
+pub(crate) fn measure(
+    model: &Model,
+    state: &mut State,
+    which: impl Fn(usize, usize, &Pair) -> bool,
+) -> Result<Vec<Rows>, Rejected> {
     let mut all = Vec::with_capacity(model.contacts.len());
-    for (contact, pairs) in model.contacts.iter().zip(&mut state.pairs) {
+    for (k, (contact, pairs)) in model.contacts.iter().zip(&mut state.pairs).enumerate() {
         let mut rows = Rows::new(model.dimension);
-        for pair in pairs {
-            if pair.active {
-                contact
-                    .kinematics
-                    .measure(pair, &state.y, &mut rows)
-                    .map_err(|error| Rejected::Contact { contact: contact.name.clone(), error })?;
-            } else {
-                rows.push_open();
+        for (p, pair) in pairs.iter_mut().enumerate() {
+            let measured = which(k, p, pair).then(|| contact.kinematics.measure(pair, &state.y, &mut rows));
+            match measured {
+                Some(Ok(())) => {}
+                Some(Err(error)) if pair.active => {
+                    return Err(Rejected::Contact { contact: contact.name.clone(), error });
+                }
+                _ => rows.push_open(),
             }
         }
         all.push(rows);

@@ -26,6 +26,9 @@ pub struct Ledger {
     pub open: f64,
     /// Work of the contact forces on the bodies, and the jumps of kinetic energy at activation.
     pub contact_work: f64,
+    /// Energy that conserving contact with a restitution has still to return; negative if it created
+    /// some (`restitution.rs`).
+    pub owed: f64,
     /// Largest kinetic + strain energy so far.
     pub largest: f64,
     /// Energy created so far.

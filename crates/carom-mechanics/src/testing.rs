@@ -2,7 +2,7 @@
 
 use carom_contact::{Detection, NodeToFacet, Surface, Unilateral};
 use carom_solid::{Law, LoadedSide, Mesh, body};
-use carom_time::Scheme;
+use carom_time::Kernel;
 
 use crate::model::{BodyInstance, Contact, Loads, Mass, Model, Motions};
 use crate::settings::{Settings, Tangent};
@@ -104,7 +104,7 @@ pub(crate) fn model(
 }
 
 /// A simulation of a model.
-pub(crate) fn simulation(model: Model, scheme: Scheme, dt: f64) -> Simulation {
+pub(crate) fn simulation(model: Model, scheme: impl Kernel + 'static, dt: f64) -> Simulation {
     let settings = Settings { tolerance: 1e-9, max_iterations: 20, tangent: Tangent::Full, mixing: 0 };
     let stepper = Box::new(Implicit::new(Box::new(scheme), settings));
     Simulation::new(model, stepper, Grid { dt, steps: u64::MAX, phase: 0.0, guard: None }, true, None, 1)

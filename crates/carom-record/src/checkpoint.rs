@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::{FieldEntry, RecordError, files};
 
 const MAGIC: &[u8; 8] = b"CAROMCKP";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const HASH: usize = blake3::OUT_LEN;
 
 /// The record at a checkpoint.

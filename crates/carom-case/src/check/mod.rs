@@ -4,6 +4,7 @@ mod contact;
 mod expect;
 mod loads;
 mod memory;
+mod restitution;
 mod scheme;
 mod time;
 

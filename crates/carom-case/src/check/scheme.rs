@@ -14,6 +14,8 @@ impl Check<'_> {
             self.fixed_supports(spec);
             self.rules_of_stages(spec);
             self.restitutions(spec, &scheme);
+        } else if spec.conserves() {
+            self.conserving_restitution(spec);
         } else if spec.integrator().is_ok() {
             self.no_restitution(spec, "its contact law constrains positions at the end of a step");
         }
@@ -136,7 +138,7 @@ impl Check<'_> {
         for (i, contact) in self.draft.contacts.iter().enumerate() {
             if let Some(e) = contact.as_ref().map(|c| c.restitution).filter(|e| *e != 0.0) {
                 let what = format!("{} has no restitution, but e = {e} is given", spec.kind);
-                let help = "leave restitution out, or use scheme moreau-jean, nonsmooth-generalized-alpha or paoli-schatzman";
+                let help = "leave restitution out, or use scheme energy-momentum, moreau-jean, nonsmooth-generalized-alpha or paoli-schatzman";
                 self.add(format!("contact[{i}].restitution"), what, why, help);
             }
         }

@@ -355,7 +355,8 @@ const CONTACT: Table = Table {
         key(
             "restitution",
             Number(RESTITUTION),
-            "Newton's coefficient of restitution e, for contact laws on velocities; with paoli-schatzman, the weight of the previous position.",
+            "Coefficient of restitution e: Newton's, for contact laws on velocities; with energy-momentum and multipliers, e² is the fraction of the \
+             energy taken by contact that is returned where nodes close or open (1 elastic, 0 inelastic); with paoli-schatzman, the weight of the previous position.",
         )
         .default("0.0"),
     ],

@@ -246,6 +246,38 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
         &["chung-hulbert has no restitution, but e = 0.5 is given", "moreau-jean"],
     ),
     (
+        &[
+            "time.scheme={ kind = \"energy-momentum\" }",
+            "contact.strike.restitution=0.5",
+            "contact.strike.persistency=none",
+        ],
+        &["`strike` cannot have restitution = 0.5 with energy-momentum", "persistency = \"project\""],
+    ),
+    (
+        &[
+            "time.scheme={ kind = \"energy-momentum\" }",
+            "contact.strike.restitution=0.5",
+            "contact.strike.enforcement=penalty",
+        ],
+        &[
+            "`strike` cannot have restitution = 0.5",
+            "springs return the energy",
+            "enforcement = \"multiplier\"",
+        ],
+    ),
+    (
+        &[
+            "time.scheme={ kind = \"energy-momentum\" }",
+            "contact.strike.restitution=0.5",
+            "contact.strike.law=predictor",
+        ],
+        &["`strike` cannot have restitution = 0.5", "law = \"position\""],
+    ),
+    (
+        &["time.scheme={ kind = \"energy-momentum\" }", "contact.strike.restitution=1.5"],
+        &["`restitution` must be a number in [0, 1]"],
+    ),
+    (
         &["contact.strike.law=velocity"],
         &["law = \"velocity\" constrains velocities", "the unknowns of chung-hulbert"],
     ),

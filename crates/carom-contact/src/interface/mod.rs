@@ -6,11 +6,13 @@
 //! [ G   −C ] [Δλ] = [ −c ]        c = Answer::open, C = Answer::compliance of each active pair
 //! ```
 
-mod conserving;
+mod conserving_penalty;
+mod conserving_unilateral;
 mod penalty;
 mod unilateral;
 
-pub use conserving::ConservingPenalty;
+pub use conserving_penalty::ConservingPenalty;
+pub use conserving_unilateral::ConservingUnilateral;
 pub use penalty::Penalty;
 pub use unilateral::Unilateral;
 
@@ -21,7 +23,7 @@ pub struct Point {
     pub node: usize,
     /// Gap at the end of the step; infinite for a remote pair.
     pub gap: f64,
-    /// Gap at its start, for an interface that acts [between](Interface::acts_between) the two.
+    /// Gap at its start, for an interface whose force depends on the [path](Direction).
     pub start: f64,
     /// Multiplier and activity in the current iteration.
     pub lambda: f64,
@@ -45,15 +47,26 @@ pub struct Answer {
     pub energy: f64,
 }
 
+/// Direction of the contact force over a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Direction {
+    /// ∇g at the end of the step.
+    #[default]
+    End,
+    /// ∇g at the midpoint; the gap is accumulated along it, g₁ = g₀ + ∇g·Δy.
+    Midpoint,
+    /// The [discrete gradient](crate::DiscreteGradient) of the gap over the step.
+    DiscreteGradient,
+}
+
 /// A contact law with its enforcement.
 pub trait Interface: Send + Sync {
     /// Whether its pairs are constraints: an active set decides which of them are active.
     fn is_constraint(&self) -> bool;
 
-    /// Whether the force acts along the gradient at the midpoint of the step, and works from the
-    /// gap at its start to that at its end.
-    fn acts_between(&self) -> bool {
-        false
+    /// Direction of its force.
+    fn direction(&self) -> Direction {
+        Direction::End
     }
 
     /// The response at a point.

@@ -3,4 +3,5 @@
 #![allow(clippy::unwrap_used)]
 
 mod derivatives;
+mod discrete_gradient;
 mod update_facets;

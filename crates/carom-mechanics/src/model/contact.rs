@@ -1,6 +1,6 @@
 //! A contact of two sides, or of a side and a rigid plane.
 
-use carom_contact::{Interface, Kinematics};
+use carom_contact::{Direction, Interface, Kinematics};
 use carom_solid::FacetShape;
 
 /// A contact: relative position of its surfaces, contact law, and treatment by the schemes.
@@ -29,6 +29,13 @@ pub struct Contact {
     pub projects: bool,
     /// Whether the active set may change before Newton's method has converged.
     pub within: bool,
-    /// Coefficient of restitution e; 0 unless the scheme has its own contact law.
+    /// Coefficient of restitution e; 0 unless the scheme or its conserving constraint uses it.
     pub restitution: f64,
+}
+
+impl Contact {
+    /// Whether it is a constraint whose closed gaps do no work.
+    pub(crate) fn conserves(&self) -> bool {
+        self.interface.is_constraint() && self.interface.direction() == Direction::DiscreteGradient
+    }
 }

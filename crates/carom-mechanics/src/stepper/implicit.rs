@@ -1,7 +1,7 @@
 //! Kernels that are lists of implicit stages: guess, solve, record, and project at activation of
 //! contact.
 
-use carom_contact::{Pairing, Rows};
+use carom_contact::{Direction, Pairing, Rows};
 use carom_time::{Before, Kernel, Memory, Stage, Weights};
 
 use super::{Accepted, StepReport, Stepper, difference};
@@ -9,10 +9,11 @@ use crate::carried;
 use crate::contact_update::{GAP_TOLERANCE, search, start_step};
 use crate::equations::{Equations, Iterate};
 use crate::ledger;
-use crate::model::{LoadsAt, Model};
+use crate::model::{Contact, LoadsAt, Model};
 use crate::newton::solve_stage;
 use crate::persistency::{averaged_contact_into, project};
 use crate::rejected::Rejected;
+use crate::restitution::{self, Impact, separate};
 use crate::settings::Settings;
 use crate::state::{Means, Previous, State};
 use crate::sums::dot;
@@ -125,9 +126,8 @@ impl Stepper for Implicit {
             model.mass.multiply_into(&change, &mut forces);
             next.ledger.contact_work -= dot(shift, &forces);
         }
-        for (k, contact) in
-            model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.acts_between())
-        {
+        let accumulates = |contact: &Contact| contact.interface.direction() == Direction::Midpoint;
+        for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| accumulates(contact)) {
             debug_assert_eq!(next.pairs[k].len(), solved.rows[k].len(), "contact {}", contact.name);
             // The next step continues from the accumulated gap.
             let gaps = solved.rows[k].iter().map(|row| Some(row.gap));
@@ -136,12 +136,19 @@ impl Stepper for Implicit {
 
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
+        let taken = state.ledger.contact_work - next.ledger.contact_work;
+        restitution::take(model, &mut next, taken);
         if !report.activations.is_empty() {
-            let projected = project(model, &mut next, &report.activations, &mut work.system)?;
+            let closed = closed(model, state, &solved.at.pairings, &report.activations);
+            let impact = Impact { dt, velocity: &state.v, closed };
+            let projected = project(model, &mut next, &impact, &report.activations, &mut work.system)?;
             if let Some(jump) = projected {
                 report.projection = jump;
                 carried::project(&mut next, factor);
             }
+        }
+        if !report.releases.is_empty() {
+            report.projection += separate(model, &mut next, &report.releases, &mut work.system)?;
         }
         next.previous = (self.kernel.two_step() && report.activations.is_empty()).then(|| Previous {
             dt,
@@ -211,6 +218,24 @@ impl Implicit {
         self.kernel.stage_into(k, dt, &Memory { states: &states, before }, &mut stage);
         stage
     }
+}
+
+/// Contact and pair of new contacts, with the gaps at the step's start where they exist.
+fn closed(
+    model: &Model,
+    state: &State,
+    pairings: &[Pairing],
+    activations: &[(usize, usize)],
+) -> Vec<((usize, usize), f64)> {
+    let mut rows = Rows::new(model.dimension);
+    let mut of = |&(k, node): &(usize, usize)| {
+        let kinematics = &model.contacts[k].kinematics;
+        let secondary = kinematics.secondary();
+        let p = pairings[k].pairs.iter().position(|pair| secondary[pair.node] == node)?;
+        kinematics.measure(&mut pairings[k].pairs[p].clone(), &state.y, &mut rows).ok()?;
+        Some(((k, p), rows.pop()))
+    };
+    activations.iter().filter_map(&mut of).collect()
 }
 
 /// Moving supports have their own velocities and accelerations, not the scheme's.

@@ -5,8 +5,8 @@ use carom_case::{
     ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, Persistency, PrimarySpec, Problem,
 };
 use carom_contact::{
-    ConservingPenalty, ContactPoint, Detection, Kinematics, NodeToFacet, NodeToPlane, Penalty, Surface,
-    Unilateral,
+    ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet, NodeToPlane,
+    Penalty, Surface, Unilateral,
 };
 use carom_mechanics::model::{BodyInstance, Contact, Model};
 use carom_solid::PointLocator;
@@ -89,6 +89,11 @@ pub(super) fn contacts(
         let contact = Contact {
             name: spec.name.clone(),
             interface: match spec.enforcement {
+                // With the predictor law y_{n+1} − y_n is not Δt v_½, and no force conserves moment of
+                // momentum.
+                Enforcement::Multiplier if conserves && spec.law == Some(ContactLaw::Position) => {
+                    Box::new(ConservingUnilateral)
+                }
                 Enforcement::Multiplier => Box::new(Unilateral),
                 Enforcement::Penalty if conserves => Box::new(ConservingPenalty::new(stiffnesses())),
                 Enforcement::Penalty => Box::new(Penalty::new(stiffnesses())),

@@ -4,6 +4,7 @@
 
 mod bar;
 mod common;
+mod conserving_contact;
 mod energy_momentum;
 mod frequencies;
 mod impact;

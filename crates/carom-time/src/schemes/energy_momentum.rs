@@ -7,7 +7,7 @@
 //!
 //! Energy, linear and angular momentum of free motion are conserved exactly for any hyperelastic
 //! law and rotation. Order 2, ρ∞ = 1. The carried acceleration is the mean of the step, (v_{s+1} −
-//! v_s)/Δt. A contact force acts at the end of the step.
+//! v_s)/Δt. The direction of a contact force is up to its law.
 use crate::kind::{Build, KindInfo, Member};
 use crate::stage::{Internal, Kernel, Memory, Stage};
 
@@ -36,7 +36,8 @@ impl Kernel for EnergyMomentum {
     fn notes(&self) -> &'static [&'static str] {
         &[
             "in free motion energy, momentum and angular momentum are conserved exactly, also with nonlinear forces",
-            "with enforcement = \"penalty\" energy is conserved exactly in contact, too",
+            "in contact momentum and angular momentum are conserved exactly, except with law = \"predictor\"",
+            "energy is conserved exactly in contact with enforcement = \"penalty\", and with multipliers while gaps stay closed",
         ]
     }
 

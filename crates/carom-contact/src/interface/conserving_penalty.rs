@@ -10,7 +10,7 @@
 //! g is linear in y, g₁ is the gap. Otherwise it deviates by terms of third order in Δy, and is
 //! reset at each new contact.
 
-use super::{Answer, Interface, Point};
+use super::{Answer, Direction, Interface, Point};
 
 /// Energy-conserving springs with a stiffness per secondary node.
 #[derive(Clone, Debug)]
@@ -30,8 +30,8 @@ impl Interface for ConservingPenalty {
         false
     }
 
-    fn acts_between(&self) -> bool {
-        true
+    fn direction(&self) -> Direction {
+        Direction::Midpoint
     }
 
     fn respond(&self, at: &Point) -> Answer {

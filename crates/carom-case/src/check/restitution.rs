@@ -1,0 +1,53 @@
+//! Checks of the restitution of a conserving scheme: it returns the energy that closing contacts
+//! take, after the projection of velocities and to the whole system at once.
+
+use super::super::{ContactLaw, ContactSpec, Enforcement, Persistency, PrimarySpec, SchemeSpec};
+use super::Check;
+
+impl Check<'_> {
+    pub(super) fn conserving_restitution(&mut self, spec: &SchemeSpec) {
+        let contacts = &self.draft.contacts;
+        let multiplier = |contact: &&ContactSpec| contact.enforcement == Enforcement::Multiplier;
+        let first = contacts.iter().flatten().find(multiplier).map_or(0.0, |contact| contact.restitution);
+        for (i, contact) in contacts.iter().enumerate() {
+            let Some(contact) = contact else { continue };
+            let Some((why, help)) = self.restitution_is_unusable(contact, first) else { continue };
+            let e = contact.restitution;
+            let what = format!("contact `{}` cannot have restitution = {e} with {}", contact.name, spec.kind);
+            self.add(format!("contact[{i}].restitution"), what, why, help);
+        }
+    }
+
+    /// Why, and what to do; `first`: the restitution of the first contact by multipliers.
+    fn restitution_is_unusable(&self, contact: &ContactSpec, first: f64) -> Option<(&'static str, String)> {
+        let light = |side: &str| {
+            let body = side.split_once('.').and_then(|(body, _)| self.body(body));
+            body.is_some_and(|body| body.mass.is_redistributed())
+        };
+        let massless = || {
+            light(&contact.secondary) || matches!(&contact.primary, PrimarySpec::Side(side) if light(side))
+        };
+        let multiplier = contact.enforcement == Enforcement::Multiplier;
+        let instead = |other: &str| format!("leave restitution out, or use {other}");
+        if multiplier && contact.restitution != first {
+            let why = "energy is returned to the whole system at once, so all contacts have one restitution";
+            Some((why, format!("give all contacts restitution = {first}")))
+        } else if contact.restitution == 0.0 {
+            None
+        } else if !multiplier {
+            let why = "penalty springs return the energy that they store by themselves";
+            Some((why, instead("enforcement = \"multiplier\"")))
+        } else if contact.law == Some(ContactLaw::Predictor) {
+            let why = "the energy that the projected predictor loses is not that of an impact";
+            Some((why, instead("law = \"position\"")))
+        } else if contact.persistency == Persistency::None {
+            let why = "energy is returned to projected velocities, and persistency = \"none\" leaves them unchanged";
+            Some((why, instead("persistency = \"project\"")))
+        } else if massless() {
+            let why = "nodes without mass have no velocity of their own to project and update";
+            Some((why, instead("mass = \"consistent\" or \"lumped\"")))
+        } else {
+            None
+        }
+    }
+}
