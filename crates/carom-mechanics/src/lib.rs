@@ -2,6 +2,7 @@
 //! and the steppers that advance its state in time. Independent of case files; the crate `carom`
 //! builds models from cases.
 
+mod active_rows;
 mod balance;
 mod carried;
 mod cells;

@@ -10,8 +10,9 @@
 //! they follow the massive side. With a restitution, energy is returned (`restitution.rs`) before
 //! the accelerations are solved for.
 
-use carom_contact::{Pair, Row, Rows};
+use carom_contact::{Row, Rows};
 
+use crate::active_rows::{measure_all, pressing};
 use crate::constraints::{Constraints, independent_rows};
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;
@@ -70,12 +71,6 @@ pub(crate) fn project(
     Ok(Some(jump))
 }
 
-/// Contact and pair of all active ones in a state.
-pub(crate) fn pressing(state: &State) -> impl Iterator<Item = (usize, usize)> + '_ {
-    let pairs = state.pairs.iter().enumerate();
-    pairs.flat_map(|(k, pairs)| (0..pairs.len()).filter(|&p| pairs[p].active).map(move |p| (k, p)))
-}
-
 /// Right-hand sides of M a + Gᵀλ = f_ext − f_int, G a = −v·∇²g·v for these constraints, minus the
 /// contributions of the accelerations of moving supports, in `state`, and of the forces of all
 /// other active pairs, including springs.
@@ -110,35 +105,6 @@ pub(crate) fn take_accelerations(model: &Model, state: &mut State, solved: &[f64
     for &i in &model.free {
         state.a[i] = if model.massless[i] { 0.0 } else { solved[i] };
     }
-}
-
-/// Rows of all active pairs at the state; those of inactive ones are open.
-pub(crate) fn measure_all(model: &Model, state: &mut State) -> Result<Vec<Rows>, Rejected> {
-    measure(model, state, |_, _, pair| pair.active)
-}
-
-/// Rows of these pairs (contact, index) at the state; those of others are open.
-pub(crate) fn measure(
-    model: &Model,
-    state: &mut State,
-    which: impl Fn(usize, usize, &Pair) -> bool,
-) -> Result<Vec<Rows>, Rejected> {
-    let mut all = Vec::with_capacity(model.contacts.len());
-    for (k, (contact, pairs)) in model.contacts.iter().zip(&mut state.pairs).enumerate() {
-        let mut rows = Rows::new(model.dimension);
-        for (p, pair) in pairs.iter_mut().enumerate() {
-            let measured = which(k, p, pair).then(|| contact.kinematics.measure(pair, &state.y, &mut rows));
-            match measured {
-                Some(Ok(())) => {}
-                Some(Err(error)) if pair.active => {
-                    return Err(Rejected::Contact { contact: contact.name.clone(), error });
-                }
-                _ => rows.push_open(),
-            }
-        }
-        all.push(rows);
-    }
-    Ok(all)
 }
 
 /// Σ Gᵀλ over the contacts with averaged forces, for the next step.

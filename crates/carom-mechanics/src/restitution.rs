@@ -14,10 +14,10 @@
 
 use carom_contact::Row;
 
+use crate::active_rows::{measure, pressing};
 use crate::constraints::{Constraints, independent_rows};
 use crate::ledger::book_kinetic;
 use crate::model::Model;
-use crate::persistency::{measure, pressing};
 use crate::rejected::Rejected;
 use crate::state::State;
 use crate::system::System;

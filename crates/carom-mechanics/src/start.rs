@@ -10,10 +10,11 @@
 
 use carom_contact::{Pair, Point, Rows};
 
+use crate::active_rows::{measure_all, pressing};
 use crate::constraints::{Constraints, independent_rows};
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::{LoadsAt, Model};
-use crate::persistency::{averaged_contact_into, drive, measure_all, pressing, take_accelerations};
+use crate::persistency::{averaged_contact_into, drive, take_accelerations};
 use crate::rejected::Rejected;
 use crate::state::{Carried, Created, State};
 use crate::system::System;

@@ -7,6 +7,8 @@
 //!
 //!     cargo run --release -p carom-study --example coverage
 
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
