@@ -24,7 +24,7 @@ pub(crate) enum Exit {
 /// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
-    /// The case is wrong, or its file could not be read.
+    /// The case is wrong, or the system has too little memory for it or cannot read its file.
     #[error(transparent)]
     Case(#[from] CaseError),
     /// An argument is wrong.
@@ -41,6 +41,7 @@ pub(crate) enum Failure {
 impl Failure {
     pub(crate) fn exit(&self) -> Exit {
         match self {
+            Self::Case(CaseError::Wrong(found)) if found.iter().any(|d| d.system) => Exit::System,
             Self::Case(CaseError::Wrong(_)) | Self::Argument { .. } => Exit::Wrong,
             Self::Stopped { .. } => Exit::Stopped,
             Self::Case(CaseError::Refused { .. }) | Self::System { .. } => Exit::System,

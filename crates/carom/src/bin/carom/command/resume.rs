@@ -69,7 +69,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     super::report::run_directory(&arguments.directory)?;
     let options = Options {
-        threads: super::threads(arguments.threads),
+        threads: super::parallel("--threads", arguments.threads)?,
         report: !arguments.no_report,
         profile: arguments.profile,
     };

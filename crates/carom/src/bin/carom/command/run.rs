@@ -48,17 +48,17 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let (case, document) = super::case(&arguments.case, &arguments.sets)?;
-    let directory = directory::of_run(&arguments.case, arguments.out.as_deref())?;
     let options = Options {
-        threads: super::threads(arguments.threads),
+        threads: super::parallel("--threads", arguments.threads)?,
         report: !arguments.no_report,
         profile: arguments.profile,
     };
+    let directory = directory::of_run(&arguments.case, arguments.out.as_deref())?;
     let stop = stop_on_signal()?;
     if arguments.json {
         let steps = case.time.steps();
         out::event(
-            &json!({ "event": "start", "title": case.title, "directory": directory, "steps": steps }),
+            &json!({ "event": "start", "title": case.title, "directory": &*directory, "steps": steps }),
         )?;
     }
     let mut live = Live::new(arguments.json, &directory);

@@ -12,7 +12,7 @@ use include_dir::{Dir, include_dir};
 use indicatif::ProgressBar;
 use serde_json::json;
 
-use super::study::{failure, jobs, report as study_report};
+use super::study::{failure, report as study_report};
 use crate::exit::{Exit, Failure};
 use crate::live::{duration, stop_on_signal};
 use crate::summary::short;
@@ -62,6 +62,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let jobs = super::parallel("--jobs", arguments.jobs)?;
     let directory = directory::of_run(Path::new("verify"), arguments.out.as_deref())?;
     let (paths, fast) = match arguments.paths.as_slice() {
         [] if Path::new("cases").is_dir() => (vec![PathBuf::from("cases")], arguments.fast),
@@ -79,8 +80,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return Err(Failure::Argument { what: "no expectations found".to_owned(), help });
     }
     std::fs::create_dir_all(&directory)?;
-    let options =
-        VerifyOptions { jobs: jobs(arguments.jobs), whole: arguments.report, fail_fast: arguments.fail_fast };
+    let options = VerifyOptions { jobs, whole: arguments.report, fail_fast: arguments.fail_fast };
     let stop = stop_on_signal()?;
     let seen = std::cell::RefCell::new(Seen::new(arguments.json));
     let mut begin = |runs: &[Named]| seen.borrow_mut().begin(runs);
@@ -88,7 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     drop(seen);
     let Some(verification) = done.map_err(failure)? else {
         if arguments.json {
-            out::event(&json!({ "event": "interrupted", "directory": directory }))?;
+            out::event(&json!({ "event": "interrupted", "directory": &*directory }))?;
         } else if !console::is_quiet() && !arguments.csv {
             out::line("interrupted by Ctrl-C: no expectation was evaluated")?;
         }
