@@ -29,7 +29,8 @@ pub(crate) struct Arguments {
     /// body.cylinder.element=T6
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
-    /// Number of threads; results are bitwise identical for any number [default: one per core]
+    /// Number of threads; results are bitwise identical for any number;
+    /// at most four per core, or 64 [default: one per core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZero<usize>>,
     /// Do not write figures and report page

@@ -36,8 +36,8 @@ pub(crate) struct Arguments {
     /// Directory of the study; must not exist yet [default: runs/NAME, runs/NAME-2, …]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Number of concurrent arms (variants); results are bitwise identical for any number
-    /// [default: all cores]
+    /// Number of concurrent arms (variants); results are bitwise identical for any number;
+    /// at most four per core, or 64 [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     /// Do not write figures and report page

@@ -41,7 +41,8 @@ pub(crate) struct Arguments {
     /// Stop at the first set-up that misses an expectation; short set-ups are run first
     #[arg(long, conflicts_with = "report")]
     fail_fast: bool,
-    /// Number of concurrent runs; results are bitwise identical for any number [default: all cores]
+    /// Number of concurrent runs; results are bitwise identical for any number;
+    /// at most four per core, or 64 [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     /// Directory of the verification; must not exist yet [default: runs/verify, runs/verify-2, …]
