@@ -80,7 +80,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let help = "give a case or a study that has an [[expect]], or a folder that contains one".to_owned();
         return Err(Failure::Argument { what: "no expectations found".to_owned(), help });
     }
-    std::fs::create_dir_all(&directory)?;
+    std::fs::create_dir_all(&*directory)?;
     let options = VerifyOptions { jobs, whole: arguments.report, fail_fast: arguments.fail_fast };
     let stop = stop_on_signal()?;
     let seen = std::cell::RefCell::new(Seen::new(arguments.json));
