@@ -104,7 +104,7 @@ impl MeshSpec {
             Self::Interval { cells, .. } => *cells = more(*cells),
             Self::Rectangle { cells, .. } => *cells = cells.map(more),
             Self::Disc { size, .. } | Self::HalfDisc { size, .. } | Self::Ring { size, .. } => {
-                *size /= factor
+                *size /= factor;
             }
             Self::Polygon { size, refine, .. } => {
                 *size /= factor;

@@ -134,7 +134,7 @@ impl Judge<'_> {
                 let known: Vec<(String, f64, f64)> = names
                     .iter()
                     .filter_map(|n| {
-                        let (value, off) = reference.metric(&n).established().filter(|(v, _)| *v > 0.0)?;
+                        let (value, off) = reference.metric(n).established().filter(|(v, _)| *v > 0.0)?;
                         Some((n.clone(), value, off / value))
                     })
                     .collect();

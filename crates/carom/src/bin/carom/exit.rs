@@ -54,3 +54,20 @@ impl From<std::io::Error> for Failure {
         Self::System { what: error.to_string() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use carom::case::{Document, Problem};
+
+    use super::*;
+
+    /// A lack of memory is not a mistake of the case, though it is reported at its place.
+    #[test]
+    fn problems_of_the_system_exit_4() {
+        let document = Document::parse("a.toml", "dimension = 2", &[]).unwrap();
+        let problem = Problem::new("dimension", "too little memory", "", "use a coarser mesh");
+        let exit = |problem| Failure::Case(document.diagnose_all(&[problem])).exit();
+        assert_eq!(exit(problem.clone()), Exit::Wrong);
+        assert_eq!(exit(problem.of_system()), Exit::System);
+    }
+}
