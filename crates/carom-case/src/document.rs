@@ -134,7 +134,7 @@ impl Document {
     /// nearest parent.
     pub fn diagnose(&self, problem: &Problem) -> Diagnostic {
         let message = [problem.what.clone(), problem.why.clone(), problem.help.clone()];
-        match self.origin(&problem.path, problem.at_key) {
+        let found = match self.origin(&problem.path, problem.at_key) {
             Some(origin) => {
                 let (name, text) = &self.sources[origin.source];
                 let span = match &problem.within {
@@ -144,7 +144,8 @@ impl Document {
                 Diagnostic::at(name, text, span, message)
             }
             None => Diagnostic::of_file(self.name(), &problem.what, &problem.why, &problem.help),
-        }
+        };
+        Diagnostic { system: problem.system, ..found }
     }
 
     /// The same for all problems, in the order of the file.

@@ -12,6 +12,7 @@ mod expect;
 pub mod keys;
 mod load;
 mod load_table;
+mod machine;
 mod make;
 mod mesh;
 mod mesh_file;

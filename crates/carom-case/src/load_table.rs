@@ -7,6 +7,8 @@ use super::TableSpec;
 
 /// Largest number of lines; the resolved case stores them all.
 const MOST_LINES: usize = 1_000_000;
+/// Largest number of bytes: a file without line ends has no lines to count.
+const MOST_BYTES: u64 = 100_000_000;
 
 /// Reads the file at `path`, called `name` in messages.
 ///
@@ -25,6 +27,13 @@ pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, String> {
             _ => format!("{name}{line}: {error}"),
         }
     };
+    let facts = std::fs::metadata(path).map_err(|error| unreadable(error.into()))?;
+    if !facts.is_file() {
+        return Err(format!("{} is not a regular file", path.display()));
+    }
+    if facts.len() > MOST_BYTES {
+        return Err(format!("{name}: {} bytes, but a table has at most {MOST_BYTES}", facts.len()));
+    }
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
@@ -97,5 +106,9 @@ mod tests {
         assert!(
             read(Path::new("nowhere/b.csv"), "b.csv").unwrap_err().contains("there is no file nowhere/b.csv")
         );
+        let folder = tempfile::tempdir().unwrap();
+        for endless in [Path::new("/dev/zero"), folder.path()].into_iter().filter(|path| path.exists()) {
+            assert!(read(endless, "b.csv").unwrap_err().contains("is not a regular file"));
+        }
     }
 }

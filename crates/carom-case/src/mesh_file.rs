@@ -7,6 +7,7 @@ use std::path::Path;
 use carom_solid::{Element, Mesh, gmsh};
 
 use super::MeshSpec;
+use super::machine::available_memory;
 use super::problem::Problem;
 use super::view::View;
 
@@ -96,7 +97,12 @@ fn bytes(file: &Path) -> Result<Vec<u8>, String> {
         _ => e.to_string(),
     })?;
     if !facts.is_file() {
-        return Err(format!("{} is not a file", file.display()));
+        return Err(format!("{} is not a regular file", file.display()));
+    }
+    let available = available_memory();
+    if facts.len() as f64 > available {
+        let length = facts.len();
+        return Err(format!("it has {length} bytes, and {available:.0} bytes of memory are available"));
     }
     std::fs::read(file).map_err(|e| e.to_string())
 }
@@ -118,7 +124,7 @@ fn unchanged(file: &Path, hash: &str) -> Result<Vec<u8>, String> {
     }
     let file = file.display();
     Err(format!(
-        "the mesh file {file} has changed since the run began (BLAKE3 was {hash}): restore it, or run the case again"
+        "the mesh file {file} has changed since the run began (BLAKE3 was {hash}): restore the file, or run the case again"
     ))
 }
 

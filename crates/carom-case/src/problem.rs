@@ -17,6 +17,8 @@ pub struct Problem {
     pub why: String,
     /// What to try.
     pub help: String,
+    /// Whether the system is the reason, such as a lack of memory, and not the case.
+    pub system: bool,
 }
 
 impl Problem {
@@ -34,7 +36,14 @@ impl Problem {
             what: what.into(),
             why: why.into(),
             help: help.into(),
+            system: false,
         }
+    }
+
+    /// The same problem, caused by the system.
+    #[must_use]
+    pub fn of_system(self) -> Self {
+        Self { system: true, ..self }
     }
 
     /// The same problem, pointing at the key instead of its value.
@@ -98,6 +107,8 @@ pub struct Diagnostic {
     pub why: String,
     /// What to try.
     pub help: String,
+    /// Whether the system is the reason, and not the case.
+    pub system: bool,
 }
 
 impl Diagnostic {
@@ -109,7 +120,17 @@ impl Diagnostic {
         help: impl Into<String>,
     ) -> Self {
         let (what, why, help) = (what.into(), why.into(), help.into());
-        Self { file: file.to_owned(), line: 0, column: 0, quoted: String::new(), length: 1, what, why, help }
+        Self {
+            file: file.to_owned(),
+            line: 0,
+            column: 0,
+            quoted: String::new(),
+            length: 1,
+            what,
+            why,
+            help,
+            system: false,
+        }
     }
 
     /// Places a message at a byte span of a text; only the first line of the span is quoted.
@@ -128,6 +149,7 @@ impl Diagnostic {
             what,
             why,
             help,
+            system: false,
         }
     }
 

@@ -4,18 +4,20 @@
 //! "CAROMCKP" | version u32 | header length u32 | header (postcard) | payload | blake3 of all before (32 bytes)
 //! ```
 //!
-//! The header describes the other files of the directory at the checkpoint: the lengths of the row
-//! files, and the list of field files.
+//! The header describes the other files of the directory at the checkpoint: lengths and checksums of
+//! the row files, and the list of field files with theirs, so that a record altered later is not
+//! continued.
 
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{FieldEntry, RecordError, files};
+use crate::stream::{Extent, Hash};
+use crate::{FieldEntry, FieldFormat, RecordError, files};
 
 const MAGIC: &[u8; 8] = b"CAROMCKP";
 const VERSION: u32 = 3;
-const HASH: usize = blake3::OUT_LEN;
+const HASH_LENGTH: usize = blake3::OUT_LEN;
 
 /// The record at a checkpoint.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -25,9 +27,12 @@ pub(crate) struct Header {
     pub(crate) step: u64,
     /// Rows in `history.csv`, without the header.
     pub(crate) rows: u64,
-    /// Bytes in `history.csv`, `contact.csv`, `log.jsonl`.
-    pub(crate) lengths: [u64; 3],
+    /// Of `history.csv`, `contact.csv`, `log.jsonl`.
+    pub(crate) streams: [Extent; 3],
+    pub(crate) format: FieldFormat,
     pub(crate) fields: Vec<FieldEntry>,
+    /// Checksum of each entry's file, or of its values in the one file.
+    pub(crate) field_hashes: Vec<Hash>,
     pub(crate) payload: u64,
 }
 
@@ -62,7 +67,7 @@ pub(crate) fn read(directory: &Path, generation: usize) -> Result<(Header, Vec<u
     if !bytes.starts_with(MAGIC) {
         return Err(damaged("it is not a checkpoint file"));
     }
-    let body = bytes.len().checked_sub(HASH).ok_or_else(|| damaged("it is too short"))?;
+    let body = bytes.len().checked_sub(HASH_LENGTH).ok_or_else(|| damaged("it is too short"))?;
     if blake3::hash(&bytes[..body]).as_bytes()[..] != bytes[body..] {
         return Err(damaged("its checksum is wrong"));
     }

@@ -37,6 +37,12 @@ pub(crate) fn sync(path: &Path) -> Result<(), RecordError> {
         .map_err(RecordError::io("write", path))
 }
 
+/// Whether a new run may be written here: nothing is there, or an empty directory.
+pub fn is_free(directory: &Path) -> bool {
+    directory.symlink_metadata().is_err()
+        || fs::read_dir(directory).is_ok_and(|mut entries| entries.next().is_none())
+}
+
 fn rename_after(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> Result<(), RecordError> {
     let partial = partial(path);
     let created = File::options().read(true).write(true).create(true).truncate(true).open(&partial);

@@ -5,10 +5,11 @@
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
-use std::fs::File;
 use std::io;
 
 use serde::{Deserialize, Serialize};
+
+use crate::stream::Stream;
 
 /// State of one active contact node at the end of a step.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,14 +87,14 @@ impl Event {
 
 /// A CSV file being written, with one buffer for all numbers.
 pub(crate) struct Table {
-    writer: csv::Writer<File>,
+    writer: csv::Writer<Stream>,
     text: String,
 }
 
 impl Table {
-    pub(crate) fn new(file: File) -> Self {
+    pub(crate) fn new(stream: Stream) -> Self {
         Self {
-            writer: csv::WriterBuilder::new().terminator(csv::Terminator::Any(b'\n')).from_writer(file),
+            writer: csv::WriterBuilder::new().terminator(csv::Terminator::Any(b'\n')).from_writer(stream),
             text: String::new(),
         }
     }
@@ -137,8 +138,8 @@ impl Table {
         self.writer.flush()
     }
 
-    /// The underlying file, for its length and for syncing.
-    pub(crate) fn file(&self) -> &File {
+    /// The underlying stream, for syncing.
+    pub(crate) fn stream(&self) -> &Stream {
         self.writer.get_ref()
     }
 }

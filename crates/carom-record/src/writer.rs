@@ -2,15 +2,17 @@
 //!
 //! A directory is created by one rename, with a first checkpoint in it. A checkpoint flushes the
 //! row files, and the field files written since the previous one, to the disk and then records
-//! their lengths. Reopening truncates the row files to these lengths and removes later fields.
-//! Between checkpoints nothing is flushed, because a resumed run does not need it.
+//! their lengths and checksums. Reopening compares these with the files, truncates the row files to
+//! these lengths and removes later fields. Between checkpoints nothing is flushed, because a resumed
+//! run does not need it.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{BufWriter, Seek, SeekFrom, Write};
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use crate::checkpoint::{self, Header};
 use crate::rows::{Table, contact_axes, contact_columns};
+use crate::stream::{self, Stream};
 use crate::{
     ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, files, pvd, vtkhdf,
 };
@@ -26,13 +28,11 @@ pub struct RunWriter {
     axes: usize,
     history: Table,
     contact: Table,
-    log: BufWriter<File>,
-    /// Header of the next checkpoint; its lengths are those of the last one.
+    log: BufWriter<Stream>,
+    /// Header of the next checkpoint; its streams are those of the last one.
     header: Header,
     /// Generation that the next checkpoint replaces.
     generation: usize,
-    /// Format of the fields.
-    field_format: FieldFormat,
     /// Field files written since the last checkpoint.
     unsynced: Vec<PathBuf>,
     /// Locked as long as this writer exists.
@@ -51,19 +51,20 @@ pub struct Reopened {
     pub step: u64,
     /// Number of rows in the history; 0 if not even the initial state was recorded.
     pub rows: u64,
-    /// The error of the newest checkpoint, if it is damaged and the previous one was used.
+    /// The error of the newest checkpoint, if it or the record up to it is damaged and the previous
+    /// one was used.
     pub fallback: Option<RecordError>,
 }
 
 impl RunWriter {
     /// Creates the directory with a first checkpoint, and its parents. It is an error if the
-    /// directory exists.
+    /// directory exists and is not empty.
     pub fn create(
         directory: &Path,
         manifest: &Manifest,
         first_checkpoint: &[u8],
     ) -> Result<Self, RecordError> {
-        if directory.symlink_metadata().is_ok() {
+        if !files::is_free(directory) {
             return Err(RecordError::Exists { path: directory.to_path_buf() });
         }
         let parent = directory.parent().unwrap_or(Path::new("."));
@@ -102,15 +103,14 @@ impl RunWriter {
         for (i, names) in [&columns[..], &of_contact, &[]].into_iter().enumerate() {
             let path = partial.join(ROW_FILES[i]);
             let failed = |e| RecordError::io("create", &path)(e);
-            let mut table = Table::new(File::create(&path).map_err(failed)?);
+            let mut table = Table::new(Stream::create(&path).map_err(failed)?);
             for name in names {
                 table.text(name).map_err(failed)?;
             }
             if !names.is_empty() {
                 table.end_row().map_err(failed)?;
             }
-            table.flush().and_then(|()| table.file().sync_all()).map_err(failed)?;
-            header.lengths[i] = table.file().metadata().map_err(failed)?.len();
+            header.streams[i] = table.flush().and_then(|()| table.stream().sync()).map_err(failed)?;
         }
         checkpoint::write(partial, 0, &header, payload)
     }
@@ -119,18 +119,27 @@ impl RunWriter {
     pub fn reopen(directory: &Path) -> Result<Reopened, RecordError> {
         let manifest = Manifest::read(directory)?;
         let lock = lock(directory)?;
-        let (generation, (header, payload), fallback) = newest(directory)?;
-        // A missing generation is normal: every run starts with one.
-        let fallback = fallback.filter(|error| !missing(error));
-        Ok(Reopened { fallback, ..Self::open(directory, manifest, lock, generation, header, payload)? })
+        let mut fallback = None;
+        for (generation, found) in newest_first(directory) {
+            match found.and_then(|checkpoint| verified(directory, checkpoint)) {
+                Ok(intact) => {
+                    let reopened = Self::open(directory, manifest, lock, generation, intact)?;
+                    return Ok(Reopened { fallback, ..reopened });
+                }
+                // A missing generation is normal: every run starts with one.
+                Err(error) if fallback.is_none() && !missing(&error) => fallback = Some(error),
+                Err(_) => {}
+            }
+        }
+        Err(fallback.unwrap_or_else(|| no_checkpoint(directory)))
     }
 
     /// Reopens the directory at the checkpoint of one generation, 0 or 1.
     pub fn reopen_at(directory: &Path, generation: usize) -> Result<Reopened, RecordError> {
         let manifest = Manifest::read(directory)?;
         let lock = lock(directory)?;
-        let (header, payload) = verified(directory, generation)?;
-        Self::open(directory, manifest, lock, generation, header, payload)
+        let intact = verified(directory, checkpoint::read(directory, generation)?)?;
+        Self::open(directory, manifest, lock, generation, intact)
     }
 
     fn open(
@@ -138,16 +147,12 @@ impl RunWriter {
         manifest: Manifest,
         lock: File,
         generation: usize,
-        header: Header,
-        payload: Vec<u8>,
+        Intact { header, payload, hashers }: Intact,
     ) -> Result<Reopened, RecordError> {
         let mut rows = Vec::new();
-        for (name, length) in ROW_FILES.iter().zip(header.lengths) {
+        for (name, hasher) in ROW_FILES.iter().zip(hashers) {
             let path = directory.join(name);
-            let failed = |e| RecordError::io("write", &path)(e);
-            let mut file = OpenOptions::new().read(true).write(true).open(&path).map_err(failed)?;
-            file.set_len(length).and_then(|()| file.seek(SeekFrom::End(0))).map_err(failed)?;
-            rows.push(file);
+            rows.push(Stream::reopen(&path, hasher).map_err(RecordError::io("write", &path))?);
         }
         let [history, contact, log] = rows.try_into().unwrap_or_else(|_| unreachable!("three row files"));
         drop_fields(directory, &header.fields)?;
@@ -161,7 +166,6 @@ impl RunWriter {
             log: BufWriter::new(log),
             generation: 1 - generation % 2,
             header,
-            field_format: FieldFormat::default(),
             unsynced: Vec::new(),
             _lock: lock,
         };
@@ -171,7 +175,7 @@ impl RunWriter {
 
     /// Sets the format of the fields; the default is VTU. A run has one format.
     pub fn field_format(&mut self, format: FieldFormat) {
-        self.field_format = format;
+        self.header.format = format;
     }
 
     /// The directory.
@@ -219,18 +223,25 @@ impl RunWriter {
     /// Writes fields as VTU, or into the run's VTKHDF file.
     pub fn fields(&mut self, step: u64, time: f64, fields: &FieldSet) -> Result<(), RecordError> {
         let entry = FieldEntry { step, time };
-        let entries = &mut self.header.fields;
-        entries.retain(|e| e.step != step);
-        entries.push(entry.clone());
-        if self.field_format == FieldFormat::VtkHdf {
+        let Header { format, fields: entries, field_hashes: hashes, .. } = &mut self.header;
+        if let Some(same) = entries.iter().position(|e| e.step == step) {
+            entries.remove(same);
+            hashes.remove(same);
+        }
+        if *format == FieldFormat::VtkHdf {
             self.unsynced = vec![vtkhdf::path(&self.directory)];
-            return vtkhdf::put(&self.directory, entries.len() - 1, &entry, fields);
+            hashes.push(vtkhdf::put(&self.directory, entries.len(), &entry, fields)?);
+            entries.push(entry);
+            return Ok(());
         }
         let folder = self.directory.join("fields");
         fs::create_dir_all(&folder).map_err(RecordError::io("create", &folder))?;
         let path = self.directory.join(entry.file());
-        files::write_unsynced(&path, &fields.to_vtu(time)?)?;
+        let bytes = fields.to_vtu(time)?;
+        files::write_unsynced(&path, &bytes)?;
         self.unsynced.push(path);
+        hashes.push(blake3::hash(&bytes).into());
+        entries.push(entry);
         pvd::write(&self.directory, entries)
     }
 
@@ -260,57 +271,91 @@ impl RunWriter {
     fn sync(&mut self) -> Result<(), RecordError> {
         if !self.unsynced.is_empty() {
             self.unsynced.drain(..).try_for_each(|path| files::sync(&path))?;
-            if self.field_format == FieldFormat::Vtu {
+            if self.header.format == FieldFormat::Vtu {
                 files::sync_directory(&self.directory.join("fields"))?;
                 files::sync(&self.directory.join(pvd::FILE))?;
             }
             files::sync_directory(&self.directory)?;
         }
         let flushed = [self.history.flush(), self.contact.flush(), self.log.flush()];
-        let files = [self.history.file(), self.contact.file(), self.log.get_ref()];
-        for (i, (flushed, file)) in flushed.into_iter().zip(files).enumerate() {
-            self.header.lengths[i] = flushed
-                .and_then(|()| file.sync_all())
-                .and_then(|()| file.metadata())
-                .map_err(|e| RecordError::io("write", &self.directory.join(ROW_FILES[i]))(e))?
-                .len();
+        let streams = [self.history.stream(), self.contact.stream(), self.log.get_ref()];
+        for (i, (flushed, stream)) in flushed.into_iter().zip(streams).enumerate() {
+            self.header.streams[i] = flushed
+                .and_then(|()| stream.sync())
+                .map_err(|e| RecordError::io("write", &self.directory.join(ROW_FILES[i]))(e))?;
         }
         Ok(())
     }
 }
 
-/// Payload of the newest intact checkpoint; nothing is changed.
+/// Payload of the newest intact checkpoint; nothing is changed. The record beside it is not read.
 ///
 /// # Errors
 /// There is no intact checkpoint.
 pub fn last_checkpoint(directory: &Path) -> Result<Vec<u8>, RecordError> {
-    newest(directory).map(|(_, (_, payload), _)| payload)
-}
-
-/// The newest intact checkpoint: its generation, its contents, and the error of the other one.
-fn newest(directory: &Path) -> Result<(usize, (Header, Vec<u8>), Option<RecordError>), RecordError> {
-    let [a, b] = [0, 1].map(|generation| verified(directory, generation));
-    Ok(match (a, b) {
-        (Ok(a), Ok(b)) if a.0.sequence > b.0.sequence => (0, a, None),
-        (Ok(_), Ok(b)) => (1, b, None),
-        (Ok(a), Err(error)) => (0, a, Some(error)),
-        (Err(error), Ok(b)) => (1, b, Some(error)),
-        (Err(error), Err(other)) => return Err(if missing(&error) { other } else { error }),
-    })
-}
-
-/// A checkpoint, if it is intact and the row files are at least as long as it records.
-fn verified(directory: &Path, generation: usize) -> Result<(Header, Vec<u8>), RecordError> {
-    let (header, payload) = checkpoint::read(directory, generation)?;
-    for (name, length) in ROW_FILES.iter().zip(header.lengths) {
-        let path = directory.join(name);
-        let got = fs::metadata(&path).map_err(RecordError::io("read", &path))?.len();
-        if got < length {
-            let what = format!("it has {got} bytes, but had {length} bytes at the checkpoint");
-            return Err(RecordError::corrupt(&path, None, what, "run the case again"));
+    let mut damage = None;
+    for (_, found) in newest_first(directory) {
+        match found {
+            Ok((_, payload)) => return Ok(payload),
+            Err(error) if !missing(&error) => damage = Some(error),
+            Err(_) => {}
         }
     }
-    Ok((header, payload))
+    Err(damage.unwrap_or_else(|| no_checkpoint(directory)))
+}
+
+type Checkpoint = (Header, Vec<u8>);
+
+/// Both generations, the newest first; a damaged or missing one, whose age is unknown, comes before
+/// the other.
+fn newest_first(directory: &Path) -> [(usize, Result<Checkpoint, RecordError>); 2] {
+    let [a, b] = [0, 1].map(|generation| (generation, checkpoint::read(directory, generation)));
+    let age = |found: &Result<Checkpoint, RecordError>| found.as_ref().map_or(u64::MAX, |c| c.0.sequence);
+    if age(&a.1) > age(&b.1) { [a, b] } else { [b, a] }
+}
+
+/// A checkpoint whose record is unchanged, with the running checksums of the row files.
+struct Intact {
+    header: Header,
+    payload: Vec<u8>,
+    hashers: Vec<blake3::Hasher>,
+}
+
+/// Compares the record with a checkpoint.
+fn verified(directory: &Path, (header, payload): Checkpoint) -> Result<Intact, RecordError> {
+    let mut hashers = Vec::new();
+    for (name, extent) in ROW_FILES.iter().zip(&header.streams) {
+        hashers.push(stream::verified(&directory.join(name), extent, header.step)?);
+    }
+    let changed = |path: &Path, entry: &FieldEntry| {
+        stream::altered(
+            path,
+            format!("the fields of step {} have changed since they were written", entry.step),
+        )
+    };
+    match header.format {
+        FieldFormat::Vtu => {
+            for (entry, hash) in header.fields.iter().zip(&header.field_hashes) {
+                let path = directory.join(entry.file());
+                let bytes = fs::read(&path).map_err(|error| stream::unreadable(&path, error))?;
+                if blake3::hash(&bytes) != *hash {
+                    return Err(changed(&path, entry));
+                }
+            }
+        }
+        FieldFormat::VtkHdf => {
+            let found = vtkhdf::hashes(directory, header.fields.len())?;
+            let mut pairs = header.fields.iter().zip(header.field_hashes.iter().zip(&found));
+            if let Some((entry, _)) = pairs.find(|(_, (hash, found))| hash != found) {
+                return Err(changed(&vtkhdf::path(directory), entry));
+            }
+        }
+    }
+    Ok(Intact { header, payload, hashers })
+}
+
+fn no_checkpoint(directory: &Path) -> RecordError {
+    stream::altered(&directory.join("checkpoint"), "it contains no checkpoint")
 }
 
 fn missing(error: &RecordError) -> bool {

@@ -188,6 +188,117 @@ fn a_damaged_checkpoint_falls_back_to_the_one_before() {
     }
 }
 
+/// Every byte that the last two checkpoints describe is protected: a change of it before the older
+/// one is refused with the file's name, a later one is computed again.
+#[test]
+fn an_altered_record_is_not_continued() {
+    for format in [FieldFormat::Vtu, FieldFormat::VtkHdf] {
+        let scratch = tempfile::tempdir().unwrap();
+        let directory = scratch.path().join("run");
+        let mut writer = RunWriter::create(&directory, &manifest(), &0u64.to_le_bytes()).unwrap();
+        writer.field_format(format);
+        drop(advance(writer, 0, 0, STEPS));
+        let (mut refused, mut repeated) = (0, 0);
+        for (name, good) in all_bytes(&directory) {
+            let row_file = ["csv", "jsonl"].iter().any(|e| name.extension().is_some_and(|x| x == *e));
+            if !row_file && name.extension().is_none_or(|e| e != "vtu") {
+                continue;
+            }
+            let path = directory.join(&name);
+            for at in (0..good.len()).step_by(13) {
+                let mut bad = good.clone();
+                bad[at] ^= 1;
+                fs::write(&path, bad).unwrap();
+                // Reopening for writing would truncate the record.
+                match altered(&directory, scratch.path()) {
+                    Err(error) => {
+                        let text = error.to_string();
+                        assert!(
+                            text.contains(name.to_str().unwrap()) && text.contains("is damaged"),
+                            "{text}"
+                        );
+                        assert!(
+                            text.contains("changed since") && text.contains("run the case again"),
+                            "{text}"
+                        );
+                        assert_eq!(error.exit_code(), 2);
+                        refused += 1;
+                    }
+                    Ok((30, Some(_))) => repeated += 1,
+                    // What follows the last checkpoint is computed again anyway.
+                    Ok((step, fallback)) => {
+                        assert!(step == 36 && fallback.is_none());
+                        assert!(at > good.len() / 2 || name.ends_with("00000040.vtu"), "{name:?} at {at}");
+                    }
+                }
+            }
+            fs::write(&path, &good).unwrap();
+        }
+        assert!(refused > 100 && repeated > 5, "{refused} {repeated}");
+    }
+}
+
+/// Reopens a copy of a run; the step reached and the error that was skipped.
+fn altered(directory: &Path, scratch: &Path) -> Result<(u64, Option<RecordError>), RecordError> {
+    let copy = scratch.join("copy");
+    for (name, bytes) in all_bytes(directory) {
+        let path = copy.join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, bytes).unwrap();
+    }
+    fs::copy(directory.join("manifest.json"), copy.join("manifest.json")).unwrap();
+    let reopened = RunWriter::reopen(&copy).map(|reopened| (reopened.step, reopened.fallback));
+    fs::remove_dir_all(&copy).unwrap();
+    reopened
+}
+
+#[test]
+fn cut_and_missing_fields_are_refused_or_computed_again() {
+    for format in [FieldFormat::Vtu, FieldFormat::VtkHdf] {
+        let scratch = tempfile::tempdir().unwrap();
+        let directory = scratch.path().join("run");
+        let mut writer = RunWriter::create(&directory, &manifest(), &0u64.to_le_bytes()).unwrap();
+        writer.field_format(format);
+        drop(advance(writer, 0, 0, STEPS));
+        let file = |step: u64| match format {
+            FieldFormat::Vtu => directory.join(format!("fields/{step:08}.vtu")),
+            FieldFormat::VtkHdf => directory.join("fields.vtkhdf"),
+        };
+        // The checkpoints are those of steps 30 and 36.
+        for (step, refused) in [(10, true), (35, format == FieldFormat::VtkHdf)] {
+            let good = fs::read(file(step)).unwrap();
+            for length in [None, Some(0), Some(good.len() / 2)] {
+                match length {
+                    None => fs::remove_file(file(step)).unwrap(),
+                    Some(length) => fs::write(file(step), &good[..length]).unwrap(),
+                }
+                match altered(&directory, scratch.path()) {
+                    Err(error) if refused => {
+                        let text = error.to_string();
+                        assert!(text.contains(file(step).file_name().unwrap().to_str().unwrap()), "{text}");
+                        assert!(length.is_some() || text.contains("it is missing"), "{text}");
+                        assert_eq!(error.exit_code(), 2, "{text}");
+                    }
+                    Ok((30, Some(_))) if !refused => {}
+                    other => panic!("{format:?}, step {step}, {length:?}: {other:?}"),
+                }
+                fs::write(file(step), &good).unwrap();
+            }
+        }
+        // One value of one instant, in the one file.
+        if format == FieldFormat::VtkHdf {
+            let good = fs::read(file(0)).unwrap();
+            let value = 10.0_f64.to_le_bytes();
+            let at = good.windows(16).rposition(|w| w[..8] == value && w[8..] == (-1.0_f64).to_le_bytes());
+            let mut bad = good.clone();
+            bad[at.unwrap()] ^= 1;
+            fs::write(file(0), bad).unwrap();
+            let text = altered(&directory, scratch.path()).unwrap_err().to_string();
+            assert!(text.contains("the fields of step 10 have changed"), "{text}");
+        }
+    }
+}
+
 #[test]
 fn what_is_written_is_read_back() {
     let scratch = tempfile::tempdir().unwrap();
@@ -242,11 +353,13 @@ fn errors_say_why() {
     assert_eq!(create(&directory).0, 2);
     let empty = scratch.path().join("empty");
     fs::create_dir(&empty).unwrap();
-    assert!(create(&empty).1.contains("exists already"));
     let (code, text) = create(&scratch.path().join("run/history.csv/x"));
     assert!(code == 4 && text.contains("cannot create"), "{text}");
     assert!(shown(RunWriter::reopen(&directory).err().unwrap()).1.contains("another process"));
     assert!(shown(RunWriter::reopen(&empty).err().unwrap()).1.contains("no manifest.json"));
+    // An empty directory, which may have been created to reserve its name, is used.
+    assert!(RunWriter::create(&empty, &manifest(), b"0").is_ok());
+    assert!(create(&empty).1.contains("exists already"));
     assert!(matches!(writer.history(&[1.0]), Err(RecordError::Width { got: 1, expected: 3 })));
     drop(writer);
     fs::write(directory.join("history.csv"), "step,time,\"A.uy, \"\"odd\"\"\"\n0,0,0\n1,x,0\n2,tor").unwrap();

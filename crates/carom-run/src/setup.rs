@@ -1,5 +1,6 @@
 //! Builds the simulation of a case: the model with a stepper, on the grid of times.
 
+use carom_algebra::LinearError;
 use carom_case::{Case, ContactLaw, NewtonSpec, Problem, Problems, TangentRule};
 use carom_mechanics::model::Model;
 use carom_mechanics::stability::{SAFETY, stable_step};
@@ -173,6 +174,11 @@ fn no_start(case: &Case, placed: bool, rejected: &Rejected) -> Problem {
             let help =
                 "change the formulas so that the determinant of their derivatives is positive everywhere";
             (format!("body[{k}].position"), "the initial position inverts a cell", help)
+        }
+        Rejected::Linear(LinearError::Engine { .. }) => {
+            let help = "use a coarser mesh or an element of lower degree, or give the process more memory";
+            let what = "there is not enough memory for the linear system";
+            return Problem::new("body", what, rejected.to_string(), help).of_system();
         }
         _ => ("body".into(), "the initial acceleration cannot be computed", "check masses and supports"),
     };

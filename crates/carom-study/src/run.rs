@@ -36,7 +36,7 @@ pub fn start(
     observe: &mut dyn FnMut(&Event),
     stop: &AtomicBool,
 ) -> Result<Outcome, StudyError> {
-    if directory.exists() {
+    if !carom_record::is_free(directory) {
         return Err(StudyError::Exists { path: directory.to_owned() });
     }
     let make = |path: PathBuf| {

@@ -8,10 +8,8 @@
 use carom_solid::Element;
 
 use super::Check;
+use crate::machine::available_memory;
 use crate::{BodySpec, MeshSpec};
-
-/// Assumed where the system does not report its memory.
-const ASSUMED: f64 = 8.0 * 1024.0 * 1024.0 * 1024.0;
 
 /// Bytes that a body of n nodes needs.
 fn bytes(element: Element, nodes: f64) -> f64 {
@@ -28,20 +26,12 @@ fn bytes(element: Element, nodes: f64) -> f64 {
     nodes * (16.0 * d * d * coupled * (0.5 + levels) + 12.0 * 8.0 * d)
 }
 
-/// Memory available now, in bytes.
-fn available() -> f64 {
-    let facts = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
-    let line = facts.lines().find_map(|line| line.strip_prefix("MemAvailable:"));
-    let kibibytes = line.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok());
-    kibibytes.map_or(ASSUMED, |k| k * 1024.0)
-}
-
 impl Check<'_> {
     pub(super) fn memory(&mut self) {
         let bodies = || self.draft.bodies.iter().enumerate().filter_map(|(i, b)| Some((i, b.as_ref()?)));
         let need = |body: &BodySpec| bytes(body.element, body.mesh.estimate(body.element).1);
         let total: f64 = bodies().map(|(_, b)| need(b)).sum();
-        let available = available();
+        let available = available_memory();
         let largest = bodies().max_by(|(_, a), (_, b)| need(a).total_cmp(&need(b)));
         let Some((i, body)) = largest.filter(|_| total > available) else { return };
         let (cells, nodes) = body.mesh.estimate(body.element);

@@ -18,10 +18,22 @@ use hdf5::Kind;
 use layout::{BODIES, COUNT, INTEGER, Layout, STEPS, TIMES, path_of};
 use read::{Contents, bytes_at};
 
+use crate::stream::{Hash, altered};
 use crate::{Block, FieldEntry, FieldSet, RecordError, files};
 
 const HINT: &str = "run the case again";
 const FIRST_CAPACITY: u64 = 16;
+/// Datasets of the mesh, which are written once.
+const MESH: [&str; 8] = [
+    "NumberOfPoints",
+    "NumberOfCells",
+    "NumberOfConnectivityIds",
+    "Points",
+    "Connectivity",
+    "Offsets",
+    "Types",
+    "CellData/body",
+];
 
 /// Its path in a run directory.
 pub(crate) fn path(directory: &Path) -> PathBuf {
@@ -51,20 +63,21 @@ fn open(directory: &Path, write: bool) -> Result<Option<Opened<File>>, RecordErr
 }
 
 /// Writes the fields of an entry at the given place among all entries, and sets the number of
-/// steps to include it.
+/// steps to include it; returns the checksum of the entry.
 pub(crate) fn put(
     directory: &Path,
     place: usize,
     entry: &FieldEntry,
     fields: &FieldSet,
-) -> Result<(), RecordError> {
+) -> Result<Hash, RecordError> {
     fields.check()?;
     let place = place as u64;
     let Some(mut opened) = open(directory, true)? else {
         if place > 0 {
             return Err(corrupt(&path(directory))(format!("it is missing, but had {place} steps")));
         }
-        return create(&path(directory), entry, fields);
+        create(&path(directory), entry, fields)?;
+        return Ok(hashes(directory, 1)?[0]);
     };
     let (layout, count) = (&opened.layout, opened.layout.count);
     if Layout::of(fields, count, layout.capacity) != *layout {
@@ -80,7 +93,22 @@ pub(crate) fn put(
     }
     let path = opened.path.clone();
     opened.write_step(place, entry, fields).map_err(RecordError::io("write", &path))?;
-    opened.count(place + 1)
+    opened.count(place + 1)?;
+    opened.hash(place).map_err(corrupt(&path))
+}
+
+/// Checksums of the first entries; the first includes the mesh.
+pub(crate) fn hashes(directory: &Path, count: usize) -> Result<Vec<Hash>, RecordError> {
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    let path = path(directory);
+    let mut opened = open(directory, false)?.ok_or_else(|| altered(&path, "it is missing"))?;
+    let steps = opened.layout.count;
+    if steps < count as u64 {
+        return Err(altered(&path, format!("it has {steps} steps, but had {count}")));
+    }
+    (0..count as u64).map(|place| opened.hash(place).map_err(corrupt(&path))).collect()
 }
 
 /// Removes all entries after the given ones, which are the first ones.
@@ -214,22 +242,9 @@ impl Opened<File> {
         let layout = Layout { capacity, ..self.layout.clone() };
         let path = self.path.clone();
         files::replace(&path, |file| {
-            let mesh = [
-                "NumberOfPoints",
-                "NumberOfCells",
-                "NumberOfConnectivityIds",
-                "Points",
-                "Connectivity",
-                "Offsets",
-                "Types",
-                "CellData/body",
-            ];
             let mut parts = Vec::new();
-            for name in mesh {
-                let path = format!("/VTKHDF/{name}");
-                let d = self.contents.datasets.get(&path).cloned();
-                let d = d.ok_or_else(|| io::Error::other(format!("no dataset {path}")))?;
-                parts.push((path, bytes_at(&mut self.file, d.address, d.size).map_err(io::Error::other)?));
+            for name in MESH {
+                parts.push((format!("/VTKHDF/{name}"), self.mesh(name).map_err(io::Error::other)?));
             }
             begin(file, &layout, parts)?;
             let mut new = Opened::of(&mut *file, path.clone()).map_err(io::Error::other)?;
@@ -263,6 +278,25 @@ impl<F: Read + Seek> Opened<F> {
         let start = self.contents.datasets.get(path).ok_or_else(|| format!("no dataset {path}"))?.address;
         let at = place.checked_mul(size).and_then(|offset| offset.checked_add(start));
         bytes_at(&mut self.file, at.ok_or("an address out of range")?, size)
+    }
+
+    fn mesh(&mut self, name: &str) -> Result<Vec<u8>, String> {
+        let dataset = self.contents.datasets.get(&format!("/VTKHDF/{name}"));
+        let (address, size) =
+            dataset.map(|d| (d.address, d.size)).ok_or_else(|| format!("no dataset {name}"))?;
+        bytes_at(&mut self.file, address, size)
+    }
+
+    /// Checksum of the values of a step; that of the first step includes the mesh.
+    fn hash(&mut self, place: u64) -> Result<Hash, String> {
+        let mut hasher = blake3::Hasher::new();
+        for name in MESH.iter().filter(|_| place == 0) {
+            hasher.update(&self.mesh(name)?);
+        }
+        for (path, size) in self.layout.per_step() {
+            hasher.update(&self.row(&path, place, size)?);
+        }
+        Ok(hasher.finalize().into())
     }
 
     fn all<const B: usize>(&mut self, path: &str, kind: Kind, count: u64) -> Result<Vec<[u8; B]>, String> {

@@ -13,7 +13,9 @@ fn entry(step: u64) -> FieldEntry {
 }
 
 fn written(directory: &Path, count: u64) {
-    (0..count).for_each(|i| put(directory, i as usize, &entry(5 * i), &fields(5 * i)).unwrap());
+    for i in 0..count {
+        put(directory, i as usize, &entry(5 * i), &fields(5 * i)).unwrap();
+    }
 }
 
 #[test]
@@ -48,7 +50,9 @@ fn the_same_steps_give_the_same_bytes() {
     let first: Vec<FieldEntry> = (0..7).map(|i| entry(5 * i)).collect();
     keep(&cut, &first).unwrap();
     assert_eq!(entries(&cut).unwrap().unwrap(), first);
-    (7..19).for_each(|i| put(&cut, i, &entry(5 * i as u64), &fields(5 * i as u64)).unwrap());
+    for i in 7..19 {
+        put(&cut, i, &entry(5 * i as u64), &fields(5 * i as u64)).unwrap();
+    }
     finish(&cut).unwrap();
     assert!(fs::read(path(&whole)).unwrap() == fs::read(path(&cut)).unwrap());
 }

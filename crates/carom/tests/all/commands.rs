@@ -132,6 +132,7 @@ fn arguments_are_checked() {
     let wrong: &[(&[&str], &str)] = &[
         (&["run", "case.toml", "--out", "old"], "old exists already"),
         (&["run", "case.toml", "--threads", "0"], "invalid value '0'"),
+        (&["run", "case.toml", "--threads", "5000"], "--threads 5000 is too many"),
         (&["run", "case.toml", "--set", "time.step"], "there is no `=`"),
         (&["run", "case.toml", "--set", "time.scheme.rho_inf=1.2"], "--set:1:21"),
         (&["run"], "<CASE>"),

@@ -5,6 +5,8 @@
 mod book;
 mod commands;
 mod common;
+#[cfg(unix)]
+mod input;
 mod mesh;
 mod misspelt;
 mod new;

@@ -12,6 +12,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 const RATE: u8 = 10;
 
 static VERBOSITY: OnceLock<Verbosity> = OnceLock::new();
+static JSON: OnceLock<bool> = OnceLock::new();
 
 /// Options of every command.
 #[derive(clap::Args)]
@@ -44,8 +45,9 @@ enum Verbosity {
 }
 
 impl Options {
-    /// Makes these the options of the process.
-    pub(crate) fn apply(&self) {
+    /// Makes these the options of the process; `json`: whether standard output is JSON.
+    pub(crate) fn apply(&self, json: bool) {
+        let _ = JSON.set(json);
         let verbosity = match (self.quiet, self.verbose) {
             (true, _) => Verbosity::Quiet,
             (_, true) => Verbosity::Verbose,
@@ -63,6 +65,11 @@ impl Options {
 
 pub(crate) fn is_quiet() -> bool {
     VERBOSITY.get() == Some(&Verbosity::Quiet)
+}
+
+/// Whether remarks on what a command is doing are unwanted.
+pub(crate) fn is_silent() -> bool {
+    is_quiet() || JSON.get() == Some(&true)
 }
 
 pub(crate) fn is_verbose() -> bool {

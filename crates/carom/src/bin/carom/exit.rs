@@ -24,7 +24,7 @@ pub(crate) enum Exit {
 /// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
-    /// The case is wrong, or its file could not be read.
+    /// The case is wrong, or the system has too little memory for it or cannot read its file.
     #[error(transparent)]
     Case(#[from] CaseError),
     /// An argument is wrong.
@@ -41,6 +41,7 @@ pub(crate) enum Failure {
 impl Failure {
     pub(crate) fn exit(&self) -> Exit {
         match self {
+            Self::Case(CaseError::Wrong(found)) if found.iter().any(|d| d.system) => Exit::System,
             Self::Case(CaseError::Wrong(_)) | Self::Argument { .. } => Exit::Wrong,
             Self::Stopped { .. } => Exit::Stopped,
             Self::Case(CaseError::Refused { .. }) | Self::System { .. } => Exit::System,
@@ -51,5 +52,22 @@ impl Failure {
 impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Self {
         Self::System { what: error.to_string() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use carom::case::{Document, Problem};
+
+    use super::*;
+
+    /// A lack of memory is not a mistake of the case, though it is reported at its place.
+    #[test]
+    fn problems_of_the_system_exit_4() {
+        let document = Document::parse("a.toml", "dimension = 2", &[]).unwrap();
+        let problem = Problem::new("dimension", "too little memory", "", "use a coarser mesh");
+        let exit = |problem| Failure::Case(document.diagnose_all(&[problem])).exit();
+        assert_eq!(exit(problem.clone()), Exit::Wrong);
+        assert_eq!(exit(problem.of_system()), Exit::System);
     }
 }

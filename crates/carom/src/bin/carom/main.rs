@@ -72,7 +72,7 @@ impl Command {
 
 fn main() -> std::process::ExitCode {
     let Arguments { console, command } = Arguments::parse();
-    console.apply();
+    console.apply(command.json());
     let done = match &command {
         Command::Run(arguments) => run::run(arguments),
         Command::Resume(arguments) => resume::run(arguments),

@@ -176,13 +176,18 @@ fn seen(progress: &recording::Progress) -> Progress {
 
 fn failure(error: RunError, document: Option<&Document>) -> Failure {
     match error {
-        RunError::Case(problems) => match document {
-            Some(document) => Failure::Case(document.diagnose_all(&problems)),
-            None => Failure::Argument {
-                what: problems.iter().map(|p| p.what.as_str()).collect::<Vec<_>>().join("; "),
-                help: problems.first().map_or(String::new(), |p| p.help.clone()),
-            },
-        },
+        RunError::Case(problems) => {
+            if let Some(document) = document {
+                return Failure::Case(document.diagnose_all(&problems));
+            }
+            let sentence = |p: &carom::case::Problem| format!("{}: {}", p.what, p.why);
+            let what = problems.iter().map(sentence).collect::<Vec<_>>().join("; ");
+            if problems.iter().any(|p| p.system) {
+                return Failure::System { what };
+            }
+            let help = problems.first().map_or(String::new(), |p| p.help.clone());
+            Failure::Argument { what, help }
+        }
         RunError::Record(error) if error.exit_code() == 4 => Failure::System { what: error.to_string() },
         error => Failure::Argument { what: error.to_string(), help: "run the case again".into() },
     }

@@ -32,11 +32,12 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let from_file = arguments.case != Path::new(super::STDIN);
-    if from_file && Document::open(&arguments.case, &[])?.is_study() {
+    let document = super::document(&arguments.case, &[])?;
+    if document.is_study() && arguments.case != Path::new(super::STDIN) {
         return study(arguments);
     }
-    let (case, document) = super::case(&arguments.case, &arguments.sets)?;
+    let document = Document::parse(document.name(), document.text(), &arguments.sets)?;
+    let case = super::resolved(&document)?;
     let facts = simulation::facts(&case, &document)?;
     if arguments.json {
         let event =

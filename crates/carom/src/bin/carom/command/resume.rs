@@ -21,11 +21,12 @@ Examples:
 pub(crate) struct Arguments {
     /// The directory of the run or study
     directory: PathBuf,
-    /// Number of threads of a run; results are bitwise identical for any number [default: one per core]
+    /// Number of threads of a run; results are bitwise identical for any number;
+    /// at most four per core, or 64 [default: one per core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZero<usize>>,
-    /// Number of concurrent arms of a study; results are bitwise identical for any number
-    /// [default: all cores]
+    /// Number of concurrent arms of a study; results are bitwise identical for any number;
+    /// at most four per core, or 64 [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     /// Do not write figures and report page
@@ -69,7 +70,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     super::report::run_directory(&arguments.directory)?;
     let options = Options {
-        threads: super::threads(arguments.threads),
+        threads: super::parallel("--threads", arguments.threads)?,
         report: !arguments.no_report,
         profile: arguments.profile,
     };

@@ -29,7 +29,8 @@ pub(crate) struct Arguments {
     /// body.cylinder.element=T6
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
-    /// Number of threads; results are bitwise identical for any number [default: one per core]
+    /// Number of threads; results are bitwise identical for any number;
+    /// at most four per core, or 64 [default: one per core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZero<usize>>,
     /// Do not write figures and report page
@@ -48,17 +49,17 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let (case, document) = super::case(&arguments.case, &arguments.sets)?;
-    let directory = directory::of_run(&arguments.case, arguments.out.as_deref())?;
     let options = Options {
-        threads: super::threads(arguments.threads),
+        threads: super::parallel("--threads", arguments.threads)?,
         report: !arguments.no_report,
         profile: arguments.profile,
     };
+    let directory = directory::of_run(&arguments.case, arguments.out.as_deref())?;
     let stop = stop_on_signal()?;
     if arguments.json {
         let steps = case.time.steps();
         out::event(
-            &json!({ "event": "start", "title": case.title, "directory": directory, "steps": steps }),
+            &json!({ "event": "start", "title": case.title, "directory": &*directory, "steps": steps }),
         )?;
     }
     let mut live = Live::new(arguments.json, &directory);

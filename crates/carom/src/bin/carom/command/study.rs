@@ -36,8 +36,8 @@ pub(crate) struct Arguments {
     /// Directory of the study; must not exist yet [default: runs/NAME, runs/NAME-2, …]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Number of concurrent arms (variants); results are bitwise identical for any number
-    /// [default: all cores]
+    /// Number of concurrent arms (variants); results are bitwise identical for any number;
+    /// at most four per core, or 64 [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     /// Do not write figures and report page
@@ -49,16 +49,19 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let jobs = super::parallel("--jobs", arguments.jobs)?;
+    let waiting = super::Waiting::for_input(&arguments.study);
     let plan = Plan::read(&arguments.study)?;
+    drop(waiting);
     let directory = directory::of_run(&arguments.study, arguments.out.as_deref())?;
     let mut seen = Seen::new(&plan.manifest, arguments.json);
     let stop = stop_on_signal()?;
     if arguments.json {
         out::event(
-            &json!({ "event": "start", "title": plan.manifest.title, "directory": directory, "arms": seen.names }),
+            &json!({ "event": "start", "title": plan.manifest.title, "directory": &*directory, "arms": seen.names }),
         )?;
     }
-    let done = carom_study::start(&plan, &directory, jobs(arguments.jobs), &mut |e| seen.event(e), &stop);
+    let done = carom_study::start(&plan, &directory, jobs, &mut |e| seen.event(e), &stop);
     conclude(done, seen, &directory, !arguments.no_report)
 }
 
@@ -69,13 +72,14 @@ pub(crate) fn resume(
     page: bool,
     json: bool,
 ) -> Result<Exit, Failure> {
+    let jobs = super::parallel("--jobs", requested)?;
     let manifest = StudyManifest::read(directory).map_err(|e| failure(e.into()))?;
     let mut seen = Seen::new(&manifest, json);
     let stop = stop_on_signal()?;
     if json {
         out::event(&json!({ "event": "resume", "directory": directory, "arms": seen.names }))?;
     }
-    let done = carom_study::resume(directory, jobs(requested), &mut |e| seen.event(e), &stop);
+    let done = carom_study::resume(directory, jobs, &mut |e| seen.event(e), &stop);
     conclude(done, seen, directory, page)
 }
 
@@ -96,11 +100,6 @@ pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
         }
     }
     Ok(carom_report::study(directory).map_err(made)?.page)
-}
-
-/// The requested number of concurrent runs, or one per core.
-pub(super) fn jobs(requested: Option<NonZero<usize>>) -> usize {
-    requested.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZero::get)
 }
 
 pub(super) fn failure(error: StudyError) -> Failure {

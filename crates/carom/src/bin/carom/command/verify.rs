@@ -12,7 +12,7 @@ use include_dir::{Dir, include_dir};
 use indicatif::ProgressBar;
 use serde_json::json;
 
-use super::study::{failure, jobs, report as study_report};
+use super::study::{failure, report as study_report};
 use crate::exit::{Exit, Failure};
 use crate::live::{duration, stop_on_signal};
 use crate::summary::short;
@@ -41,7 +41,8 @@ pub(crate) struct Arguments {
     /// Stop at the first set-up that misses an expectation; short set-ups are run first
     #[arg(long, conflicts_with = "report")]
     fail_fast: bool,
-    /// Number of concurrent runs; results are bitwise identical for any number [default: all cores]
+    /// Number of concurrent runs; results are bitwise identical for any number;
+    /// at most four per core, or 64 [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
     /// Directory of the verification; must not exist yet [default: runs/verify, runs/verify-2, …]
@@ -62,6 +63,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let jobs = super::parallel("--jobs", arguments.jobs)?;
     let directory = directory::of_run(Path::new("verify"), arguments.out.as_deref())?;
     let (paths, fast) = match arguments.paths.as_slice() {
         [] if Path::new("cases").is_dir() => (vec![PathBuf::from("cases")], arguments.fast),
@@ -78,9 +80,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let help = "give a case or a study that has an [[expect]], or a folder that contains one".to_owned();
         return Err(Failure::Argument { what: "no expectations found".to_owned(), help });
     }
-    std::fs::create_dir_all(&directory)?;
-    let options =
-        VerifyOptions { jobs: jobs(arguments.jobs), whole: arguments.report, fail_fast: arguments.fail_fast };
+    std::fs::create_dir_all(&*directory)?;
+    let options = VerifyOptions { jobs, whole: arguments.report, fail_fast: arguments.fail_fast };
     let stop = stop_on_signal()?;
     let seen = std::cell::RefCell::new(Seen::new(arguments.json));
     let mut begin = |runs: &[Named]| seen.borrow_mut().begin(runs);
@@ -88,7 +89,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     drop(seen);
     let Some(verification) = done.map_err(failure)? else {
         if arguments.json {
-            out::event(&json!({ "event": "interrupted", "directory": directory }))?;
+            out::event(&json!({ "event": "interrupted", "directory": &*directory }))?;
         } else if !console::is_quiet() && !arguments.csv {
             out::line("interrupted by Ctrl-C: no expectation was evaluated")?;
         }
