@@ -301,9 +301,9 @@ fn ranked_table(study: &Study, ranking: &Ranking) -> Markup {
         (ranked::tables(study, ranking))
         @if !without.is_empty() { p.small { "Not ranked (" (why) "): " (without.join("; ")) "." } }
         p.small {
-            "Arms share a place where their errors differ by no more than the uncertainty of the reference, \
-             than their ranges over the ensemble together, or than 5 %; within a place they are in the \
-             order of their cost."
+            "The place of an arm is one more than the number of arms that are distinguishably better: by \
+             more than the uncertainty of the reference, than their ranges over the ensemble together, and \
+             than 5 %. Within a place arms are in the order of their cost."
             @if study.manifest.arms.iter().any(|arm| study.manifest.by_cost(arm)) {
                 " An exclamation mark means more than 10 % off the budget."
             }

@@ -15,19 +15,15 @@ pub struct Ranked {
     pub place: usize,
 }
 
-/// Assigns places: an arm shares the place of the first arm of its group as long as the two are not
-/// distinguished.
+/// Assigns places: one more than the number of arms that are distinguishably better.
 pub(super) fn places(ranked: &mut [Ranked], uncertainty: f64) {
     let alike = |a: &Ranked, b: &Ranked| {
         let own = f64::max(a.uncertainty + b.uncertainty, ALIKE * f64::min(a.error, b.error));
         (a.error - b.error).abs() <= f64::max(uncertainty, own)
     };
-    let mut first = 0;
     for i in 0..ranked.len() {
-        if !alike(&ranked[first], &ranked[i]) {
-            first = i;
-        }
-        ranked[i].place = first + 1;
+        let one = &ranked[i];
+        ranked[i].place = 1 + ranked.iter().filter(|r| r.error < one.error && !alike(r, one)).count();
     }
 }
 
@@ -52,5 +48,14 @@ mod tests {
         let mut wide = [1.0, 1.2].map(|error| Ranked { arm: 0, error, uncertainty: 0.15, place: 0 });
         places(&mut wide, 0.0);
         assert_eq!(wide.map(|r| r.place), [1, 1]);
+        // An arm that may be anything from 0 to 2 is not told from any other; the others are.
+        let mut vague = [(0.9, 1.1), (1.0, 0.0), (2.0, 0.0)].map(|(error, uncertainty)| Ranked {
+            arm: 0,
+            error,
+            uncertainty,
+            place: 0,
+        });
+        places(&mut vague, 0.0);
+        assert_eq!(vague.map(|r| r.place), [1, 1, 2]);
     }
 }

@@ -5,9 +5,10 @@
 //! of a run is |m − r|/|r| (|m| if r = 0) for a metric m, or the root mean square deviation of
 //! columns; that of an arm is the median over its ensemble, with the largest distance of a member
 //! from it as its uncertainty. Arms are ranked within a level only, that is, at the same step or the
-//! same cost. Two arms of a level are not distinguished, and share a place, if their errors differ by
-//! no more than the sum of their uncertainties, than that of the reference, or than 5 %; within a
-//! place they are in the order of their cost.
+//! same cost. Two arms of a level are not distinguished if their errors differ by no more than the sum
+//! of their uncertainties, than that of the reference, or than 5 %. The place of an arm is one more
+//! than the number of arms that are distinguishably better; within a place arms are in the order of
+//! their cost.
 //!
 //! Methods are ordered by their mean place over the levels. Of those that are not distinguished from
 //! the best, the cheapest is recommended; processor times within 10 % of the smallest count as equal,

@@ -20,7 +20,11 @@ pub(super) const KIND: KindInfo = KindInfo {
     reference: "Chung, Hulbert 1993",
     sets: &[&[
         SHARE,
-        Parameter { key: "alpha_f", meaning: "Weight of the old internal, contact and external forces.", ..SHARE },
+        Parameter {
+            key: "alpha_f",
+            meaning: "Weight of the old internal, contact and external forces.",
+            ..SHARE
+        },
         BETA,
         GAMMA,
     ]],
