@@ -44,7 +44,7 @@ fn errors_are_reported_at_their_key() {
     assert!(
         missing.what.contains("\"nowhere.msh\" cannot be read") && missing.why.contains("there is no file")
     );
-    assert!(problem("body.prism.mesh.file=../gmsh").why.contains("is not a file"));
+    assert!(problem("body.prism.mesh.file=../gmsh").why.contains("is not a regular file"));
     assert!(problem("body.prism.mesh.file=gmsh.toml").what.contains("this is not a Gmsh mesh"));
     let name = problem("body.prism.mesh.surface=prisma");
     assert!(name.what.contains("\"prisma\"") && name.why.contains("cylinder, prism"), "{name}");
