@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 /// One secondary node against one facet of the primary side: contact point and history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
-    /// Index of the secondary node in [`Kinematics::secondary`](crate::Kinematics::secondary).
+    /// Index of the secondary node in [`Kinematics::secondary`](crate::Kinematics::secondary). A
+    /// node in a dent of the primary has several pairs.
     pub node: usize,
     /// Facet of the primary side; 0 for a rigid primary.
     pub facet: usize,
@@ -42,14 +43,16 @@ pub struct Pairing {
     pub pairs: Vec<Pair>,
     /// Margin around facets within which nodes are tracked.
     pub(crate) margin: f64,
-    /// Facet from which a node was handed over in this step: it does not return within the step.
+    /// Facet from which a node was handed over in this step: one that would return lies in a dent.
     pub(crate) left: BTreeMap<usize, usize>,
+    /// Whether no search has been made in this solve.
+    pub(crate) fresh: bool,
 }
 
 impl Pairing {
     /// Pairs at the start of a solve: each may change facets again.
     pub fn new(pairs: Vec<Pair>) -> Self {
-        Self { pairs, margin: WATCHED, left: BTreeMap::new() }
+        Self { pairs, margin: WATCHED, left: BTreeMap::new(), fresh: true }
     }
 
     /// The same for an explicit step, which moves no further than predicted: only nodes that may
@@ -63,6 +66,21 @@ impl Pairing {
     pub fn restart(&mut self) {
         self.pairs.retain(|pair| pair.active);
         self.left.clear();
+        self.fresh = true;
+    }
+
+    /// Takes out the pairs of nodes from `node` on, and numbers these nodes from 0.
+    pub(crate) fn split_off(&mut self, node: usize) -> Self {
+        let mut pairs = self.pairs.split_off(self.pairs.partition_point(|pair| pair.node < node));
+        pairs.iter_mut().for_each(|pair| pair.node -= node);
+        let left = self.left.split_off(&node).into_iter().map(|(k, facet)| (k - node, facet)).collect();
+        Self { pairs, margin: self.margin, left, fresh: self.fresh }
+    }
+
+    /// Reverses [`split_off`](Self::split_off).
+    pub(crate) fn append(&mut self, other: Self, node: usize) {
+        self.pairs.extend(other.pairs.into_iter().map(|pair| Pair { node: pair.node + node, ..pair }));
+        self.left.extend(other.left.into_iter().map(|(k, facet)| (k + node, facet)));
     }
 
     /// Copies another one, reusing allocated memory.
@@ -70,6 +88,7 @@ impl Pairing {
         self.pairs.clone_from(&other.pairs);
         self.margin = other.margin;
         self.left.clone_from(&other.left);
+        self.fresh = other.fresh;
     }
 }
 

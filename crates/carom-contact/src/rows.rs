@@ -14,6 +14,8 @@ pub struct Rows {
     nodes: Vec<usize>,
     /// ∂g/∂y of each of these nodes.
     gradients: Vec<f64>,
+    /// Whether the first node of each row belongs to the primary side.
+    reversed: Vec<bool>,
 }
 
 /// One row.
@@ -21,16 +23,25 @@ pub struct Rows {
 pub struct Row<'a> {
     /// Gap g; infinite without a unique closest point, for a remote pair.
     pub gap: f64,
-    /// Global numbers of the nodes it depends on; the secondary node comes first.
+    /// Global numbers of the nodes it depends on; the node that faces a facet comes first.
     pub nodes: &'a [usize],
     /// ∂g/∂y of each node, node-major.
     pub gradient: &'a [f64],
+    /// Whether the first node belongs to the primary side and the others to the secondary one.
+    pub reversed: bool,
 }
 
 impl Rows {
     /// No rows yet, for positions of a dimension.
     pub fn new(dimension: usize) -> Self {
-        Self { dimension, gaps: Vec::new(), starts: vec![0], nodes: Vec::new(), gradients: Vec::new() }
+        Self {
+            dimension,
+            gaps: Vec::new(),
+            starts: vec![0],
+            nodes: Vec::new(),
+            gradients: Vec::new(),
+            reversed: Vec::new(),
+        }
     }
 
     /// Number of rows.
@@ -49,12 +60,14 @@ impl Rows {
         self.starts.truncate(1);
         self.nodes.clear();
         self.gradients.clear();
+        self.reversed.clear();
     }
 
     /// Adds a row from its nodes with their ∂g/∂y, of which as many components are used as there
     /// are dimensions.
     pub fn push<const P: usize>(&mut self, gap: f64, nodes: impl IntoIterator<Item = (usize, [f64; P])>) {
         self.gaps.push(gap);
+        self.reversed.push(false);
         for (node, gradient) in nodes {
             self.nodes.push(node);
             self.gradients.extend_from_slice(&gradient[..self.dimension]);
@@ -71,6 +84,7 @@ impl Rows {
     pub fn pop(&mut self) -> f64 {
         let Some(gap) = self.gaps.pop() else { return f64::INFINITY };
         self.starts.pop();
+        self.reversed.pop();
         let end = self.starts.last().copied().unwrap_or(0);
         self.nodes.truncate(end);
         self.gradients.truncate(end * self.dimension);
@@ -80,6 +94,7 @@ impl Rows {
     /// Adds a copy of a row of the same dimension.
     pub fn push_row(&mut self, row: Row) {
         self.gaps.push(row.gap);
+        self.reversed.push(row.reversed);
         self.nodes.extend_from_slice(row.nodes);
         self.gradients.extend_from_slice(row.gradient);
         self.starts.push(self.nodes.len());
@@ -89,7 +104,17 @@ impl Rows {
     pub fn row(&self, row: usize) -> Row<'_> {
         let range = self.starts[row]..self.starts[row + 1];
         let gradients = range.start * self.dimension..range.end * self.dimension;
-        Row { gap: self.gaps[row], nodes: &self.nodes[range], gradient: &self.gradients[gradients] }
+        Row {
+            gap: self.gaps[row],
+            nodes: &self.nodes[range],
+            gradient: &self.gradients[gradients],
+            reversed: self.reversed[row],
+        }
+    }
+
+    /// Marks the last row as that of a node of the primary side against the secondary one.
+    pub(crate) fn reverse_last(&mut self) {
+        self.reversed.last_mut().into_iter().for_each(|reversed| *reversed = true);
     }
 
     /// All rows in order.
@@ -133,10 +158,11 @@ impl Row<'_> {
         }
     }
 
-    /// ∂g/∂y of the secondary node padded with zeros to space: the primary's outward unit normal.
+    /// The primary's outward unit normal, padded with zeros to space: ∂g/∂y of the first node, with
+    /// the other sign if that belongs to the primary.
     pub fn normal(&self) -> [f64; 3] {
-        let d = self.dimension();
-        std::array::from_fn(|i| if i < d { self.gradient[i] } else { 0.0 })
+        let (d, sign) = (self.dimension(), if self.reversed { -1.0 } else { 1.0 });
+        std::array::from_fn(|i| if i < d { sign * self.gradient[i] } else { 0.0 })
     }
 }
 
@@ -149,7 +175,10 @@ mod tests {
         let mut rows = Rows::new(2);
         rows.push(-0.5, [(3, [0.0, 1.0, 9.0]), (1, [0.0, -1.0, 9.0])]);
         rows.push_open();
-        assert_eq!(rows.row(0), Row { gap: -0.5, nodes: &[3, 1], gradient: &[0.0, 1.0, 0.0, -1.0] });
+        assert_eq!(
+            rows.row(0),
+            Row { gap: -0.5, nodes: &[3, 1], gradient: &[0.0, 1.0, 0.0, -1.0], reversed: false }
+        );
         assert_eq!(rows.row(0).along(&[0.0, 0.0, 5.0, 2.0, 0.0, 0.0, 7.0, 10.0]), 8.0);
         assert_eq!((rows.len(), rows.row(1).gap, rows.row(1).along(&[])), (2, f64::INFINITY, 0.0));
         let copy = { rows.row(0).nodes.to_vec() };

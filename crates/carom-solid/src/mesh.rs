@@ -158,20 +158,26 @@ impl Mesh {
         (end - cell.iter().map(|&n| self.nodes[n][0]).sum::<f64>() / cell.len() as f64).signum()
     }
 
-    /// Whether each node lies on the boundary: on a facet of only one cell.
-    pub fn on_boundary(&self) -> Vec<bool> {
+    /// The whole boundary: the facets of only one cell, by ascending nodes, each traversed with the
+    /// body on its left.
+    pub fn skin(&self) -> Vec<Facet> {
         // Nodes of a facet in ascending order, as a key common to both its cells.
-        let mut alone: BTreeMap<Vec<usize>, bool> = BTreeMap::new();
-        for cell in (0..self.cell_count()).map(|c| self.cell(c)) {
+        let mut alone: BTreeMap<Vec<usize>, Option<Facet>> = BTreeMap::new();
+        for cell in 0..self.cell_count() {
             for facet in self.element.facets() {
-                let mut nodes: Vec<usize> = facet.iter().map(|&a| cell[a]).collect();
-                nodes.sort_unstable();
-                alone.entry(nodes).and_modify(|alone| *alone = false).or_insert(true);
+                let nodes: Vec<usize> = facet.iter().map(|&a| self.cell(cell)[a]).collect();
+                let mut key = nodes.clone();
+                key.sort_unstable();
+                alone.entry(key).and_modify(|other| *other = None).or_insert(Some(Facet { cell, nodes }));
             }
         }
+        alone.into_values().flatten().collect()
+    }
+
+    /// Whether each node lies on the boundary.
+    pub fn on_boundary(&self) -> Vec<bool> {
         let mut on = vec![false; self.nodes.len()];
-        let boundary = alone.into_iter().filter_map(|(nodes, alone)| alone.then_some(nodes));
-        boundary.flatten().for_each(|node| on[node] = true);
+        self.skin().iter().flat_map(|facet| &facet.nodes).for_each(|&node| on[node] = true);
         on
     }
 

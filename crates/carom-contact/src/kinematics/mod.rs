@@ -3,6 +3,7 @@
 //!
 //! Positions are flat over all nodes, `dimension` components each.
 
+mod both_sides;
 mod gap;
 mod node_to_facet;
 mod node_to_plane;
@@ -10,6 +11,7 @@ mod projection;
 mod surface;
 mod trajectory;
 
+pub use both_sides::BothSides;
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
 pub use node_to_plane::NodeToPlane;
 pub use surface::Surface;

@@ -6,7 +6,18 @@
 //! the paths in the first step of a pair, and of the closest point at the start of the step in the
 //! later ones; a step leaves it unchanged.
 //!
-//! A pair is handed to the neighbour only between solves, and never back within a step.
+//! Joints and ends of facets, with the body on the left:
+//!
+//! ```text
+//! joint                  a pair past the end is handed to the neighbour; one that would be handed back
+//!                        within the step, or is past the ends of both, keeps its facet up to |ξ| = 1.2
+//! dent                   where the extrapolated facet would let that node into the neighbour by more
+//!                        than a hundredth of its length, the node has a pair with either facet
+//! corner, end of side    nothing is faced past the end, |ξ| > 1.05; a pair that slides past it keeps its
+//!                        facet to the end of the step and leaves at the start of the next one
+//! ```
+//!
+//! A pair is handed to the neighbour only between solves.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -20,16 +31,20 @@ use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
 use crate::rows::Rows;
 
+/// Depth, relative to a facet's length, to which its extrapolation may lead into the neighbour.
+const DENT: f64 = 0.01;
 /// |ξ| up to which a facet is extrapolated.
 const REACH: f64 = 1.2;
+/// |ξ| − 1 above which a closest point is past the end of its facet.
+const PAST: f64 = 1e-9;
+/// The same at a corner or at the end of a side: where sides of equal length are pressed together,
+/// their ends bulge differently.
+pub(super) const PAST_SIDE: f64 = 0.05;
 /// |ξ| allowed for the closest point before Newton has converged.
 const WANDER: f64 = 3.0;
 /// |ξ| beyond which a pair is handed over, or back, before Newton has converged.
 const HAND_OVER: f64 = 1.02;
 const HAND_BACK: f64 = 1.1;
-/// Cosine of the kink between neighbouring facets that marks a corner, in whose vertex cone a node
-/// past both ends has left the side.
-const CORNER_COSINE: f64 = 0.87;
 /// A node this far behind a facet (relative to its length) at the start of a step has not crossed
 /// the facet.
 const BEHIND: f64 = 1e-6;
@@ -75,6 +90,11 @@ impl NodeToFacet {
     #[must_use]
     pub fn with_point(self, point: ContactPoint) -> Self {
         Self { point, ..self }
+    }
+
+    /// The primary side.
+    pub(super) fn primary(&self) -> &Surface {
+        &self.primary
     }
 
     fn is_frozen(&self) -> bool {
@@ -124,34 +144,46 @@ impl NodeToFacet {
                 first = Some((c.theta, facet, c.xi));
             }
             let Some(xi) = side.closest_point(now, now.at(node), REACH) else { continue };
-            let beyond = (xi.abs() - 1.0).max(0.0);
-            let distance = self.gap(node, facet, xi, now).abs() + beyond * self.primary.length(facet, now);
-            if closest.is_none_or(|(d, ..)| distance < d) {
+            let gap = self.gap(node, facet, xi, now);
+            let of_side = self.primary.is_of_side(facet);
+            // A node beside the rest of the boundary may still face the side.
+            if if of_side { self.faces_nothing(facet, xi, now) } else { gap >= 0.0 || xi.abs() > 1.0 } {
+                continue;
+            }
+            let distance = gap.abs() + (xi.abs() - 1.0).max(0.0) * self.primary.length(facet, now);
+            // The facets of the side come first: one that is as near as the rest is preferred.
+            if closest.is_none_or(|(d, ..)| distance < if of_side { d } else { (1.0 - PAST) * d }) {
                 closest = Some((distance, facet, xi));
             }
         }
-        if let Some((_, facet, xi)) = first {
+        let entered_elsewhere = first.is_some_and(|(_, facet, _)| !self.primary.is_of_side(facet));
+        if let Some((_, facet, xi)) = first.filter(|_| !entered_elsewhere) {
             return Some((facet, xi, true));
         }
-        let (_, facet, xi) = closest?;
+        let (_, facet, xi) = closest.filter(|&(_, facet, _)| self.primary.is_of_side(facet))?;
         let start = self.primary.facet(facet).closest_point(before, before.at(node), REACH);
-        let came_from_behind = start
-            .is_some_and(|s| self.gap(node, facet, s, before) < -BEHIND * self.primary.length(facet, before));
-        (!came_from_behind).then_some((facet, xi, false))
+        let behind = |s| self.gap(node, facet, s, before) < -BEHIND * self.primary.length(facet, before);
+        (!start.map_or(entered_elsewhere, behind)).then_some((facet, xi, false))
     }
 
     /// The next facet of a pair that is past the end of its facet.
     fn next_facet(&self, pair: &Pair, came_from: Option<usize>, y: Places) -> Next {
-        if pair.xi.abs() <= 1.0 + 1e-9 {
+        if pair.xi.abs() <= 1.0 + PAST {
             return Next::Stay;
         }
         let node = self.secondary[pair.node];
         let forward = pair.xi > 0.0;
-        let Some(neighbour) = self.primary.neighbour(pair.facet, forward) else {
-            return if pair.xi.abs() <= REACH { Next::Stay } else { Next::Leave };
+        let Some(neighbour) = self.primary.neighbour_of_side(pair.facet, forward) else {
+            return if self.faces_nothing(pair.facet, pair.xi, y) { Next::Leave } else { Next::Stay };
         };
         if came_from == Some(neighbour) {
-            return if pair.xi.abs() <= REACH { Next::Stay } else { Next::Leave };
+            let [first, second] = if forward { [pair.facet, neighbour] } else { [neighbour, pair.facet] };
+            let depth = 0.5 * (pair.xi.abs() - 1.0) * self.primary.kink(first, second, y).1.abs();
+            return if pair.xi.abs() <= REACH && depth <= DENT {
+                Next::Stay
+            } else {
+                Next::Dent(neighbour, if forward { -1.0 } else { 1.0 })
+            };
         }
         if let Some(xi) = self.primary.facet(neighbour).closest_point(y, y.at(node), REACH) {
             let inside = if forward { xi >= -1.0 } else { xi <= 1.0 };
@@ -159,19 +191,29 @@ impl NodeToFacet {
                 return Next::HandOver(neighbour, xi);
             }
         }
-        // Past both ends: the vertex cone of a convex kink. A small kink is bridged by
-        // extrapolation; at a corner the node is free.
-        let end = if forward { 1.0 } else { -1.0 };
-        let here = self.primary.facet(pair.facet).at(y, end).tangent;
-        let there = self.primary.facet(neighbour).at(y, -end).tangent;
-        let blunt = here.dot(&there) >= CORNER_COSINE * here.norm() * there.norm();
-        if blunt && pair.xi.abs() <= REACH { Next::Stay } else { Next::Leave }
+        // Past both ends: in the vertex cone of a convex joint.
+        let bridged = pair.xi.abs() <= REACH && !self.faces_nothing(pair.facet, pair.xi, y);
+        if bridged { Next::Stay } else { Next::Leave }
+    }
+
+    /// Whether ξ lies past a facet's end and no blunt joint with the side follows there.
+    fn faces_nothing(&self, facet: usize, xi: f64, y: Places) -> bool {
+        if xi.abs() <= 1.0 + PAST_SIDE {
+            return false;
+        }
+        let Some(neighbour) = self.primary.neighbour_of_side(facet, xi > 0.0) else { return true };
+        let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
+        self.primary.is_corner(first, second, y)
     }
 }
 
+/// Where a pair past the end of its facet belongs.
 enum Next {
     Stay,
+    /// On the neighbour, at ξ.
     HandOver(usize, f64),
+    /// On the neighbour too, at ξ.
+    Dent(usize, f64),
     Leave,
 }
 
@@ -211,8 +253,16 @@ impl Kinematics for NodeToFacet {
             return false;
         }
         let (before, now) = (self.places(before), self.places(now));
-        let Pairing { pairs, margin, left } = pairing;
+        let Pairing { pairs, margin, left, fresh } = pairing;
         let mut changed = false;
+        let starts = std::mem::replace(fresh, false);
+        // Facets of nodes in dents.
+        let twice: Vec<(usize, usize)> = pairs
+            .windows(2)
+            .filter(|two| two[0].node == two[1].node)
+            .flat_map(|two| [two[0], two[1]].map(|pair| (pair.node, pair.facet)))
+            .collect();
+        let mut dents = Vec::new();
         // A frozen contact point belongs to the positions at the start of the step.
         let placed = if self.is_frozen() { before } else { now };
         pairs.retain_mut(|pair| {
@@ -222,6 +272,16 @@ impl Kinematics for NodeToFacet {
             for _ in 0..=self.primary.facets() {
                 match self.next_facet(pair, left.get(&pair.node).copied(), placed) {
                     Next::Stay => return true,
+                    Next::HandOver(facet, _) | Next::Dent(facet, _)
+                        if twice.contains(&(pair.node, facet)) =>
+                    {
+                        return true;
+                    }
+                    Next::Dent(facet, xi) => {
+                        changed |= pair.active;
+                        dents.push(Pair::open(pair.node, facet, xi));
+                        return true;
+                    }
                     Next::HandOver(facet, xi) => {
                         if pair.active {
                             events.push(PairEvent::HandOver { node, from: pair.facet, to: facet });
@@ -232,6 +292,7 @@ impl Kinematics for NodeToFacet {
                         left.insert(pair.node, pair.facet);
                         (pair.facet, pair.xi) = (facet, xi);
                     }
+                    Next::Leave if pair.active && !starts => return true,
                     Next::Leave => {
                         if pair.active {
                             events.push(PairEvent::SlidOff { node, facet: pair.facet });
@@ -244,13 +305,20 @@ impl Kinematics for NodeToFacet {
             }
             true
         });
+        if !dents.is_empty() {
+            pairs.append(&mut dents);
+            pairs.sort_by_key(|pair| pair.node);
+        }
         let mut search = self.search.lock().unwrap_or_else(PoisonError::into_inner);
         if search.update(&self.primary, &self.secondary, *margin, before, now) {
             let known = pairs.len();
             let mut next = 0;
             for (k, &node) in self.secondary.iter().enumerate() {
-                if next < known && pairs[next].node == k {
+                let first = next;
+                while next < known && pairs[next].node == k {
                     next += 1;
+                }
+                if next > first {
                     continue;
                 }
                 let Some((facet, xi, crossed)) = self.candidate(&mut search, node, before, now) else {
@@ -285,7 +353,9 @@ impl Kinematics for NodeToFacet {
         let now = self.places(now);
         let Pairing { pairs, left, .. } = pairing;
         let mut changed = false;
-        for pair in pairs.iter_mut().filter(|pair| pair.active) {
+        let nodes: Vec<usize> = pairs.iter().map(|pair| pair.node).collect();
+        let in_dent = |p: usize| p > 0 && nodes[p - 1] == nodes[p] || nodes.get(p + 1) == Some(&nodes[p]);
+        for (_, pair) in pairs.iter_mut().enumerate().filter(|(p, pair)| pair.active && !in_dent(*p)) {
             let came_from = left.get(&pair.node).copied();
             if pair.xi.abs() <= if came_from.is_some() { HAND_BACK } else { HAND_OVER } {
                 continue;
@@ -319,6 +389,10 @@ impl Kinematics for NodeToFacet {
         if !self.is_frozen() {
             let lost = ContactError::Lost { node, facet: pair.facet, xi: pair.xi };
             pair.xi = self.closest(pair, y).ok_or(lost)?;
+            if !pair.active && self.faces_nothing(pair.facet, pair.xi, y) {
+                rows.push_open();
+                return Ok(());
+            }
         }
         let gap = self.gap_of(pair, y);
         if gap.a <= 0.0 || !gap.a.is_finite() {

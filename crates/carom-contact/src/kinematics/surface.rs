@@ -8,13 +8,19 @@ use carom_solid::{Bounds, FacetShape, Hull, Tree};
 use super::projection::Facet;
 use crate::places::Places;
 
-/// Facets of a side, all of one shape, and their neighbours.
+/// Cosine of the kink between neighbouring facets that marks a corner: 30°.
+const CORNER_COSINE: f64 = 0.87;
+
+/// Facets of a side, all of one shape, and their neighbours. The rest of the body's boundary may
+/// follow them, so that a node near the end of the side is told from one that is behind it.
 #[derive(Clone, Debug)]
 pub struct Surface {
     shape: FacetShape,
     nodes: Vec<usize>,
     orientations: Vec<f64>,
     neighbours: Vec<[Option<usize>; 2]>,
+    /// Number of facets of the side; those of the rest come after them.
+    side: usize,
 }
 
 impl Surface {
@@ -31,7 +37,19 @@ impl Surface {
             FacetShape::Point => facets.iter().map(none).collect(),
             FacetShape::L2 | FacetShape::L3 | FacetShape::L4 => facets.iter().map(neighbours_of).collect(),
         };
-        Self { shape, nodes: facets.concat(), orientations: orientations.to_vec(), neighbours }
+        let (nodes, orientations) = (facets.concat(), orientations.to_vec());
+        Self { shape, nodes, orientations, neighbours, side: facets.len() }
+    }
+
+    /// The same side with the `rest` of its body's boundary, whose facets are traversed with the
+    /// body on their left. They only say where the side ends.
+    #[must_use]
+    pub fn bounded_by(self, rest: &[Vec<usize>]) -> Self {
+        let of_side = self.nodes.chunks_exact(self.shape.nodes()).map(<[usize]>::to_vec);
+        let facets: Vec<Vec<usize>> = of_side.chain(rest.iter().cloned()).collect();
+        let orientations: Vec<f64> =
+            self.orientations.iter().copied().chain(rest.iter().map(|_| 1.0)).collect();
+        Self { side: self.side, ..Self::new(self.shape, &facets, &orientations) }
     }
 
     /// Shape of every facet.
@@ -39,9 +57,19 @@ impl Surface {
         self.shape
     }
 
-    /// Number of facets.
+    /// Number of facets of the side.
     pub fn facets(&self) -> usize {
+        self.side
+    }
+
+    /// Number of facets with those of the rest of the boundary.
+    pub(crate) fn all(&self) -> usize {
         self.neighbours.len()
+    }
+
+    /// Whether a facet belongs to the side.
+    pub(crate) fn is_of_side(&self, facet: usize) -> bool {
+        facet < self.side
     }
 
     /// A facet.
@@ -57,6 +85,42 @@ impl Surface {
     /// The facet that follows (or precedes) it in the direction of traversal.
     pub fn neighbour(&self, facet: usize, forward: bool) -> Option<usize> {
         self.neighbours[facet][usize::from(forward)]
+    }
+
+    /// The same if it belongs to the side.
+    pub(crate) fn neighbour_of_side(&self, facet: usize, forward: bool) -> Option<usize> {
+        self.neighbour(facet, forward).filter(|&neighbour| self.is_of_side(neighbour))
+    }
+
+    /// Nodes of the side at convex corners of the boundary, ascending: kinks of more than 30° at
+    /// these positions, flat over all nodes.
+    pub fn corners(&self, y: &[f64]) -> Vec<usize> {
+        let y = Places::new(y, self.shape.dimension());
+        let mut corners = Vec::new();
+        for (facet, neighbours) in self.neighbours.iter().enumerate() {
+            let Some(next) = neighbours[1] else { continue };
+            let on_side = self.is_of_side(facet) || self.is_of_side(next);
+            if on_side && self.is_corner(facet, next, y) {
+                corners.push(self.facet(next).nodes[0]);
+            }
+        }
+        corners.sort_unstable();
+        corners
+    }
+
+    /// Whether the joint of a facet and the one that follows it is a convex corner.
+    pub(crate) fn is_corner(&self, facet: usize, next: usize, y: Places) -> bool {
+        let (cosine, sine) = self.kink(facet, next, y);
+        // With the body on the left, a convex joint turns left.
+        sine > 0.0 && cosine < CORNER_COSINE
+    }
+
+    /// Cosine and sine of the turn from a facet to the one that follows it.
+    pub(crate) fn kink(&self, facet: usize, next: usize, y: Places) -> (f64, f64) {
+        let here = self.facet(facet).at(y, 1.0).tangent;
+        let there = self.facet(next).at(y, -1.0).tangent;
+        let size = here.norm() * there.norm();
+        (here.dot(&there) / size, (here[0] * there[1] - here[1] * there[0]) / size)
     }
 
     /// Distance between a facet's ends.
@@ -100,7 +164,7 @@ impl Search {
         };
         match &mut self.tree {
             Some(tree) => _ = tree.update(swept),
-            None => self.tree = Some(Tree::new(surface.facets(), swept)),
+            None => self.tree = Some(Tree::new(surface.all(), swept)),
         }
         let mut all = Bounds::EMPTY;
         for &node in nodes {

@@ -14,10 +14,9 @@ pub struct Contact {
     pub interface: Box<dyn Interface>,
     /// Body of the primary side; `None` for a rigid primary.
     pub primary_part: Option<usize>,
-    /// Facets of the secondary side in global nodes, for consistent weights.
-    pub secondary_facets: Vec<Vec<usize>>,
-    /// Their shape.
-    pub secondary_shape: FacetShape,
+    /// Facets of either side in global nodes with their shape, for consistent weights; the secondary
+    /// side first.
+    pub facets: Vec<(FacetShape, Vec<Vec<usize>>)>,
     /// Whether penetration by the predictor y + Δt v is prevented too.
     pub predictor: bool,
     /// Nodes of both sides, ascending.

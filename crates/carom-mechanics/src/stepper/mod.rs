@@ -81,16 +81,18 @@ pub trait Stepper: Send + Sync {
     ) -> Result<Accepted, Rejected>;
 }
 
-/// Secondary nodes active in `a` and not in `b`: (contact, global node).
+/// Secondary nodes with more active pairs in `a` than in `b`, each as often as it has more:
+/// (contact, global node).
 fn difference(model: &Model, a: &State, b: &State) -> Vec<(usize, usize)> {
     let mut nodes = Vec::new();
     for (k, contact) in model.contacts.iter().enumerate() {
-        // Pairs ascend by node.
-        let active = |node: usize| {
-            b.pairs[k].binary_search_by_key(&node, |p| p.node).is_ok_and(|p| b.pairs[k][p].active)
-        };
-        for pair in a.pairs[k].iter().filter(|p| p.active && !active(p.node)) {
-            nodes.push((k, contact.kinematics.secondary()[pair.node]));
+        // Both ascend by node.
+        let mut others = b.pairs[k].iter().filter(|pair| pair.active).peekable();
+        for pair in a.pairs[k].iter().filter(|pair| pair.active) {
+            while others.next_if(|other| other.node < pair.node).is_some() {}
+            if others.next_if(|other| other.node == pair.node).is_none() {
+                nodes.push((k, contact.kinematics.secondary()[pair.node]));
+            }
         }
     }
     nodes

@@ -5,13 +5,13 @@ use carom_case::{
     ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, Persistency, PrimarySpec, Problem,
 };
 use carom_contact::{
-    ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet, NodeToPlane,
-    Penalty, Surface, Unilateral,
+    BothSides, ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet,
+    NodeToPlane, Penalty, Surface, Unilateral,
 };
 use carom_mechanics::model::{BodyInstance, Contact, Model};
 use carom_solid::PointLocator;
 
-use super::side::side;
+use super::side::{Side, side};
 
 /// The contacts of a case.
 pub(super) fn contacts(
@@ -22,6 +22,7 @@ pub(super) fn contacts(
 ) -> Vec<Contact> {
     let averages = case.time.scheme.is_alpha();
     let conserves = case.time.scheme.conserves();
+    let reference: Vec<f64> = parts.iter().flat_map(|part| part.body.mesh().nodes.flat()).copied().collect();
     let mut contacts = Vec::new();
     for (k, spec) in case.contacts.iter().enumerate() {
         let secondary = match side(parts, &spec.secondary, &format!("contact[{k}].secondary")) {
@@ -32,6 +33,7 @@ pub(super) fn contacts(
             }
         };
         let mut primary_part = None;
+        let mut primary_facets = None;
         let mut surface = secondary.nodes.clone();
         let kinematics: Box<dyn Kinematics> = match &spec.primary {
             PrimarySpec::Plane { point, normal } => {
@@ -61,9 +63,15 @@ pub(super) fn contacts(
                         carom_case::ContactPoint::Closest => ContactPoint::Closest,
                         carom_case::ContactPoint::Frozen => ContactPoint::Frozen,
                     };
-                    let side = Surface::new(primary.shape, &primary.facets, &primary.orientations);
-                    let contact = NodeToFacet::new(secondary.nodes.clone(), side, detection);
-                    Box::new(contact.with_point(point))
+                    let [side, opposite] = [&primary, &secondary].map(|side| surface_of(side, parts));
+                    let corners = side.corners(&reference);
+                    primary_facets = Some((primary.shape, primary.facets));
+                    let nodes = NodeToFacet::new(secondary.nodes.clone(), side, detection).with_point(point);
+                    if corners.is_empty() || detection == Detection::Trajectory {
+                        Box::new(nodes)
+                    } else {
+                        Box::new(BothSides::new(nodes, NodeToFacet::new(corners, opposite, detection)))
+                    }
                 }
                 Err(problem) => {
                     problems.push(problem);
@@ -101,8 +109,7 @@ pub(super) fn contacts(
             predictor: spec.law == Some(ContactLaw::Predictor),
             kinematics,
             primary_part,
-            secondary_facets: secondary.facets,
-            secondary_shape: secondary.shape,
+            facets: std::iter::once((secondary.shape, secondary.facets)).chain(primary_facets).collect(),
             surface,
             // Other schemes evaluate the contact force at the ends of their stages: nothing is
             // averaged.
@@ -128,6 +135,11 @@ pub(super) fn contacts(
         contacts.push(contact);
     }
     contacts
+}
+
+/// A side with the rest of its body's boundary.
+fn surface_of(side: &Side, parts: &[BodyInstance]) -> Surface {
+    Surface::new(side.shape, &side.facets, &side.orientations).bounded_by(&side.rest(parts))
 }
 
 /// Mean over the directions of a node's diagonal of the tangent in the reference configuration.

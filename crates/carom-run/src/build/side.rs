@@ -1,5 +1,7 @@
 //! The sides named in a case, `body.side`, in the node numbers of the whole model.
 
+use std::collections::HashSet;
+
 use carom_case::Problem;
 use carom_mechanics::model::BodyInstance;
 use carom_solid::FacetShape;
@@ -11,6 +13,21 @@ pub(crate) struct Side {
     pub(crate) facets: Vec<Vec<usize>>,
     pub(crate) orientations: Vec<f64>,
     pub(crate) shape: FacetShape,
+}
+
+impl Side {
+    /// The other facets of its body's boundary.
+    pub(crate) fn rest(&self, parts: &[BodyInstance]) -> Vec<Vec<usize>> {
+        if self.shape == FacetShape::Point {
+            // A point has no neighbours.
+            return Vec::new();
+        }
+        let own: HashSet<&[usize]> = self.facets.iter().map(Vec::as_slice).collect();
+        let part = &parts[self.part];
+        let skin = part.body.mesh().skin().into_iter();
+        let facets = skin.map(|facet| facet.nodes.iter().map(|n| n + part.first_node).collect());
+        facets.filter(|facet: &Vec<usize>| !own.contains(facet.as_slice())).collect()
+    }
 }
 
 /// The side of a name; a missing one is a problem with the key `path`.

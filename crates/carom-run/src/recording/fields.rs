@@ -90,27 +90,29 @@ fn pressures(case: &Case, model: &Model, state: &State) -> Vec<f64> {
     pressure
 }
 
-/// ∫φᴺ ds over the current secondary side, times the thickness: the area of each multiplier. One
-/// entry per secondary node.
+/// ∫φᴺ ds over the current side of each node, times the thickness: the area of each multiplier. One
+/// entry per node of the contact's pairs.
 pub(super) fn consistent_weights(contact: &Contact, state: &State, thickness: f64) -> Vec<f64> {
     let secondary = contact.kinematics.secondary();
     let place: HashMap<usize, usize> = secondary.iter().enumerate().map(|(k, &n)| (n, k)).collect();
     let mut weights = vec![0.0; secondary.len()];
-    let (shape, d) = (contact.secondary_shape, contact.secondary_shape.dimension());
-    // Exact for constant |y'| and φ of degree 3.
-    let rule = shape.rule(5);
-    for facet in &contact.secondary_facets {
-        for &(xi, w) in &rule {
-            let functions = shape.at(xi);
-            let mut tangent = [0.0; 2];
-            for (&n, slope) in facet.iter().zip(&functions.first) {
-                (0..d).for_each(|i| tangent[i] += slope * state.y[n * d + i]);
-            }
-            let [x, y] = shape.normal(tangent, 1.0);
-            let measure = x.hypot(y);
-            for (n, value) in facet.iter().zip(&functions.values) {
-                if let Some(&p) = place.get(n) {
-                    weights[p] += w * value * measure * thickness;
+    for (shape, facets) in &contact.facets {
+        let d = shape.dimension();
+        // Exact for constant |y'| and φ of degree 3.
+        let rule = shape.rule(5);
+        for facet in facets {
+            for &(xi, w) in &rule {
+                let functions = shape.at(xi);
+                let mut tangent = [0.0; 2];
+                for (&n, slope) in facet.iter().zip(&functions.first) {
+                    (0..d).for_each(|i| tangent[i] += slope * state.y[n * d + i]);
+                }
+                let [x, y] = shape.normal(tangent, 1.0);
+                let measure = x.hypot(y);
+                for (n, value) in facet.iter().zip(&functions.values) {
+                    if let Some(&p) = place.get(n) {
+                        weights[p] += w * value * measure * thickness;
+                    }
                 }
             }
         }
@@ -120,7 +122,7 @@ pub(super) fn consistent_weights(contact: &Contact, state: &State, thickness: f6
 
 /// Gap of a pair in a state and the unit normal ∂g/∂y of its secondary node; NaN if undefined.
 pub(super) fn gap_of(contact: &Contact, pair: &Pair, state: &State) -> (f64, [f64; 3]) {
-    let mut rows = Rows::new(contact.secondary_shape.dimension());
+    let mut rows = Rows::new(contact.facets[0].0.dimension());
     match contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows) {
         Ok(()) => (rows.row(0).gap, rows.row(0).normal()),
         Err(_) => (f64::NAN, [f64::NAN; 3]),

@@ -287,6 +287,9 @@ impl<'a> Session<'a> {
                 continue;
             }
             let weights = consistent_weights(contact, state, self.case.thickness);
+            // In a dent, a node has several pairs.
+            let mut of_node = vec![0.0; weights.len()];
+            pairs.iter().filter(|p| p.active).for_each(|pair| of_node[pair.node] += pair.lambda);
             for pair in pairs.iter().filter(|p| p.active) {
                 let node = contact.kinematics.secondary()[pair.node];
                 let y = &state.y[node * model.dimension..(node + 1) * model.dimension];
@@ -301,7 +304,7 @@ impl<'a> Session<'a> {
                     xi: pair.xi,
                     gap,
                     multiplier: pair.lambda,
-                    pressure: -pair.lambda / weights[pair.node],
+                    pressure: -of_node[pair.node] / weights[pair.node],
                     normal,
                 })?;
             }
