@@ -17,15 +17,13 @@
 //! (4δ + 2·separation)/v, v the normal velocity, where v does not vanish. Only a query that exhausts
 //! its budget may be coarser.
 
-mod earliest;
 mod path;
 #[cfg(test)]
 mod tests;
 
 use carom_algebra::Vector;
-use carom_solid::FacetShape;
+use carom_solid::{Earliest, FacetShape, Piece};
 
-use earliest::{Earliest, Piece};
 use path::CurvePath;
 
 /// Result of a swept test.

@@ -23,9 +23,7 @@
 //! of which 12 + 3 level are used with Λ = 6, more than the terms of higher order.
 
 use carom_algebra::Vector;
-use carom_solid::FacetShape;
-
-use super::earliest::Piece;
+use carom_solid::{FacetShape, Piece};
 
 const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 /// Bound of Σ |weights| of a coefficient.

@@ -1,11 +1,11 @@
-//! Search for the earliest piece of a swept test that is neither discarded nor divisible, for
-//! pieces of any dimension: a queue in the order of θ.
+//! Search for the earliest piece of a path that is neither discarded nor divisible, for pieces of
+//! any kind: a queue in the order of θ.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// A piece of a path over a box of parameters.
-pub(super) trait Piece: Copy {
+pub trait Piece {
     /// The lower end of its interval of θ.
     fn theta(&self) -> f64;
 
@@ -16,27 +16,27 @@ pub(super) trait Piece: Copy {
     /// heap's arrangement.
     fn place(&self) -> f64;
 
-    /// Whether it certainly contains no contact.
+    /// Whether it certainly does not contain what is searched.
     fn is_clear(&self) -> bool;
 }
 
 /// The queue, kept between searches for its memory.
 #[derive(Clone, Debug)]
-pub(super) struct Earliest<P> {
+pub struct Earliest<P> {
     queue: BinaryHeap<Entry<P>>,
     budget: usize,
 }
 
 impl<P: Piece> Earliest<P> {
     /// With a number of pieces examined before the search stops at the earliest one.
-    pub(super) fn new(budget: usize) -> Self {
+    pub fn new(budget: usize) -> Self {
         Self { queue: BinaryHeap::new(), budget }
     }
 
     /// The earliest piece of `whole`, which is not clear, that `discarded` does not reject and
     /// `halves` does not divide. Exhaustion of the budget is no reason to discard: the earliest
     /// piece is reported.
-    pub(super) fn first(
+    pub fn first(
         &mut self,
         whole: P,
         discarded: impl Fn(&P) -> bool,
@@ -63,7 +63,7 @@ impl<P: Piece> Earliest<P> {
 }
 
 /// In the order of the queue: earlier first, then smaller, which ends the search sooner.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Entry<P>(P);
 
 impl<P: Piece> Ord for Entry<P> {
