@@ -6,7 +6,10 @@
 
 use std::hint::black_box;
 
-use carom_contact::{Detection, Kinematics, NodeToFacet, Pairing, Rows, Surface};
+use carom_algebra::Vector;
+use carom_contact::{
+    Crossings, Detection, Kinematics, NodeToFacet, Pairing, Rows, Surface, Swept, SweptTest,
+};
 use carom_solid::FacetShape;
 use divan::Bencher;
 
@@ -77,4 +80,29 @@ fn gap(bencher: Bencher, shape: FacetShape) {
         contact.curvature_into(&pair, black_box(&now), &mut curvature);
         measured
     });
+}
+
+/// Swept test of a node that starts at a height above an arc and falls by 0.1.
+fn swept(bencher: Bencher, shape: FacetShape, height: f64, clear: bool) {
+    let places: &[f64] = match shape {
+        FacetShape::L3 => &[-1.0, 1.0, 0.0],
+        _ => &[-1.0, 1.0, -1.0 / 3.0, 1.0 / 3.0],
+    };
+    let facet: Vec<_> = places[..shape.nodes()].iter().map(|x| Vector([-x, 0.1 * (1.0 - x * x)])).collect();
+    let node = [Vector([0.2, height]), Vector([0.25, height - 0.1])];
+    let mut test = SweptTest::new(shape);
+    bencher.bench_local(|| {
+        let answer = test.first(black_box(node), [&facet, &facet], Crossings::Inward, 1e-9);
+        assert_eq!(answer == Swept::Clear, clear);
+    });
+}
+
+#[divan::bench(args = SHAPES)]
+fn swept_clear(bencher: Bencher, shape: FacetShape) {
+    swept(bencher, shape, 0.3, true);
+}
+
+#[divan::bench(args = SHAPES)]
+fn swept_hit(bencher: Bencher, shape: FacetShape) {
+    swept(bencher, shape, if shape == FacetShape::L2 { 0.05 } else { 0.15 }, false);
 }

@@ -14,6 +14,9 @@ pub use discrete_gradient::DiscreteGradient;
 pub use interface::{
     Answer, ConservingPenalty, ConservingUnilateral, Direction, Interface, Penalty, Point, Unilateral,
 };
-pub use kinematics::{BothSides, ContactPoint, Detection, Kinematics, NodeToFacet, NodeToPlane, Surface};
+pub use kinematics::{
+    BothSides, ContactPoint, Crossings, Detection, Kinematics, NodeToFacet, NodeToPlane, Surface, Swept,
+    SweptTest,
+};
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

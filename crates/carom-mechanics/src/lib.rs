@@ -35,6 +35,7 @@ mod tangent_tests;
 #[cfg(test)]
 mod testing;
 mod timings;
+mod valid_cells;
 mod workspace;
 
 pub use ledger::secondary_force;

@@ -7,6 +7,7 @@ use crate::state::State;
 use crate::stepper::Scratch;
 use crate::system::System;
 use crate::timings::Timings;
+use crate::valid_cells::ValidCells;
 
 /// Buffers that may be discarded: no result depends on them.
 pub struct Workspace {
@@ -18,6 +19,8 @@ pub struct Workspace {
     states: Vec<State>,
     /// Buffers of the explicit stepper.
     pub(crate) explicit: Scratch,
+    /// Bodies whose cells are known to be valid.
+    pub(crate) valid_cells: ValidCells,
     /// Wall time by phase.
     pub timings: Timings,
     /// The linear problem of an iteration, and its history.
@@ -32,6 +35,7 @@ impl Workspace {
             spare: Spare::default(),
             states: Vec::new(),
             explicit: Scratch::default(),
+            valid_cells: ValidCells::default(),
             timings: Timings::default(),
             linear: LinearProblem::default(),
         }

@@ -3,7 +3,7 @@
 use crate::bounds::Bounds;
 use crate::mesh::Mesh;
 
-/// A cell is inverted (J ≤ 0) at a quadrature point.
+/// A cell is inverted (J ≤ 0) at a point, or not certified to be valid there.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("cell {cell} is inverted: J = {det_f:.3e}")]
 pub struct Inverted {
@@ -88,6 +88,14 @@ pub trait Body: Send + Sync {
 
     /// Smallest J over the quadrature points of a cell.
     fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64;
+
+    /// Certifies that J > 0 everywhere in a cell, not only at its quadrature points. Returns the
+    /// distance by which every component of its nodes' positions may change, relative to a common
+    /// translation, while that remains true; ∞ if the law permits J ≤ 0.
+    ///
+    /// # Errors
+    /// J where it is not certified to be positive.
+    fn cell_margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted>;
 
     /// Stress at a point of a cell given in reference coordinates.
     fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted>;

@@ -4,6 +4,7 @@
 mod body;
 mod bounds;
 mod discrete_gradient;
+mod earliest;
 mod facet;
 mod factory;
 pub mod generate;
@@ -21,9 +22,11 @@ pub mod shape;
 mod solid;
 mod subdivide;
 mod tree;
+mod validity;
 
 pub use body::{Body, Inverted, PointState};
 pub use bounds::Bounds;
+pub use earliest::{Earliest, Piece};
 pub use facet::FacetShape;
 pub use factory::{Constitutive, body, plane_stress_body};
 pub use loaded_side::LoadedSide;
@@ -36,3 +39,4 @@ pub use positions::Positions;
 pub use shape::{Hull, LineShape, line_shape};
 pub use solid::{Solid, SolidError};
 pub use tree::{REBUILT, Tree};
+pub use validity::{Loss, Validity};

@@ -26,6 +26,7 @@ use crate::quadrature::Rule;
 use crate::reference::{self, Degenerate, gradient};
 use crate::shape::{Domain, Hull, Shape};
 use crate::tree::Tree;
+use crate::validity::{Loss, Validity};
 
 /// Why a body cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -73,6 +74,9 @@ pub struct Solid<const D: usize, const N: usize, S, L> {
     /// Rules for masses of straight and of curved cells.
     mass_rules: [Rule<D>; 2],
     hull: Hull,
+    validity: Validity<D, N>,
+    /// Whether the law permits J ≤ 0.
+    may_invert: bool,
     /// Hierarchy of the cells' boxes in the reference configuration, built on the first query.
     tree: OnceLock<Tree>,
     shape: PhantomData<S>,
@@ -91,6 +95,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
         let force_rules = [rule(2 * k), rule((2 * k).max(4 * (k - 1)))];
         let mass_rules = [S::Domain::rule(2 * k), S::Domain::rule(4 * k - 2)];
         let cells = mesh.cell_count();
+        let mut mirrored = Mat::ZERO;
+        mirrored.0[0][0] = -2.0;
+        let may_invert = law.at(&mirrored).is_ok();
         let mut solid = Self {
             mesh,
             law,
@@ -101,6 +108,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
             curved: Vec::with_capacity(cells),
             mass_rules,
             hull: Hull::of::<D, N, S>(),
+            validity: Validity::of::<S>(),
+            may_invert,
             tree: OnceLock::new(),
             shape: PhantomData,
         };
@@ -116,6 +125,12 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
             for xi in S::NODES.iter().chain(&solid.mass_rules[usize::from(curved)].points) {
                 reference::map::<D, N, S>(&x, xi).map_err(at)?;
             }
+            // Between these points, the determinant of a curved cell may still change its sign.
+            solid.validity.margin(&x).map_err(|loss| {
+                let xi = place::<D, N, S>(&loss);
+                let place = reference::interpolate(&S::values(&xi), &x).0;
+                at(Degenerate { place, jacobian: gradient(&x, &S::gradients(&xi)).det() })
+            })?;
             let place = if curved {
                 let mapped = force_rules[1].iter().map(|(xi, weight)| {
                     let (gradients, jacobian) = reference::map::<D, N, S>(&x, xi).map_err(at)?;
@@ -171,6 +186,11 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Solid<D, N,
             visit(&S::values(xi), weight * jacobian * self.thickness);
         }
     }
+}
+
+/// Reference coordinates of a place where a cell lost its validity.
+fn place<const D: usize, const N: usize, S: Shape<D, N>>(loss: &Loss) -> Vector<D> {
+    (0..=D).fold(Vector::ZERO, |sum, corner| sum + S::NODES[corner] * loss.place[corner])
 }
 
 /// Packs points into lanes, from their gradients and weights.

@@ -9,12 +9,14 @@ mod node_to_facet;
 mod node_to_plane;
 mod projection;
 mod surface;
+mod swept;
 mod trajectory;
 
 pub use both_sides::BothSides;
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
 pub use node_to_plane::NodeToPlane;
 pub use surface::Surface;
+pub use swept::{Crossings, Swept, SweptTest};
 
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;

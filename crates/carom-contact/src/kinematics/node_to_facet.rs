@@ -25,6 +25,7 @@ use carom_solid::FacetShape;
 
 use super::gap::Gap;
 use super::surface::{Search, Surface};
+use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::{Kinematics, watch_every_node};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
@@ -74,15 +75,22 @@ pub struct NodeToFacet {
     primary: Surface,
     detection: Detection,
     point: ContactPoint,
-    search: Mutex<Search>,
+    tools: Mutex<Tools>,
+}
+
+/// Reused memory; results do not depend on its content.
+#[derive(Debug)]
+struct Tools {
+    search: Search,
+    swept: SweptTest,
 }
 
 impl NodeToFacet {
     /// Secondary nodes and primary surface in global node numbers; nodes of the primary are removed
     /// from the secondary.
     pub fn new(secondary: Vec<usize>, primary: Surface, detection: Detection) -> Self {
-        let search = Mutex::new(Search::new(&primary));
-        Self { secondary, primary, detection, point: ContactPoint::Closest, search }
+        let tools = Tools { search: Search::new(&primary), swept: SweptTest::new(primary.shape()) };
+        Self { secondary, primary, detection, point: ContactPoint::Closest, tools: Mutex::new(tools) }
     }
 
     /// The same with another rule for the contact point. Only [`Detection::Trajectory`] finds a
@@ -129,16 +137,16 @@ impl NodeToFacet {
     /// closest facet at `now` that the node was not behind before.
     fn candidate(
         &self,
-        search: &mut Search,
+        tools: &mut Tools,
         node: usize,
         before: Places,
         now: Places,
     ) -> Option<(usize, f64, bool)> {
         let mut first: Option<(f64, usize, f64)> = None;
         let mut closest: Option<(f64, usize, f64)> = None;
-        for &facet in search.near(node, before, now) {
+        for &facet in tools.search.near(node, before, now) {
             let side = self.primary.facet(facet);
-            if let Some(c) = crossing(side, before, now, node)
+            if let Some(c) = crossing(&mut tools.swept, side, before, now, node)
                 && first.is_none_or(|(theta, ..)| c.theta < theta)
             {
                 first = Some((c.theta, facet, c.xi));
@@ -309,8 +317,8 @@ impl Kinematics for NodeToFacet {
             pairs.append(&mut dents);
             pairs.sort_by_key(|pair| pair.node);
         }
-        let mut search = self.search.lock().unwrap_or_else(PoisonError::into_inner);
-        if search.update(&self.primary, &self.secondary, *margin, before, now) {
+        let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
+        if tools.search.update(&self.primary, &self.secondary, *margin, before, now) {
             let known = pairs.len();
             let mut next = 0;
             for (k, &node) in self.secondary.iter().enumerate() {
@@ -321,7 +329,7 @@ impl Kinematics for NodeToFacet {
                 if next > first {
                     continue;
                 }
-                let Some((facet, xi, crossed)) = self.candidate(&mut search, node, before, now) else {
+                let Some((facet, xi, crossed)) = self.candidate(&mut tools, node, before, now) else {
                     continue;
                 };
                 let pair = Pair::open(k, facet, xi);

@@ -1,19 +1,23 @@
 //! Crossing of trajectories, eqs. (6)–(8): y_N(θ) = y_S(ξ, θ), both moving on straight lines from θ
 //! = 0 to θ = 1.
 //!
-//! The facet is divided into chords. A chord's ends and the node move linearly, so "on the chord's
-//! line" is a quadratic in θ, of which every root is found. Each root starts a Newton iteration on
-//! the curve itself. The smallest admissible θ is the crossing.
+//! The certified test of `swept` isolates the first crossing from the outer to the inner side: none
+//! is missed. Newton's method on the curve itself polishes it to (θ, ξ).
 
 use carom_algebra::Vector;
 
 use super::projection::Facet;
+use super::swept::{Crossings, Swept, SweptTest};
 use crate::places::Places;
 
 /// θ may lie outside [0, 1], and |ξ| above 1, by this much: a node exactly on the surface must be
 /// detected.
 const TOLERANCE: f64 = 1e-6;
-const CHORDS: usize = 6;
+/// A node this close to the facet, relative to its length, meets it: a node that starts behind by
+/// round-off must be detected.
+const SEPARATION: f64 = 1e-6;
+/// Distance in θ and ξ from the isolated crossing at which Newton's method found another one.
+const ASTRAY: f64 = 0.05;
 
 /// Intersection of a node's path with a facet's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,47 +31,31 @@ fn lerp(a: Vector<2>, b: Vector<2>, t: f64) -> Vector<2> {
 }
 
 /// First crossing from the outer to the inner side of the facet, if any.
-pub(crate) fn crossing(facet: Facet, before: Places, now: Places, node: usize) -> Option<Crossing> {
-    let mut first: Option<Crossing> = None;
-    for k in 0..CHORDS {
-        let ends = [k, k + 1].map(|i| 2.0 * i as f64 / CHORDS as f64 - 1.0);
-        let at = |xi: f64, y: Places| {
-            let shape = facet.shape.at(xi);
-            facet.nodes.iter().enumerate().fold(Vector::ZERO, |sum, (i, &n)| sum + y.at(n) * shape.values[i])
-        };
-        let [a0, a1] = [at(ends[0], before), at(ends[0], now)];
-        let [b0, b1] = [at(ends[1], before), at(ends[1], now)];
-        let (p0, p1) = (before.at(node) - a0, now.at(node) - a1);
-        let (e0, e1) = (b0 - a0, b1 - a1);
-        for theta in linear_cross_roots(e0, e1, p0, p1).into_iter().flatten() {
-            let (e, p) = (e0 * (1.0 - theta) + e1 * theta, p0 * (1.0 - theta) + p1 * theta);
-            let along = p.dot(&e) / e.dot(&e);
-            if !(-0.5..=1.5).contains(&along) {
-                continue;
-            }
-            let start = Crossing { theta, xi: ends[0] + (ends[1] - ends[0]) * along };
-            if let Some(found) = polished(facet, before, now, node, start)
-                && first.is_none_or(|f| found.theta < f.theta)
-            {
-                first = Some(found);
-            }
+pub(crate) fn crossing(
+    swept: &mut SweptTest,
+    facet: Facet,
+    before: Places,
+    now: Places,
+    node: usize,
+) -> Option<Crossing> {
+    let count = facet.nodes.len();
+    let mut places = [[Vector::ZERO; 4]; 2];
+    for (places, y) in places.iter_mut().zip([before, now]) {
+        for (place, &n) in places.iter_mut().zip(facet.nodes) {
+            *place = y.at(n);
         }
     }
-    first
-}
-
-/// Roots θ of (e₀ + θ Δe) × (p₀ + θ Δp) = 0 near [0, 1].
-fn linear_cross_roots(e0: Vector<2>, e1: Vector<2>, p0: Vector<2>, p1: Vector<2>) -> [Option<f64>; 2] {
-    let cross = |u: Vector<2>, v: Vector<2>| u[0] * v[1] - u[1] * v[0];
-    let (de, dp) = (e1 - e0, p1 - p0);
-    let (a, b, c) = (cross(de, dp), cross(e0, dp) + cross(de, p0), cross(e0, p0));
-    let admissible = |theta: f64| (theta.is_finite() && (-0.1..=1.1).contains(&theta)).then_some(theta);
-    let discriminant = b * b - 4.0 * a * c;
-    if a.abs() <= 1e-14 * (b.abs() + c.abs()) || discriminant < 0.0 {
-        return [if b == 0.0 { None } else { admissible(-c / b) }, None];
+    let [old, new] = &places;
+    let separation = SEPARATION * (old[1] - old[0]).norm();
+    let path = [before.at(node), now.at(node)];
+    match swept.first(path, [&old[..count], &new[..count]], Crossings::Inward, separation) {
+        Swept::Clear => None,
+        Swept::Hit { theta, xi } => {
+            let isolated = Crossing { theta, xi };
+            let near = |c: &Crossing| (c.theta - theta).abs() < ASTRAY && (c.xi - xi).abs() < ASTRAY;
+            Some(polished(facet, before, now, node, isolated).filter(near).unwrap_or(isolated))
+        }
     }
-    let q = -0.5 * (b + b.signum() * discriminant.sqrt());
-    [admissible(q / a), if q == 0.0 { None } else { admissible(c / q) }]
 }
 
 /// Newton on the curve from a chord's root. Only inward crossings count: the node's velocity
@@ -122,7 +110,8 @@ mod tests {
     }
 
     fn crossed(before: &[f64], now: &[f64]) -> Option<Crossing> {
-        crossing(FACET, Places::new(before, 2), Places::new(now, 2), 0)
+        let mut swept = SweptTest::new(FACET.shape);
+        crossing(&mut swept, FACET, Places::new(before, 2), Places::new(now, 2), 0)
     }
 
     #[test]

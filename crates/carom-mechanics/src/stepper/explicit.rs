@@ -103,7 +103,7 @@ impl Stepper for Explicit {
         if let Some(state) = begun {
             work.put(state);
         }
-        Accepted::within(next, report, deepest, bound)
+        Accepted::within(model, next, report, [deepest, bound], work)
     }
 }
 

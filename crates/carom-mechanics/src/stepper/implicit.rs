@@ -157,7 +157,7 @@ impl Stepper for Implicit {
             means,
         });
         work.spare.put(solved);
-        Accepted::new(next, report)
+        Accepted::new(model, next, report, work)
     }
 }
 

@@ -152,7 +152,7 @@ impl Stepper for Impulsive {
         let fastest = approach(model, &state.v, dt).max(approach(model, &next.v, dt));
         let bound = depth(model, state) + fastest + tie;
         let deepest = depth(model, &next);
-        Accepted::within(next, report, deepest, bound)
+        Accepted::within(model, next, report, [deepest, bound], work)
     }
 }
 

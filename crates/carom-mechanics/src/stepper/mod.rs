@@ -16,6 +16,7 @@ use carom_contact::PairEvent;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
+use crate::timings::timed;
 use crate::workspace::Workspace;
 
 /// Events of a step, for the record.
@@ -33,7 +34,7 @@ pub struct StepReport {
     pub projection: f64,
 }
 
-/// An accepted step: finite, converged, without penetration. Only a stepper creates one.
+/// An accepted step: finite, converged, without penetration or inverted cells. Only a stepper creates one.
 #[derive(Debug)]
 pub struct Accepted {
     state: State,
@@ -42,7 +43,7 @@ pub struct Accepted {
 
 impl Accepted {
     /// Makes the final checks of a result.
-    fn new(state: State, report: StepReport) -> Result<Self, Rejected> {
+    fn new(model: &Model, state: State, report: StepReport, work: &mut Workspace) -> Result<Self, Rejected> {
         for (what, values) in
             [("a position", &state.y), ("a velocity", &state.v), ("an acceleration", &state.a)]
         {
@@ -53,12 +54,22 @@ impl Accepted {
         if !(state.ledger.total().is_finite() && state.ledger.dissipation().is_finite()) {
             return Err(Rejected::NotFinite { what: "the energy" });
         }
+        timed(&mut work.timings.assembly, || work.valid_cells.check(model, &state.y))?;
         Ok(Self { state, report })
     }
 
     /// As [`Self::new`], for laws that allow penetration by up to `bound`.
-    fn within(state: State, report: StepReport, depth: f64, bound: f64) -> Result<Self, Rejected> {
-        if depth > bound { Err(Rejected::Deep { depth, bound }) } else { Self::new(state, report) }
+    fn within(
+        model: &Model,
+        state: State,
+        report: StepReport,
+        [depth, bound]: [f64; 2],
+        work: &mut Workspace,
+    ) -> Result<Self, Rejected> {
+        if depth > bound {
+            return Err(Rejected::Deep { depth, bound });
+        }
+        Self::new(model, state, report, work)
     }
 
     /// The state at the end of the step and its events.

@@ -52,6 +52,11 @@ impl Hull {
         Self { nodes, weights: control(nodes - 1, &ends, nodes, values) }
     }
 
+    /// Weights of the nodes in a control point.
+    pub(crate) fn weights(&self, point: usize) -> &[f64] {
+        &self.weights[point * self.nodes..(point + 1) * self.nodes]
+    }
+
     /// Box around the control points, and hence around the whole line or cell, from the positions
     /// of its nodes. The caller adds a margin for round-off.
     #[must_use]

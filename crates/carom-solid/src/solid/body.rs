@@ -2,7 +2,7 @@
 
 use carom_algebra::{Mat, Vector, wide};
 
-use super::{Place, Solid};
+use super::{Place, Solid, place};
 use crate::body::{Body, Inverted, PointState};
 use crate::bounds::Bounds;
 use crate::discrete_gradient::change_between;
@@ -157,6 +157,23 @@ impl<const D: usize, const N: usize, S: Shape<D, N>, L: Material<D>> Body for So
             (0..points.count).map(move |l| self.law.volume_ratio(&get(&h, l)))
         });
         ratios.fold(f64::INFINITY, f64::min)
+    }
+
+    fn cell_margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted> {
+        if !self.may_invert {
+            let (nodes, y) = (self.nodes(cell), y.as_chunks::<D>().0);
+            let nodes = nodes.map(|node| Vector(y[node]));
+            let margin = wide(
+                #[inline(always)]
+                || self.validity.margin(&nodes),
+            );
+            return margin.map_err(|loss| {
+                let gradients = S::gradients(&place::<D, N, S>(&loss));
+                let reference = gradient(&self.reference(cell), &gradients).det();
+                Inverted { cell, det_f: gradient(&nodes, &gradients).det() / reference }
+            });
+        }
+        Ok(f64::INFINITY)
     }
 
     fn point(&self, cell: usize, xi: &[f64], y: &[f64]) -> Result<PointState, Inverted> {

@@ -1,0 +1,313 @@
+//! f = y_N − y_S of a node and a curve in the plane as Bernstein coefficients over a box of (ξ, θ),
+//! with a bound of their round-off.
+//!
+//! Lines and parabolas are raised to cubics, so that one code serves all orders. From the nodal
+//! values x of f (start, end, interior):
+//!
+//! ```text
+//! line       c = x₀, (2x₀ + x₁)/3, (x₀ + 2x₁)/3, x₁
+//! parabola   c = x₀, (4x₂ − x₁)/3, (4x₂ − x₀)/3, x₁
+//! cubic      c = x₀, (−5x₀ + 2x₁ + 18x₂ − 9x₃)/6, (2x₀ − 5x₁ − 9x₂ + 18x₃)/6, x₁
+//! ```
+//!
+//! Round-off, with u = 2⁻⁵³, m = max |x| (largest component) and Λ = 34/6 ≥ Σ |weights|, to first
+//! order in u: the nodal values are differences of the given numbers, so a common translation of
+//! the scene costs nothing (≤ u m); weights are rounded once, products and three sums four times
+//! (≤ (1 + 5) u Λ m); a halving takes at most three means in sequence, each with one rounding
+//! (≤ 3u Λ m); a scalar product with a direction a costs ≤ 2u Λ m |a|₁. Together
+//!
+//! ```text
+//! |error of a·c| ≤ (8 + 3 level) u Λ m |a|₁
+//! ```
+//!
+//! of which 12 + 3 level are used with Λ = 6, more than the terms of higher order.
+
+use carom_algebra::Vector;
+use carom_solid::{FacetShape, Piece};
+
+const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+/// Bound of Σ |weights| of a coefficient.
+const WEIGHTS: f64 = 6.0;
+/// Halvings of ξ, and of θ, after which a box counts as small.
+const DEEPEST: u32 = 48;
+
+/// Coefficients along ξ at one end of the interval of θ.
+type Curve = [Vector<2>; 4];
+
+/// f over a box of (ξ, θ).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CurvePath {
+    /// Coefficients at both ends of the interval of θ.
+    coefficients: [Curve; 2],
+    theta: Interval,
+    along: Interval,
+    /// u Λ m.
+    unit: f64,
+    separation: f64,
+}
+
+/// An interval of [0, 1] after halvings, exact.
+#[derive(Clone, Copy, Debug)]
+struct Interval {
+    low: f64,
+    width: f64,
+    level: u32,
+}
+
+impl Interval {
+    const WHOLE: Self = Self { low: 0.0, width: 1.0, level: 0 };
+
+    fn halves(self) -> [Self; 2] {
+        let (width, level) = (0.5 * self.width, self.level + 1);
+        [Self { width, level, ..self }, Self { low: self.low + width, width, level }]
+    }
+}
+
+/// Sizes at which boxes are not halved any more.
+pub(super) struct Stop {
+    theta: f64,
+    distance: f64,
+}
+
+impl CurvePath {
+    /// The whole path of a node and a facet of a shape.
+    #[inline]
+    pub(super) fn new(
+        shape: FacetShape,
+        node: [Vector<2>; 2],
+        facet: [&[Vector<2>]; 2],
+        separation: f64,
+    ) -> Self {
+        let (mut coefficients, mut largest) = ([[Vector::ZERO; 4]; 2], 0.0);
+        for end in 0..2 {
+            let at = |a: usize| node[end] - facet[end][a];
+            coefficients[end] = cubic(shape, at, &mut largest);
+        }
+        // The smallest normal number covers underflow.
+        let unit = UNIT_ROUNDOFF * WEIGHTS * largest + f64::MIN_POSITIVE;
+        Self { coefficients, theta: Interval::WHOLE, along: Interval::WHOLE, unit, separation }
+    }
+
+    /// ξ in the middle of the box.
+    pub(super) fn xi(&self) -> f64 {
+        2.0 * (self.along.low + 0.5 * self.along.width) - 1.0
+    }
+
+    /// Sizes for a tolerance relative to the extents of this path.
+    pub(super) fn stop(&self, tolerance: f64) -> Stop {
+        let distance = tolerance * self.extent_along().max(self.extent_in_time());
+        Stop { theta: tolerance, distance }
+    }
+
+    /// Both halves along the parameter with the larger extent, or `None` if the box is small.
+    pub(super) fn split(&self, stop: &Stop) -> Option<[Self; 2]> {
+        if !self.unit.is_finite() {
+            return None;
+        }
+        let (along, in_time) = (self.extent_along(), self.extent_in_time());
+        let long = along > stop.distance && self.along.level < DEEPEST;
+        let late = in_time > stop.distance && self.theta.level < DEEPEST;
+        if long && (along >= in_time || !late) {
+            Some(self.halves_along())
+        } else if late || self.theta.width > stop.theta {
+            Some(self.halves_in_time())
+        } else {
+            None
+        }
+    }
+
+    fn halves_along(&self) -> [Self; 2] {
+        let mut parts = [*self; 2];
+        for end in 0..2 {
+            let c = &self.coefficients[end];
+            let [d0, d1, d2] = [mean(c[0], c[1]), mean(c[1], c[2]), mean(c[2], c[3])];
+            let [e0, e1] = [mean(d0, d1), mean(d1, d2)];
+            let middle = mean(e0, e1);
+            parts[0].coefficients[end] = [c[0], d0, e0, middle];
+            parts[1].coefficients[end] = [middle, e1, d2, c[3]];
+        }
+        [parts[0].along, parts[1].along] = self.along.halves();
+        parts
+    }
+
+    fn halves_in_time(&self) -> [Self; 2] {
+        let mut parts = [*self; 2];
+        for i in 0..4 {
+            let middle = mean(self.coefficients[0][i], self.coefficients[1][i]);
+            parts[0].coefficients[1][i] = middle;
+            parts[1].coefficients[0][i] = middle;
+        }
+        [parts[0].theta, parts[1].theta] = self.theta.halves();
+        parts
+    }
+
+    /// Largest component of Σ |Δc| along ξ.
+    fn extent_along(&self) -> f64 {
+        let length = |c: &Curve| (0..3).map(|i| largest_of(c[i + 1] - c[i])).sum::<f64>();
+        length(&self.coefficients[0]).max(length(&self.coefficients[1]))
+    }
+
+    /// Largest component of Δc along θ.
+    fn extent_in_time(&self) -> f64 {
+        let [before, now] = &self.coefficients;
+        (0..4).map(|i| largest_of(now[i] - before[i])).fold(0.0, f64::max)
+    }
+
+    /// Bound of the round-off of a coefficient's component.
+    fn error(&self) -> f64 {
+        (12.0 + 3.0 * f64::from(self.theta.level + self.along.level)) * self.unit
+    }
+
+    /// Whether the node certainly starts on the facet, within the separation and round-off.
+    pub(super) fn starts_in_contact(&self) -> bool {
+        if self.theta.low > 0.0 {
+            return false;
+        }
+        let mut along = 0.5;
+        for _ in 0..4 {
+            let [f, slope] = self.at_start(along);
+            let step = f.dot(&slope) / slope.dot(&slope);
+            along = if step.is_finite() { (along - step).clamp(0.0, 1.0) } else { along };
+        }
+        self.at_start(along)[0].norm() <= self.separation + 4.0 * self.error()
+    }
+
+    /// f at θ = 0, and its derivative.
+    fn at_start(&self, along: f64) -> [Vector<2>; 2] {
+        let c = &self.coefficients[0];
+        let between = |a: Vector<2>, b: Vector<2>| a * (1.0 - along) + b * along;
+        let [d0, d1, d2] = [between(c[0], c[1]), between(c[1], c[2]), between(c[2], c[3])];
+        let [e0, e1] = [between(d0, d1), between(d1, d2)];
+        [between(e0, e1), (e1 - e0) * 3.0]
+    }
+
+    /// Whether the node moves to the outer side, the right of the curve, wherever it meets the
+    /// curve: n·∂f/∂θ > 0, because all products of coefficients of n and of ∂f/∂θ are positive.
+    /// The curve's tangent is −∂f/∂ξ. f is then also injective: between two points of the box its
+    /// mean derivatives are means of these coefficients, and hence independent vectors.
+    pub(super) fn only_separates(&self) -> bool {
+        let [before, now] = &self.coefficients;
+        let error = 2.0 * self.error();
+        for c in &self.coefficients {
+            for a in 0..3 {
+                let normal = (c[a] - c[a + 1]).turned_right();
+                for b in 0..4 {
+                    let motion = now[b] - before[b];
+                    let sizes = sum_of(normal) + sum_of(motion);
+                    let slack = error * (sizes + 2.0 * error)
+                        + 4.0 * UNIT_ROUNDOFF * sum_of(normal) * sum_of(motion)
+                        + f64::MIN_POSITIVE;
+                    // Not `<=`: a NaN is no proof.
+                    if !(normal.dot(&motion) > slack) {
+                        return false;
+                    }
+                }
+            }
+        }
+        true
+    }
+
+    /// Whether a direction separates coefficients from zero.
+    #[inline]
+    fn separates(&self, coefficients: &[Vector<2>], direction: &Vector<2>) -> bool {
+        excludes_zero(coefficients, direction, self.separation, self.error())
+    }
+}
+
+impl Piece for CurvePath {
+    fn theta(&self) -> f64 {
+        self.theta.low
+    }
+
+    fn level(&self) -> u32 {
+        self.theta.level + self.along.level
+    }
+
+    fn place(&self) -> f64 {
+        self.along.low
+    }
+
+    /// Tries the directions in which the box is thin, or its centre far: across the curve, along
+    /// it, across the motion, and from the curve to the node.
+    #[inline]
+    fn is_clear(&self) -> bool {
+        let [before, now] = &self.coefficients;
+        let all = self.coefficients.as_flattened();
+        let chord = (before[3] - before[0]) + (now[3] - now[0]);
+        if self.separates(all, &chord.turned_right()) {
+            return true;
+        }
+        let centre = (before[0] + before[3]) + (now[0] + now[3]);
+        let motion = (now[0] - before[0]) + (now[3] - before[3]);
+        [chord, centre, motion.turned_right()].iter().any(|a| self.separates(all, a))
+    }
+}
+
+/// Whether all points with these coefficients, which are wrong by up to `error` per component, are
+/// farther than `separation` from zero, because they lie on one side of it in a direction.
+#[inline]
+fn excludes_zero<const D: usize>(
+    coefficients: &[Vector<D>],
+    direction: &Vector<D>,
+    separation: f64,
+    error: f64,
+) -> bool {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for c in coefficients {
+        let at = direction.dot(c);
+        low = low.min(at);
+        high = high.max(at);
+    }
+    let slack = separation * direction.norm() * (1.0 + 4.0 * f64::EPSILON)
+        + error * sum_of(*direction)
+        + f64::MIN_POSITIVE;
+    low > slack || high < -slack
+}
+
+/// Bernstein coefficients of degree 3 of a curve from its nodal values, whose largest component is
+/// recorded.
+#[inline]
+fn cubic(shape: FacetShape, at: impl Fn(usize) -> Vector<2>, largest: &mut f64) -> Curve {
+    const THIRD: f64 = 1.0 / 3.0;
+    const SIXTH: f64 = 1.0 / 6.0;
+    let mut value = |a: usize| {
+        let x = at(a);
+        // A NaN must not be lost, as it is by `max`.
+        let size = x[0].abs() + x[1].abs();
+        *largest = if size > *largest || size.is_nan() { size } else { *largest };
+        x
+    };
+    match shape {
+        FacetShape::Point => [value(0); 4],
+        FacetShape::L2 => {
+            let (a, b) = (value(0), value(1));
+            [a, a * (2.0 * THIRD) + b * THIRD, a * THIRD + b * (2.0 * THIRD), b]
+        }
+        FacetShape::L3 => {
+            let (a, b, c) = (value(0), value(1), value(2));
+            let (third, c) = (THIRD, c * (4.0 * THIRD));
+            [a, c - b * third, c - a * third, b]
+        }
+        FacetShape::L4 => {
+            let (a, b, c, d) = (value(0), value(1), value(2), value(3));
+            [
+                a,
+                a * (-5.0 * SIXTH) + b * (2.0 * SIXTH) + c * 3.0 - d * 1.5,
+                a * (2.0 * SIXTH) - b * (5.0 * SIXTH) - c * 1.5 + d * 3.0,
+                b,
+            ]
+        }
+    }
+}
+
+fn mean(a: Vector<2>, b: Vector<2>) -> Vector<2> {
+    (a + b) * 0.5
+}
+
+fn largest_of(a: Vector<2>) -> f64 {
+    a[0].abs().max(a[1].abs())
+}
+
+fn sum_of<const D: usize>(a: Vector<D>) -> f64 {
+    a.0.iter().map(|x| x.abs()).sum()
+}
