@@ -16,8 +16,16 @@ const SCALARS: [&str; 12] = [
     "energy_created",
     "energy_scale",
 ];
-const COUNTS: [&str; 7] =
-    ["active", "activations", "releases", "newton", "rejected", "penetration", "min_det_f"];
+const COUNTS: [&str; 8] = [
+    "active",
+    "activations",
+    "releases",
+    "newton",
+    "rejected",
+    "penetration",
+    "penetration_secondary",
+    "min_det_f",
+];
 
 const ERRORS: [&str; 2] = ["error_l2", "error_h1"];
 

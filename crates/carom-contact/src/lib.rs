@@ -8,6 +8,7 @@ pub mod kinematics;
 mod pair;
 mod places;
 mod rows;
+mod skin;
 
 pub use active_set::{ActiveSet, Contender, Cycle};
 pub use discrete_gradient::DiscreteGradient;
@@ -20,3 +21,4 @@ pub use kinematics::{
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};
+pub use skin::{Depth, Skin};

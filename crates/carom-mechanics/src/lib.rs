@@ -17,6 +17,7 @@ mod linear_problem;
 mod mixing;
 pub mod model;
 mod newton;
+mod penetration;
 mod persistency;
 mod rejected;
 mod renewal;
@@ -39,6 +40,7 @@ mod valid_cells;
 mod workspace;
 
 pub use ledger::secondary_force;
+pub use penetration::{Depths, inside, penetration};
 pub use rejected::Rejected;
 pub use renewal::{FrozenTangent, Point};
 pub use settings::{Settings, Tangent};

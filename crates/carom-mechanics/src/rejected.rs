@@ -101,6 +101,22 @@ pub enum Rejected {
         /// The bound of the law.
         bound: f64,
     },
+    /// A node of a side lies deeper in the other body than the contact allows.
+    #[error(
+        "contact \"{contact}\": node {node} lies {depth:.3e} deep in body \"{body}\", more than the allowed {limit:.3e}"
+    )]
+    Penetration {
+        /// Contact.
+        contact: String,
+        /// Global number of the node.
+        node: usize,
+        /// The body that it has entered.
+        body: String,
+        /// Distance to the boundary of that body.
+        depth: f64,
+        /// Allowed depth.
+        limit: f64,
+    },
     /// A number is not finite.
     #[error("{what} is not finite")]
     NotFinite {
@@ -123,7 +139,7 @@ impl Rejected {
             Self::NoValue(_) => "no-value",
             Self::Unconstrained(_) => "unconstrained-body",
             Self::Jump { .. } => "jump",
-            Self::Deep { .. } => "penetration",
+            Self::Deep { .. } | Self::Penetration { .. } => "penetration",
             Self::NotFinite { .. } => "not-finite",
         }
     }

@@ -4,6 +4,7 @@
 use carom_contact::PairEvent;
 
 use crate::model::Model;
+use crate::penetration::Depths;
 use crate::rejected::Rejected;
 use crate::start::{Before, start};
 use crate::state::State;
@@ -11,6 +12,8 @@ use crate::stepper::Stepper;
 use crate::timings::Timings;
 use crate::workspace::Workspace;
 
+/// Grid steps between two checks whether a body crosses itself.
+const SELF_CHECK: u64 = 10;
 /// Bisections of Δt before the run stops.
 const MAX_BISECTIONS: u32 = 12;
 
@@ -89,6 +92,13 @@ pub enum LogEvent {
         /// The event.
         event: PairEvent,
     },
+    /// Two bodies without a contact overlap, or one crosses itself, for the first time.
+    Overlap {
+        /// Time.
+        time: f64,
+        /// Indices of the bodies.
+        bodies: (usize, usize),
+    },
     /// Velocities were projected at activation.
     Projection {
         /// Time.
@@ -109,6 +119,8 @@ pub struct GridReport {
     pub activations: u32,
     /// Nodes that left contact.
     pub releases: u32,
+    /// Largest penetration at the ends of its steps.
+    pub penetration: Depths,
     /// Events in order.
     pub events: Vec<LogEvent>,
 }
@@ -321,6 +333,7 @@ impl Simulation {
                     report.newton += step.newton;
                     report.activations += step.activations.len() as u32;
                     report.releases += step.releases.len() as u32;
+                    report.penetration = report.penetration.max(step.penetration);
                     for (list, active) in [(step.activations, true), (step.releases, false)] {
                         report.events.extend(list.into_iter().map(|(contact, node)| LogEvent::ActiveSet {
                             time: now,
@@ -358,6 +371,16 @@ impl Simulation {
         state.bisection = self.state.bisection.after(report.rejected > rejected);
         state.step += 1;
         state.time = self.grid.time(state.step);
+        let mut overlapping = self.work.others.overlapping(&self.model, &state.y);
+        if state.step % SELF_CHECK == 0 {
+            overlapping.extend(self.work.others.crossing_themselves(&self.model, &state.y));
+        }
+        for pair in overlapping {
+            if !state.overlaps.contains(&pair) {
+                state.overlaps.push(pair);
+                report.events.push(LogEvent::Overlap { time: state.time, bodies: pair });
+            }
+        }
         self.watch(&state)?;
         self.work.put(std::mem::replace(&mut self.state, state));
         Ok(())

@@ -199,6 +199,9 @@ pub struct State {
     pub frozen: FrozenTangent,
     /// Recently bisected grid steps.
     pub bisection: Bisection,
+    /// Bodies without a contact that have overlapped, each pair once; a body with itself if it has
+    /// crossed itself.
+    pub overlaps: Vec<(usize, usize)>,
 }
 
 impl State {
@@ -225,6 +228,7 @@ impl State {
         self.half_step.dt = other.half_step.dt;
         self.frozen = other.frozen.clone();
         self.bisection = other.bisection;
+        self.overlaps.clone_from(&other.overlaps);
     }
 
     /// Takes over the pairs at the end of a solve.

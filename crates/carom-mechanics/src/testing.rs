@@ -50,6 +50,7 @@ pub(crate) fn contact(parts: &[BodyInstance], secondary: (usize, &str), primary:
         interface: Box::new(Unilateral),
         primary_part: Some(primary.0),
         facets: vec![(shape(secondary.0), facets(secondary))],
+        depths: [0.01, 0.1],
         predictor: false,
         surface,
         at_the_end: false,

@@ -3,6 +3,7 @@
 use crate::equations::Spare;
 use crate::linear_problem::LinearProblem;
 use crate::model::Model;
+use crate::penetration::Penetration;
 use crate::state::State;
 use crate::stepper::Scratch;
 use crate::system::System;
@@ -23,6 +24,10 @@ pub struct Workspace {
     pub(crate) valid_cells: ValidCells,
     /// Wall time by phase.
     pub timings: Timings,
+    /// Penetration of the contacts.
+    pub(crate) penetration: Penetration,
+    /// Overlap of bodies without a contact.
+    pub(crate) others: Penetration,
     /// The linear problem of an iteration, and its history.
     pub(crate) linear: LinearProblem,
 }
@@ -37,6 +42,8 @@ impl Workspace {
             explicit: Scratch::default(),
             valid_cells: ValidCells::default(),
             timings: Timings::default(),
+            penetration: Penetration::of_contacts(model),
+            others: Penetration::of_others(model),
             linear: LinearProblem::default(),
         }
     }

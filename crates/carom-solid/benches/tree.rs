@@ -110,7 +110,7 @@ fn nearest_circle(bencher: Bencher, count: usize) {
     let tree = tree(&boxes);
     let points: Vec<_> = boxes.iter().map(|b| b.centre().map(|x| x * (1.0 + PI / count as f64))).collect();
     bencher.counter(ItemsCount::new(count)).bench_local(|| {
-        let nearest = |point: &[f64; 3]| tree.nearest(point, |k| Some(boxes[k].distance(point)));
+        let nearest = |point: &[f64; 3]| tree.nearest(point, None, |k| Some(boxes[k].distance(point)));
         points.iter().filter_map(|point| nearest(black_box(point))).map(|(k, _)| k).sum::<usize>()
     });
 }

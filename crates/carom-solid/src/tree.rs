@@ -112,12 +112,14 @@ impl Tree {
 
     /// The item nearest to a point, and its distance according to `distance`, which returns `None`
     /// to exclude an item; the first of equals. An item must lie in its box, round-off included.
+    /// With a near item `from`, fewer are asked; the result is the same.
     pub fn nearest(
         &self,
         point: &[f64],
+        from: Option<usize>,
         mut distance: impl FnMut(usize) -> Option<f64>,
     ) -> Option<(usize, f64)> {
-        let mut best = None;
+        let mut best = from.and_then(|item| Some((item, distance(item)?)));
         if !self.nodes.is_empty() {
             self.nearer(0, point, &mut distance, &mut best);
         }

@@ -3,25 +3,28 @@
 //! edge of the secondary between two of its nodes.
 //!
 //! The nodes of the corners follow those of the secondary side. Where a corner meets a secondary
-//! node, either row would prevent penetration, and both would be nearly dependent: the corner is
-//! then left to the node ([`NEAR_NODE`]).
+//! node and a facet at the corner is parallel to the secondary one, either row would prevent
+//! penetration, and both would be nearly dependent: the corner is then left to the node.
 
 use super::Kinematics;
 use super::node_to_facet::{NodeToFacet, PAST_SIDE};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
+use crate::places::Places;
 use crate::rows::Rows;
 
 /// Distance between a corner and a secondary node, relative to the corner's facet, below which the
 /// node's own pair is responsible: just where the node begins to face the primary side.
 const NEAR_NODE: f64 = 0.5 * PAST_SIDE;
+/// Cosine of the angle up to which two facets are parallel: 10°.
+const PARALLEL: f64 = 0.985;
 
 /// Contact in both directions: secondary nodes and the corners of the primary.
 #[derive(Debug)]
 pub struct BothSides {
     nodes: NodeToFacet,
     corners: NodeToFacet,
-    /// Nodes of a facet of the primary at each corner.
-    facets: Vec<Vec<usize>>,
+    /// Facets of the primary side at each corner, with the corner's ξ.
+    facets: Vec<Vec<(usize, f64)>>,
     all: Vec<usize>,
 }
 
@@ -31,10 +34,14 @@ impl BothSides {
     pub fn new(nodes: NodeToFacet, corners: NodeToFacet) -> Self {
         let all = [nodes.secondary(), corners.secondary()].concat();
         let primary = nodes.primary();
-        let facets = corners.secondary().iter().map(|node| {
-            let mut of_side = (0..primary.facets()).map(|facet| primary.facet(facet).nodes);
-            of_side.find(|nodes| nodes.contains(node)).unwrap_or_default().to_vec()
-        });
+        let end = |facet: usize, node: usize| {
+            let nodes = primary.facet(facet).nodes;
+            (nodes[0] == node).then_some((facet, -1.0)).or((nodes[1] == node).then_some((facet, 1.0)))
+        };
+        let facets = corners
+            .secondary()
+            .iter()
+            .map(|&node| (0..primary.facets()).filter_map(|f| end(f, node)).collect());
         Self { facets: facets.collect(), nodes, corners, all }
     }
 
@@ -48,17 +55,19 @@ impl BothSides {
         }
     }
 
-    /// Whether a corner meets a node of the secondary facet that it faces.
-    fn meets_node(&self, corner: &Pair, y: &[f64]) -> bool {
-        let d = self.corners.primary().shape().dimension();
-        let distance = |a: usize, b: usize| {
-            let [a, b] = [a, b].map(|node| &y[node * d..(node + 1) * d]);
-            a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
-        };
-        let node = self.corners.secondary()[corner.node];
-        let [start, end] = self.facets[corner.node][..2] else { return false };
-        let near = NEAR_NODE * distance(start, end);
-        self.corners.facet_nodes(corner.facet).iter().any(|&other| distance(node, other) < near)
+    /// Whether a corner meets a node of the secondary facet that it faces, and has a facet parallel to
+    /// that.
+    fn is_left_to_node(&self, corner: &Pair, y: &[f64]) -> bool {
+        let (primary, secondary) = (self.nodes.primary(), self.corners.primary());
+        let y = Places::new(y, primary.shape().dimension());
+        let at = y.at(self.corners.secondary()[corner.node]);
+        let faced = secondary.facet(corner.facet);
+        let normal = faced.at(y, corner.xi).normal;
+        self.facets[corner.node].iter().any(|&(facet, xi)| {
+            let near = NEAR_NODE * primary.length(facet, y);
+            primary.facet(facet).at(y, xi).normal.dot(&normal) < -PARALLEL
+                && faced.nodes.iter().any(|&other| (y.at(other) - at).norm() < near)
+        })
     }
 
     /// Applies `of` to the pairs of either direction in its own numbering.
@@ -106,7 +115,7 @@ impl Kinematics for BothSides {
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let (direction, mut local) = self.direction(pair);
         let corner = pair.node >= self.nodes.secondary().len();
-        if corner && !pair.active && self.meets_node(&local, y) {
+        if corner && !pair.active && self.is_left_to_node(&local, y) {
             rows.push_open();
             return Ok(());
         }

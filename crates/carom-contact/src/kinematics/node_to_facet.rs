@@ -11,8 +11,9 @@
 //! ```text
 //! joint                  a pair past the end is handed to the neighbour; one that would be handed back
 //!                        within the step, or is past the ends of both, keeps its facet up to |ξ| = 1.2
-//! dent                   where the extrapolated facet would let that node into the neighbour by more
-//!                        than a hundredth of its length, the node has a pair with either facet
+//! dent                   where that joint turns by more than 30°, or the extrapolated facet would let
+//!                        the node into the neighbour by more than a hundredth of its length, the node
+//!                        has a pair with either facet
 //! corner, end of side    nothing is faced past the end, |ξ| > 1.05; a pair that slides past it keeps its
 //!                        facet to the end of the step and leaves at the start of the next one
 //! ```
@@ -24,7 +25,7 @@ use std::sync::{Mutex, PoisonError};
 use carom_solid::FacetShape;
 
 use super::gap::Gap;
-use super::surface::{Search, Surface};
+use super::surface::{CORNER_COSINE, Search, Surface};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::{Kinematics, watch_every_node};
@@ -186,12 +187,10 @@ impl NodeToFacet {
         };
         if came_from == Some(neighbour) {
             let [first, second] = if forward { [pair.facet, neighbour] } else { [neighbour, pair.facet] };
-            let depth = 0.5 * (pair.xi.abs() - 1.0) * self.primary.kink(first, second, y).1.abs();
-            return if pair.xi.abs() <= REACH && depth <= DENT {
-                Next::Stay
-            } else {
-                Next::Dent(neighbour, if forward { -1.0 } else { 1.0 })
-            };
+            let (cosine, sine) = self.primary.kink(first, second, y);
+            let depth = 0.5 * (pair.xi.abs() - 1.0) * sine.abs();
+            let smooth = pair.xi.abs() <= REACH && depth <= DENT && cosine >= CORNER_COSINE;
+            return if smooth { Next::Stay } else { Next::Dent(neighbour, if forward { -1.0 } else { 1.0 }) };
         }
         if let Some(xi) = self.primary.facet(neighbour).closest_point(y, y.at(node), REACH) {
             let inside = if forward { xi >= -1.0 } else { xi <= 1.0 };

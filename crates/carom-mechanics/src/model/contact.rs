@@ -17,6 +17,9 @@ pub struct Contact {
     /// Facets of either side in global nodes with their shape, for consistent weights; the secondary
     /// side first.
     pub facets: Vec<(FacetShape, Vec<Vec<usize>>)>,
+    /// Allowed depth, over the length of a facet, of nodes that the contact constrains, and of other
+    /// nodes of its sides: a step in which a node is deeper is rejected.
+    pub depths: [f64; 2],
     /// Whether penetration by the predictor y + Δt v is prevented too.
     pub predictor: bool,
     /// Nodes of both sides, ascending.

@@ -14,6 +14,7 @@ pub(crate) use scratch::Scratch;
 use carom_contact::PairEvent;
 
 use crate::model::Model;
+use crate::penetration::Depths;
 use crate::rejected::Rejected;
 use crate::state::State;
 use crate::timings::timed;
@@ -32,6 +33,8 @@ pub struct StepReport {
     pub events: Vec<(usize, PairEvent)>,
     /// Jump of kinetic energy at activation.
     pub projection: f64,
+    /// Penetration at the end.
+    pub penetration: Depths,
 }
 
 /// An accepted step: finite, converged, without penetration or inverted cells. Only a stepper creates one.
@@ -54,8 +57,10 @@ impl Accepted {
         if !(state.ledger.total().is_finite() && state.ledger.dissipation().is_finite()) {
             return Err(Rejected::NotFinite { what: "the energy" });
         }
-        timed(&mut work.timings.assembly, || work.valid_cells.check(model, &state.y))?;
-        Ok(Self { state, report })
+        let Workspace { timings, valid_cells, penetration, .. } = work;
+        timed(&mut timings.assembly, || valid_cells.check(model, &state.y))?;
+        let penetration = timed(&mut timings.contact, || penetration.check(model, &state))?;
+        Ok(Self { state, report: StepReport { penetration, ..report } })
     }
 
     /// As [`Self::new`], for laws that allow penetration by up to `bound`.

@@ -230,7 +230,13 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
         ledger::by_contact,
     ),
     (
-        d("penetration", Unit::Length, "max (0, −g)", TABLES, "largest penetration of a secondary node"),
+        d(
+            "penetration",
+            Unit::Length,
+            "max (0, −g)",
+            TABLES,
+            "depth of the deepest node of either side of a contact in the other body",
+        ),
         |f| extreme(f.history.column("penetration")?, f64::gt).map(|x| x.1),
     ),
     (
@@ -239,7 +245,7 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             Unit::Length,
             "mean of max (0, −g) over the rows with active > 0",
             OWN,
-            "largest penetration of a secondary node, averaged over the rows in contact",
+            "depth of the deepest node of either side of a contact in the other body, averaged over the rows in contact",
         ),
         force::mean_penetration,
     ),

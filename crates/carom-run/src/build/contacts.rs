@@ -9,7 +9,6 @@ use carom_contact::{
     NodeToPlane, Penalty, Surface, Unilateral,
 };
 use carom_mechanics::model::{BodyInstance, Contact, Model};
-use carom_solid::PointLocator;
 
 use super::side::{Side, side};
 
@@ -106,6 +105,7 @@ pub(super) fn contacts(
                 Enforcement::Penalty if conserves => Box::new(ConservingPenalty::new(stiffnesses())),
                 Enforcement::Penalty => Box::new(Penalty::new(stiffnesses())),
             },
+            depths: if spec.enforcement == Enforcement::Multiplier { [0.01, 0.1] } else { [0.25; 2] },
             predictor: spec.law == Some(ContactLaw::Predictor),
             kinematics,
             primary_part,
@@ -169,33 +169,19 @@ fn coordinates(place: &[f64]) -> String {
 /// Closing an overlap within one step would drive the bodies apart, so it is an error.
 pub fn overlaps(model: &Model) -> Vec<Problem> {
     let x = &model.initial_position;
-    let at = |node: usize| &x[node * model.dimension..(node + 1) * model.dimension];
-    let mut problems = Vec::new();
-    for (k, contact) in model.contacts.iter().enumerate() {
-        let mut deepest: Option<(f64, usize)> = None;
-        // A node behind a side need not be inside its body: a plate also has a lower side.
-        let primary = contact.primary_part.filter(|_| model.dimension > 1).map(|p| &model.parts[p]);
-        let locator = primary.map(|part| PointLocator::new(&*part.body, part.of(x)));
-        for (place, &node) in contact.kinematics.secondary().iter().enumerate() {
-            if locator.as_ref().is_some_and(|locator| !locator.contains(at(node))) {
-                continue;
-            }
-            let Some(gap) = contact.kinematics.signed_distance(place, x) else { continue };
-            if gap < -1e-9 * model.scale && deepest.is_none_or(|(g, _)| gap < g) {
-                deepest = Some((gap, node));
-            }
-        }
-        if let Some((gap, node)) = deepest {
-            problems.push(Problem::new(
-                format!("contact[{k}]"),
-                format!("the bodies of contact \"{}\" overlap at the start by {:.6e}", contact.name, -gap),
-                format!(
-                    "the secondary node at {} lies inside the primary; closing the overlap within one step would drive the bodies apart",
-                    coordinates(at(node))
-                ),
-                format!("move a body by at least {:.6e}, or swap secondary and primary if they were confused", -gap),
-            ));
-        }
-    }
-    problems
+    let problem = |(k, node, depth): (usize, usize, f64)| {
+        let place = coordinates(&x[node * model.dimension..(node + 1) * model.dimension]);
+        let name = &model.contacts[k].name;
+        let owner = model.parts.iter().find(|part| part.nodes().contains(&node));
+        let owner = owner.map_or("", |part| part.name.as_str());
+        Problem::new(
+            format!("contact[{k}]"),
+            format!("the bodies of contact \"{name}\" overlap at the start by {depth:.6e}"),
+            format!(
+                "the node of \"{owner}\" at {place} lies inside the other side's body; closing the overlap within one step would drive the bodies apart"
+            ),
+            format!("move a body by at least {depth:.6e}"),
+        )
+    };
+    carom_mechanics::inside(model, x, 1e-9 * model.scale).into_iter().map(problem).collect()
 }

@@ -4,7 +4,7 @@
 use carom_case::Case;
 use carom_contact::Rows;
 use carom_mechanics::model::{BodyInstance, Model, Quantity};
-use carom_mechanics::{GridReport, State};
+use carom_mechanics::{Depths, GridReport, State};
 use carom_record::Column;
 
 use serde::{Deserialize, Serialize};
@@ -85,7 +85,13 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
     add(
         "penetration".into(),
         &label.length,
-        "largest penetration of a secondary node since the previous row",
+        "depth of the deepest node of either side of a contact in the other body, since the previous row",
+        false,
+    );
+    add(
+        "penetration_secondary".into(),
+        &label.length,
+        "the same of the nodes that the contact constrains: secondary nodes and corners of the primary",
         false,
     );
     add("min_det_f".into(), "", "smallest J over all quadrature points", false);
@@ -207,7 +213,7 @@ pub(super) fn row(model: &Model, state: &State, dt: f64, since: &Since, weights:
     let active = state.pairs.iter().flatten().filter(|p| p.active).count();
     row.push(active as f64);
     row.extend([since.activations, since.releases, since.newton, since.rejected].map(f64::from));
-    row.push(since.penetration);
+    row.extend([since.penetration.all, since.penetration.constrained]);
     row.push(model.min_det_f(&state.y));
     for part in &model.parts {
         for field in [&state.y, &state.v] {
@@ -245,33 +251,18 @@ pub(super) struct Since {
     rejected: u32,
     activations: u32,
     releases: u32,
-    penetration: f64,
+    penetration: Depths,
 }
 
 impl Since {
-    /// Adds a step, and the penetration at its end.
-    pub(super) fn add(&mut self, report: &GridReport, model: &Model, state: &State) {
+    /// Adds a step.
+    pub(super) fn add(&mut self, report: &GridReport) {
         self.newton += report.newton;
         self.rejected += report.rejected;
         self.activations += report.activations;
         self.releases += report.releases;
-        self.penetration = self.penetration.max(penetration(model, state));
+        self.penetration = self.penetration.max(report.penetration);
     }
-}
-
-/// Depth of the deepest secondary node, ≥ 0.
-fn penetration(model: &Model, state: &State) -> f64 {
-    let mut rows = Rows::new(model.dimension);
-    for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
-        for pair in pairs {
-            // At the closest point, even where the step has measured the gap at a frozen one. A pair
-            // without a closest point is remote.
-            let mut pair = *pair;
-            contact.kinematics.start_step(&mut pair, &state.y);
-            let _ = contact.kinematics.measure(&mut pair, &state.y, &mut rows);
-        }
-    }
-    rows.iter().map(|row| -row.gap).fold(0.0, f64::max)
 }
 
 /// Reaction forces on the bodies at constrained dofs: M a + f_int + Gᵀλ − f_ext.

@@ -58,6 +58,16 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
             };
             Event::new(step, *time, kind, message).with("contact", name).with("node", *node)
         }
+        LogEvent::Overlap { time, bodies: (a, b) } => {
+            let [first, second] = [a, b].map(|k| model.parts[*k].name.as_str());
+            let place = if a == b {
+                format!("body \"{first}\"")
+            } else {
+                format!("bodies \"{first}\" and \"{second}\"")
+            };
+            let what = if a == b { "crosses itself" } else { "overlap: there is no contact between them" };
+            Event::new(step, *time, "overlap", format!("{place} {what}")).with("place", place)
+        }
         LogEvent::Projection { time, jump } => {
             let message =
                 format!("velocities projected at contact activation: kinetic energy changes by {jump:.6e}");

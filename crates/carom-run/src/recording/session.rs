@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use carom_case::Case;
-use carom_mechanics::{GridReport, Simulation, State};
+use carom_mechanics::{GridReport, Simulation, State, penetration};
 use carom_record::{ContactRow, Event, Manifest, Run, RunWriter, Source, Status};
 use cpu_time::{ProcessTime, ThreadTime};
 use serde::{Deserialize, Serialize};
@@ -178,7 +178,8 @@ impl<'a> Session<'a> {
             self.writer.log(&event)?;
         }
         self.log_warnings(0)?;
-        self.since.add(&GridReport::default(), self.simulation.model(), self.simulation.state());
+        let penetration = penetration(self.simulation.model(), self.simulation.state());
+        self.since.add(&GridReport { penetration, ..GridReport::default() });
         self.write_row()?;
         self.write_fields()
     }
@@ -260,7 +261,7 @@ impl<'a> Session<'a> {
 
     /// Writes the record of a grid step.
     fn record(&mut self, report: &GridReport) -> Result<(), RunError> {
-        self.since.add(report, self.simulation.model(), self.simulation.state());
+        self.since.add(report);
         let output = &self.case.output;
         let (step, last) = (self.simulation.state().step, self.simulation.finished());
         if step % output.history_every as u64 == 0 || last {

@@ -40,7 +40,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 8] = [
+pub const WARNINGS: [Entry; 9] = [
     Entry {
         id: "coarse-secondary",
         why: "only nodes of the secondary side are constrained, and nodes of the primary may penetrate between them",
@@ -84,6 +84,12 @@ pub const WARNINGS: [Entry; 8] = [
         why: "force and pressure are those of one node and depend on its share of the mesh",
         advice: "a finer mesh at the contact",
         rule: Rule::Record(record::one_node),
+    },
+    Entry {
+        id: "undeclared-contact",
+        why: "nothing keeps them apart: contact acts only between the two sides of a [[contact]], and Carom has no contact of a body with itself",
+        advice: "a [[contact]] between these bodies, or ending the run before they meet",
+        rule: Rule::Record(record::undeclared_contact),
     },
     Entry {
         id: "energy-created",

@@ -28,6 +28,18 @@ pub(super) fn one_node(case: &Case, run: &Run) -> Vec<Found> {
     found
 }
 
+/// Bodies that overlapped without a contact between them.
+pub(super) fn undeclared_contact(_: &Case, run: &Run) -> Vec<Found> {
+    let overlaps = run.log.iter().filter(|event| event.kind == "overlap");
+    let found = overlaps.filter_map(|event| {
+        let place = event.data.get("place")?.as_str()?.to_owned();
+        let one = place.starts_with("body ");
+        let verb = if one { "crosses itself" } else { "overlap" };
+        Some(Found { place, what: format!("{verb} from t = {} on", short(event.time)) })
+    });
+    found.collect()
+}
+
 /// More energy created than the default of `time.energy_guard` allows, in a run without it.
 pub(super) fn energy_created(_: &Case, run: &Run) -> Vec<Found> {
     let last = |name: &str| run.column(name)?.last().copied();

@@ -1,0 +1,184 @@
+//! The whole boundary of a body in the plane: how deep a point lies inside.
+//!
+//! The nearest point of the boundary decides. Inside a facet the sign of the distance is that of the
+//! normal; at a joint the point is outside if the joint is convex, inside if it is concave.
+//! Independent of pairs, sides and history, so that it can judge them.
+
+use carom_algebra::Vector;
+use carom_solid::{Hull, Tree};
+
+use crate::kinematics::Surface;
+use crate::places::Places;
+
+/// The boundary of a body at given positions.
+#[derive(Debug)]
+pub struct Skin {
+    surface: Surface,
+    hull: Hull,
+    tree: Tree,
+}
+
+/// A point relative to a skin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Depth {
+    /// Distance to the boundary, positive outside.
+    pub distance: f64,
+    /// Nearest facet.
+    pub facet: usize,
+    /// Distance between its ends.
+    pub length: f64,
+}
+
+impl Skin {
+    /// All facets of a body's boundary, in the plane.
+    pub fn new(surface: Surface) -> Self {
+        let hull = Hull::line(surface.shape().nodes(), 1.0);
+        Self { surface, hull, tree: Tree::default() }
+    }
+
+    /// Moves the boundary to positions `y`, flat over all nodes.
+    pub fn update(&mut self, y: &[f64]) {
+        let (surface, hull, y) = (&self.surface, &self.hull, Places::new(y, 2));
+        let bounds = |facet: usize| {
+            let nodes = surface.facet(facet).nodes;
+            hull.bounds(|a| y.coordinates(nodes[a]))
+        };
+        if self.tree.is_empty() {
+            self.tree = Tree::new(surface.all(), bounds);
+        } else {
+            self.tree.update(bounds);
+        }
+    }
+
+    /// Where a point lies at the positions of the last update, searched from a facet near it if one is
+    /// known; `None` without a boundary.
+    pub fn depth(&self, point: [f64; 2], from: Option<usize>, y: &[f64]) -> Option<Depth> {
+        let y = Places::new(y, 2);
+        let (facet, _) = self.tree.nearest(&point, from, |facet| Some(self.nearest(facet, point, y).1))?;
+        let (xi, distance) = self.nearest(facet, point, y);
+        let joint = xi.abs() >= 1.0;
+        let outside =
+            if joint { Self::is_outside_joint } else { Self::is_outside }(self, facet, xi, point, y);
+        let distance = if outside { distance } else { -distance };
+        Some(Depth { distance, facet, length: self.surface.length(facet, y) })
+    }
+
+    /// Whether two facets that do not meet at a joint cross each other at the positions of the last
+    /// update; curved ones as chains of chords.
+    pub fn crosses_itself(&self, y: &[f64]) -> bool {
+        let y = Places::new(y, 2);
+        let chords = if self.surface.shape().nodes() == 2 { 1 } else { CHORDS };
+        let at = |facet: usize, k: usize| {
+            self.surface.facet(facet).at(y, 2.0 * k as f64 / chords as f64 - 1.0).position
+        };
+        let crossing = |a: usize, b: usize| {
+            (0..chords).any(|i| {
+                let first = [at(a, i), at(a, i + 1)];
+                (0..chords).any(|j| cross(first, [at(b, j), at(b, j + 1)]))
+            })
+        };
+        (0..self.surface.all()).any(|a| {
+            let nodes = self.surface.facet(a).nodes;
+            let bounds = self.hull.bounds(|k| y.coordinates(nodes[k]));
+            let others = self.tree.meeting(&bounds).filter(|&b| b > a);
+            others
+                .filter(|&b| !self.surface.facet(b).nodes.iter().any(|node| nodes.contains(node)))
+                .any(|b| crossing(a, b))
+        })
+    }
+
+    /// ξ of a facet's point nearest to a point, and its distance.
+    fn nearest(&self, facet: usize, point: [f64; 2], y: Places) -> (f64, f64) {
+        let (side, point) = (self.surface.facet(facet), Vector(point));
+        let distance = |xi: f64| (point - side.at(y, xi).position).norm();
+        let ends = [-1.0, 1.0].map(|xi| (xi, distance(xi)));
+        let inner = side.closest_point(y, point, 1.0).map(|xi| (xi, distance(xi)));
+        let first = if ends[1].1 < ends[0].1 { ends[1] } else { ends[0] };
+        inner.filter(|inner| inner.1 < first.1).unwrap_or(first)
+    }
+
+    fn is_outside(&self, facet: usize, xi: f64, point: [f64; 2], y: Places) -> bool {
+        let at = self.surface.facet(facet).at(y, xi);
+        (Vector(point) - at.position).dot(&at.normal) >= 0.0
+    }
+
+    /// The same where the nearest point is an end of the facet.
+    fn is_outside_joint(&self, facet: usize, xi: f64, point: [f64; 2], y: Places) -> bool {
+        let Some(neighbour) = self.surface.neighbour(facet, xi > 0.0) else {
+            return self.is_outside(facet, xi, point, y);
+        };
+        let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
+        let (_, sine) = self.surface.kink(first, second, y);
+        // Where the boundary does not turn, either normal gives the sign.
+        if sine.abs() < 1e-9 { self.is_outside(facet, xi, point, y) } else { sine > 0.0 }
+    }
+}
+
+/// Chords of a curved facet.
+const CHORDS: usize = 4;
+
+/// Whether two segments cross, their ends not included.
+fn cross(a: [Vector<2>; 2], b: [Vector<2>; 2]) -> bool {
+    let side = |[p, q]: [Vector<2>; 2], r: Vector<2>| {
+        let (u, v) = (q - p, r - p);
+        u[0] * v[1] - u[1] * v[0]
+    };
+    side(a, b[0]) * side(a, b[1]) < 0.0 && side(b, a[0]) * side(b, a[1]) < 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use carom_solid::FacetShape;
+
+    use super::*;
+
+    /// An L-shaped polygon: a convex corner at (2, 1), a concave one at (1, 1).
+    fn bracket() -> (Skin, Vec<f64>) {
+        let y = vec![0.0, 0.0, 2.0, 0.0, 2.0, 1.0, 1.0, 1.0, 1.0, 2.0, 0.0, 2.0];
+        let facets: Vec<Vec<usize>> = (0..6).map(|k| vec![k, (k + 1) % 6]).collect();
+        let mut skin = Skin::new(Surface::new(FacetShape::L2, &facets, &[1.0; 6]));
+        skin.update(&y);
+        (skin, y)
+    }
+
+    #[test]
+    fn the_sign_is_that_of_the_polygon() {
+        let (skin, y) = bracket();
+        for (point, distance) in [
+            ([0.5, 0.2], -0.2),
+            ([2.3, 1.4], 0.5),
+            ([0.7, 0.6], -0.5),
+            ([1.3, 1.2], 0.2),
+            ([-1.0, 0.5], 1.0),
+            ([0.9, 0.8], -f64::hypot(0.1, 0.2)),
+        ] {
+            let found = skin.depth(point, None, &y).unwrap();
+            assert_eq!(skin.depth(point, Some(4), &y), Some(found));
+            assert!((found.distance - distance).abs() < 1e-14, "{point:?} {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_boundary_that_crosses_itself_is_found() {
+        let (mut skin, mut y) = bracket();
+        assert!(!skin.crosses_itself(&y));
+        // The end of the upright arm is pushed through the lower side.
+        (y[9], y[11]) = (-0.5, -0.5);
+        skin.update(&y);
+        assert!(skin.crosses_itself(&y));
+    }
+
+    #[test]
+    fn a_curved_facet_is_measured_as_it_is() {
+        // The lower half of a lens: a parabola y = x² − 1 from (−1, 0) to (1, 0), closed by a chord.
+        let y = vec![-1.0, 0.0, 1.0, 0.0, 0.0, -1.0, 0.0, 0.0];
+        let facets = [vec![0, 1, 2], vec![1, 0, 3]];
+        let mut skin = Skin::new(Surface::new(FacetShape::L3, &facets, &[1.0; 2]));
+        skin.update(&y);
+        let depth = |point| skin.depth(point, None, &y).unwrap().distance;
+        assert!((depth([0.0, -1.2]) - 0.2).abs() < 1e-14);
+        assert!((depth([0.0, -0.9]) + 0.1).abs() < 1e-14);
+        // Below the chord between two nodes of the parabola and still inside.
+        assert!(depth([0.5, -0.6]) < 0.0 && depth([0.5, -0.8]) > 0.0);
+    }
+}

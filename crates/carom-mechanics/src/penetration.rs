@@ -1,0 +1,351 @@
+//! Penetration, measured over all nodes of both sides of every contact, whatever pairs there are: a
+//! node that a search has lost is found here. A step in which a node is deeper than its contact
+//! allows is rejected.
+//!
+//! A node outside, at a distance d from a body, cannot be inside before the two have moved by d
+//! together. Until then it is not measured; no result depends on when it was.
+
+use carom_contact::{Rows, Skin, Surface};
+use carom_solid::FacetShape;
+use serde::{Deserialize, Serialize};
+
+use crate::model::{BodyInstance, Contact, Model};
+use crate::rejected::Rejected;
+use crate::state::State;
+
+/// Measures penetration. A cache: its content affects no result.
+#[derive(Debug, Default)]
+pub(crate) struct Penetration {
+    skins: Vec<Option<Skin>>,
+    ways: Vec<Way>,
+    /// Positions to which the clearances refer.
+    y: Vec<f64>,
+    /// Bodies whose skins have their positions of this step.
+    current: Vec<bool>,
+    /// Depths of the active pairs of a contact, by node.
+    held: Vec<(usize, f64)>,
+    rows: Option<Rows>,
+    /// The skins of all bodies, once they have been asked for.
+    all: Vec<Option<Skin>>,
+}
+
+/// Nodes of a side against a body.
+#[derive(Debug)]
+struct Way {
+    /// The contact; none for bodies without one.
+    contact: Option<usize>,
+    /// The body that must not be entered.
+    body: usize,
+    nodes: Vec<Watched>,
+}
+
+#[derive(Debug)]
+struct Watched {
+    node: usize,
+    /// Length of its facets in the reference configuration.
+    length: f64,
+    /// Whether the contact constrains it.
+    constrained: bool,
+    /// Allowed depth over the length of a facet.
+    share: f64,
+    /// Distance that it and the body may still move together before it can be inside.
+    clearance: f64,
+    /// Its nearest facet, where the next search begins.
+    facet: Option<usize>,
+}
+
+/// Largest depths of nodes of the sides of contacts in the other body, ≥ 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Depths {
+    /// Of all nodes.
+    pub all: f64,
+    /// Of the nodes that a contact constrains: secondary nodes and corners.
+    pub constrained: f64,
+}
+
+impl Depths {
+    /// The larger ones.
+    #[must_use]
+    pub fn max(self, other: Self) -> Self {
+        Self { all: self.all.max(other.all), constrained: self.constrained.max(other.constrained) }
+    }
+
+    fn add(&mut self, depth: f64, constrained: bool) {
+        let constrained = if constrained { depth } else { 0.0 };
+        *self = self.max(Self { all: depth, constrained });
+    }
+}
+
+/// A node inside a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Inside {
+    pub node: usize,
+    pub depth: f64,
+    pub limit: f64,
+}
+
+impl Penetration {
+    /// For the contacts of a model.
+    pub(crate) fn of_contacts(model: &Model) -> Self {
+        let mut ways = Vec::new();
+        for (k, contact) in model.contacts.iter().enumerate() {
+            let (Some(primary), [(_, secondary_facets), (_, primary_facets)]) =
+                (contact.primary_part, &contact.facets[..])
+            else {
+                continue;
+            };
+            if model.dimension != 2 {
+                continue;
+            }
+            let Some(secondary) = secondary_facets.first().and_then(|f| part_of(model, f[0])) else {
+                continue;
+            };
+            for (body, facets) in [(primary, secondary_facets), (secondary, primary_facets)] {
+                ways.push(Way { contact: Some(k), body, nodes: watched(model, contact, facets) });
+            }
+        }
+        Self::new(model, ways)
+    }
+
+    /// For all pairs of bodies without a contact, in the plane.
+    pub(crate) fn of_others(model: &Model) -> Self {
+        let declared = |a: usize, b: usize| {
+            model.contacts.iter().any(|contact| {
+                let other = contact.facets.first().and_then(|(_, facets)| part_of(model, facets.first()?[0]));
+                let pair = (contact.primary_part, other);
+                pair == (Some(a), Some(b)) || pair == (Some(b), Some(a))
+            })
+        };
+        let mut ways = Vec::new();
+        for (a, part) in model.parts.iter().enumerate().filter(|_| model.dimension == 2) {
+            let facets = skin_facets(part);
+            for body in (0..model.parts.len()).filter(|&b| b != a && !declared(a, b)) {
+                let nodes = lengths(model, &facets)
+                    .map(|(node, length)| Watched::new(node, length, false, UNDECLARED));
+                ways.push(Way { contact: None, body, nodes: nodes.collect() });
+            }
+        }
+        Self::new(model, ways)
+    }
+
+    fn new(model: &Model, ways: Vec<Way>) -> Self {
+        let skin = |body: usize| ways.iter().any(|way| way.body == body).then(|| skin(&model.parts[body]))?;
+        Self { skins: (0..model.parts.len()).map(skin).collect(), ways, ..Self::default() }
+    }
+
+    /// Penetration at the state.
+    ///
+    /// # Errors
+    /// A node that is deeper than its contact allows.
+    pub(crate) fn check(&mut self, model: &Model, state: &State) -> Result<Depths, Rejected> {
+        let (deepest, beyond) = self.measure(model, state);
+        match beyond {
+            None => Ok(deepest),
+            Some((contact, body, inside)) => Err(Rejected::Penetration {
+                contact: model.contacts[contact].name.clone(),
+                node: inside.node,
+                body: model.parts[body].name.clone(),
+                depth: inside.depth,
+                limit: inside.limit,
+            }),
+        }
+    }
+
+    /// Penetration at the state, and the first node beyond its limit with contact and body.
+    fn measure(&mut self, model: &Model, state: &State) -> (Depths, Option<(usize, usize, Inside)>) {
+        self.begin(model, &state.y);
+        let (mut deepest, mut beyond) = (Depths::default(), None);
+        for k in 0..self.ways.len() {
+            let (depths, inside) = self.deepest(model, k, Some(state));
+            deepest = deepest.max(depths);
+            let of_way = inside.zip(self.ways[k].contact);
+            beyond = beyond.or(of_way.map(|(inside, contact)| (contact, self.ways[k].body, inside)));
+        }
+        for contact in model.contacts.iter().filter(|contact| has_gaps(model, contact)) {
+            for node in 0..contact.kinematics.secondary().len() {
+                let gap = contact.kinematics.signed_distance(node, &state.y);
+                deepest.add(-gap.unwrap_or(0.0), true);
+            }
+        }
+        (deepest, beyond)
+    }
+
+    /// Bodies without a contact of which one is inside the other: (body, other).
+    pub(crate) fn overlapping(&mut self, model: &Model, y: &[f64]) -> Vec<(usize, usize)> {
+        self.begin(model, y);
+        let mut pairs = Vec::new();
+        for k in 0..self.ways.len() {
+            if let (_, Some(found)) = self.deepest(model, k, None)
+                && let Some(part) = part_of(model, found.node)
+            {
+                pairs.push((part.min(self.ways[k].body), part.max(self.ways[k].body)));
+            }
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
+    /// Bodies in the plane whose boundary crosses itself, each as a pair with itself.
+    pub(crate) fn crossing_themselves(&mut self, model: &Model, y: &[f64]) -> Vec<(usize, usize)> {
+        let skins = &mut self.all;
+        if skins.is_empty() {
+            skins.extend(model.parts.iter().map(skin));
+        }
+        let crosses = |(k, skin): (usize, &mut Option<Skin>)| {
+            let skin = skin.as_mut()?;
+            skin.update(y);
+            skin.crosses_itself(y).then_some((k, k))
+        };
+        skins.iter_mut().enumerate().filter_map(crosses).collect()
+    }
+
+    /// Subtracts the motion since the last call from the clearances.
+    fn begin(&mut self, model: &Model, y: &[f64]) {
+        if self.y.len() == y.len() {
+            let moved = |node: usize| distance(&self.y, y, node);
+            let of_body = |way: &Way| model.parts[way.body].nodes().map(moved).fold(0.0, f64::max);
+            for way in &mut self.ways {
+                if way.nodes.iter().any(|watched| watched.clearance > 0.0) {
+                    let body = of_body(way);
+                    way.nodes.iter_mut().for_each(|watched| watched.clearance -= moved(watched.node) + body);
+                }
+            }
+        }
+        self.y.clear();
+        if !self.ways.is_empty() {
+            self.y.extend_from_slice(y);
+        }
+        self.current.clear();
+        self.current.resize(model.parts.len(), false);
+    }
+
+    /// Depths of the nodes of a way, and the node that is furthest beyond its limit.
+    fn deepest(&mut self, model: &Model, way: usize, state: Option<&State>) -> (Depths, Option<Inside>) {
+        let Self { skins, ways, y, current, held, rows, .. } = self;
+        let Way { contact, body, nodes } = &mut ways[way];
+        let (mut deepest, mut worst) = (Depths::default(), None::<Inside>);
+        let Some(skin) = skins[*body].as_mut() else { return (deepest, worst) };
+        held.clear();
+        if let (Some(k), Some(state)) = (*contact, state)
+            && nodes.iter().any(|watched| watched.clearance <= 0.0)
+        {
+            // An active pair on its facet is no deeper than its gap.
+            let rows = rows.get_or_insert_with(|| Rows::new(model.dimension));
+            let contact = &model.contacts[k];
+            for pair in state.pairs[k].iter().filter(|pair| pair.active && pair.xi.abs() <= 1.0) {
+                rows.clear();
+                if contact.kinematics.measure(&mut pair.clone(), y, rows).is_ok() {
+                    held.push((contact.kinematics.secondary()[pair.node], (-rows.row(0).gap).max(0.0)));
+                }
+            }
+            held.sort_unstable_by_key(|(node, _)| *node);
+        }
+        for watched in nodes.iter_mut().filter(|watched| watched.clearance <= 0.0) {
+            let node = watched.node;
+            let (depth, length) = if let Ok(p) = held.binary_search_by_key(&node, |(held, _)| *held) {
+                (held[p].1, 0.0)
+            } else {
+                if !std::mem::replace(&mut current[*body], true) {
+                    skin.update(y);
+                }
+                let Some(found) = skin.depth([y[2 * node], y[2 * node + 1]], watched.facet, y) else {
+                    continue;
+                };
+                (watched.clearance, watched.facet) = (found.distance, Some(found.facet));
+                (-found.distance, found.length)
+            };
+            deepest.add(depth, watched.constrained);
+            let limit = watched.share * watched.length.max(length);
+            if depth > limit && worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
+                worst = Some(Inside { node, depth, limit });
+            }
+        }
+        (deepest, worst)
+    }
+}
+
+/// Penetration at a state.
+pub fn penetration(model: &Model, state: &State) -> Depths {
+    Penetration::of_contacts(model).measure(model, state).0
+}
+
+/// The deepest node of each contact in which a node lies deeper than `limit` at positions `y`:
+/// (contact, node, depth).
+pub fn inside(model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> {
+    let mut penetration = Penetration::of_contacts(model);
+    penetration.begin(model, y);
+    penetration.ways.iter_mut().flat_map(|way| &mut way.nodes).for_each(|watched| watched.share = 0.0);
+    let mut found: Vec<(usize, usize, f64)> = Vec::new();
+    for k in 0..penetration.ways.len() {
+        let (_, deepest) = penetration.deepest(model, k, None);
+        let of_contact = deepest.zip(penetration.ways[k].contact);
+        found.extend(of_contact.map(|(inside, contact)| (contact, inside.node, inside.depth)));
+    }
+    for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| has_gaps(model, contact)) {
+        let secondary = contact.kinematics.secondary().iter().enumerate();
+        let depth = |(place, &node)| (k, node, -contact.kinematics.signed_distance(place, y).unwrap_or(0.0));
+        found.extend(secondary.map(depth));
+    }
+    found.retain(|(.., depth)| *depth > limit);
+    found.sort_by(|a, b| a.0.cmp(&b.0).then(b.2.total_cmp(&a.2)));
+    found.dedup_by_key(|(contact, ..)| *contact);
+    found
+}
+
+/// Whether every node of a contact has a gap: its primary is rigid, or a point.
+fn has_gaps(model: &Model, contact: &Contact) -> bool {
+    contact.primary_part.is_none() || model.dimension == 1
+}
+
+/// Allowed depth of bodies without a contact, over the length of a facet.
+const UNDECLARED: f64 = 0.01;
+
+impl Watched {
+    fn new(node: usize, length: f64, constrained: bool, share: f64) -> Self {
+        Self { node, length, constrained, share, clearance: 0.0, facet: None }
+    }
+}
+
+/// The nodes of a side's facets, with the depths that its contact allows.
+fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -> Vec<Watched> {
+    let constrained = contact.kinematics.secondary();
+    let watched = |(node, length)| {
+        let constrained = constrained.contains(&node);
+        Watched::new(node, length, constrained, contact.depths[usize::from(!constrained)])
+    };
+    lengths(model, facets).map(watched).collect()
+}
+
+/// The nodes of facets, ascending, each with the longest of its facets in the reference configuration.
+fn lengths(model: &Model, facets: &[Vec<usize>]) -> impl Iterator<Item = (usize, f64)> {
+    let mut nodes = std::collections::BTreeMap::new();
+    for facet in facets {
+        let [start, end] = [facet[0], facet[1]].map(|node| &model.reference[2 * node..2 * node + 2]);
+        let length = (end[0] - start[0]).hypot(end[1] - start[1]);
+        for &node in facet {
+            let longest: &mut f64 = nodes.entry(node).or_default();
+            *longest = longest.max(length);
+        }
+    }
+    nodes.into_iter()
+}
+
+fn distance(a: &[f64], b: &[f64], node: usize) -> f64 {
+    (a[2 * node] - b[2 * node]).hypot(a[2 * node + 1] - b[2 * node + 1])
+}
+
+fn part_of(model: &Model, node: usize) -> Option<usize> {
+    model.parts.iter().position(|part| part.nodes().contains(&node))
+}
+
+fn skin_facets(part: &BodyInstance) -> Vec<Vec<usize>> {
+    let skin = part.body.mesh().skin().into_iter();
+    skin.map(|facet| facet.nodes.iter().map(|node| node + part.first_node).collect()).collect()
+}
+
+fn skin(part: &BodyInstance) -> Option<Skin> {
+    let shape = part.body.mesh().element.facet_shape().filter(|shape| *shape != FacetShape::Point)?;
+    let facets = skin_facets(part);
+    Some(Skin::new(Surface::new(shape, &facets, &vec![1.0; facets.len()])))
+}
