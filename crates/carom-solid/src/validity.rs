@@ -224,8 +224,8 @@ impl<const D: usize, const N: usize> Validity<D, N> {
     /// Halves in θ or along the edge with the larger changes; `None` where the loss is located.
     fn halves(&self, part: &Part) -> Option<[Part; 2]> {
         let (first, last) = (&part.rows[0], &part.rows[part.rows.len() - 1]);
-        // Not `<=`: a NaN is a loss.
-        let lost = |row: &[f64]| (0..=D).any(|i| !(self.at_corner(row, i) > part.error));
+        // A NaN is a loss.
+        let lost = |row: &[f64]| !(0..=D).all(|i| self.at_corner(row, i) > part.error);
         if lost(first) || part.level >= DEEPEST {
             return None;
         }
