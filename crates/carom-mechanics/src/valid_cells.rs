@@ -61,20 +61,20 @@ fn margin(model: &Model, part: &BodyInstance, y: &[f64]) -> Result<f64, Rejected
 
 /// Whether no component has changed by more than `margin`, apart from the motion of the first node.
 fn is_within(before: &[f64], now: &[f64], dimension: usize, margin: f64) -> bool {
-    if before.len() != now.len() || !(margin > 0.0) {
+    if before.len() != now.len() || margin == 0.0 {
         return false;
     }
     let mut common = [0.0; BLOCK];
     (0..BLOCK).for_each(|i| common[i] = now[i % dimension] - before[i % dimension]);
     let (old, new) = (before.chunks(BLOCK), now.chunks(BLOCK));
-    let mut beyond = false;
+    let mut within = true;
     for (old, new) in old.zip(new) {
         for ((old, new), common) in old.iter().zip(new).zip(&common) {
-            // Not `>`: a NaN is beyond.
-            beyond |= !((new - old - common).abs() <= margin);
+            // A NaN is not within.
+            within &= (new - old - common).abs() <= margin;
         }
     }
-    !beyond
+    within
 }
 
 #[cfg(test)]

@@ -39,6 +39,13 @@ fn force(bencher: Bencher, shape: Element) {
     bencher.bench_local(|| body.cell_force(black_box(CELL), &y, &mut force).is_ok());
 }
 
+/// Certified J > 0 in the whole of the cell.
+#[divan::bench(args = SHAPES)]
+fn margin(bencher: Bencher, shape: Element) {
+    let (body, _, y) = square(shape, RUBBER);
+    bencher.bench_local(|| body.cell_margin(black_box(CELL), &y).is_ok());
+}
+
 #[divan::bench(args = SHAPES)]
 fn tangent(bencher: Bencher, shape: Element) {
     tangent_of(bencher, shape, RUBBER);

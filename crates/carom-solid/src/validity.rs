@@ -39,10 +39,12 @@ const TOLERANCE: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct Validity<const D: usize, const N: usize> {
     degree: usize,
-    /// Control points as weights of nodes.
+    /// Weights of nodes in control points: a row per node.
     control: [[f64; N]; N],
     /// Λ.
     amplification: f64,
+    /// Largest change of a difference if every node moves by at most 1.
+    sensitivity: f64,
     /// Control points β + e₀ and β + eᵢ of every β.
     differences: Vec<(usize, [usize; D])>,
     /// Ascending in γ.
@@ -76,19 +78,23 @@ impl<const D: usize, const N: usize> Validity<D, N> {
         let exponents: Vec<_> = (0..=(D * (k - 1)).max(k)).map(exponents::<D>).collect();
         let control: [[f64; N]; N] = {
             let hull = Hull::of::<D, N, S>();
-            std::array::from_fn(|c| std::array::from_fn(|a| hull.weights(c)[a]))
+            std::array::from_fn(|a| std::array::from_fn(|c| hull.weights(c)[a]))
         };
-        let amplification =
-            control.iter().map(|row| row.iter().map(|w| w.abs()).sum::<f64>()).fold(0.0, f64::max);
+        let sum = |of: &dyn Fn(usize) -> f64| (0..N).map(|a| of(a).abs()).sum::<f64>();
+        let amplification = (0..N).map(|c| sum(&|a| control[a][c])).fold(0.0, f64::max);
         let place = |e: &Exponents, corner: usize| {
             let mut e = *e;
             e[corner] += 1;
             index(&exponents[k], &e)
         };
-        let differences = exponents[k - 1]
+        let differences: Vec<(usize, [usize; D])> = exponents[k - 1]
             .iter()
             .map(|e| (place(e, 0), std::array::from_fn(|i| place(e, i + 1))))
             .collect();
+        let changes = |(base, ends): &(usize, [usize; D])| {
+            ends.map(|end| sum(&|a| control[a][end] - control[a][*base])).into_iter().fold(0.0, f64::max)
+        };
+        let sensitivity = differences.iter().map(changes).fold(0.0, f64::max);
         let (parts, whole) = (&exponents[k - 1], &exponents[D * (k - 1)]);
         let mut terms = Vec::new();
         for code in 0..parts.len().pow(D as u32) {
@@ -100,14 +106,15 @@ impl<const D: usize, const N: usize> Validity<D, N> {
             terms.push(Term { coefficient: index(whole, &sum), weight, factors });
         }
         terms.sort_by_key(|term| term.coefficient);
-        Self { degree: D * (k - 1), control, amplification, differences, terms, exponents }
+        Self { degree: D * (k - 1), control, amplification, sensitivity, differences, terms, exponents }
     }
 
     /// Distance by which every component of every node's position may change, relative to a common
     /// translation, while the cell remains valid; 0 if the cell is only certified after division.
     ///
-    /// Determinants of differences of size ≤ E change by at most D! ((E + q)ᴰ − Eᴰ) if these change
-    /// by q, and q ≤ 2Λ times the distance.
+    /// If differences change by at most q per component, their determinant u × v in the plane changes
+    /// by at most (|u|₁ + |v|₁) q + 2q², and in general by D! ((E + q)ᴰ − Eᴰ), E the largest
+    /// component.
     ///
     /// # Errors
     /// A place where the determinant is not certified positive.
@@ -129,16 +136,23 @@ impl<const D: usize, const N: usize> Validity<D, N> {
         certified &= sum > error;
         least = least.min(sum);
         if certified {
-            let count = self.differences.len();
-            let largest = differences
-                .iter()
-                .flat_map(|list| &list[..count])
-                .flat_map(|d| d.0)
-                .fold(0.0_f64, |largest, x| largest.max(x.abs()));
-            let ratio = (least - error) / (factorial(D) * largest.powi(D as i32));
-            // A root of 1 + ratio loses digits of a small ratio, never more than 1e-15.
-            let growth = (1.0 + ratio).powf(1.0 / D as f64) - 1.0 - 1e-15;
-            return Ok((0.999 * growth * largest / (2.0 * self.amplification)).max(0.0));
+            let mut sums = [0.0_f64; D];
+            for (sum, list) in sums.iter_mut().zip(&differences) {
+                for d in &list[..self.differences.len()] {
+                    *sum = sum.max(d.0.iter().map(|x| x.abs()).sum());
+                }
+            }
+            let (free, sum) = (least - error, sums.iter().sum::<f64>());
+            let change = match D {
+                1 => free,
+                2 => 2.0 * free / (sum + (sum * sum + 8.0 * free).sqrt()),
+                _ => {
+                    // With x = free/(D! Eᴰ), less than the exact (1 + x)^(1/D) − 1.
+                    let ratio = free / (factorial(D) * sum.powi(D as i32));
+                    sum * ratio / (D as f64 * (1.0 + ratio))
+                }
+            };
+            return Ok(0.999 * change / self.sensitivity);
         }
         match self.first_loss(vec![self.coefficients([&differences; 2], 0)], error) {
             None => Ok(0.0),
@@ -169,16 +183,20 @@ impl<const D: usize, const N: usize> Validity<D, N> {
                 largest = largest.max(local[a][i].abs()).max(there[i].abs());
             }
         }
-        let mut control = [Vector::ZERO; N];
-        for c in 0..N {
+        let mut control = [[0.0; N]; D];
+        for i in 0..D {
             for a in 0..N {
-                control[c] += local[a] * self.control[c][a];
+                for c in 0..N {
+                    control[i][c] += local[a][i] * self.control[a][c];
+                }
             }
         }
         let mut differences = [[Vector::ZERO; N]; D];
         for (b, (base, ends)) in self.differences.iter().enumerate() {
             for i in 0..D {
-                differences[i][b] = control[ends[i]] - control[*base];
+                for j in 0..D {
+                    differences[i][b][j] = control[j][ends[i]] - control[j][*base];
+                }
             }
         }
         let unit = 0.5 * f64::EPSILON * factorial(D) * (2.0 * self.amplification * largest).powi(D as i32);
@@ -224,8 +242,8 @@ impl<const D: usize, const N: usize> Validity<D, N> {
     /// Halves in θ or along the edge with the larger changes; `None` where the loss is located.
     fn halves(&self, part: &Part) -> Option<[Part; 2]> {
         let (first, last) = (&part.rows[0], &part.rows[part.rows.len() - 1]);
-        // Not `<=`: a NaN is a loss.
-        let lost = |row: &[f64]| (0..=D).any(|i| !(self.at_corner(row, i) > part.error));
+        // A NaN is a loss.
+        let lost = |row: &[f64]| !(0..=D).all(|i| self.at_corner(row, i) > part.error);
         if lost(first) || part.level >= DEEPEST {
             return None;
         }

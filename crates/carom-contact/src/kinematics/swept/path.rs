@@ -197,8 +197,9 @@ impl CurvePath {
                     let slack = error * (sizes + 2.0 * error)
                         + 4.0 * UNIT_ROUNDOFF * sum_of(normal) * sum_of(motion)
                         + f64::MIN_POSITIVE;
-                    // Not `<=`: a NaN is no proof.
-                    if !(normal.dot(&motion) > slack) {
+                    // A NaN is no proof.
+                    let outwards = normal.dot(&motion) > slack;
+                    if !outwards {
                         return false;
                     }
                 }
