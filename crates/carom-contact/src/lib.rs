@@ -14,6 +14,8 @@ pub use discrete_gradient::DiscreteGradient;
 pub use interface::{
     Answer, ConservingPenalty, ConservingUnilateral, Direction, Interface, Penalty, Point, Unilateral,
 };
-pub use kinematics::{ContactPoint, Detection, Kinematics, NodeToFacet, NodeToPlane, Surface};
+pub use kinematics::{
+    Carrier, ContactPoint, Detection, Kinematics, NodeToFacet, NodeToObstacle, Obstacle, Polyline, PolylineError, Surface,
+};
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

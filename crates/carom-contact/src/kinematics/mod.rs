@@ -5,13 +5,15 @@
 
 mod gap;
 mod node_to_facet;
-mod node_to_plane;
+mod node_to_obstacle;
+mod obstacle;
 mod projection;
 mod surface;
 mod trajectory;
 
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
-pub use node_to_plane::NodeToPlane;
+pub use node_to_obstacle::{Carrier, NodeToObstacle};
+pub use obstacle::{Obstacle, Polyline, PolylineError};
 pub use surface::Surface;
 
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
