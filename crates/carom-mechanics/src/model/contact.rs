@@ -1,4 +1,4 @@
-//! A contact of two sides, or of a side and a rigid plane.
+//! A contact of two sides, or of a side and a rigid obstacle.
 
 use carom_contact::{Direction, Interface, Kinematics};
 use carom_solid::FacetShape;
@@ -20,7 +20,7 @@ pub struct Contact {
     pub secondary_shape: FacetShape,
     /// Whether penetration by the predictor y + Δt v is prevented too.
     pub predictor: bool,
-    /// Nodes of both sides, ascending.
+    /// Nodes of both sides and of the carrier of a rigid primary, ascending.
     pub surface: Vec<usize>,
     /// Whether its force acts entirely at the end of the step, not averaged with the scheme's
     /// weights.

@@ -2,21 +2,23 @@
 //! new contact method is one line here.
 
 use carom_case::{
-    ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, Persistency, PrimarySpec, Problem,
+    ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, Persistency, Problem,
 };
 use carom_contact::{
-    ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet, NodeToPlane,
+    ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet, NodeToObstacle,
     Penalty, Surface, Unilateral,
 };
 use carom_mechanics::model::{BodyInstance, Contact, Model};
 use carom_solid::PointLocator;
 
+use super::obstacles::{self, Moving};
 use super::side::side;
 
 /// The contacts of a case.
 pub(super) fn contacts(
     case: &Case,
     parts: &[BodyInstance],
+    obstacles: &[Moving],
     massless: &[bool],
     problems: &mut Vec<Problem>,
 ) -> Vec<Contact> {
@@ -33,11 +35,24 @@ pub(super) fn contacts(
         };
         let mut primary_part = None;
         let mut surface = secondary.nodes.clone();
-        let kinematics: Box<dyn Kinematics> = match &spec.primary {
-            PrimarySpec::Plane { point, normal } => {
-                Box::new(NodeToPlane::new(secondary.nodes.clone(), point, normal))
+        let shape = match obstacles::shape(&spec.primary, k) {
+            Ok(shape) => shape,
+            Err(problem) => {
+                problems.push(problem);
+                continue;
             }
-            PrimarySpec::Side(name) => match side(parts, name, &format!("contact[{k}].primary")) {
+        };
+        let obstacle = obstacles.iter().find(|obstacle| obstacle.contact == k);
+        let kinematics: Box<dyn Kinematics> = match (shape, spec.primary.side()) {
+            (Some(shape), _) => {
+                let mut contact = NodeToObstacle::new(secondary.nodes.clone(), case.dimension, shape);
+                if let Some(obstacle) = obstacle {
+                    surface.extend(parts[obstacle.part].nodes());
+                    contact = contact.carried_by(obstacle.carrier.clone());
+                }
+                Box::new(contact)
+            }
+            (None, name) => match side(parts, name.unwrap_or(""), &format!("contact[{k}].primary")) {
                 Ok(primary) if primary.part == secondary.part => {
                     problems.push(Problem::new(
                         format!("contact[{k}].primary"),
@@ -115,8 +130,8 @@ pub(super) fn contacts(
             restitution: spec.restitution,
         };
         let has_mass = |nodes: &[usize]| nodes.iter().any(|n| !massless[n * case.dimension]);
-        let primary_has_mass = matches!(&spec.primary, PrimarySpec::Side(name)
-            if side(parts, name, "").is_ok_and(|s| has_mass(&s.nodes)));
+        let primary_has_mass = obstacle.is_some_and(|obstacle| parts[obstacle.part].point_mass > 0.0)
+            || spec.primary.side().is_some_and(|name| side(parts, name, "").is_ok_and(|s| has_mass(&s.nodes)));
         if contact.projects && !has_mass(&secondary.nodes) && !primary_has_mass {
             problems.push(Problem::new(
                 format!("contact[{k}]"),

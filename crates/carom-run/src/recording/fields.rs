@@ -19,7 +19,7 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     let vectors =
         |values: &[f64]| values.chunks_exact(model.dimension).flat_map(spatial).collect::<Vec<f64>>();
     let moved: Vec<f64> = state.y.iter().zip(&model.reference).map(|(y, x)| y - x).collect();
-    let blocks = model.parts.iter().map(|part| {
+    let blocks = model.parts.iter().filter(|part| !part.is_rigid()).map(|part| {
         let mesh = part.body.mesh();
         Block {
             body: part.name.clone(),
