@@ -103,7 +103,11 @@ fn motion(
             None => Some(vec![0.0; dimension?]),
         };
         let mass = table.get("mass")?.number()?;
-        return Some(ObstacleMotion::Free { mass, velocity: vector("velocity")?, gravity: vector("gravity")? });
+        return Some(ObstacleMotion::Free {
+            mass,
+            velocity: vector("velocity")?,
+            gravity: vector("gravity")?,
+        });
     }
     let Some(keys) = table.get("motion") else { return Some(ObstacleMotion::Fixed) };
     let keys = keys.table()?;

@@ -15,7 +15,8 @@ pub use interface::{
     Answer, ConservingPenalty, ConservingUnilateral, Direction, Interface, Penalty, Point, Unilateral,
 };
 pub use kinematics::{
-    Carrier, ContactPoint, Detection, Kinematics, NodeToFacet, NodeToObstacle, Obstacle, Polyline, PolylineError, Surface,
+    Carrier, ContactPoint, Detection, Kinematics, NodeToFacet, NodeToObstacle, Obstacle, Polyline,
+    PolylineError, Surface,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

@@ -120,7 +120,9 @@ pub enum ContactError {
         a: f64,
     },
     /// The node is inside a rigid obstacle, at the centre of a circle.
-    #[error("secondary node {node} is at the centre of a rigid circle or rounded corner: every direction leads out")]
+    #[error(
+        "secondary node {node} is at the centre of a rigid circle or rounded corner: every direction leads out"
+    )]
     Center {
         /// Global number of the secondary node.
         node: usize,

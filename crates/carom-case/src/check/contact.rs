@@ -112,7 +112,8 @@ impl Check<'_> {
             })
             .filter(|_| !contact.motion.is_fixed());
         if let Some(kind) = taken {
-            let what = format!("a {kind} and a contact with a moving obstacle are both named `{}`", contact.name);
+            let what =
+                format!("a {kind} and a contact with a moving obstacle are both named `{}`", contact.name);
             let why = "the columns of a moving obstacle have the name of its contact";
             self.add(format!("contact[{i}].name"), what, why, "rename one of them");
         }

@@ -5,7 +5,8 @@ use super::Kind::{
     SideOr, Sides, Tables, Text, Truth, Variant, Vector,
 };
 use super::{
-    ANY, IN_SPACE, IN_SPACE_AND_TIME, IN_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, schemes, shapes,
+    ANY, IN_SPACE, IN_SPACE_AND_TIME, IN_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, schemes,
+    shapes,
 };
 
 /// The whole file.

@@ -171,10 +171,7 @@ impl Kinematics for NodeToObstacle {
             }
             Some(Carrier { node: carrier, turn: Some((angle, _, length)), .. }) => {
                 let moment = -dot(near.normal, turned(arm)) / length;
-                rows.push(
-                    near.gap,
-                    [(node, n), (*carrier, n.map(|n| -n)), (*angle, [moment, 0.0, 0.0])],
-                );
+                rows.push(near.gap, [(node, n), (*carrier, n.map(|n| -n)), (*angle, [moment, 0.0, 0.0])]);
             }
         }
         Ok(())

@@ -2,7 +2,9 @@
 //! against differences.
 
 use carom_algebra::jacobian_error;
-use carom_contact::{Detection, DiscreteGradient, Kinematics, NodeToFacet, NodeToObstacle, Obstacle, Pair, Rows, Surface};
+use carom_contact::{
+    Detection, DiscreteGradient, Kinematics, NodeToFacet, NodeToObstacle, Obstacle, Pair, Rows, Surface,
+};
 use carom_solid::FacetShape;
 
 const SHAPES: [FacetShape; 3] = [FacetShape::L2, FacetShape::L3, FacetShape::L4];

@@ -36,7 +36,9 @@ fn distances_to_a_square_are_elementary() {
     let (block, mut reversed) = (polyline(&SQUARE, 0.0), SQUARE);
     reversed.reverse();
     let room = polyline(&reversed, 0.0);
-    for (x, y, d) in [(1.0, -0.5, 0.5), (5.0, 6.0, 5.0), (1.0, 0.25, -0.25), (-3.0, -4.0, 5.0), (1.9, 1.0, -0.1)] {
+    for (x, y, d) in
+        [(1.0, -0.5, 0.5), (5.0, 6.0, 5.0), (1.0, 0.25, -0.25), (-3.0, -4.0, 5.0), (1.9, 1.0, -0.1)]
+    {
         close(distance(&block, x, y), d);
         close(distance(&room, x, y), -d);
     }

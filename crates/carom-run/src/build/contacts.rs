@@ -1,12 +1,10 @@
 //! The contacts of a model: kinematics from the named sides, interface from law and enforcement. A
 //! new contact method is one line here.
 
-use carom_case::{
-    ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, Persistency, Problem,
-};
+use carom_case::{ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, Persistency, Problem};
 use carom_contact::{
-    ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet, NodeToObstacle,
-    Penalty, Surface, Unilateral,
+    ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet,
+    NodeToObstacle, Penalty, Surface, Unilateral,
 };
 use carom_mechanics::model::{BodyInstance, Contact, Model};
 use carom_solid::PointLocator;
@@ -131,7 +129,10 @@ pub(super) fn contacts(
         };
         let has_mass = |nodes: &[usize]| nodes.iter().any(|n| !massless[n * case.dimension]);
         let primary_has_mass = obstacle.is_some_and(|obstacle| parts[obstacle.part].point_mass > 0.0)
-            || spec.primary.side().is_some_and(|name| side(parts, name, "").is_ok_and(|s| has_mass(&s.nodes)));
+            || spec
+                .primary
+                .side()
+                .is_some_and(|name| side(parts, name, "").is_ok_and(|s| has_mass(&s.nodes)));
         if contact.projects && !has_mass(&secondary.nodes) && !primary_has_mass {
             problems.push(Problem::new(
                 format!("contact[{k}]"),

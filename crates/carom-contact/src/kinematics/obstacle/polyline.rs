@@ -162,9 +162,7 @@ impl Polyline {
         let distance = |piece: usize| self.near(piece, at).map_or(f64::INFINITY, |near| near.gap.abs());
         // At a shared end the segment wins over the corner: its normal exists everywhere.
         let order = |piece: &usize| (distance(*piece), piece % 2);
-        facing
-            .min_by(|a, b| order(a).0.total_cmp(&order(b).0).then(order(a).1.cmp(&order(b).1)))
-            .unwrap_or(0)
+        facing.min_by(|a, b| order(a).0.total_cmp(&order(b).0).then(order(a).1.cmp(&order(b).1))).unwrap_or(0)
     }
 
     /// A piece as a point sees it.
