@@ -1,7 +1,7 @@
 //! The contacts of a model: kinematics from the named sides, interface from law and enforcement. A
 //! new contact method is one line here.
 
-use carom_case::{ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, Persistency, Problem};
+use carom_case::{ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, ObstacleMotion, Persistency, Problem};
 use carom_contact::{
     ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet,
     NodeToObstacle, Penalty, Surface, Unilateral,
@@ -84,11 +84,16 @@ pub(super) fn contacts(
                 }
             },
         };
+        let has_mass = |nodes: &[usize]| nodes.iter().any(|n| !massless[n * case.dimension]);
+        // A ball on a massless spring: the projection would stop the ball.
+        let is_thrown = matches!(spec.motion, ObstacleMotion::Free { .. });
+        let follows = is_thrown && !has_mass(&secondary.nodes);
         let light = |part: usize| case.bodies[part].mass.is_redistributed();
         let projects = spec.law == Some(ContactLaw::Position)
             && spec.enforcement == Enforcement::Multiplier
             && !case.time.scheme.is_static()
             && !light(secondary.part)
+            && !follows
             && !primary_part.is_some_and(light);
         surface.sort_unstable();
         surface.dedup();
@@ -127,7 +132,6 @@ pub(super) fn contacts(
             within: spec.active_set == ActiveSetRule::Within,
             restitution: spec.restitution,
         };
-        let has_mass = |nodes: &[usize]| nodes.iter().any(|n| !massless[n * case.dimension]);
         let primary_has_mass = obstacle.is_some_and(|obstacle| parts[obstacle.part].point_mass > 0.0)
             || spec
                 .primary
