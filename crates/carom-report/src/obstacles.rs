@@ -13,6 +13,8 @@ pub(crate) type Walk = Vec<(Point, Point)>;
 const STRAIGHT: usize = 96;
 const ROUND: usize = 144;
 const ARC: usize = 12;
+/// Extent, relative to that of the bodies, up to which an obstacle is shown as a whole.
+const WHOLE: f64 = 8.0;
 
 /// An obstacle as given, and how it moves.
 pub(crate) struct Obstacle {
@@ -155,12 +157,20 @@ impl Obstacle {
         self.walk.iter().map(|&(p, n)| (point(p), turned(n))).collect()
     }
 
-    /// A frame that shows its surface too, at most one and a half sizes of the bodies around them.
+    /// A frame that shows its surface too: all of it up to a few sizes of the bodies, otherwise what
+    /// is near them.
     pub(crate) fn shown_in(&self, walk: &Walk, frame: [f64; 4], bodies: [f64; 4]) -> [f64; 4] {
         if self.is_plane {
             return frame;
         }
-        let size = 1.5 * (bodies[1] - bodies[0]).max(bodies[3] - bodies[2]);
+        let size = (bodies[1] - bodies[0]).max(bodies[3] - bodies[2]);
+        let extent = |i: usize| {
+            let (low, high) = walk.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (p, _)| {
+                (low.min(p[i]), high.max(p[i]))
+            });
+            high - low
+        };
+        let size = if extent(0).max(extent(1)) <= WHOLE * size { f64::INFINITY } else { 1.5 * size };
         let near = |p: &Point, i: usize| p[i].clamp(bodies[2 * i] - size, bodies[2 * i + 1] + size);
         walk.iter().fold(frame, |f, (p, _)| {
             let [x, y] = [near(p, 0), near(p, 1)];

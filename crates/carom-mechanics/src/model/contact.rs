@@ -12,7 +12,7 @@ pub struct Contact {
     pub kinematics: Box<dyn Kinematics>,
     /// Law and enforcement.
     pub interface: Box<dyn Interface>,
-    /// Body of the primary side; `None` for a rigid primary.
+    /// Body of the primary side; `None` for a rigid primary, unless it has a mass.
     pub primary_part: Option<usize>,
     /// Facets of the secondary side in global nodes, for consistent weights.
     pub secondary_facets: Vec<Vec<usize>>,

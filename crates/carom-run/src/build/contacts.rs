@@ -1,7 +1,9 @@
 //! The contacts of a model: kinematics from the named sides, interface from law and enforcement. A
 //! new contact method is one line here.
 
-use carom_case::{ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, ObstacleMotion, Persistency, Problem};
+use carom_case::{
+    ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, ObstacleMotion, Persistency, Problem,
+};
 use carom_contact::{
     ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet,
     NodeToObstacle, Penalty, Surface, Unilateral,
@@ -118,7 +120,8 @@ pub(super) fn contacts(
             },
             predictor: spec.law == Some(ContactLaw::Predictor),
             kinematics,
-            primary_part,
+            // A mass that is thrown is a body; a prescribed obstacle is not.
+            primary_part: primary_part.or(obstacle.filter(|_| is_thrown).map(|obstacle| obstacle.part)),
             secondary_facets: secondary.facets,
             secondary_shape: secondary.shape,
             surface,
@@ -183,6 +186,7 @@ pub fn overlaps(model: &Model) -> Vec<Problem> {
         let mut deepest: Option<(f64, usize)> = None;
         // A node behind a side need not be inside its body: a plate also has a lower side.
         let primary = contact.primary_part.filter(|_| model.dimension > 1).map(|p| &model.parts[p]);
+        let primary = primary.filter(|part| !part.is_rigid());
         let locator = primary.map(|part| PointLocator::new(&*part.body, part.of(x)));
         for (place, &node) in contact.kinematics.secondary().iter().enumerate() {
             if locator.as_ref().is_some_and(|locator| !locator.contains(at(node))) {
