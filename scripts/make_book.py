@@ -51,6 +51,7 @@ FIGURES = {
     "invariance": ("", "bodies"),
     "impact": ("impact", "bodies"),
     "disc": ("offset", "bodies"),
+    "obstacle": ("paddle", "bodies"),
     "loads": ("", "bodies"),
     "static": ("", "bodies"),
     "manufactured": ("moving-block-orders", "energy"),

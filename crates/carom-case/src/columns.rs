@@ -1,6 +1,6 @@
 //! The columns of history.csv, in the order that the run directory specifies.
 
-use super::{BodySpec, Case, ContactSpec, ProbeSpec, Quantity, SupportSpec};
+use super::{BodySpec, Case, ContactSpec, ObstacleMotion, ProbeSpec, Quantity, SupportSpec};
 
 const SCALARS: [&str; 12] = [
     "step",
@@ -84,11 +84,19 @@ pub(super) fn of(
         vector(&mut columns, &format!("{}.center", body.name));
         vector(&mut columns, &format!("{}.velocity", body.name));
     }
+    let moving = || contacts.iter().flatten().filter(|contact| !contact.motion.is_fixed());
+    for contact in moving() {
+        vector(&mut columns, &format!("{}.center", contact.name));
+        vector(&mut columns, &format!("{}.velocity", contact.name));
+    }
     for contact in contacts.iter().flatten().filter(|_| contacts.len() > 1) {
         vector(&mut columns, &format!("{}.force", contact.name));
     }
     for name in supports.iter().flatten().filter_map(|s| s.name.as_ref()) {
         vector(&mut columns, &format!("{name}.reaction"));
+    }
+    for contact in moving().filter(|c| matches!(c.motion, ObstacleMotion::Prescribed { .. })) {
+        vector(&mut columns, &format!("{}.reaction", contact.name));
     }
     for probe in probes.iter().flatten() {
         columns.extend(probe.record.iter().map(|q| format!("{}.{}", probe.name, quantity(*q))));

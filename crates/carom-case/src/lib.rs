@@ -16,6 +16,7 @@ mod machine;
 mod make;
 mod mesh;
 mod mesh_file;
+mod obstacle;
 mod overrides;
 mod place;
 mod problem;
@@ -40,6 +41,6 @@ pub use schema::{changes, expectation, schema};
 pub use spec::{
     ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime,
     FormulaSpec, InitialSpec, Law, LoadKind, LoadSpec, MassKind, MaterialSpec, MeshSpec, NewtonSpec,
-    OutputSpec, Persistency, PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec, Quantity, RefineSpec,
-    SchemeSpec, SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
+    ObstacleMotion, OutputSpec, Persistency, PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec, Quantity,
+    RefineSpec, SchemeSpec, SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
 };

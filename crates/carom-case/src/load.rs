@@ -5,7 +5,7 @@ use std::path::Path;
 use super::keys::{self, IN_SPACE_AND_TIME};
 use super::load_table;
 use super::problem::Problem;
-use super::tree::Node;
+use super::tree::{Node, Table};
 use super::view::{View, formula};
 use super::{FormulaSpec, LoadKind, LoadSpec};
 
@@ -56,8 +56,11 @@ pub(super) fn read(v: View, folder: &Path, path: &str, problems: &mut Vec<Proble
 
 /// Reads the displacements of a support: (direction, formula).
 pub(super) fn motion(v: &View) -> Option<Vec<(usize, FormulaSpec)>> {
-    let Some(table) = v.table.get("move") else { return Some(Vec::new()) };
-    let table = table.table()?;
+    v.table.get("move").map_or_else(|| Some(Vec::new()), |table| displacements(table.table()?))
+}
+
+/// Reads displacements by direction.
+pub(super) fn displacements(table: &Table) -> Option<Vec<(usize, FormulaSpec)>> {
     let axis = |(i, name)| table.get(name).map(|node| Some((i, formula(node)?)));
     ["x", "y"].into_iter().enumerate().filter_map(axis).collect()
 }

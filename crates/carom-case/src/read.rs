@@ -14,6 +14,7 @@ use super::expect::{self, Asked, Exact};
 use super::keys::{self, Kind};
 use super::load;
 use super::mesh;
+use super::obstacle;
 use super::place;
 use super::problem::{CaseError, Diagnostic, Problem, Problems};
 use super::suggest;
@@ -21,7 +22,7 @@ use super::tree::{Entry, Node, Table};
 use super::view::{View, word};
 use super::{
     BodySpec, Case, ContactSpec, InitialSpec, MaterialSpec, NewtonSpec, OutputSpec, Persistency, Preset,
-    PrimarySpec, ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
+    ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
 };
 
 impl Case {
@@ -69,7 +70,7 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
         bodies: Vec::new(),
         supports: reader.each("support", |v, _| support(v)),
         loads: Vec::new(),
-        contacts: reader.each("contact", |v, _| contact(v)),
+        contacts: reader.each("contact", |v, path| contact(v, reader.dimension, path, &mut problems)),
         probes: reader.each("probe", |v, _| probe(v)),
         exact: reader.exact(),
         expects: Vec::new(),
@@ -299,19 +300,18 @@ fn initial(v: View, folder: &Path) -> Option<InitialSpec> {
     Some(InitialSpec { from, velocities: v.choice("velocities")? })
 }
 
-fn contact(v: View) -> Option<ContactSpec> {
-    let primary = v.value("primary")?;
-    let primary = if let Some(side) = primary.text() {
-        PrimarySpec::Side(side.to_owned())
-    } else {
-        let plane = primary.table()?.get("plane")?.table()?;
-        let numbers = |key| plane.get(key)?.list()?.iter().map(Node::number).collect::<Option<Vec<_>>>();
-        PrimarySpec::Plane { point: numbers("point")?, normal: numbers("normal")? }
-    };
+fn contact(
+    v: View,
+    dimension: Option<usize>,
+    path: &str,
+    problems: &mut Vec<Problem>,
+) -> Option<ContactSpec> {
+    let (primary, motion) = obstacle::read(&v, dimension, path, problems)?;
     Some(ContactSpec {
         name: v.text("name")?,
         secondary: v.text("secondary")?,
         primary,
+        motion,
         enforcement: v.choice("enforcement")?,
         stiffness: v.number("stiffness")?,
         force: v.choice("force")?,

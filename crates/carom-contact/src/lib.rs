@@ -16,8 +16,8 @@ pub use interface::{
     Answer, ConservingPenalty, ConservingUnilateral, Direction, Interface, Penalty, Point, Unilateral,
 };
 pub use kinematics::{
-    BothSides, ContactPoint, Crossings, Detection, Kinematics, NodeToFacet, NodeToPlane, Surface, Swept,
-    SweptTest,
+    BothSides, Carrier, ContactPoint, Crossings, Detection, Kinematics, NodeToFacet, NodeToObstacle,
+    Obstacle, Polyline, PolylineError, Surface, Swept, SweptTest,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

@@ -138,6 +138,14 @@ pub enum ContactError {
         /// J² − gκ.
         a: f64,
     },
+    /// The node is inside a rigid obstacle, at the centre of a circle.
+    #[error(
+        "secondary node {node} is at the centre of a rigid circle or rounded corner: every direction leads out"
+    )]
+    Center {
+        /// Global number of the secondary node.
+        node: usize,
+    },
     /// The closest point lies far outside the facet or was not found.
     #[error("secondary node {node} is beyond primary facet {facet}: its closest point is at ξ = {xi:.3}")]
     Lost {

@@ -117,7 +117,8 @@ impl Penetration {
             })
         };
         let mut ways = Vec::new();
-        for (a, part) in model.parts.iter().enumerate().filter(|_| model.dimension == 2) {
+        let solid = |(_, part): &(usize, &BodyInstance)| model.dimension == 2 && skin(part).is_some();
+        for (a, part) in model.parts.iter().enumerate().filter(solid) {
             let facets = skin_facets(part);
             for body in (0..model.parts.len()).filter(|&b| b != a && !declared(a, b)) {
                 let nodes = lengths(model, &facets)
@@ -295,7 +296,7 @@ pub fn inside(model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> 
 
 /// Whether every node of a contact has a gap: its primary is rigid, or a point.
 fn has_gaps(model: &Model, contact: &Contact) -> bool {
-    contact.primary_part.is_none() || model.dimension == 1
+    contact.facets.len() < 2 || model.dimension == 1
 }
 
 /// Allowed depth of bodies without a contact, over the length of a facet.

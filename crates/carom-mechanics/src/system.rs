@@ -228,7 +228,11 @@ fn pattern(model: &Model) -> Pattern {
             }
         }
     }
-    for nodes in &mut neighbours {
+    for (node, nodes) in neighbours.iter_mut().enumerate() {
+        // The mass of a rigid obstacle has no cells.
+        if nodes.is_empty() {
+            nodes.push(node);
+        }
         nodes.sort_unstable();
         nodes.dedup();
     }

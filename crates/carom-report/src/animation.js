@@ -124,7 +124,7 @@
       else g.bezierCurveTo(...mix([-5 / 6, 3, -1.5, 1 / 3]), ...mix([1 / 3, -1.5, 3, -5 / 6]), ...p[3]);
     }
     g.stroke();
-    for (const [p, n] of data.planes) {
+    for (const [p, n] of data.flat ? frames[k].planes : data.planes) {
       const l = Math.hypot(...n), t = [n[1] / l, n[0] / l], c = [px(p[0]), py(p[1])], r = data.flat ? 46 : W;
       g.lineWidth = 1.6; g.strokeStyle = "#222"; g.beginPath();
       g.moveTo(c[0] - r * t[0], c[1] - r * t[1]); g.lineTo(c[0] + r * t[0], c[1] + r * t[1]);
@@ -134,6 +134,26 @@
       }
       g.stroke();
     }
+    data.walls.forEach((w, j) => {
+      const [x, y, sin, cos] = frames[k].poses[j];
+      g.lineWidth = 1.6; g.strokeStyle = "#222"; g.beginPath();
+      let rest = 0, last = null;
+      for (let i = 0; i < w.length; i += 4) {
+        const p = [px(x + cos * w[i] - sin * w[i + 1]), py(y + sin * w[i] + cos * w[i + 1])];
+        const n = [cos * w[i + 2] - sin * w[i + 3], sin * w[i + 2] + cos * w[i + 3]];
+        if (last) {
+          g.moveTo(...last); g.lineTo(...p);
+          const dx = p[0] - last[0], dy = p[1] - last[1], l = Math.hypot(dx, dy);
+          for (; rest < l; rest += 7) {
+            const a = last[0] + dx * rest / l, b = last[1] + dy * rest / l;
+            g.moveTo(a, b); g.lineTo(a - 5 * n[0] - 5 * n[1], b + 5 * n[1] - 5 * n[0]);
+          }
+          rest -= l;
+        }
+        last = p;
+      }
+      g.stroke();
+    });
     const f = frames[k].forces;
     for (let i = 0; i < f.length; i += 4) arrow(px(f[i]), py(f[i + 1]), f[i + 2], f[i + 3]);
   };

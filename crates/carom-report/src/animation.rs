@@ -17,6 +17,7 @@ use crate::bands::{Bands, color_bands};
 use crate::bodies::{Instant, color_bar, frame};
 use crate::chart::{Chart, Options, Panel, Series, Track, open};
 use crate::labels::{number, symbol, with_unit};
+use crate::obstacles;
 use crate::palette::LINES;
 use crate::pen::Point;
 use crate::text::{Label, Prose};
@@ -143,8 +144,9 @@ fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     chart.draw(&Options { width: 470.0, tracks: &tracks(run), time: true })
 }
 
-/// Rigid planes: a point and the normal out of the rigid body.
-fn planes(run: &Run, flat: bool) -> Vec<[Point; 2]> {
+/// Rigid planes: a point, which in 1D is that at a recorded time, and the normal out of the rigid
+/// body.
+fn planes(run: &Run, flat: bool, time: f64) -> Vec<[Point; 2]> {
     let contacts = run.manifest.case.get("contacts").and_then(|c| c.as_array()).into_iter().flatten();
     let vector = |v: &serde_json::Value, key: &str| {
         let list = v.get(key).and_then(|v| v.as_array()).cloned().unwrap_or_default();
@@ -153,7 +155,17 @@ fn planes(run: &Run, flat: bool) -> Vec<[Point; 2]> {
     let plane = |c: &serde_json::Value| {
         c.pointer("/primary/plane").map(|p| [vector(p, "point"), vector(p, "normal")])
     };
-    contacts.filter_map(plane).map(|[p, n]| if flat { [[p[0], 0.0], [n[0], 0.0]] } else { [p, n] }).collect()
+    let at = |c: &serde_json::Value| {
+        let [p, n] = plane(c)?;
+        if !flat {
+            return Some([p, n]);
+        }
+        let name = c.get("name").and_then(serde_json::Value::as_str).unwrap_or_default();
+        let row = run.times().partition_point(|t| *t < time - 1e-12 * time.abs());
+        let place = run.column(&format!("{name}.center_x")).and_then(|column| column.get(row)).copied();
+        Some([[place.unwrap_or(p[0]), 0.0], [n[0], 0.0]])
+    };
+    contacts.filter_map(at).collect()
 }
 
 /// Field files that are used as frames.
@@ -176,10 +188,20 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         return None;
     }
     let [mut x0, mut x1, y0, y1] = frame(frames.iter().map(|f| &f.1));
-    let planes = planes(run, flat);
-    for p in planes.iter().filter(|_| flat) {
+    let fixed = planes(run, flat, 0.0);
+    for p in frames.iter().filter(|_| flat).flat_map(|(entry, _)| planes(run, flat, entry.time)) {
         (x0, x1) = (x0.min(p[0][0]), x1.max(p[0][0]));
     }
+    let [mut y0, mut y1] = [y0, y1];
+    let bodies = [x0, x1, y0, y1];
+    let surfaces = if flat { Vec::new() } else { obstacles::all(run, bodies) };
+    let planes_move = surfaces.iter().any(|obstacle| obstacle.is_plane && obstacle.moves(run));
+    let surfaces: Vec<_> = surfaces.iter().filter(|obstacle| !obstacle.is_plane || planes_move).collect();
+    for (obstacle, (entry, _)) in surfaces.iter().flat_map(|o| frames.iter().map(move |f| (o, f))) {
+        [x0, x1, y0, y1] = obstacle.shown_in(&obstacle.at(run, entry.time), [x0, x1, y0, y1], bodies);
+    }
+    let fixed = if planes_move { Vec::new() } else { fixed };
+    let walls: Vec<_> = surfaces.iter().map(|obstacle| obstacle.base()).collect();
     let values: Vec<f64> = frames.iter().flat_map(|(_, i)| i.values.iter().copied()).collect();
     let range = crate::axis::range(&values);
     let own = color_bands(values.iter().copied()).0;
@@ -191,7 +213,9 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
     let frame_of = |(entry, _): &(FieldEntry, Instant)| {
         let list: Vec<f64> = forces.get(&entry.step).into_iter().flatten().flatten().copied().collect();
         let rounded: Vec<f64> = list.iter().map(|x| format!("{x:.5e}").parse().unwrap_or(0.0)).collect();
-        json!({ "time": entry.time, "step": entry.step, "file": run.field_file(entry), "forces": rounded })
+        json!({ "time": entry.time, "step": entry.step, "file": run.field_file(entry), "forces": rounded,
+                "planes": if flat { planes(run, flat, entry.time) } else { Vec::new() },
+                "poses": surfaces.iter().map(|obstacle| obstacle.pose(run, entry.time)).collect::<Vec<_>>() })
     };
     let numbers: Vec<u8> =
         cells.iter().flat_map(|(_, n)| n.iter().flat_map(|k| (*k as u32).to_le_bytes())).collect();
@@ -204,7 +228,7 @@ pub(crate) fn section(run: &Run, bands: &Bands, shades: Vec<(f64, f64)>, figure:
         "s": packed(values.iter(), range),
         "bands": { "low": bands.low, "high": bands.high,
                    "colors": (0..bands.count).map(|b| bands.color(b)).collect::<Vec<_>>() },
-        "largest": largest, "planes": planes, "flat": flat,
+        "largest": largest, "planes": fixed, "walls": walls, "flat": flat,
     });
     let unit = first.array("stress").map_or("", |a| a.unit.as_str());
     let label = if flat { "σ_{xx}" } else { "σ_{yy}" };

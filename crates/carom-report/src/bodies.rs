@@ -13,7 +13,9 @@ use crate::axis::{Axis, round_step};
 use crate::bands::{Bands, band_polygons, color_bands, shape};
 use crate::chart::{open, scaled, write_text};
 use crate::labels::with_unit;
+use crate::obstacles::Walk;
 use crate::pen::{Pen, Point, open_grid};
+use crate::symbols::wall;
 
 /// One instant: deformed nodes, the quantity at them, and the cells.
 pub(crate) struct Instant {
@@ -174,15 +176,17 @@ pub(crate) fn colors(instants: &[Instant]) -> (Bands, [bool; 2]) {
     color_bands(instants.iter().flat_map(used))
 }
 
-/// The figure; `label` and `unit` belong to the colour bar.
+/// The figure; `label` and `unit` belong to the colour bar, `obstacles` are the surfaces at each
+/// instant within `frame`.
 pub(crate) fn figure(
     instants: &[Instant],
+    (obstacles, frame): (&[Vec<Walk>], [f64; 4]),
     (bands, cut): (&Bands, [bool; 2]),
     title: &str,
     (label, unit): (&str, &str),
     length: &str,
 ) -> String {
-    let [x0, x1, y0, y1] = frame(instants);
+    let [x0, x1, y0, y1] = frame;
     let aspect = (x1 - x0) / (y1 - y0).max(1e-12 * (x1 - x0).abs()).max(f64::MIN_POSITIVE);
     let columns = instants
         .len()
@@ -223,6 +227,9 @@ pub(crate) fn figure(
              <path d=\"{outline}\" fill=\"none\" stroke=\"#000\" stroke-width=\"18\" \
              stroke-linecap=\"round\"/>\n</g>"
         );
+        for walk in obstacles.get(k).into_iter().flatten() {
+            wall(&mut out, &walk.iter().map(|&(p, n)| (to(p), [-n[0], n[1]])).collect::<Vec<_>>(), 0.0);
+        }
     }
     // Scale bar of a round length below the first picture.
     let size = round_step(x1 - x0, 3.0);

@@ -7,6 +7,7 @@ use crate::bands::Bands;
 use crate::bodies::{self, Instant};
 use crate::chart::{Chart, Options, Panel, Series};
 use crate::labels::{symbol, with_unit, words};
+use crate::obstacles;
 use crate::palette::{LINES, sequence};
 use crate::{animation, setup};
 
@@ -246,7 +247,23 @@ fn instants(run: &Run, notes: &mut Vec<String>) -> Option<(Figure, Bands)> {
     let list: Vec<Instant> = sets.iter().filter_map(instant).collect();
     let (bands, cut) = bodies::colors(&list);
     let title = "Deformed bodies with vertical Cauchy stress";
-    let svg = bodies::figure(&list, (&bands, cut), title, ("σ_{yy}", &stress), &length);
+    let frame = bodies::frame(&list);
+    let obstacles = obstacles::all(run, frame);
+    let times: Vec<f64> = sets.iter().map(|(time, _)| *time).collect();
+    let walks: Vec<Vec<_>> =
+        times.iter().map(|time| obstacles.iter().map(|o| o.at(run, *time)).collect()).collect();
+    let mut wide = frame;
+    for (obstacle, walk) in walks.iter().flat_map(|walks| obstacles.iter().zip(walks)) {
+        wide = obstacle.shown_in(walk, wide, frame);
+    }
+    // The hatching of a plane that touches the bodies needs room.
+    let room = if obstacles.is_empty() { 0.0 } else { 0.04 * (wide[1] - wide[0]).max(wide[3] - wide[2]) };
+    let wide = [wide[0] - room, wide[1] + room, wide[2] - room, wide[3] + room];
+    let walks: Vec<Vec<_>> = walks
+        .iter()
+        .map(|walks| walks.iter().flat_map(|walk| obstacles::clipped(walk, wide)).collect())
+        .collect();
+    let svg = bodies::figure(&list, (&walks, wide), (&bands, cut), title, ("σ_{yy}", &stress), &length);
     let arrow = if cut[0] || cut[1] {
         " Arrows at the colour bar: up to 0.5 % of the values at either end are out of its range."
     } else {

@@ -20,6 +20,7 @@ mod figures;
 mod integrity;
 mod labels;
 mod laboratory;
+mod obstacles;
 mod page;
 mod palette;
 mod pen;

@@ -20,6 +20,7 @@ use crate::axis::Axis;
 use crate::bodies::{Instant, bezier, edges, places};
 use crate::chart::{open, write_text};
 use crate::labels::with_unit;
+use crate::obstacles;
 use crate::pen::{Pen, Point, open_grid};
 use crate::symbols::{arrow, direction, guides, plus, rollers, wall};
 use drawing::{BAR, PRIMARY, SECONDARY, Setup};
@@ -47,6 +48,13 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     for p in planes.iter().flat_map(|plane| plane.ends) {
         frame = [frame[0].min(p[0]), frame[1].max(p[0]), frame[2].min(p[1]), frame[3].max(p[1])];
     }
+    let obstacles = if flat { Vec::new() } else { obstacles::all(run, frame) };
+    let obstacles: Vec<_> =
+        obstacles.iter().filter(|o| !o.is_plane).map(|obstacle| (obstacle, obstacle.at(run, 0.0))).collect();
+    let bodies = frame;
+    for (obstacle, walk) in &obstacles {
+        frame = obstacle.shown_in(walk, frame, bodies);
+    }
     let [x0, x1, y0, y1] = frame;
     let size = [x1 - x0, if flat { 1.0 } else { y1 - y0 }];
     if !size.iter().all(|s| *s > 0.0) {
@@ -68,6 +76,9 @@ pub(crate) fn figure(run: &Run, fields: &FieldSet) -> Option<String> {
     setup.axes(&mut out, [left - margin, right + margin, top - margin, bottom]);
     setup.bodies(&mut out);
     setup.planes(&mut out, &planes, 0.6 * margin);
+    for walk in obstacles.iter().flat_map(|(_, walk)| obstacles::clipped(walk, frame)) {
+        setup.obstacle(&mut out, &walk);
+    }
     setup.supports(&mut out);
     setup.contacts(&mut out);
     setup.loads(&mut out);

@@ -82,10 +82,12 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<B
         meshes.push((&body.name, first, mesh));
         first += nodes;
     }
-    if state.y.len() != first * d {
+    // The nodes of moving obstacles come after the bodies; they start anew.
+    let carriers: usize = old.contacts.iter().map(|contact| contact.motion.nodes()).sum();
+    if state.y.len() != (first + carriers) * d {
         return Err(unreadable(format!("its state has {} nodes, its meshes {first}", state.y.len() / d)));
     }
-    for part in &model.parts {
+    for part in model.parts.iter().filter(|part| !part.is_rigid()) {
         let mesh = part.body.mesh();
         let Some((_, first, old)) = meshes.iter().find(|(name, ..)| **name == part.name) else {
             let names: Vec<_> = meshes.iter().map(|(name, ..)| name.as_str()).collect();

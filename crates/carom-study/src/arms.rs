@@ -3,7 +3,7 @@
 
 use carom_record::study::design::{Kind, Role};
 use carom_record::study::ensemble::{Ensemble, Member};
-use carom_run::case::{Case, Diagnostic, Document, PrimarySpec, Problem};
+use carom_run::case::{Case, Diagnostic, Document, Problem};
 use toml_edit::Value;
 
 use crate::file::{FINE_NAME, StudyFile};
@@ -161,12 +161,12 @@ pub(crate) fn members(ensemble: &Ensemble, draft: &Draft, case: &Case) -> Vec<(M
     let swaps: Vec<String> = case
         .contacts
         .iter()
-        .filter_map(|contact| match &contact.primary {
-            PrimarySpec::Side(side) => Some([
+        .filter_map(|contact| {
+            let side = contact.primary.side()?;
+            Some([
                 format!("contact.{}.secondary=\"{side}\"", contact.name),
                 format!("contact.{}.primary=\"{}\"", contact.name, contact.secondary),
-            ]),
-            PrimarySpec::Plane { .. } => None,
+            ])
         })
         .flatten()
         .collect();

@@ -1,7 +1,11 @@
 //! Checks of contacts: two different bodies, each pair once, mass where the projection needs it,
 //! laws that are compatible with each other and with the scheme, and what a frozen ξ needs.
 
-use super::super::{ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Persistency, PrimarySpec};
+use super::super::suggest;
+use super::super::tree::Node;
+use super::super::{
+    ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ObstacleMotion, Persistency, PrimarySpec,
+};
 use super::Check;
 
 impl Check<'_> {
@@ -18,7 +22,11 @@ impl Check<'_> {
             let what = "persistency = \"project\" cannot be used here";
             self.add(path("persistency"), what, why, "leave persistency out");
         }
-        if !penalty && given("stiffness") {
+        // `enforcement` may be misspelt.
+        let misspelt = tables.get(i).and_then(Node::table).is_some_and(|table| {
+            table.0.iter().any(|entry| suggest::nearest(&entry.key, ["enforcement"]).is_some())
+        });
+        if !penalty && given("stiffness") && (given("enforcement") || !misspelt) {
             let why = "a multiplier enforces the constraint exactly; only enforcement = \"penalty\" has a stiffness";
             self.add(
                 path("stiffness"),
@@ -92,6 +100,31 @@ impl Check<'_> {
         }
     }
 
+    /// What an obstacle that moves needs: inertia if it is free, and a name for its columns.
+    fn obstacle(&mut self, i: usize, contact: &ContactSpec) {
+        let is_static = self.draft.time.as_ref().is_some_and(|time| time.scheme.is_static());
+        if is_free(contact) && is_static {
+            let why = "the scheme \"static\" has no inertia, and nothing else holds a free obstacle";
+            let help = "give it a `motion`, or use a scheme with inertia";
+            self.add(format!("contact[{i}].primary.mass"), "the obstacle has no equilibrium", why, help);
+        }
+        let draft = self.draft;
+        let other = |kind: &'static str, mut names: Box<dyn Iterator<Item = &String> + '_>| {
+            names.any(|name| *name == contact.name).then_some(kind)
+        };
+        let taken = other("body", Box::new(draft.bodies.iter().flatten().map(|b| &b.name)))
+            .or_else(|| {
+                other("support", Box::new(draft.supports.iter().flatten().filter_map(|s| s.name.as_ref())))
+            })
+            .filter(|_| !contact.motion.is_fixed());
+        if let Some(kind) = taken {
+            let what =
+                format!("a {kind} and a contact with a moving obstacle are both named `{}`", contact.name);
+            let why = "the columns of a moving obstacle have the name of its contact";
+            self.add(format!("contact[{i}].name"), what, why, "rename one of them");
+        }
+    }
+
     pub(super) fn contacts(&mut self) {
         let contacts = &self.draft.contacts;
         for (i, contact) in contacts.iter().enumerate() {
@@ -114,6 +147,7 @@ impl Check<'_> {
                     }
                     primary
                 }
+                PrimarySpec::Circle { .. } | PrimarySpec::Polyline { .. } => None,
                 PrimarySpec::Plane { normal, .. } => {
                     if normal.iter().all(|n| *n == 0.0) {
                         let why = "it is the direction out of the half-space, so its length must be > 0";
@@ -127,7 +161,8 @@ impl Check<'_> {
                     None
                 }
             };
-            let rigid = matches!(contact.primary, PrimarySpec::Plane { .. });
+            self.obstacle(i, contact);
+            let rigid = contact.primary.side().is_none() && !is_free(contact);
             if let Some(body) = secondary
                 && self.massless(body)
                 && (rigid || primary.is_some_and(|p| self.massless(p)))
@@ -152,6 +187,10 @@ impl Check<'_> {
             }
         }
     }
+}
+
+fn is_free(contact: &ContactSpec) -> bool {
+    matches!(contact.motion, ObstacleMotion::Free { .. })
 }
 
 /// The same sides, either way round.

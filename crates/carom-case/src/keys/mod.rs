@@ -168,6 +168,8 @@ impl Range {
 
 /// Reference position and time.
 pub const IN_SPACE_AND_TIME: &[&str] = &["X", "Y", "t"];
+/// Time.
+pub const IN_TIME: &[&str] = &["t"];
 /// Reference position.
 pub const IN_SPACE: &[&str] = &["X", "Y"];
 
@@ -220,7 +222,9 @@ impl Kind {
             Self::Choices(choices) => format!("a list of values from {}", words(choices)),
             Self::Side => "a side \"body.side\"".into(),
             Self::Sides => "a list of sides [\"body.side\"]".into(),
-            Self::SideOr(_) => "a side \"body.side\" or a rigid plane { plane = { point, normal } }".into(),
+            Self::SideOr(_) => {
+                "a side \"body.side\" or a rigid obstacle { plane = …, circle = … or polyline = … }".into()
+            }
             Self::Table(_) => "a table { key = value }".into(),
             Self::Tables(table) => format!("a list of tables {}", table.name),
             Self::Variant(variants) => format!("a table {{ {} = \"…\", … }}", variants().tag),

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::obstacle::ObstacleMotion;
+
 /// A contact pair: two sides that may come into contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactSpec {
@@ -9,8 +11,11 @@ pub struct ContactSpec {
     pub name: String,
     /// Secondary (slave) side: its nodes may not penetrate the primary.
     pub secondary: String,
-    /// Primary (master) side, or a rigid plane.
+    /// Primary (master) side, or a rigid obstacle.
     pub primary: PrimarySpec,
+    /// Motion of a rigid obstacle.
+    #[serde(default, skip_serializing_if = "ObstacleMotion::is_fixed")]
+    pub motion: ObstacleMotion,
     /// How the constraint is enforced.
     pub enforcement: Enforcement,
     /// Penalty stiffness, as a multiple of the reference stiffness of the secondary node.
@@ -44,6 +49,29 @@ pub enum PrimarySpec {
         /// Outward normal, of any length > 0.
         normal: Vec<f64>,
     },
+    /// A rigid circle.
+    Circle {
+        /// Its centre.
+        center: Vec<f64>,
+        /// Its radius, > 0.
+        radius: f64,
+        /// Whether bodies are inside it.
+        inside: bool,
+    },
+    /// A rigid chain of segments with the material to the left of the direction of travel.
+    Polyline {
+        /// Its points; closed if the last one repeats the first.
+        points: Vec<[f64; 2]>,
+        /// Radius of its corners, ≥ 0.
+        radius: f64,
+    },
+}
+
+impl PrimarySpec {
+    /// The side of a body; none of a rigid obstacle.
+    pub fn side(&self) -> Option<&str> {
+        if let Self::Side(side) = self { Some(side) } else { None }
+    }
 }
 
 /// How the contact constraint is enforced.

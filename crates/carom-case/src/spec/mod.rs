@@ -6,6 +6,7 @@ mod contact;
 mod formula;
 mod load;
 mod mesh;
+mod obstacle;
 mod output;
 mod time;
 
@@ -18,5 +19,6 @@ pub use contact::{
 pub use formula::FormulaSpec;
 pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec};
 pub use mesh::{MeshSpec, RefineSpec};
+pub use obstacle::ObstacleMotion;
 pub use output::{OutputSpec, ProbeSpec, Quantity};
 pub use time::{NewtonSpec, SchemeSpec, TangentRule, TimeSpec};

@@ -415,6 +415,33 @@ fn wrong_bars() {
 }
 
 #[test]
+fn wrong_obstacles() {
+    let plane = "plane = { point = [-1.0], normal = [2] }";
+    let cases: &[(&str, &[&str])] = &[
+        ("{ }", &["exactly one shape; this one has none", "`plane`, `circle` or `polyline`"]),
+        ("{ PLANE, circle = { center = [0.0], radius = 1.0 } }", &["this one has plane, circle"]),
+        ("{ circle = { center = [0.0], radius = 1.0 } }", &["a circle needs dimension = 2"]),
+        ("{ PLANE, mass = 1.0, motion = { x = 0.0 } }", &["both `motion` and `mass`"]),
+        ("{ PLANE, velocity = [1.0] }", &["`velocity` needs `mass`"]),
+        ("{ PLANE, mass = 0.0 }", &["`mass` must be a number > 0, not 0"]),
+        ("{ PLANE, motion = {} }", &["the motion is empty"]),
+        ("{ PLANE, motion = { y = 0.0 } }", &["there is no motion `y` in dimension 1"]),
+        ("{ PLANE, motion = { rotate = 1.0 } }", &["`rotate` and `about` belong together", "add `about"]),
+        ("{ PLANE, motion = { x = \"X\" } }", &["X"]),
+        ("{ PLANE, moton = { x = 0.0 } }", &["unknown key `moton`", "did you mean `motion`?"]),
+    ];
+    for (primary, parts) in cases {
+        let primary = primary.replace("PLANE", plane);
+        let text = BARS.replacen(&format!("{{ {plane} }}"), &primary, 1);
+        assert_ne!(&text, BARS);
+        let message = resolved(&text, &[]).map_or_else(|_| shown(&text, &[]), |_| String::new());
+        for part in *parts {
+            assert!(message.contains(part), "{primary}: {part:?} not in\n{message}");
+        }
+    }
+}
+
+#[test]
 fn pairs_are_contacts_once() {
     let twice = "\n[[contact]]\nname = \"again\"\nsecondary = \"prism.top\"\nprimary = \"cylinder.arc\"\n";
     let message = shown(&format!("{IMPACT}{twice}"), &[]);

@@ -6,7 +6,8 @@
 mod both_sides;
 mod gap;
 mod node_to_facet;
-mod node_to_plane;
+mod node_to_obstacle;
+mod obstacle;
 mod projection;
 mod surface;
 mod swept;
@@ -14,7 +15,8 @@ mod trajectory;
 
 pub use both_sides::BothSides;
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
-pub use node_to_plane::NodeToPlane;
+pub use node_to_obstacle::{Carrier, NodeToObstacle};
+pub use obstacle::{Obstacle, Polyline, PolylineError};
 pub use surface::Surface;
 pub use swept::{Crossings, Swept, SweptTest};
 

@@ -2,7 +2,9 @@
 //! against differences.
 
 use carom_algebra::jacobian_error;
-use carom_contact::{Detection, DiscreteGradient, Kinematics, NodeToFacet, NodeToPlane, Pair, Rows, Surface};
+use carom_contact::{
+    Detection, DiscreteGradient, Kinematics, NodeToFacet, NodeToObstacle, Obstacle, Pair, Rows, Surface,
+};
 use carom_solid::FacetShape;
 
 const SHAPES: [FacetShape; 3] = [FacetShape::L2, FacetShape::L3, FacetShape::L4];
@@ -119,7 +121,7 @@ fn it_is_the_gradient_at_the_midpoint_in_rigid_motion_and_against_a_plane() {
             assert!(apart < 1e-8, "{shape:?} {angle}: {apart:e}");
         }
     }
-    let plane = NodeToPlane::new(vec![0], &[0.0, 0.0], &[3.0, 4.0]);
+    let plane = NodeToObstacle::new(vec![0], 2, Obstacle::plane(&[0.0, 0.0], &[3.0, 4.0]));
     let (force, derivative) = discrete_gradient(&plane, &[1.0, 2.0], &[0.7, -0.4]);
     assert!((force[0] - 0.6).abs() + (force[1] - 0.8).abs() < 1e-15 && derivative == [0.0; 4], "{force:?}");
 }

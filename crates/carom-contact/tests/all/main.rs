@@ -4,4 +4,5 @@
 
 mod derivatives;
 mod discrete_gradient;
+mod obstacles;
 mod update_facets;

@@ -14,6 +14,9 @@ pub struct BodyInstance {
     pub body: Box<dyn Body>,
     /// Total mass.
     pub total_mass: f64,
+    /// Mass of its first node beyond that of its cells; only the carrier of a rigid obstacle, which
+    /// has no cells, has one.
+    pub point_mass: f64,
     /// Global dofs of its cells, cell after cell.
     dofs: Vec<u32>,
 }
@@ -32,12 +35,22 @@ impl BodyInstance {
         let dofs =
             mesh.cells.iter().flat_map(|node| (0..d).map(move |i| ((first_node + node) * d + i) as u32));
         let dofs = dofs.collect();
-        Self { name, first_node, body, total_mass, dofs }
+        Self { name, first_node, body, total_mass, point_mass: 0.0, dofs }
+    }
+
+    /// The nodes that carry a rigid obstacle, the first one with a mass ≥ 0: a body without cells.
+    pub fn rigid(name: String, first_node: usize, body: Box<dyn Body>, mass: f64) -> Self {
+        Self { point_mass: mass, total_mass: mass, ..Self::new(name, first_node, body) }
+    }
+
+    /// Whether it carries a rigid obstacle.
+    pub fn is_rigid(&self) -> bool {
+        self.body.mesh().cells.is_empty()
     }
 
     /// Whether its density is zero: its balance is enforced at s + 1, without inertia.
     pub fn is_massless(&self) -> bool {
-        self.body.density() == 0.0
+        self.body.density() == 0.0 && self.point_mass == 0.0
     }
 
     /// Global numbers of its nodes.

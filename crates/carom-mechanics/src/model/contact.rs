@@ -1,4 +1,4 @@
-//! A contact of two sides, or of a side and a rigid plane.
+//! A contact of two sides, or of a side and a rigid obstacle.
 
 use carom_contact::{Direction, Interface, Kinematics};
 use carom_solid::FacetShape;
@@ -12,7 +12,7 @@ pub struct Contact {
     pub kinematics: Box<dyn Kinematics>,
     /// Law and enforcement.
     pub interface: Box<dyn Interface>,
-    /// Body of the primary side; `None` for a rigid primary.
+    /// Body of the primary side; `None` for a rigid primary, unless it has a mass.
     pub primary_part: Option<usize>,
     /// Facets of either side in global nodes with their shape, for consistent weights; the secondary
     /// side first.
@@ -22,7 +22,7 @@ pub struct Contact {
     pub depths: [f64; 2],
     /// Whether penetration by the predictor y + Δt v is prevented too.
     pub predictor: bool,
-    /// Nodes of both sides, ascending.
+    /// Nodes of both sides and of the carrier of a rigid primary, ascending.
     pub surface: Vec<usize>,
     /// Whether its force acts entirely at the end of the step, not averaged with the scheme's
     /// weights.

@@ -48,6 +48,9 @@ impl Mass {
                 }
             }
         }
+        for part in parts.iter().filter(|part| part.point_mass > 0.0) {
+            rows[part.first_node].push((part.first_node, part.point_mass));
+        }
         let mut mass = Self { starts: vec![0], directions: dimension, ..Self::default() };
         for row in &mut rows {
             row.sort_by_key(|e| e.0);

@@ -90,7 +90,7 @@ impl Mode {
 /// Rigid modes that constrained dofs leave to the bodies.
 pub fn free_motions(parts: &[BodyInstance], fixed: &[bool]) -> Vec<Mode> {
     let mut free = Vec::new();
-    for (place, part) in parts.iter().enumerate() {
+    for (place, part) in parts.iter().enumerate().filter(|(_, part)| !part.is_rigid()) {
         let (mesh, modes) = (part.body.mesh(), Mode::all(place, part));
         let d = mesh.dimension();
         let constrained =

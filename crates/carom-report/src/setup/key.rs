@@ -91,7 +91,12 @@ impl Setup<'_> {
                 line("", "Contact", true);
             }
             let bar = |color: &str| format!("<path d=\"M0 0h20\" stroke=\"{color}\" stroke-width=\"3.2\"/>");
-            let primary = contact.pointer("/primary/side").and_then(Value::as_str).unwrap_or("rigid plane");
+            let side = contact.pointer("/primary/side").and_then(Value::as_str);
+            let shape = ["circle", "polyline"]
+                .into_iter()
+                .find(|shape| contact.pointer(&format!("/primary/{shape}")).is_some());
+            let rigid = format!("rigid {}", shape.unwrap_or("plane"));
+            let primary = side.unwrap_or(&rigid);
             line(&bar(SECONDARY), &format!("{} (secondary)", text(contact, "secondary")), false);
             line(&bar(PRIMARY), &format!("{primary} (primary)"), false);
         }

@@ -4,6 +4,7 @@ use serde_json::Value;
 
 use super::drawing::{BAR, PRIMARY, Setup};
 use super::values::{list, vector};
+use crate::obstacles::Walk;
 use crate::pen::{Pen, Point};
 use crate::symbols::{direction, plus, wall};
 
@@ -34,6 +35,17 @@ pub(super) fn rigid(case: &Value, [x0, x1, y0, y1]: [f64; 4]) -> Vec<RigidPlane>
 }
 
 impl Setup<'_> {
+    /// Draws a rigid surface, hatched on the rigid side.
+    pub(super) fn obstacle(&self, out: &mut String, walk: &Walk) {
+        let line: Vec<_> = walk.iter().map(|&(p, n)| (self.to(p), [-n[0], n[1]])).collect();
+        wall(out, &line, 0.0);
+        let mut pen = Pen::default();
+        for (k, (p, _)) in line.iter().enumerate() {
+            if k == 0 { pen.go(*p) } else { pen.draw(&[*p]) }
+        }
+        Self::stroke(out, &pen, PRIMARY);
+    }
+
     /// Draws the rigid planes, hatched on the rigid side: walls in 1D, lines that extend `air`
     /// pixels beyond the bodies in 2D.
     pub(super) fn planes(&self, out: &mut String, planes: &[RigidPlane], air: f64) {

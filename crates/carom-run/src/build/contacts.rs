@@ -2,20 +2,22 @@
 //! new contact method is one line here.
 
 use carom_case::{
-    ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, Persistency, PrimarySpec, Problem,
+    ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, ObstacleMotion, Persistency, Problem,
 };
 use carom_contact::{
     BothSides, ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet,
-    NodeToPlane, Penalty, Surface, Unilateral,
+    NodeToObstacle, Penalty, Surface, Unilateral,
 };
 use carom_mechanics::model::{BodyInstance, Contact, Model};
 
+use super::obstacles::{self, Moving};
 use super::side::{Side, side};
 
 /// The contacts of a case.
 pub(super) fn contacts(
     case: &Case,
     parts: &[BodyInstance],
+    obstacles: &[Moving],
     massless: &[bool],
     problems: &mut Vec<Problem>,
 ) -> Vec<Contact> {
@@ -34,11 +36,24 @@ pub(super) fn contacts(
         let mut primary_part = None;
         let mut primary_facets = None;
         let mut surface = secondary.nodes.clone();
-        let kinematics: Box<dyn Kinematics> = match &spec.primary {
-            PrimarySpec::Plane { point, normal } => {
-                Box::new(NodeToPlane::new(secondary.nodes.clone(), point, normal))
+        let shape = match obstacles::shape(&spec.primary, k) {
+            Ok(shape) => shape,
+            Err(problem) => {
+                problems.push(problem);
+                continue;
             }
-            PrimarySpec::Side(name) => match side(parts, name, &format!("contact[{k}].primary")) {
+        };
+        let obstacle = obstacles.iter().find(|obstacle| obstacle.contact == k);
+        let kinematics: Box<dyn Kinematics> = match (shape, spec.primary.side()) {
+            (Some(shape), _) => {
+                let mut contact = NodeToObstacle::new(secondary.nodes.clone(), case.dimension, shape);
+                if let Some(obstacle) = obstacle {
+                    surface.extend(parts[obstacle.part].nodes());
+                    contact = contact.carried_by(obstacle.carrier.clone());
+                }
+                Box::new(contact)
+            }
+            (None, name) => match side(parts, name.unwrap_or(""), &format!("contact[{k}].primary")) {
                 Ok(primary) if primary.part == secondary.part => {
                     problems.push(Problem::new(
                         format!("contact[{k}].primary"),
@@ -78,11 +93,16 @@ pub(super) fn contacts(
                 }
             },
         };
+        let has_mass = |nodes: &[usize]| nodes.iter().any(|n| !massless[n * case.dimension]);
+        // A ball on a massless spring: the projection would stop the ball.
+        let is_thrown = matches!(spec.motion, ObstacleMotion::Free { .. });
+        let follows = is_thrown && !has_mass(&secondary.nodes);
         let light = |part: usize| case.bodies[part].mass.is_redistributed();
         let projects = spec.law == Some(ContactLaw::Position)
             && spec.enforcement == Enforcement::Multiplier
             && !case.time.scheme.is_static()
             && !light(secondary.part)
+            && !follows
             && !primary_part.is_some_and(light);
         surface.sort_unstable();
         surface.dedup();
@@ -108,7 +128,8 @@ pub(super) fn contacts(
             depths: if spec.enforcement == Enforcement::Multiplier { [0.01, 0.1] } else { [0.25; 2] },
             predictor: spec.law == Some(ContactLaw::Predictor),
             kinematics,
-            primary_part,
+            // A mass that is thrown is a body; a prescribed obstacle is not.
+            primary_part: primary_part.or(obstacle.filter(|_| is_thrown).map(|obstacle| obstacle.part)),
             facets: std::iter::once((secondary.shape, secondary.facets)).chain(primary_facets).collect(),
             surface,
             // Other schemes evaluate the contact force at the ends of their stages: nothing is
@@ -121,9 +142,11 @@ pub(super) fn contacts(
             within: spec.active_set == ActiveSetRule::Within,
             restitution: spec.restitution,
         };
-        let has_mass = |nodes: &[usize]| nodes.iter().any(|n| !massless[n * case.dimension]);
-        let primary_has_mass = matches!(&spec.primary, PrimarySpec::Side(name)
-            if side(parts, name, "").is_ok_and(|s| has_mass(&s.nodes)));
+        let primary_has_mass = obstacle.is_some_and(|obstacle| parts[obstacle.part].point_mass > 0.0)
+            || spec
+                .primary
+                .side()
+                .is_some_and(|name| side(parts, name, "").is_ok_and(|s| has_mass(&s.nodes)));
         if contact.projects && !has_mass(&secondary.nodes) && !primary_has_mass {
             problems.push(Problem::new(
                 format!("contact[{k}]"),

@@ -4,13 +4,14 @@
 mod contacts;
 mod loads;
 mod motions;
+mod obstacles;
 pub(crate) mod side;
 mod unsolvable;
 
 use std::collections::BTreeMap;
 
 use carom_algebra::Threads;
-use carom_case::{Case, FormulaSpec, MassKind, PrimarySpec, Problem};
+use carom_case::{Case, FormulaSpec, MassKind, Problem};
 use carom_mechanics::model::{
     BodyInstance, Mass, Model, Probe, Quantity, Support, free_motions, redistribute, value,
 };
@@ -30,7 +31,9 @@ pub(crate) type Materials = BTreeMap<String, Box<dyn Constitutive>>;
 /// cannot be solved.
 pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Problem>> {
     let d = case.dimension;
-    let parts = parts(case, materials)?;
+    let mut parts = parts(case, materials)?;
+    let scale = parts.iter().map(|p| p.body.mesh().diameter()).fold(0.0, f64::max);
+    let obstacles = obstacles::carriers(case, &mut parts, scale)?;
     let mut problems = Vec::new();
     let dofs = parts.last().map_or(0, |p| p.nodes().end) * d;
     let mut reference = Vec::with_capacity(dofs);
@@ -46,6 +49,13 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
         // Without a value the other problems are reported too: every dof needs a number.
         initial_position.resize(reference.len(), 0.0);
         initial_velocity.resize(reference.len(), 0.0);
+    }
+
+    for obstacle in &obstacles {
+        let [velocity, _] = obstacle.start();
+        reference.extend(parts[obstacle.part].body.mesh().nodes.flat());
+        initial_position.extend(parts[obstacle.part].body.mesh().nodes.flat());
+        initial_velocity.extend(velocity);
     }
 
     let mut fixed = vec![false; dofs];
@@ -73,7 +83,11 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
         }
     }
 
-    let motions = motions::motions(case, &parts, &fixed, &mut problems);
+    supports.extend(obstacles.iter().filter_map(obstacles::Moving::support));
+    let held = obstacles.iter().flat_map(obstacles::Moving::prescribed);
+    held.filter(|(_, formula)| formula.is_none()).for_each(|(dof, _)| fixed[dof] = true);
+
+    let motions = motions::motions(case, &parts, &obstacles, &fixed, &mut problems);
     motions.dofs().for_each(|dof| fixed[dof] = true);
     let loads = loads::loads(case, &parts, &mut problems);
 
@@ -81,9 +95,11 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     let lumped: Vec<bool> = case.bodies.iter().map(|b| b.mass == MassKind::Lumped).collect();
     let mut mass = Mass::assemble(d, &parts, &lumped);
     problems.extend(redistributions(case, &parts, &reference, &mut mass));
-    let massless: Vec<bool> = (0..dofs).map(|dof| mass.is_massless(dof / d)).collect();
-    let gravity = gravity(case, &parts, &mass, dofs);
-    let contacts = contacts::contacts(case, &parts, &massless, &mut problems);
+    let mut massless: Vec<bool> = (0..dofs).map(|dof| mass.is_massless(dof / d)).collect();
+    // The force on a prescribed carrier is averaged like that on the nodes that press on it.
+    obstacles.iter().flat_map(obstacles::Moving::prescribed).for_each(|(dof, _)| massless[dof] = false);
+    let gravity = gravity(case, &parts, &obstacles, &mass, dofs);
+    let contacts = contacts::contacts(case, &parts, &obstacles, &massless, &mut problems);
     let probes = probes(case, &parts, &mut problems);
     let is_static = case.time.scheme.is_static();
     let unconstrained = if is_static { free_motions(&parts, &fixed) } else { Vec::new() };
@@ -95,7 +111,6 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     for (place, &dof) in free.iter().enumerate() {
         unknown[dof] = place;
     }
-    let scale = parts.iter().map(|p| p.body.mesh().diameter()).fold(0.0, f64::max);
     if problems.is_empty() {
         Ok(Model {
             dimension: d,
@@ -195,12 +210,22 @@ fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Pr
 
 /// Gravity as nodal forces M g with the mass matrix of the case: lumped or not, a free body falls
 /// without deforming.
-fn gravity(case: &Case, parts: &[BodyInstance], mass: &Mass, dofs: usize) -> Vec<f64> {
+fn gravity(
+    case: &Case,
+    parts: &[BodyInstance],
+    obstacles: &[obstacles::Moving],
+    mass: &Mass,
+    dofs: usize,
+) -> Vec<f64> {
     let mut acceleration = Vec::with_capacity(dofs);
     for (part, spec) in parts.iter().zip(&case.bodies) {
         for _ in part.nodes() {
             acceleration.extend_from_slice(&spec.gravity);
         }
+    }
+    for obstacle in obstacles {
+        let [_, gravity] = obstacle.start();
+        acceleration.extend(gravity);
     }
     let mut force = vec![0.0; dofs];
     mass.multiply_into(&acceleration, &mut force);
@@ -211,8 +236,7 @@ fn gravity(case: &Case, parts: &[BodyInstance], mass: &Mass, dofs: usize) -> Vec
 fn redistributions(case: &Case, parts: &[BodyInstance], reference: &[f64], mass: &mut Mass) -> Vec<Problem> {
     let mut light = vec![false; mass.nodes()];
     for contact in &case.contacts {
-        let primary = if let PrimarySpec::Side(name) = &contact.primary { Some(name) } else { None };
-        for name in std::iter::once(&contact.secondary).chain(primary) {
+        for name in std::iter::once(contact.secondary.as_str()).chain(contact.primary.side()) {
             // Wrong names are reported by `contacts`.
             side(parts, name, "").into_iter().flat_map(|side| side.nodes).for_each(|node| light[node] = true);
         }

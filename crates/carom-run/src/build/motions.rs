@@ -6,6 +6,7 @@ use carom_case::{Case, FormulaSpec, Problem, load_variables};
 use carom_formula::Formula;
 use carom_mechanics::model::{BodyInstance, Motions};
 
+use super::obstacles::Moving;
 use super::side::side;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -22,6 +23,7 @@ struct Moves {
 pub(super) fn motions(
     case: &Case,
     parts: &[BodyInstance],
+    obstacles: &[Moving],
     fixed: &[bool],
     problems: &mut Vec<Problem>,
 ) -> Motions {
@@ -49,6 +51,21 @@ pub(super) fn motions(
                         "remove one of the sides, or give both the same motion",
                     ));
                     break;
+                }
+            }
+        }
+    }
+    for obstacle in obstacles {
+        for (dof, formula) in obstacle.prescribed() {
+            let Some(formula) = formula else { continue };
+            match formula.formula(&load_variables(d)) {
+                Ok(read) => {
+                    moves.by_dof.insert(dof, moves.formulas.len());
+                    moves.formulas.push((obstacle.label(), read));
+                }
+                Err(error) => {
+                    let path = format!("contact[{}].primary.motion", obstacle.contact);
+                    problems.push(Problem::new(path, error.to_string(), "", ""));
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Models without a solution: massless bodies under rules that need mass, and unconstrained bodies.
 
-use carom_case::{Case, ContactLaw, ForceTime, PrimarySpec, Problem};
+use carom_case::{Case, ContactLaw, ForceTime, Problem};
 use carom_mechanics::model::{BodyInstance, Contact, Mode};
 
 /// Bodies with rigid modes that neither supports nor contacts can constrain: without inertia they
@@ -52,7 +52,7 @@ pub(super) fn massless(case: &Case, parts: &[BodyInstance], massless: &[bool]) -
             let help = "use law = \"position\", which suffices where contact nodes have no mass";
             problems.push(Problem::new(format!("contact[{k}].law"), what("law = \"predictor\""), why, help));
         }
-        let primary = matches!(&contact.primary, PrimarySpec::Side(name) if involves(name));
+        let primary = contact.primary.side().is_some_and(involves);
         if contact.force == ForceTime::End && (primary || involves(&contact.secondary)) {
             let why =
                 "on a massless side, contact and internal forces must act at the same instant of the step";

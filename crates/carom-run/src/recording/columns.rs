@@ -183,6 +183,10 @@ pub(super) fn center_weights(model: &Model) -> Vec<f64> {
                 }
             }
         }
+        if part.is_rigid() {
+            // The carrier of an obstacle; the next node is its angle.
+            weights[part.first_node] = 1.0;
+        }
         let total: f64 = weights[part.nodes()].iter().sum();
         weights[part.nodes()].iter_mut().for_each(|w| *w /= total);
     }

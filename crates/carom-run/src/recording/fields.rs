@@ -19,7 +19,7 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     let vectors =
         |values: &[f64]| values.chunks_exact(model.dimension).flat_map(spatial).collect::<Vec<f64>>();
     let moved: Vec<f64> = state.y.iter().zip(&model.reference).map(|(y, x)| y - x).collect();
-    let blocks = model.parts.iter().map(|part| {
+    let blocks = model.parts.iter().filter(|part| !part.is_rigid()).map(|part| {
         let mesh = part.body.mesh();
         Block {
             body: part.name.clone(),
@@ -34,7 +34,9 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
         components,
         values,
     };
-    FieldSet {
+    // The nodes that carry obstacles come last, and belong to no body.
+    let nodes = model.parts.iter().filter(|part| !part.is_rigid()).map(|p| p.nodes().end).max().unwrap_or(0);
+    let mut set = FieldSet {
         points: model.reference.chunks_exact(model.dimension).map(spatial).collect(),
         blocks: blocks.collect(),
         arrays: vec![
@@ -43,7 +45,10 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
             array("stress", &label.stress, 6, nodal_stress(model, state)),
             array("contact_pressure", &label.stress, 1, pressures(case, model, state)),
         ],
-    }
+    };
+    set.points.truncate(nodes);
+    set.arrays.iter_mut().for_each(|array| array.values.truncate(nodes * array.components));
+    set
 }
 
 /// The viewer's cell type of an element.

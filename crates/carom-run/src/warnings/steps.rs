@@ -6,7 +6,7 @@
 //! C h. At C = 10 these are 63 cells, more than the bodies of an impact usually have across: no wave
 //! that the mesh carries and the contact excites is resolved by the step.
 
-use carom_case::{Case, MaterialSpec, Plane, PrimarySpec};
+use carom_case::{Case, MaterialSpec, Plane};
 use carom_mechanics::model::Model;
 use carom_solid::Mesh;
 
@@ -33,10 +33,7 @@ pub(super) fn long_step(case: &Case, model: &Model) -> Vec<Found> {
     let body = |side: &str| side.split('.').next().map(str::to_owned);
     let touches = |name: &str| {
         case.contacts.iter().any(|contact| {
-            let primary = match &contact.primary {
-                PrimarySpec::Side(side) => body(side),
-                PrimarySpec::Plane { .. } => None,
-            };
+            let primary = contact.primary.side().and_then(body);
             [body(&contact.secondary), primary].into_iter().flatten().any(|other| other == name)
         })
     };

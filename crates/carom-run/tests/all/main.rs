@@ -12,6 +12,7 @@ mod kernels;
 mod loads;
 mod momentum;
 mod nonsmooth;
+mod obstacles;
 mod own;
 mod placed;
 mod probe;

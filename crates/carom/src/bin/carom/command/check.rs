@@ -117,6 +117,8 @@ fn table(case: &Case, facts: &Facts) -> String {
         let primary = match &contact.primary {
             PrimarySpec::Side(side) => side.clone(),
             PrimarySpec::Plane { .. } => "a rigid plane".to_owned(),
+            PrimarySpec::Circle { .. } => "a rigid circle".to_owned(),
+            PrimarySpec::Polyline { .. } => "a rigid polyline".to_owned(),
         };
         lines.push(format!("  contact  {:12} {} against {primary}", contact.name, contact.secondary));
     }

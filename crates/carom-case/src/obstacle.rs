@@ -1,0 +1,145 @@
+//! Reads the primary of a contact: a side, or a rigid obstacle with its motion.
+
+use super::load::displacements;
+use super::problem::Problem;
+use super::tree::{Node, Table};
+use super::view::{View, formula};
+use super::{ObstacleMotion, PrimarySpec};
+
+const SHAPES: [&str; 3] = ["plane", "circle", "polyline"];
+
+/// Reads `primary`.
+pub(super) fn read(
+    v: &View,
+    dimension: Option<usize>,
+    path: &str,
+    problems: &mut Vec<Problem>,
+) -> Option<(PrimarySpec, ObstacleMotion)> {
+    let node = v.table.get("primary")?;
+    if let Some(side) = node.text() {
+        return Some((PrimarySpec::Side(side.to_owned()), ObstacleMotion::Fixed));
+    }
+    let path = format!("{path}.primary");
+    let table = node.table()?;
+    // A misspelt key is reported once, by `conform`.
+    let known = ["plane", "circle", "polyline", "motion", "mass", "velocity", "gravity"];
+    if table.0.iter().any(|entry| !known.contains(&entry.key.as_str())) {
+        return None;
+    }
+    let shape = shape(table, dimension, &path, problems);
+    let motion = motion(table, dimension, &path, problems);
+    Some((shape?, motion?))
+}
+
+fn shape(
+    table: &Table,
+    dimension: Option<usize>,
+    path: &str,
+    problems: &mut Vec<Problem>,
+) -> Option<PrimarySpec> {
+    let given: Vec<_> = SHAPES.into_iter().filter(|key| table.get(key).is_some()).collect();
+    let [shape] = given[..] else {
+        let had = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
+        let what = format!("a rigid primary has exactly one shape; this one has {had}");
+        let why = "the shape is `plane`, `circle` or `polyline`";
+        let help = "write for example primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }";
+        problems.push(Problem::new(path, what, why, help).at_key());
+        return None;
+    };
+    if shape != "plane" && dimension == Some(1) {
+        let what = format!("a {shape} needs dimension = 2");
+        let help = "use a plane with normal = [1.0] or [-1.0]";
+        problems.push(Problem::new(format!("{path}.{shape}"), what, "the case has dimension = 1", help));
+        return None;
+    }
+    let keys = table.get(shape)?.table()?;
+    let number = |key: &str, default: f64| keys.get(key).map_or(Some(default), Node::number);
+    Some(match shape {
+        "plane" => PrimarySpec::Plane { point: numbers(keys, "point")?, normal: numbers(keys, "normal")? },
+        "circle" => PrimarySpec::Circle {
+            center: numbers(keys, "center")?,
+            radius: keys.get("radius")?.number()?,
+            inside: keys.get("inside").map_or(Some(false), Node::flag)?,
+        },
+        _ => PrimarySpec::Polyline {
+            points: keys
+                .get("points")?
+                .list()?
+                .iter()
+                .map(|point| match point.list()? {
+                    [x, y] => Some([x.number()?, y.number()?]),
+                    _ => None,
+                })
+                .collect::<Option<_>>()?,
+            radius: number("radius", 0.0)?,
+        },
+    })
+}
+
+fn motion(
+    table: &Table,
+    dimension: Option<usize>,
+    path: &str,
+    problems: &mut Vec<Problem>,
+) -> Option<ObstacleMotion> {
+    let given = |key: &str| table.get(key).is_some();
+    let mut wrong = |key: &str, what: &str, why: &str, help: &str| {
+        problems.push(Problem::new(format!("{path}.{key}"), what, why, help).at_key());
+    };
+    if given("motion") && given("mass") {
+        let why = "a prescribed motion does not depend on a mass";
+        wrong("mass", "the obstacle has both `motion` and `mass`", why, "leave one of them out");
+        return None;
+    }
+    if let Some(key) = ["velocity", "gravity"].into_iter().find(|key| given(key) && !given("mass")) {
+        let what = format!("`{key}` needs `mass`");
+        let why = "it belongs to an obstacle that is free to move";
+        wrong(key, &what, why, "add `mass`, or prescribe a `motion`");
+        return None;
+    }
+    if given("mass") {
+        let vector = |key| match table.get(key) {
+            Some(_) => numbers(table, key),
+            None => Some(vec![0.0; dimension?]),
+        };
+        let mass = table.get("mass")?.number()?;
+        return Some(ObstacleMotion::Free {
+            mass,
+            velocity: vector("velocity")?,
+            gravity: vector("gravity")?,
+        });
+    }
+    let Some(keys) = table.get("motion") else { return Some(ObstacleMotion::Fixed) };
+    let keys = keys.table()?;
+    if keys.0.iter().any(|entry| !["x", "y", "rotate", "about"].contains(&entry.key.as_str())) {
+        return None;
+    }
+    let turns = keys.get("rotate").is_some();
+    if turns != keys.get("about").is_some() {
+        let (key, help) = if turns { ("rotate", "add `about = [x, y]`") } else { ("about", "add `rotate`") };
+        let what = "`rotate` and `about` belong together";
+        wrong(&format!("motion.{key}"), what, "an obstacle turns about a point by an angle", help);
+        return None;
+    }
+    let in_the_plane = ["y", "rotate"].into_iter().find(|key| keys.get(key).is_some());
+    if let (Some(1), Some(key)) = (dimension, in_the_plane) {
+        let what = format!("there is no motion `{key}` in dimension 1");
+        wrong(&format!("motion.{key}"), &what, "the case has dimension = 1", "use motion = { x = … }");
+        return None;
+    }
+    let moves = displacements(keys)?;
+    if moves.is_empty() && !turns {
+        let why = "a motion has at least one of `x`, `y` and `rotate`";
+        wrong("motion", "the motion is empty", why, "leave `motion` out for a fixed obstacle");
+        return None;
+    }
+    let rotate = match keys.get("rotate") {
+        Some(angle) => Some((formula(angle)?, numbers(keys, "about")?)),
+        None => None,
+    };
+    Some(ObstacleMotion::Prescribed { moves, rotate })
+}
+
+fn numbers(table: &Table, key: &str) -> Option<Vec<f64>> {
+    table.get(key)?.list()?.iter().map(Node::number).collect()
+}

@@ -1,0 +1,46 @@
+//! Rigid obstacles: how they move.
+
+use serde::{Deserialize, Serialize};
+
+use super::formula::FormulaSpec;
+
+/// Motion of a rigid primary.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ObstacleMotion {
+    /// It does not move.
+    #[default]
+    Fixed,
+    /// It follows formulas in t.
+    Prescribed {
+        /// Displacements by direction: 0 is x, 1 is y; the others are zero.
+        moves: Vec<(usize, FormulaSpec)>,
+        /// Rotation in degrees, counter-clockwise, with its centre.
+        rotate: Option<(FormulaSpec, Vec<f64>)>,
+    },
+    /// It is free in translation.
+    Free {
+        /// Its mass, > 0.
+        mass: f64,
+        /// Initial velocity.
+        velocity: Vec<f64>,
+        /// Gravitational acceleration.
+        gravity: Vec<f64>,
+    },
+}
+
+impl ObstacleMotion {
+    /// Whether it does not move.
+    pub fn is_fixed(&self) -> bool {
+        *self == Self::Fixed
+    }
+
+    /// Number of nodes that carry it: its position, and its angle.
+    pub fn nodes(&self) -> usize {
+        match self {
+            Self::Fixed => 0,
+            Self::Prescribed { rotate: Some(_), .. } => 2,
+            Self::Prescribed { .. } | Self::Free { .. } => 1,
+        }
+    }
+}

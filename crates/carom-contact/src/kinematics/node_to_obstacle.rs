@@ -1,0 +1,239 @@
+//! Secondary nodes against a rigid obstacle, fixed or carried by a node c and turned by an angle θ.
+//!
+//! With the signed distance G(p) of the shape (`obstacle/`), R = R(θ), and s = p − c₀ = Rᵀ(x − c):
+//!
+//! ```text
+//! g = G(p)      ∂g/∂x = R n = −∂g/∂c      ∂g/∂θ = −n·Js,   J = [0 −1; 1 0],   n = ∇G(p)
+//! ∂²g/∂x² = R H Rᵀ = ∂²g/∂c² = −∂²g/∂x∂c     ∂²g/∂x∂θ = R (Jn − H Js) = −∂²g/∂c∂θ     ∂²g/∂θ² = Js·H Js − n·s
+//! ```
+//!
+//! The angle is the first component of a node of its own, as the arc θℓ, a length like every other
+//! unknown; the force on it is moment/ℓ. So motion of an obstacle is motion of nodes: supports
+//! prescribe it, masses make it free, and reactions and works are theirs.
+
+use super::obstacle::{AtCorner, Near, Obstacle, Point};
+use super::{Kinematics, watch_every_node};
+use crate::pair::{ContactError, Pair, PairEvent, Pairing};
+use crate::rows::Rows;
+
+/// The nodes that carry an obstacle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Carrier {
+    /// Global number of the node that it moves with.
+    pub node: usize,
+    /// Position of this node for which the shape is given.
+    pub origin: [f64; 3],
+    /// The node whose first component is the arc of the rotation about `node`, that component at
+    /// rest, and the radius ℓ of the arc; none: the obstacle does not turn.
+    pub turn: Option<(usize, f64, f64)>,
+}
+
+/// A rigid obstacle as primary.
+#[derive(Clone, Debug)]
+pub struct NodeToObstacle {
+    secondary: Vec<usize>,
+    dimension: usize,
+    shape: Obstacle,
+    carrier: Option<Carrier>,
+}
+
+/// A point in the coordinates of the shape, with sin θ and cos θ.
+struct Local {
+    at: Point,
+    /// s = p − c₀; zero without a carrier.
+    arm: Point,
+    turn: [f64; 2],
+}
+
+impl NodeToObstacle {
+    /// Keeps the secondary nodes out of a fixed obstacle.
+    pub fn new(secondary: Vec<usize>, dimension: usize, shape: Obstacle) -> Self {
+        Self { secondary, dimension, shape, carrier: None }
+    }
+
+    /// The same for an obstacle that moves with nodes.
+    #[must_use]
+    pub fn carried_by(self, carrier: Carrier) -> Self {
+        Self { carrier: Some(carrier), ..self }
+    }
+
+    fn position(&self, node: usize, y: &[f64]) -> Point {
+        let y = &y[node * self.dimension..(node + 1) * self.dimension];
+        std::array::from_fn(|i| y.get(i).copied().unwrap_or(0.0))
+    }
+
+    fn local(&self, node: usize, y: &[f64]) -> Local {
+        let x = self.position(node, y);
+        let Some(Carrier { node, origin, turn }) = &self.carrier else {
+            return Local { at: x, arm: [0.0; 3], turn: [0.0, 1.0] };
+        };
+        let c = self.position(*node, y);
+        let (sin, cos) =
+            turn.map_or((0.0, 1.0), |(n, rest, l)| ((y[n * self.dimension] - rest) / l).sin_cos());
+        let arm = rotated([x[0] - c[0], x[1] - c[1], x[2] - c[2]], [-sin, cos]);
+        Local { at: std::array::from_fn(|i| origin[i] + arm[i]), arm, turn: [sin, cos] }
+    }
+
+    /// The piece that an inactive node faces: the closest one outside, and inside that through which
+    /// it entered.
+    fn facing(&self, before: Point, now: Point) -> usize {
+        let nearest = self.shape.nearest(now);
+        let Obstacle::Polyline(line) = &self.shape else { return nearest };
+        if self.shape.near(nearest, now).is_some_and(|near| near.gap >= 0.0) {
+            return nearest;
+        }
+        line.entered(before, now).unwrap_or(nearest)
+    }
+
+    /// The piece on which a pair is measured.
+    fn measured(&self, pair: &Pair, at: Point) -> usize {
+        let Obstacle::Polyline(line) = &self.shape else { return 0 };
+        if pair.active {
+            return line.followed(pair.facet, at);
+        }
+        let nearest = line.nearest(at);
+        let is_inside = |piece: usize| line.near(piece, at).is_some_and(|near| near.gap < 0.0);
+        if is_inside(nearest) && is_inside(pair.facet) { pair.facet } else { nearest }
+    }
+
+    fn near(&self, piece: usize, at: Point, node: usize) -> Result<Near, ContactError> {
+        self.shape.near(piece, at).ok_or(ContactError::Center { node })
+    }
+}
+
+impl Kinematics for NodeToObstacle {
+    fn secondary(&self) -> &[usize] {
+        &self.secondary
+    }
+
+    fn facet_nodes(&self, _: usize) -> &[usize] {
+        &[]
+    }
+
+    fn stencil(&self) -> usize {
+        self.carrier.as_ref().map_or(1, |carrier| if carrier.turn.is_some() { 3 } else { 2 })
+    }
+
+    fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
+        let at = self.local(self.secondary[node], y).at;
+        self.shape.near(self.shape.nearest(at), at).map(|near| near.gap)
+    }
+
+    fn search(
+        &self,
+        before: &[f64],
+        now: &[f64],
+        pairing: &mut Pairing,
+        events: &mut Vec<PairEvent>,
+    ) -> bool {
+        watch_every_node(self.secondary.len(), &mut pairing.pairs);
+        let Obstacle::Polyline(line) = &self.shape else { return false };
+        let Pairing { pairs, left, .. } = pairing;
+        let mut changed = false;
+        for pair in pairs {
+            let node = self.secondary[pair.node];
+            let at = self.local(node, now).at;
+            if !pair.active {
+                let facing = self.facing(self.local(node, before).at, at);
+                let is_inside = line.near(facing, at).is_some_and(|near| near.gap < 0.0);
+                changed |= facing != pair.facet && is_inside;
+                pair.facet = facing;
+                continue;
+            }
+            pair.facet = line.followed(pair.facet, at);
+            match line.at_corner(pair.facet, at) {
+                AtCorner::Goes(next) if left.get(&pair.node) != Some(&next) => {
+                    events.push(PairEvent::HandOver { node, from: pair.facet, to: next });
+                    left.insert(pair.node, pair.facet);
+                    (pair.facet, changed) = (next, true);
+                }
+                AtCorner::Leaves => {
+                    events.push(PairEvent::SlidOff { node, facet: pair.facet });
+                    *pair = Pair::open(pair.node, line.nearest(at), 0.0);
+                    changed = true;
+                }
+                AtCorner::Goes(_) | AtCorner::Stays => {}
+            }
+        }
+        changed
+    }
+
+    fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        let node = self.secondary[pair.node];
+        let Local { at, arm, turn } = self.local(node, y);
+        pair.facet = self.measured(pair, at);
+        let near = self.near(pair.facet, at, node)?;
+        let n = rotated(near.normal, turn);
+        match &self.carrier {
+            None => rows.push(near.gap, [(node, n)]),
+            Some(Carrier { node: carrier, turn: None, .. }) => {
+                rows.push(near.gap, [(node, n), (*carrier, n.map(|n| -n))]);
+            }
+            Some(Carrier { node: carrier, turn: Some((angle, _, length)), .. }) => {
+                let moment = -dot(near.normal, turned(arm)) / length;
+                rows.push(near.gap, [(node, n), (*carrier, n.map(|n| -n)), (*angle, [moment, 0.0, 0.0])]);
+            }
+        }
+        Ok(())
+    }
+
+    fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
+        let (d, size) = (self.dimension, self.stencil() * self.dimension);
+        let curvature = &mut curvature[..size * size];
+        curvature.fill(0.0);
+        let Local { at, arm, turn } = self.local(self.secondary[pair.node], y);
+        let Some(Near { normal, bend, .. }) = self.shape.near(pair.facet, at) else { return };
+        let n = rotated(normal, turn);
+        let blocks = size.min(2 * d) / d;
+        let sign = |block: usize| if block == 0 { 1.0 } else { -1.0 };
+        for (p, q) in (0..blocks).flat_map(|p| (0..blocks).map(move |q| (p, q))) {
+            for (i, k) in (0..d).flat_map(|i| (0..d).map(move |k| (i, k))) {
+                let same = if i == k { 1.0 } else { 0.0 };
+                curvature[(p * d + i) * size + q * d + k] = sign(p) * sign(q) * bend * (same - n[i] * n[k]);
+            }
+        }
+        let Some((_, _, length)) = self.carrier.as_ref().and_then(|carrier| carrier.turn) else { return };
+        let (arm_turned, normal_turned) = (turned(arm), turned(normal));
+        let along = dot(normal, arm_turned);
+        let bent: Point = std::array::from_fn(|i| bend * (arm_turned[i] - along * normal[i]));
+        let mixed = rotated(std::array::from_fn(|i| normal_turned[i] - bent[i]), turn);
+        let angle = 2 * d;
+        for (p, i) in (0..2).flat_map(|p| (0..d).map(move |i| (p, i))) {
+            let entry = sign(p) * mixed[i] / length;
+            curvature[(p * d + i) * size + angle] = entry;
+            curvature[angle * size + p * d + i] = entry;
+        }
+        curvature[angle * size + angle] = (dot(arm_turned, bent) - dot(normal, arm)) / (length * length);
+    }
+}
+
+/// R v of a vector of the plane, with sin θ and cos θ.
+fn rotated(v: Point, [sin, cos]: [f64; 2]) -> Point {
+    if sin == 0.0 && cos == 1.0 {
+        return v;
+    }
+    [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1], v[2]]
+}
+
+/// J v.
+fn turned(v: Point) -> Point {
+    [-v[1], v[0], 0.0]
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gap_is_the_signed_distance() {
+        let plane = NodeToObstacle::new(vec![0], 2, Obstacle::plane(&[0.0, 1.0], &[0.0, 4.0]));
+        let (mut pairing, mut rows) = (Pairing::default(), Rows::new(2));
+        plane.search(&[], &[], &mut pairing, &mut Vec::new());
+        plane.measure(&mut pairing.pairs[0], &[7.0, 0.25], &mut rows).unwrap();
+        assert_eq!((rows.row(0).gap, rows.row(0).gradient), (-0.75, &[0.0, 1.0][..]));
+    }
+}

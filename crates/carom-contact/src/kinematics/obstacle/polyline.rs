@@ -1,0 +1,309 @@
+//! A chain of straight segments with the rigid material to the left of the direction of travel, and
+//! a corner between neighbours: an arc of radius r ≥ 0 tangent to both.
+//!
+//! ```text
+//! segment   g = (x − a)·n,  n = t rotated right         where 0 ≤ (x − a)·t ≤ length
+//! corner    g = ±(|x − c| − r),  + where the chain turns left (convex)        where x − c lies between ±n of the neighbours
+//! ```
+//!
+//! An arc of radius r removes r tan(φ/2) from both segments at a turn by φ. With r = 0 a convex
+//! corner is its vertex: outside, distance and gradient are continuous across the ends of its cone,
+//! while inside the cone is empty and a point belongs to one of the segments.
+//!
+//! An open chain has no ends: its first and last segment go on for ever.
+
+use super::{Near, Point, distance, round};
+
+/// Cosine of the largest turn at a sharp corner across which a node keeps its contact: as for facets.
+const CORNER_COSINE: f64 = 0.87;
+
+/// A piece of the chain.
+#[derive(Clone, Copy, Debug)]
+enum Piece {
+    Segment { start: Point, tangent: Point, normal: Point, length: f64, ends: [bool; 2] },
+    Corner { center: Point, radius: f64, side: f64, normals: [Point; 2] },
+}
+
+/// A polyline as a rigid surface.
+#[derive(Clone, Debug)]
+pub struct Polyline {
+    /// Segments and corners in turn.
+    pieces: Vec<Piece>,
+    closed: bool,
+}
+
+/// Why points do not make a polyline; points are numbered from 1.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PolylineError {
+    /// Fewer than two points.
+    #[error("a polyline has at least two points")]
+    TooFew,
+    /// Two consecutive points coincide.
+    #[error("points {0} and {1} coincide")]
+    Coincident(usize, usize),
+    /// The chain turns back at a point.
+    #[error("the chain turns back on itself at point {0}")]
+    TurnsBack(usize),
+    /// The arcs at the ends of a segment need more than its length.
+    #[error(
+        "between points {first} and {second} the rounded corners take {taken:.6e} of a segment of length {length:.6e}"
+    )]
+    TooRound {
+        /// First point of the segment.
+        first: usize,
+        /// Its second point.
+        second: usize,
+        /// r tan(φ/2), summed over its ends.
+        taken: f64,
+        /// Its length.
+        length: f64,
+    },
+}
+
+impl Polyline {
+    /// A chain through points of the plane with corners rounded by `radius` ≥ 0; closed if the last
+    /// point repeats the first.
+    ///
+    /// # Errors
+    /// Coincident points, a chain that turns back, arcs that do not fit.
+    pub fn new(points: &[[f64; 2]], radius: f64) -> Result<Self, PolylineError> {
+        let count = points.len();
+        if count < 2 {
+            return Err(PolylineError::TooFew);
+        }
+        let closed = count > 3 && points[0] == points[count - 1];
+        let point = |k: usize| [points[k][0], points[k][1], 0.0];
+        let mut tangents = Vec::with_capacity(count - 1);
+        for k in 0..count - 1 {
+            let length = distance(point(k), point(k + 1));
+            if length <= 0.0 {
+                return Err(PolylineError::Coincident(k + 1, k + 2));
+            }
+            let (a, b) = (point(k), point(k + 1));
+            tangents.push(([(b[0] - a[0]) / length, (b[1] - a[1]) / length, 0.0], length));
+        }
+        let segments = tangents.len();
+        // What the corner before each segment removes from it.
+        let mut removed = vec![0.0; segments + 1];
+        for k in usize::from(!closed)..segments {
+            let (before, after) = (tangents[(k + segments - 1) % segments].0, tangents[k].0);
+            let cosine = dot(before, after);
+            if 1.0 + cosine < 1e-9 {
+                return Err(PolylineError::TurnsBack(k + 1));
+            }
+            // tan(φ/2) = |sin φ| / (1 + cos φ)
+            removed[k] = radius * cross(before, after).abs() / (1.0 + cosine);
+        }
+        removed[segments] = if closed { removed[0] } else { 0.0 };
+        let mut pieces = Vec::with_capacity(2 * segments);
+        for (k, &(tangent, length)) in tangents.iter().enumerate() {
+            let taken = removed[k] + removed[k + 1];
+            if taken > length {
+                return Err(PolylineError::TooRound { first: k + 1, second: k + 2, taken, length });
+            }
+            let ends = [closed || k > 0, closed || k + 1 < segments];
+            pieces.push(Piece::Segment {
+                start: plus(point(k), removed[k], tangent),
+                tangent,
+                normal: right(tangent),
+                length: length - taken,
+                ends,
+            });
+            if ends[1] {
+                let next = tangents[(k + 1) % segments].0;
+                let side = if cross(tangent, next) >= 0.0 { 1.0 } else { -1.0 };
+                let end = plus(point(k), length - removed[k + 1], tangent);
+                let center = plus(end, -side * radius, right(tangent));
+                pieces.push(Piece::Corner { center, radius, side, normals: [right(tangent), right(next)] });
+            }
+        }
+        Ok(Self { pieces, closed })
+    }
+
+    /// Largest distance of its points from one of them.
+    pub(super) fn reach(&self, about: Point) -> f64 {
+        let ends = |piece: &Piece| match *piece {
+            Piece::Segment { start, tangent, length, .. } => [start, plus(start, length, tangent)],
+            Piece::Corner { center, .. } => [center, center],
+        };
+        self.pieces.iter().flat_map(ends).map(|p| distance(p, about)).fold(0.0, f64::max)
+    }
+
+    /// The neighbour of a piece, if there is one.
+    fn neighbour(&self, piece: usize, forward: bool) -> Option<usize> {
+        let count = self.pieces.len();
+        match (forward, self.closed) {
+            (true, true) => Some((piece + 1) % count),
+            (false, true) => Some((piece + count - 1) % count),
+            (true, false) => Some(piece + 1).filter(|&next| next < count),
+            (false, false) => piece.checked_sub(1),
+        }
+    }
+
+    /// Whether a piece is the closest one of its line or circle to a point.
+    fn faces(&self, piece: usize, at: Point) -> bool {
+        match &self.pieces[piece] {
+            Piece::Segment { start, tangent, length, ends, .. } => {
+                let along = dot(minus(at, *start), *tangent);
+                (!ends[0] || along >= 0.0) && (!ends[1] || along <= *length)
+            }
+            Piece::Corner { center, side, normals: [first, last], .. } => {
+                let arm = minus(at, *center).map(|x| side * x);
+                side * cross(*first, arm) >= 0.0
+                    && side * cross(arm, *last) >= 0.0
+                    && dot(arm, *first) + dot(arm, *last) >= 0.0
+            }
+        }
+    }
+
+    /// The piece closest to a point; the first one if there are several.
+    pub(in super::super) fn nearest(&self, at: Point) -> usize {
+        let facing = (0..self.pieces.len()).filter(|&piece| self.faces(piece, at));
+        let distance = |piece: usize| self.near(piece, at).map_or(f64::INFINITY, |near| near.gap.abs());
+        // At a shared end the segment wins over the corner: its normal exists everywhere.
+        let order = |piece: &usize| (distance(*piece), piece % 2);
+        facing.min_by(|a, b| order(a).0.total_cmp(&order(b).0).then(order(a).1.cmp(&order(b).1))).unwrap_or(0)
+    }
+
+    /// A piece as a point sees it.
+    pub(in super::super) fn near(&self, piece: usize, at: Point) -> Option<Near> {
+        match self.pieces[piece] {
+            Piece::Segment { start, normal, .. } => {
+                Some(Near { gap: dot(minus(at, start), normal), normal, bend: 0.0 })
+            }
+            Piece::Corner { center, radius, side, .. } => round(at, center, radius, side),
+        }
+    }
+
+    fn gap(&self, piece: usize, at: Point) -> f64 {
+        self.near(piece, at).map_or(f64::NEG_INFINITY, |near| near.gap)
+    }
+
+    fn is_sharp(&self, piece: usize) -> bool {
+        matches!(self.pieces[piece], Piece::Corner { radius: 0.0, .. })
+    }
+
+    /// The neighbour on whose side of a piece a point lies.
+    fn beyond(&self, piece: usize, at: Point) -> Option<usize> {
+        match &self.pieces[piece] {
+            _ if self.faces(piece, at) => None,
+            Piece::Segment { start, tangent, length, .. } => {
+                self.neighbour(piece, dot(minus(at, *start), *tangent) > 0.5 * length)
+            }
+            Piece::Corner { center, side, normals: [first, last], .. } => {
+                let arm = minus(at, *center).map(|x| side * x);
+                self.neighbour(piece, dot(arm, *last) > dot(arm, *first))
+            }
+        }
+    }
+
+    /// The piece on which a node in contact is measured: it slides through rounded corners, and past
+    /// a sharp one on the line of its segment, since a vertex has no normal.
+    pub(in super::super) fn followed(&self, mut piece: usize, at: Point) -> usize {
+        for _ in 0..self.pieces.len() {
+            let Some(next) = self.beyond(piece, at) else { break };
+            let leaves_vertex = self.is_sharp(piece);
+            if self.is_sharp(next) && !leaves_vertex {
+                break;
+            }
+            // Behind the centre of an arc, or between pieces by round-off, there is no better one.
+            if !self.faces(next, at) && self.beyond(next, at) == Some(piece) {
+                break;
+            }
+            piece = next;
+        }
+        piece
+    }
+
+    /// What becomes of a node in contact at a sharp corner.
+    pub(in super::super) fn at_corner(&self, piece: usize, at: Point) -> AtCorner {
+        let Piece::Segment { tangent, .. } = self.pieces[piece] else { return AtCorner::Stays };
+        for forward in [true, false] {
+            let Some(corner) = self.neighbour(piece, forward).filter(|&c| self.is_sharp(c)) else { continue };
+            let Some(next) = self.neighbour(corner, forward) else { continue };
+            let (Piece::Corner { side, .. }, Piece::Segment { tangent: other, .. }) =
+                (self.pieces[corner], self.pieces[next])
+            else {
+                continue;
+            };
+            let past = self.beyond(piece, at) == Some(corner);
+            if side < 0.0 {
+                // In a concave corner the deeper wall holds it.
+                if self.gap(next, at) < self.gap(piece, at) && self.faces(next, at) {
+                    return AtCorner::Goes(next);
+                }
+            } else if past {
+                let blunt = dot(tangent, other) >= CORNER_COSINE;
+                return match (blunt, self.beyond(next, at) == Some(corner)) {
+                    (true, true) => AtCorner::Stays,
+                    (true, false) => AtCorner::Goes(next),
+                    (false, _) => AtCorner::Leaves,
+                };
+            }
+        }
+        AtCorner::Stays
+    }
+
+    /// The piece through which a point entered on a straight path.
+    pub(in super::super) fn entered(&self, before: Point, now: Point) -> Option<usize> {
+        let path = minus(now, before);
+        let at = |theta: f64| plus(before, theta, path);
+        let mut first: Option<(f64, usize)> = None;
+        for piece in 0..self.pieces.len() {
+            let theta = match self.pieces[piece] {
+                Piece::Segment { .. } => {
+                    let (from, to) = (self.gap(piece, before), self.gap(piece, now));
+                    if from < 0.0 || to >= 0.0 {
+                        continue;
+                    }
+                    from / (from - to)
+                }
+                Piece::Corner { radius: 0.0, .. } => continue,
+                Piece::Corner { center, radius, side, .. } => {
+                    // |b + θ d|² = r²: outwards the later root, inwards the earlier one.
+                    let arm = minus(before, center);
+                    let (a, b, c) = (dot(path, path), dot(arm, path), dot(arm, arm) - radius * radius);
+                    let root = b * b - a * c;
+                    if root < 0.0 || a == 0.0 {
+                        continue;
+                    }
+                    (-b - side * root.sqrt()) / a
+                }
+            };
+            if (0.0..=1.0).contains(&theta)
+                && self.faces(piece, at(theta))
+                && first.is_none_or(|(earliest, _)| theta < earliest)
+            {
+                first = Some((theta, piece));
+            }
+        }
+        first.map(|(_, piece)| piece)
+    }
+}
+
+/// What becomes of a node in contact at a sharp corner.
+pub(in super::super) enum AtCorner {
+    Stays,
+    Goes(usize),
+    Leaves,
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn cross(a: Point, b: Point) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+fn minus(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], 0.0]
+}
+
+fn plus(a: Point, factor: f64, b: Point) -> Point {
+    [a[0] + factor * b[0], a[1] + factor * b[1], 0.0]
+}
+
+fn right(a: Point) -> Point {
+    [a[1], -a[0], 0.0]
+}

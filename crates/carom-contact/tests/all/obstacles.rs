@@ -1,0 +1,169 @@
+//! Rigid obstacles: gaps against elementary geometry, gradient and second derivative against
+//! differences, corners.
+
+use carom_algebra::jacobian_error;
+use carom_contact::{
+    Carrier, ContactError, Kinematics, NodeToObstacle, Obstacle, Pair, PairEvent, Pairing, Polyline,
+    PolylineError, Rows,
+};
+
+const SQUARE: [[f64; 2]; 5] = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.0, 0.0]];
+
+fn polyline(points: &[[f64; 2]], radius: f64) -> NodeToObstacle {
+    NodeToObstacle::new(vec![0], 2, Obstacle::Polyline(Polyline::new(points, radius).unwrap()))
+}
+
+fn distance(contact: &NodeToObstacle, x: f64, y: f64) -> f64 {
+    contact.signed_distance(0, &[x, y]).unwrap()
+}
+
+fn measured(contact: &NodeToObstacle, pair: &mut Pair, y: &[f64]) -> (f64, Vec<f64>) {
+    let mut rows = Rows::new(2);
+    contact.measure(pair, y, &mut rows).unwrap();
+    let row = rows.row(0);
+    let mut gradient = vec![0.0; y.len()];
+    row.add_to(1.0, &mut gradient);
+    (row.gap, gradient)
+}
+
+fn close(a: f64, b: f64) {
+    assert!((a - b).abs() < 1e-14, "{a} {b}");
+}
+
+#[test]
+fn distances_to_a_square_are_elementary() {
+    // Counter-clockwise: the square is rigid. Clockwise: it is a box.
+    let (block, mut reversed) = (polyline(&SQUARE, 0.0), SQUARE);
+    reversed.reverse();
+    let room = polyline(&reversed, 0.0);
+    for (x, y, d) in
+        [(1.0, -0.5, 0.5), (5.0, 6.0, 5.0), (1.0, 0.25, -0.25), (-3.0, -4.0, 5.0), (1.9, 1.0, -0.1)]
+    {
+        close(distance(&block, x, y), d);
+        close(distance(&room, x, y), -d);
+    }
+    // Rounding moves the corner by (√2 − 1) r along its bisector, inside as outside.
+    let (round, hollow) = (polyline(&SQUARE, 0.5), polyline(&reversed, 0.5));
+    let gap = (2.0_f64.sqrt() - 1.0) * 0.5;
+    close(distance(&round, 2.0, 2.0), gap);
+    close(distance(&hollow, 2.0, 2.0), -gap);
+    close(distance(&round, 2.0, 1.0), 0.0);
+    // An open chain has no ends.
+    let slope = polyline(&[[0.0, 0.0], [-1.0, 0.0]], 0.0);
+    close(distance(&slope, 50.0, 3.0), 3.0);
+    close(distance(&slope, -50.0, -2.0), -2.0);
+}
+
+#[test]
+fn impossible_polylines_are_named() {
+    let error = |points: &[[f64; 2]], radius| Polyline::new(points, radius).unwrap_err();
+    assert_eq!(error(&[[0.0, 0.0]], 0.0), PolylineError::TooFew);
+    assert_eq!(error(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]], 0.0), PolylineError::Coincident(2, 3));
+    assert_eq!(error(&[[0.0, 0.0], [1.0, 0.0], [0.5, 0.0]], 0.0), PolylineError::TurnsBack(2));
+    let round = error(&SQUARE, 1.5);
+    assert_eq!(round, PolylineError::TooRound { first: 1, second: 2, taken: 3.0, length: 2.0 });
+}
+
+/// A node, a carrier and an angle, near every kind of piece.
+fn scenes() -> Vec<(NodeToObstacle, Vec<f64>)> {
+    let room = [[2.0, 0.0], [0.0, 0.0], [0.0, 2.0], [2.0, 2.0], [2.0, 0.0]];
+    let round = |points: &[[f64; 2]]| Obstacle::Polyline(Polyline::new(points, 0.4).unwrap());
+    let shapes = [
+        (Obstacle::plane(&[0.3, 0.1], &[1.0, 2.0]), [0.8, 0.4]),
+        (Obstacle::circle(&[0.3, 0.1], 0.7, false), [0.9, 0.5]),
+        (Obstacle::circle(&[0.3, 0.1], 2.0, true), [0.9, 0.5]),
+        (round(&SQUARE), [2.1, 2.05]),
+        (round(&SQUARE), [1.0, -0.2]),
+        (round(&room), [0.15, 0.1]),
+        (Obstacle::Polyline(Polyline::new(&SQUARE, 0.0).unwrap()), [2.3, 2.2]),
+    ];
+    let mut scenes = Vec::new();
+    for (shape, at) in shapes {
+        let fixed = NodeToObstacle::new(vec![0], 2, shape);
+        let carrier = Carrier { node: 1, origin: [0.2, 0.3, 0.0], turn: None };
+        let turning = Carrier { turn: Some((2, 0.7, 1.3)), ..carrier.clone() };
+        scenes.push((fixed.clone(), at.to_vec()));
+        scenes.push((fixed.clone().carried_by(carrier), [&at[..], &[0.21, 0.33]].concat()));
+        scenes.push((fixed.carried_by(turning), [&at[..], &[0.21, 0.33, 0.75, 0.0]].concat()));
+    }
+    scenes
+}
+
+#[test]
+fn gradient_and_second_derivative_agree_with_differences() {
+    for (k, (contact, y)) in scenes().iter().enumerate() {
+        let mut pair = Pair::open(0, 0, 0.0);
+        let (_, gradient) = measured(contact, &mut pair, y);
+        let gap = |y: &[f64]| vec![measured(contact, &mut pair.clone(), y).0];
+        let error = jacobian_error(y, 1e-5, gap, &gradient);
+        assert!(error < 1e-9, "scene {k}: {error:e}");
+        let mut curvature = vec![0.0; y.len() * y.len()];
+        contact.curvature_into(&pair, y, &mut curvature);
+        let slope = |y: &[f64]| measured(contact, &mut pair.clone(), y).1;
+        let error = jacobian_error(y, 1e-5, slope, &curvature);
+        assert!(error < 1e-8, "scene {k}: {error:e}");
+    }
+}
+
+/// Turning and moving an obstacle together with the node changes nothing.
+#[test]
+fn the_gap_does_not_see_a_rigid_motion() {
+    let (contact, y) = scenes().swap_remove(11);
+    let (before, _) = measured(&contact, &mut Pair::open(0, 0, 0.0), &y);
+    let (sin, cos) = 0.6_f64.sin_cos();
+    let arm = [y[0] - y[2], y[1] - y[3]];
+    let center = [y[2] + 3.0, y[3] - 1.0];
+    let x = [center[0] + cos * arm[0] - sin * arm[1], center[1] + sin * arm[0] + cos * arm[1]];
+    let moved = [x[0], x[1], center[0], center[1], y[4] + 0.6 * 1.3, 0.0];
+    close(before, measured(&contact, &mut Pair::open(0, 0, 0.0), &moved).0);
+}
+
+fn searched(contact: &NodeToObstacle, pair: Pair, before: [f64; 2], now: [f64; 2]) -> (Pair, Vec<PairEvent>) {
+    let (mut pairing, mut events) = (Pairing::new(vec![pair]), Vec::new());
+    contact.search(&before, &now, &mut pairing, &mut events);
+    (pairing.pairs[0], events)
+}
+
+/// Near a sharp corner the closest wall is not the one that was crossed.
+#[test]
+fn a_node_inside_keeps_the_side_it_came_through() {
+    let block = polyline(&SQUARE, 0.0);
+    let (mut pair, _) = searched(&block, Pair::open(0, 0, 0.0), [1.8, -0.1], [1.98, 0.1]);
+    let (gap, gradient) = measured(&block, &mut pair, &[1.98, 0.1]);
+    close(gap, -0.1);
+    assert_eq!(gradient, [0.0, -1.0]);
+    // The same place through the other wall.
+    let (mut pair, _) = searched(&block, Pair::open(0, 0, 0.0), [2.1, 0.15], [1.98, 0.1]);
+    close(measured(&block, &mut pair, &[1.98, 0.1]).0, 1.98 - 2.0);
+}
+
+#[test]
+fn a_node_in_contact_slides_round_an_arc_off_a_sharp_corner_and_over_a_kink() {
+    let active = |facet| Pair { active: true, lambda: -1.0, ..Pair::open(0, facet, 0.0) };
+    // Round: pieces 0 (segment), 1 (arc), 2 (segment).
+    let round = polyline(&SQUARE, 0.5);
+    let on_arc = [1.5 + 0.3, 0.5 - 0.4];
+    let (pair, events) = searched(&round, active(0), [1.0, 0.0], on_arc);
+    assert!(pair.active && pair.facet == 1 && events.is_empty());
+    close(measured(&round, &mut active(0), &on_arc).0, 0.0);
+    close(measured(&round, &mut active(0), &[2.0, 1.0]).0, 0.0);
+    // Sharp: on the line of its segment until the search releases it.
+    let block = polyline(&SQUARE, 0.0);
+    close(measured(&block, &mut active(0), &[2.1, 0.0]).0, 0.0);
+    let (pair, events) = searched(&block, active(0), [1.9, 0.0], [2.1, 0.0]);
+    assert!(!pair.active && events == [PairEvent::SlidOff { node: 0, facet: 0 }], "{pair:?} {events:?}");
+    // Blunt: handed over, still in contact.
+    let roof = polyline(&[[2.0, -0.3], [0.0, 0.0], [-2.0, -0.3]], 0.0);
+    let (pair, events) = searched(&roof, active(0), [0.1, -0.015], [-0.1, 0.01]);
+    assert!(pair.active && pair.facet == 2 && events.len() == 1, "{pair:?} {events:?}");
+}
+
+#[test]
+fn the_centre_of_a_circle_is_an_error_only_for_a_node_that_has_to_leave_it() {
+    let at = |inside| {
+        let contact = NodeToObstacle::new(vec![0], 2, Obstacle::circle(&[1.0, 1.0], 0.5, inside));
+        contact.measure(&mut Pair::open(0, 0, 0.0), &[1.0, 1.0], &mut Rows::new(2))
+    };
+    assert_eq!(at(true), Ok(()));
+    assert_eq!(at(false), Err(ContactError::Center { node: 0 }));
+}

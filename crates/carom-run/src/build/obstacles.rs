@@ -1,0 +1,125 @@
+//! Rigid obstacles of a case: their shapes, and the nodes that carry those that move.
+//!
+//! A carrier is a part of the model without cells: a node at the centre of the rotation (or at the
+//! shape's first point), and one for the angle. A prescribed motion moves it like a support; a mass
+//! makes it a free particle.
+
+use carom_case::{Case, FormulaSpec, ObstacleMotion, PrimarySpec, Problem};
+use carom_contact::{Carrier, Obstacle, Polyline};
+use carom_mechanics::model::{BodyInstance, Support};
+use carom_solid::{Element, Law, Mesh, Positions};
+
+/// The shape of a rigid primary; none for a side.
+pub(super) fn shape(primary: &PrimarySpec, contact: usize) -> Result<Option<Obstacle>, Problem> {
+    Ok(Some(match primary {
+        PrimarySpec::Side(_) => return Ok(None),
+        PrimarySpec::Plane { point, normal } => Obstacle::plane(point, normal),
+        PrimarySpec::Circle { center, radius, inside } => Obstacle::circle(center, *radius, *inside),
+        PrimarySpec::Polyline { points, radius } => {
+            let wrong = |error: carom_contact::PolylineError| {
+                let what = "the polyline is not a surface".to_owned();
+                let help = "move a point, leave one out, or reduce `radius`";
+                Problem::new(format!("contact[{contact}].primary.polyline"), what, error.to_string(), help)
+            };
+            Obstacle::Polyline(Polyline::new(points, *radius).map_err(wrong)?)
+        }
+    }))
+}
+
+/// An obstacle that moves.
+pub(super) struct Moving<'a> {
+    /// Index of its contact.
+    pub(super) contact: usize,
+    /// Index of its part.
+    pub(super) part: usize,
+    pub(super) carrier: Carrier,
+    pub(super) motion: &'a ObstacleMotion,
+    name: &'a str,
+    dimension: usize,
+}
+
+/// Adds the parts that carry the moving obstacles of a case; angles are arcs of radius `length`.
+pub(super) fn carriers<'a>(
+    case: &'a Case,
+    parts: &mut Vec<BodyInstance>,
+    length: f64,
+) -> Result<Vec<Moving<'a>>, Vec<Problem>> {
+    let d = case.dimension;
+    let mut moving = Vec::new();
+    for (contact, spec) in case.contacts.iter().enumerate() {
+        let (origin, mass) = match &spec.motion {
+            ObstacleMotion::Fixed => continue,
+            ObstacleMotion::Prescribed { rotate: Some((_, about)), .. } => (about.clone(), 0.0),
+            ObstacleMotion::Prescribed { .. } => (point_of(&spec.primary), 0.0),
+            ObstacleMotion::Free { mass, .. } => (point_of(&spec.primary), *mass),
+        };
+        let node = parts.last().map_or(0, |part| part.nodes().end);
+        let padded = std::array::from_fn(|i| origin.get(i).copied().unwrap_or(0.0));
+        let turn = (spec.motion.nodes() == 2).then(|| (node + 1, origin[0], length));
+        let mesh = Mesh {
+            element: if d == 1 { Element::L2 } else { Element::T3 },
+            nodes: Positions::new(d, origin.repeat(spec.motion.nodes())),
+            cells: Vec::new(),
+            sides: std::collections::BTreeMap::new(),
+            repairs: Vec::new(),
+        };
+        // Without cells the law does not matter.
+        let law = Law::LinearElastic { lambda: 0.0, mu: 1.0 }.constitutive();
+        let body = law.body(mesh, 0.0, 1.0).map_err(|error| {
+            let what = format!("the obstacle of contact \"{}\" cannot be used", spec.name);
+            vec![Problem::new(format!("contact[{contact}].primary"), what, error.to_string(), "")]
+        })?;
+        parts.push(BodyInstance::rigid(spec.name.clone(), node, body, mass));
+        let carrier = Carrier { node, origin: padded, turn };
+        let (part, motion) = (parts.len() - 1, &spec.motion);
+        moving.push(Moving { contact, part, carrier, motion, name: &spec.name, dimension: d });
+    }
+    Ok(moving)
+}
+
+/// The point of a shape that its motion refers to.
+fn point_of(primary: &PrimarySpec) -> Vec<f64> {
+    match primary {
+        PrimarySpec::Side(_) => Vec::new(),
+        PrimarySpec::Plane { point, .. } => point.clone(),
+        PrimarySpec::Circle { center, .. } => center.clone(),
+        PrimarySpec::Polyline { points, .. } => points.first().map_or_else(Vec::new, |p| p.to_vec()),
+    }
+}
+
+impl Moving<'_> {
+    /// Initial velocity and acceleration of gravity, per node; both are zero if the motion is
+    /// prescribed.
+    pub(super) fn start(&self) -> [Vec<f64>; 2] {
+        match self.motion {
+            ObstacleMotion::Free { velocity, gravity, .. } => [velocity.clone(), gravity.clone()],
+            motion => [0, 1].map(|_| vec![0.0; motion.nodes() * self.dimension]),
+        }
+    }
+
+    /// Prescribed dofs, each with its formula in the unit of the dof; none: it is fixed.
+    pub(super) fn prescribed(&self) -> Vec<(usize, Option<FormulaSpec>)> {
+        let ObstacleMotion::Prescribed { moves, rotate } = self.motion else { return Vec::new() };
+        let (d, node) = (self.dimension, self.carrier.node);
+        let along = |axis: usize| moves.iter().find(|(i, _)| *i == axis).map(|(_, formula)| formula.clone());
+        let mut dofs: Vec<_> = (0..d).map(|axis| (node * d + axis, along(axis))).collect();
+        if let (Some((angle, _)), Some((turn, _, length))) = (rotate, self.carrier.turn) {
+            let arc = FormulaSpec::Text(format!("({angle})*{:?}", length * std::f64::consts::PI / 180.0));
+            dofs.push((turn * d, Some(arc)));
+            dofs.extend((1..d).map(|axis| (turn * d + axis, None)));
+        }
+        dofs
+    }
+
+    /// The support whose reaction is that of the obstacle; none if it is free.
+    pub(super) fn support(&self) -> Option<Support> {
+        let (d, node) = (self.dimension, self.carrier.node);
+        matches!(self.motion, ObstacleMotion::Prescribed { .. })
+            .then(|| Support { name: self.name.to_owned(), dofs: (node * d..(node + 1) * d).collect() })
+    }
+
+    /// Description for messages.
+    pub(super) fn label(&self) -> String {
+        format!("the motion of the obstacle of contact \"{}\"", self.name)
+    }
+}
