@@ -236,7 +236,10 @@ impl Penetration {
             let contact = &model.contacts[k];
             for pair in state.pairs[k].iter().filter(|pair| pair.active && pair.xi.abs() <= 1.0) {
                 rows.clear();
-                if contact.kinematics.measure(&mut pair.clone(), y, rows).is_ok() {
+                // A frozen contact point is not the closest one.
+                let mut pair = *pair;
+                contact.kinematics.start_step(&mut pair, y);
+                if contact.kinematics.measure(&mut pair, y, rows).is_ok() {
                     held.push((contact.kinematics.secondary()[pair.node], (-rows.row(0).gap).max(0.0)));
                 }
             }

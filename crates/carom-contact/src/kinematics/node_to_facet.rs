@@ -9,11 +9,10 @@
 //! Joints and ends of facets, with the body on the left:
 //!
 //! ```text
-//! joint                  a pair past the end is handed to the neighbour; one that would be handed back
-//!                        within the step, or is past the ends of both, keeps its facet up to |ξ| = 1.2
-//! dent                   where that joint turns by more than 30°, or the extrapolated facet would let
-//!                        the node into the neighbour by more than a hundredth of its length, the node
-//!                        has a pair with either facet
+//! joint, convex          a pair past the end is handed to the neighbour; past the ends of both, it keeps
+//!                        its facet, which is extrapolated up to |ξ| = 1.2
+//! dent                   a node that would be handed back within the step has a pair with either facet,
+//!                        g ≥ 0 for both: it may lie in the joint
 //! corner, end of side    nothing is faced past the end, |ξ| > 1.05; a pair that slides past it keeps its
 //!                        facet to the end of the step and leaves at the start of the next one
 //! ```
@@ -25,7 +24,7 @@ use std::sync::{Mutex, PoisonError};
 use carom_solid::FacetShape;
 
 use super::gap::Gap;
-use super::surface::{CORNER_COSINE, Search, Surface};
+use super::surface::{Search, Surface};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::{Kinematics, watch_every_node};
@@ -33,8 +32,6 @@ use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
 use crate::rows::Rows;
 
-/// Depth, relative to a facet's length, to which its extrapolation may lead into the neighbour.
-const DENT: f64 = 0.01;
 /// |ξ| up to which a facet is extrapolated.
 const REACH: f64 = 1.2;
 /// |ξ| − 1 above which a closest point is past the end of its facet.
@@ -186,11 +183,7 @@ impl NodeToFacet {
             return if self.faces_nothing(pair.facet, pair.xi, y) { Next::Leave } else { Next::Stay };
         };
         if came_from == Some(neighbour) {
-            let [first, second] = if forward { [pair.facet, neighbour] } else { [neighbour, pair.facet] };
-            let (cosine, sine) = self.primary.kink(first, second, y);
-            let depth = 0.5 * (pair.xi.abs() - 1.0) * sine.abs();
-            let smooth = pair.xi.abs() <= REACH && depth <= DENT && cosine >= CORNER_COSINE;
-            return if smooth { Next::Stay } else { Next::Dent(neighbour, if forward { -1.0 } else { 1.0 }) };
+            return Next::Dent(neighbour, if forward { -1.0 } else { 1.0 });
         }
         if let Some(xi) = self.primary.facet(neighbour).closest_point(y, y.at(node), REACH) {
             let inside = if forward { xi >= -1.0 } else { xi <= 1.0 };

@@ -9,7 +9,7 @@ use super::projection::Facet;
 use crate::places::Places;
 
 /// Cosine of the kink between neighbouring facets that marks a corner: 30°.
-pub(super) const CORNER_COSINE: f64 = 0.87;
+const CORNER_COSINE: f64 = 0.87;
 
 /// Facets of a side, all of one shape, and their neighbours. The rest of the body's boundary may
 /// follow them, so that a node near the end of the side is told from one that is behind it.

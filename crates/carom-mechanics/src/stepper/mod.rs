@@ -97,8 +97,8 @@ pub trait Stepper: Send + Sync {
     ) -> Result<Accepted, Rejected>;
 }
 
-/// Secondary nodes with more active pairs in `a` than in `b`, each as often as it has more:
-/// (contact, global node).
+/// Nodes with an active pair in `a` and none in `b`: (contact, global node). A node in contact that
+/// slides into a dent does not come into contact.
 fn difference(model: &Model, a: &State, b: &State) -> Vec<(usize, usize)> {
     let mut nodes = Vec::new();
     for (k, contact) in model.contacts.iter().enumerate() {
@@ -106,8 +106,9 @@ fn difference(model: &Model, a: &State, b: &State) -> Vec<(usize, usize)> {
         let mut others = b.pairs[k].iter().filter(|pair| pair.active).peekable();
         for pair in a.pairs[k].iter().filter(|pair| pair.active) {
             while others.next_if(|other| other.node < pair.node).is_some() {}
-            if others.next_if(|other| other.node == pair.node).is_none() {
-                nodes.push((k, contact.kinematics.secondary()[pair.node]));
+            let node = (k, contact.kinematics.secondary()[pair.node]);
+            if others.peek().is_none_or(|other| other.node != pair.node) && nodes.last() != Some(&node) {
+                nodes.push(node);
             }
         }
     }
