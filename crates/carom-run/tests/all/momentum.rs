@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use carom_run::case::Case;
+use carom_run::case::{Case, Enforcement};
 use carom_run::model::{BodyInstance, Model};
 use carom_run::{Setup, Simulation, State};
 
@@ -188,7 +188,10 @@ fn every_case_of_the_repository() {
         }
         if let Some(worst) = worst(&case, 600) {
             checked += 1;
-            assert!(worst < 1e-12, "{}: {worst:e}", path.display());
+            // As above.
+            let spring = case.time.scheme.conserves()
+                && case.contacts.iter().any(|contact| contact.enforcement == Enforcement::Penalty);
+            assert!(worst < if spring { 4e-12 } else { 1e-12 }, "{}: {worst:e}", path.display());
         }
     }
     assert!(checked > 20, "{checked}");

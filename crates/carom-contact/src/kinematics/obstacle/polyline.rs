@@ -12,7 +12,7 @@
 //!
 //! An open chain has no ends: its first and last segment go on for ever.
 
-use super::{Near, Point, distance, round};
+use super::near::{Near, Point, distance, round};
 
 /// Cosine of the largest turn at a sharp corner across which a node keeps its contact: as for facets.
 const CORNER_COSINE: f64 = 0.87;
@@ -118,15 +118,6 @@ impl Polyline {
             }
         }
         Ok(Self { pieces, closed })
-    }
-
-    /// Largest distance of its points from one of them.
-    pub(super) fn reach(&self, about: Point) -> f64 {
-        let ends = |piece: &Piece| match *piece {
-            Piece::Segment { start, tangent, length, .. } => [start, plus(start, length, tangent)],
-            Piece::Corner { center, .. } => [center, center],
-        };
-        self.pieces.iter().flat_map(ends).map(|p| distance(p, about)).fold(0.0, f64::max)
     }
 
     /// The neighbour of a piece, if there is one.
