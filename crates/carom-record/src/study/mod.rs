@@ -26,6 +26,7 @@ mod measure;
 mod orders;
 mod places;
 pub mod ranking;
+mod recommendation;
 pub mod reference;
 mod row;
 mod tables;

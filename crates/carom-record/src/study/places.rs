@@ -2,6 +2,10 @@
 
 /// Relative difference below which errors are not distinguished.
 pub(super) const ALIKE: f64 = 0.05;
+/// Relative difference below which processor times count as equal: measurements do not reproduce
+/// better than this.
+pub(super) const EQUAL_COST: f64 = 0.1;
+
 /// An arm in the ranking of its level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranked {
