@@ -112,3 +112,6 @@ impl Ranking {
         Self { goal, measure: Ok(measure), levels, crosschecks, verdict }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,9 +1,9 @@
 //! The recommendation that follows from a ranking, with its confidence, or why there is none.
 //!
 //! Methods are ordered by their mean place over the levels. Of those that are not distinguished from
-//! the best, the cheapest is recommended; processor times within 10 % of the smallest count as equal,
-//! and the smaller error then decides. Nothing is recommended if only a substitute for the measure of
-//! the goal is established, or if no arm has the required accuracy.
+//! the best and have the required accuracy, the cheapest is recommended; processor times within 10 % of
+//! the smallest count as equal, and the smaller error then decides. Nothing is recommended if only a
+//! substitute for the measure of the goal is established, or if none of them has the required accuracy.
 
 use super::design::{Goal, Kind};
 use super::digits::short;
@@ -91,15 +91,23 @@ pub(super) fn recommended(
             full.iter().filter_map(|l| l.iter().find(|r| name(r.arm) == method)).collect();
         match goal {
             Goal::Cost => arms.iter().min_by(|a, b| a.error.total_cmp(&b.error)).copied(),
-            _ => arms.iter().find(|r| r.error <= accuracy).or(arms.last()).copied(),
+            // Without an accurate one, the most accurate.
+            _ => arms
+                .iter()
+                .find(|r| r.error <= accuracy)
+                .or(arms.iter().min_by(|a, b| a.error.total_cmp(&b.error)))
+                .copied(),
         }
     };
+    // Among equals, one that is accurate enough goes before a cheaper one that is not.
+    let accurate = |m: &&String| goal == Goal::Cost || arm_of(m).is_some_and(|r| r.error <= accuracy);
+    let (fit, unfit): (Vec<&String>, Vec<&String>) = tied.iter().copied().partition(accurate);
+    let field = if fit.is_empty() { &unfit } else { &fit };
     let costs: Vec<Option<f64>> =
-        tied.iter().map(|m| rows.get(arm_of(m)?.arm)?.value("cpu_time").filter(|c| *c > 0.0)).collect();
+        field.iter().map(|m| rows.get(arm_of(m)?.arm)?.value("cpu_time").filter(|c| *c > 0.0)).collect();
     let picked = cheapest(&costs);
-    let best = tied[picked];
-    let alike_ones: Vec<String> =
-        tied.iter().enumerate().filter(|(i, _)| *i != picked).map(|(_, m)| (*m).clone()).collect();
+    let best = field[picked];
+    let alike_ones: Vec<String> = tied.iter().filter(|m| **m != best).map(|m| (*m).clone()).collect();
     let chosen = arm_of(best).ok_or_else(nothing)?;
     let mut against = Vec::new();
     if let Some((name, _)) = measure.passed_over.first() {
@@ -109,11 +117,7 @@ pub(super) fn recommended(
         ));
     }
     if goal != Goal::Cost && chosen.error > accuracy {
-        against.push(format!(
-            "no arm has the required accuracy, {accuracy}; the best one, {}, has an error of {}",
-            manifest.arms[chosen.arm].name,
-            short(chosen.error)
-        ));
+        against.push(inaccurate(manifest, &full, best, chosen));
     }
     if !against.is_empty() {
         return Err(against);
@@ -142,7 +146,12 @@ pub(super) fn recommended(
         } else {
             "none of the methods that are not distinguished is cheaper by more than 10 %"
         };
-        reasons.push(format!("{words}: {} s of processor time; {}: {} s", short(own), tied[i], short(other)));
+        reasons.push(format!(
+            "{words}: {} s of processor time; {}: {} s",
+            short(own),
+            field[i],
+            short(other)
+        ));
     }
     if goal != Goal::Cost {
         reasons.push(format!("the coarsest level at which its error is at most {accuracy}"));
@@ -155,13 +164,18 @@ pub(super) fn recommended(
             .push(format!("not established by the reference, and left out: {}", measure.left_out.join(", ")));
     }
     let dearer = times.is_some_and(|times| times > 1.0 + EQUAL_COST) && goal != Goal::Cost;
-    let alone = Alone { method: alike_ones.is_empty(), by_cost: dearer };
+    let decided_by = match (alike_ones.len(), field.len()) {
+        (0, _) => DecidedBy::Error,
+        (_, 1) => DecidedBy::Accuracy,
+        _ if dearer => DecidedBy::Cost,
+        _ => DecidedBy::Nothing,
+    };
     let evidence = Evidence {
         mesh: reference.is_some_and(Reference::refines_mesh),
         ensemble: manifest.ensemble.is_some(),
     };
     let (mut confidence, mut confidence_reasons) =
-        confidence(manifest, measure, &full, first_at, &alone, &evidence);
+        confidence(manifest, measure, &full, first_at, decided_by, &evidence);
     let arm = &manifest.arms[chosen.arm];
     if let Some(design) =
         manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedStep && manifest.by_cost(arm))
@@ -173,6 +187,29 @@ pub(super) fn recommended(
         ));
     }
     Ok(Verdict { arm: chosen.arm, alike: alike_ones, reasons, confidence, confidence_reasons })
+}
+
+/// Why a method without the required accuracy is not recommended: no arm has it, or only arms of
+/// methods with worse places have.
+fn inaccurate(manifest: &StudyManifest, levels: &[&Vec<Ranked>], method: &str, chosen: &Ranked) -> String {
+    let accuracy = manifest.accuracy();
+    let name = |r: &Ranked| &manifest.arms[r.arm].name;
+    let least = levels.iter().flat_map(|l| l.iter()).min_by(|a, b| a.error.total_cmp(&b.error));
+    let least = least.unwrap_or(chosen);
+    if least.error > accuracy {
+        return format!(
+            "no arm has the required accuracy, {accuracy}; the best one, {}, has an error of {}",
+            name(least),
+            short(least.error)
+        );
+    }
+    format!(
+        "the method with the best places, {method}, does not have the required accuracy, {accuracy}: its \
+         smallest error is {}; {} has an error of {}",
+        short(chosen.error),
+        name(least),
+        short(least.error)
+    )
 }
 
 /// Penetration of an arm whose contact is enforced by a penalty.
@@ -188,12 +225,14 @@ fn cheapest(costs: &[Option<f64>]) -> usize {
     costs.iter().position(|c| c.is_some_and(|c| c <= (1.0 + EQUAL_COST) * least)).unwrap_or(0)
 }
 
-/// Whether the recommended method is distinguished from all others.
-struct Alone {
-    /// By its errors.
-    method: bool,
-    /// By its cost, if not by its errors.
-    by_cost: bool,
+/// What distinguishes the recommended method from all others.
+#[derive(Clone, Copy)]
+enum DecidedBy {
+    Error,
+    /// Its error alone is small enough, though not distinguished from the others.
+    Accuracy,
+    Cost,
+    Nothing,
 }
 
 /// What the errors are known to be independent of.
@@ -209,7 +248,7 @@ fn confidence(
     measure: &Measure,
     levels: &[&Vec<Ranked>],
     first_at: usize,
-    alone: &Alone,
+    decided_by: DecidedBy,
     evidence: &Evidence,
 ) -> (Confidence, Vec<String>) {
     let (mut confidence, mut reasons) = (Confidence::High, Vec::new());
@@ -217,19 +256,27 @@ fn confidence(
         confidence = confidence.min(most);
         reasons.push(why);
     };
-    if !alone.method {
-        let close = format!("differences of at most {} or {} %", short(measure.uncertainty), 100.0 * ALIKE);
-        if alone.by_cost {
-            let why = format!(
+    let close = format!("differences of at most {} or {} %", short(measure.uncertainty), 100.0 * ALIKE);
+    match decided_by {
+        DecidedBy::Error => {}
+        DecidedBy::Accuracy => at_most(
+            Confidence::Low,
+            format!(
+                "its error is not distinguished from that of other methods ({close}); it alone has the \
+                 required accuracy, {}",
+                manifest.accuracy()
+            ),
+        ),
+        DecidedBy::Cost => at_most(
+            Confidence::Medium,
+            format!(
                 "its error is not distinguished from that of other methods ({close}); its lower cost decides"
-            );
-            at_most(Confidence::Medium, why);
-        } else {
-            let why = format!(
-                "other methods are not distinguished from it, neither by error ({close}) nor by cost"
-            );
-            at_most(Confidence::Low, why);
-        }
+            ),
+        ),
+        DecidedBy::Nothing => at_most(
+            Confidence::Low,
+            format!("other methods are not distinguished from it, neither by error ({close}) nor by cost"),
+        ),
     }
     if first_at < levels.len() {
         at_most(Confidence::Low, format!("it is ranked first at only {first_at} of {} levels", levels.len()));
