@@ -8,6 +8,9 @@
 //! of their uncertainties, than that of the reference, or than 5 %. The place of an arm is one more
 //! than the number of arms that are distinguishably better; within a place arms are in the order of
 //! their cost.
+//!
+//! The goal of least cost ranks the arms with the required accuracy by their own processor times, of
+//! which differences of up to 10 % are not distinguished.
 
 use super::arm::Arm;
 use super::compared::Compared;
@@ -19,7 +22,7 @@ use super::manifest::StudyManifest;
 use super::measure::{Judge, candidates};
 pub use super::measure::{Measure, error, standing};
 pub use super::places::Ranked;
-use super::places::places;
+use super::places::{cheaper, more_accurate, places};
 use super::recommendation::recommended;
 pub use super::recommendation::{Confidence, Verdict};
 use super::reference::Reference;
@@ -62,7 +65,7 @@ impl Ranking {
                 Err(why) => passed_over.push(why),
             }
         }
-        let Some((measure, mut errors)) = found else {
+        let Some((measure, errors)) = found else {
             let why =
                 passed_over.iter().map(|(name, why)| format!("{name}: {why}")).collect::<Vec<_>>().join("; ");
             let reasons = vec!["the reference establishes no measure of this goal".to_owned()];
@@ -76,16 +79,8 @@ impl Ranking {
         };
         let mut measure = Measure { passed_over, ..measure };
         if goal == Goal::Cost {
-            // The work of the arms that are accurate enough.
-            let works = rows.iter().map(|r| r.value("cpu_time"));
-            errors = errors
-                .iter()
-                .zip(works)
-                .map(|(e, work)| e.filter(|e| *e <= manifest.accuracy()).and(work))
-                .collect();
             measure.words =
                 format!("processor time of arms whose {} is at most {}", measure.words, manifest.accuracy());
-            measure.uncertainty = 0.0;
         }
         let count = manifest.arms.iter().map(|a| a.role.level + 1).max().unwrap_or(0);
         let level = |level: usize| {
@@ -99,9 +94,14 @@ impl Ranking {
                 Some(Ranked { arm: i, error, uncertainty, place: 0 })
             };
             let mut ranked: Vec<Ranked> = not_reference.filter_map(one).collect();
-            ranked.sort_by(|a, b| a.error.total_cmp(&b.error));
-            places(&mut ranked, measure.uncertainty);
             let cost = |r: &Ranked| rows[r.arm].value("cpu_time").unwrap_or(f64::INFINITY);
+            ranked.sort_by(|a, b| a.error.total_cmp(&b.error));
+            if goal == Goal::Cost {
+                ranked.retain(|r| r.error <= manifest.accuracy() && cost(r).is_finite());
+                places(&mut ranked, |a, b| cheaper(cost(a), cost(b)));
+            } else {
+                places(&mut ranked, |a, b| more_accurate(a, b, measure.uncertainty));
+            }
             ranked.sort_by(|a, b| a.place.cmp(&b.place).then(cost(a).total_cmp(&cost(b))));
             ranked
         };

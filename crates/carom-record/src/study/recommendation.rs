@@ -85,12 +85,15 @@ pub(super) fn recommended(
     let least = places(methods.first().ok_or_else(nothing)?);
     let tied: Vec<&String> = methods.into_iter().filter(|m| places(m) <= least).collect();
     let accuracy = manifest.accuracy();
+    let cost = |r: &Ranked| rows[r.arm].value("cpu_time").unwrap_or(f64::INFINITY);
+    // What the goal minimises.
+    let minimised = |r: &Ranked| if goal == Goal::Cost { cost(r) } else { r.error };
     // The arm of a method that would be recommended.
     let arm_of = |method: &String| {
         let arms: Vec<&Ranked> =
             full.iter().filter_map(|l| l.iter().find(|r| name(r.arm) == method)).collect();
         match goal {
-            Goal::Cost => arms.iter().min_by(|a, b| a.error.total_cmp(&b.error)).copied(),
+            Goal::Cost => arms.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).copied(),
             // Without an accurate one, the most accurate.
             _ => arms
                 .iter()
@@ -123,16 +126,18 @@ pub(super) fn recommended(
         return Err(against);
     }
     let first_at = full.iter().filter(|l| l.iter().any(|r| r.place == 1 && name(r.arm) == best)).count();
-    let mut reasons = vec![format!("{}: {}", measure.words, short(chosen.error))];
+    let unit = if goal == Goal::Cost { " s" } else { "" };
+    let mut reasons = vec![format!("{}: {}{unit}", measure.words, short(minimised(chosen)))];
     let others = full
         .iter()
         .flat_map(|l| l.iter())
         .filter(|r| manifest.arms[r.arm].role.level == manifest.arms[chosen.arm].role.level);
-    if let Some(next) = others.filter(|r| name(r.arm) != best).min_by(|a, b| a.error.total_cmp(&b.error)) {
+    let others = others.filter(|r| name(r.arm) != best);
+    if let Some(next) = others.min_by(|a, b| minimised(a).total_cmp(&minimised(b))) {
         reasons.push(format!(
-            "best of the other methods at the same level, {}: {}",
+            "best of the other methods at the same level, {}: {}{unit}",
             name(next.arm),
-            short(next.error)
+            short(minimised(next))
         ));
     }
     reasons.push(format!("ranked first at {first_at} of {} levels", full.len()));
@@ -175,7 +180,7 @@ pub(super) fn recommended(
         ensemble: manifest.ensemble.is_some(),
     };
     let (mut confidence, mut confidence_reasons) =
-        confidence(manifest, measure, &full, first_at, decided_by, &evidence);
+        confidence(goal, manifest, measure, &full, first_at, decided_by, &evidence);
     let arm = &manifest.arms[chosen.arm];
     if let Some(design) =
         manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedStep && manifest.by_cost(arm))
@@ -244,6 +249,7 @@ struct Evidence {
 }
 
 fn confidence(
+    goal: Goal,
     manifest: &StudyManifest,
     measure: &Measure,
     levels: &[&Vec<Ranked>],
@@ -272,6 +278,10 @@ fn confidence(
             format!(
                 "its error is not distinguished from that of other methods ({close}); its lower cost decides"
             ),
+        ),
+        DecidedBy::Nothing if goal == Goal::Cost => at_most(
+            Confidence::Low,
+            format!("other methods cost as much as it (differences of at most {} %)", 100.0 * EQUAL_COST),
         ),
         DecidedBy::Nothing => at_most(
             Confidence::Low,
@@ -321,10 +331,12 @@ fn confidence(
         );
     }
     if reasons.is_empty() {
-        reasons.push(
-            "it is ranked first at every level, by more than the uncertainties of arms and reference and 5 %"
-                .to_owned(),
-        );
+        let by = if goal == Goal::Cost {
+            "10 % of the cost"
+        } else {
+            "the uncertainties of arms and reference and 5 %"
+        };
+        reasons.push(format!("it is ranked first at every level, by more than {by}"));
     }
     (confidence, reasons)
 }
