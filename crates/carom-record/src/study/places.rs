@@ -15,6 +15,8 @@ pub struct Ranked {
     pub error: f64,
     /// Largest distance of a member of its ensemble from the median.
     pub uncertainty: f64,
+    /// Members of its ensemble that have an error, the arm itself included.
+    pub members: usize,
     /// Place, from 1; arms that are not distinguished share one.
     pub place: usize,
 }
@@ -48,8 +50,13 @@ mod tests {
     use super::*;
 
     fn of(errors: &[(f64, f64)], reference: f64) -> Vec<usize> {
-        let ranked =
-            |(arm, &(error, uncertainty)): (usize, &(f64, f64))| Ranked { arm, error, uncertainty, place: 0 };
+        let ranked = |(arm, &(error, uncertainty)): (usize, &(f64, f64))| Ranked {
+            arm,
+            error,
+            uncertainty,
+            members: 1,
+            place: 0,
+        };
         let mut ranked: Vec<Ranked> = errors.iter().enumerate().map(ranked).collect();
         places(&mut ranked, |a, b| more_accurate(a, b, reference));
         ranked.iter().map(|r| r.place).collect()

@@ -91,7 +91,7 @@ impl Ranking {
                 errors[i]?;
                 let members = Spread::of(manifest.runs_of(i).into_iter().filter_map(|run| errors[run]))?;
                 let (error, uncertainty) = (members.median(), members.half_width());
-                Some(Ranked { arm: i, error, uncertainty, place: 0 })
+                Some(Ranked { arm: i, error, uncertainty, members: members.count(), place: 0 })
             };
             let mut ranked: Vec<Ranked> = not_reference.filter_map(one).collect();
             let cost = |r: &Ranked| rows[r.arm].value("cpu_time").unwrap_or(f64::INFINITY);

@@ -177,7 +177,7 @@ pub(super) fn recommended(
     };
     let evidence = Evidence {
         mesh: reference.is_some_and(Reference::refines_mesh),
-        ensemble: manifest.ensemble.is_some(),
+        ensemble: full.iter().flat_map(|l| l.iter()).all(|r| r.members > 1),
     };
     let (mut confidence, mut confidence_reasons) =
         confidence(goal, manifest, measure, &full, first_at, decided_by, &evidence);
@@ -303,8 +303,8 @@ fn confidence(
         "`mesh = [1, 2, 4]` in [fine] refines it",
     );
     let ensemble = unseen(
-        "every arm was run once, so that chance is not told from method",
-        "[ensemble] runs it with several phases, roles and meshes",
+        "there are arms with the value of a single run, so that chance is not told from method",
+        "[ensemble] runs every arm with several phases, roles and meshes",
     );
     // One of them alone leaves the ranking of this mesh, or of these instants, open.
     let most = if evidence.mesh || evidence.ensemble { Confidence::Medium } else { Confidence::Low };
@@ -312,6 +312,20 @@ fn confidence(
         if !why.0 {
             at_most(most, why.1);
         }
+    }
+    // Members that failed or have no such number do not show how far it is spread.
+    let all = |r: &&Ranked| manifest.runs_of(r.arm).len();
+    let incomplete = levels.iter().flat_map(|l| l.iter()).filter(|r| r.members < all(r));
+    if let Some(worst) = incomplete.min_by_key(|r| r.members) {
+        at_most(
+            Confidence::Medium,
+            format!(
+                "only {} of {} members of \"{}\" have a value",
+                worst.members,
+                all(&worst),
+                manifest.arms[worst.arm].name
+            ),
+        );
     }
     let off = manifest
         .arms

@@ -156,3 +156,33 @@ fn cost_is_that_of_the_arm_and_accuracy_that_of_the_median() {
     assert_eq!((verdict.arm, verdict.alike), (1, vec!["a".into()]));
     assert!(verdict.reasons[0].ends_with("is at most 0.05: 1.08 s"), "{:?}", verdict.reasons);
 }
+
+/// What an ensemble shows is in the members that have a value: all three, two of three, or one.
+#[test]
+fn failed_members_are_no_evidence() {
+    let arms =
+        || study(&[("a", 0, 0.01, 1.0), ("b", 0, 0.04, 1.0), ("a", 1, 0.005, 2.0), ("b", 1, 0.02, 2.0)]);
+    let of = |failed: usize| {
+        let others: [&[(f64, f64)]; 4] =
+            [&[(0.01, 1.0); 2], &[(0.04, 1.0); 2], &[(0.005, 2.0); 2], &[(0.02, 2.0); 2]];
+        let (manifest, mut rows) = with_members(arms(), &others);
+        rows[4..4 + failed].iter_mut().for_each(|row| row.metrics.clear());
+        let ranking = by_energy(&(manifest, rows));
+        let verdict = ranking.verdict.unwrap();
+        assert_eq!((verdict.arm, ranking.levels[0][0].members), (0, 3 - failed));
+        (verdict.confidence, verdict.confidence_reasons.join("; "))
+    };
+    let mesh = "the reference was computed on the given mesh only";
+    let (confidence, why) = of(0);
+    assert_eq!(
+        (confidence, why.contains("members of"), why.contains(mesh)),
+        (Confidence::Medium, false, true)
+    );
+    let (confidence, why) = of(1);
+    assert!(
+        confidence == Confidence::Medium && why.contains("only 2 of 3 members of \"a 0\" have a value"),
+        "{why}"
+    );
+    let (confidence, why) = of(2);
+    assert!(confidence == Confidence::Low && why.contains("the value of a single run"), "{why}");
+}
