@@ -297,9 +297,17 @@ fn ranked_table(study: &Study, ranking: &Ranking) -> Markup {
     let without = methods(study).into_iter().flat_map(|(_, arms)| arms).filter(|arm| !placed(arm));
     let without: Vec<&str> = without.map(|arm| study.rows[arm].name.as_str()).collect();
     let why = if ranking.goal == Goal::Cost { "not accurate enough" } else { "no value of the metric" };
+    let unsound = ranking.levels.iter().flatten().filter(|r| !r.sound);
+    let unsound: Vec<&str> = unsound.map(|r| study.rows[r.arm].name.as_str()).collect();
     html! {
         (ranked::tables(study, ranking))
         @if !without.is_empty() { p.small { "Not ranked (" (why) "): " (without.join("; ")) "." } }
+        @if !unsound.is_empty() {
+            p.small {
+                "Placed behind all others of their level, and not recommended, because they created more \
+                 energy than the default guard allows: " (unsound.join("; ")) "."
+            }
+        }
         p.small {
             "The place of an arm is one more than the number of arms that are distinguishably better: by \
              more than the uncertainty of the reference, than their ranges over the ensemble together, and \

@@ -17,6 +17,8 @@ pub struct Ranked {
     pub uncertainty: f64,
     /// Members of its ensemble that have an error, the arm itself included.
     pub members: usize,
+    /// Whether it did not create much energy; other arms are placed last.
+    pub sound: bool,
     /// Place, from 1; arms that are not distinguished share one.
     pub place: usize,
 }
@@ -28,8 +30,10 @@ pub(super) fn alike(a: (f64, f64), b: (f64, f64), reference: f64) -> bool {
     (a.0 - b.0).abs() <= f64::max(reference, own)
 }
 
-/// Assigns places: one more than the number of arms that are distinguishably better.
+/// Assigns places: one more than the number of arms that are distinguishably better. An arm that
+/// created much energy is worse than any that did not.
 pub(super) fn places(ranked: &mut [Ranked], better: impl Fn(&Ranked, &Ranked) -> bool) {
+    let better = |a: &Ranked, b: &Ranked| if a.sound == b.sound { better(a, b) } else { a.sound };
     for i in 0..ranked.len() {
         ranked[i].place = 1 + ranked.iter().filter(|r| better(r, &ranked[i])).count();
     }
@@ -55,6 +59,7 @@ mod tests {
             error,
             uncertainty,
             members: 1,
+            sound: true,
             place: 0,
         };
         let mut ranked: Vec<Ranked> = errors.iter().enumerate().map(ranked).collect();

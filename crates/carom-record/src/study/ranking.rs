@@ -7,7 +7,8 @@
 //! same cost. Two arms of a level are not distinguished if their errors differ by no more than the sum
 //! of their uncertainties, than that of the reference, or than 5 %. The place of an arm is one more
 //! than the number of arms that are distinguishably better; within a place arms are in the order of
-//! their cost.
+//! their cost. An arm that created so much energy that the default guard would have stopped it is placed
+//! behind all others; a member that did counts as failed.
 //!
 //! The goal of least cost ranks the arms with the required accuracy by their own processor times, of
 //! which differences of up to 10 % are not distinguished.
@@ -89,9 +90,18 @@ impl Ranking {
             let not_reference = arms.filter(|(_, a)| manifest.reference.as_ref() != Some(&a.name));
             let one = |(i, _): (usize, &Arm)| {
                 errors[i]?;
-                let members = Spread::of(manifest.runs_of(i).into_iter().filter_map(|run| errors[run]))?;
+                let sound = |run: &usize| !rows[*run].is_unsound();
+                let members = manifest.runs_of(i).into_iter().filter(|run| *run == i || sound(run));
+                let members = Spread::of(members.filter_map(|run| errors[run]))?;
                 let (error, uncertainty) = (members.median(), members.half_width());
-                Some(Ranked { arm: i, error, uncertainty, members: members.count(), place: 0 })
+                Some(Ranked {
+                    arm: i,
+                    error,
+                    uncertainty,
+                    members: members.count(),
+                    sound: sound(&i),
+                    place: 0,
+                })
             };
             let mut ranked: Vec<Ranked> = not_reference.filter_map(one).collect();
             let cost = |r: &Ranked| rows[r.arm].value("cpu_time").unwrap_or(f64::INFINITY);

@@ -60,6 +60,10 @@ pub(super) fn recommended(
     reference: Option<&Reference>,
 ) -> Result<Verdict, Vec<String>> {
     let name = |arm: usize| manifest.arms[arm].role.method.as_ref().unwrap_or(&manifest.arms[arm].name);
+    // An arm that created much energy is not recommended, nor evidence for its method.
+    let sound = |ranked: &Vec<Ranked>| ranked.iter().filter(|r| r.sound).cloned().collect();
+    let any_unsound = levels.iter().flatten().any(|r| !r.sound);
+    let levels: Vec<Vec<Ranked>> = levels.iter().map(sound).collect();
     let full: Vec<&Vec<Ranked>> = levels.iter().filter(|l| !l.is_empty()).collect();
     let mut methods: Vec<&String> = Vec::new();
     for ranked in full.iter().flat_map(|l| l.iter()) {
@@ -81,7 +85,8 @@ pub(super) fn recommended(
             .map_or(f64::INFINITY, |r| r.error)
     };
     methods.sort_by(|a, b| places(a).total_cmp(&places(b)).then(finest(a).total_cmp(&finest(b))));
-    let nothing = || vec![format!("no arm has a value for: {}", measure.words)];
+    let without = if any_unsound { "no arm that did not create energy" } else { "no arm" };
+    let nothing = || vec![format!("{without} has a value for: {}", measure.words)];
     let least = places(methods.first().ok_or_else(nothing)?);
     let tied: Vec<&String> = methods.into_iter().filter(|m| places(m) <= least).collect();
     let accuracy = manifest.accuracy();

@@ -186,3 +186,26 @@ fn failed_members_are_no_evidence() {
     let (confidence, why) = of(2);
     assert!(confidence == Confidence::Low && why.contains("the value of a single run"), "{why}");
 }
+
+/// Of three arms the one with the smallest drift created 3 % of energy; the guard allows 2 %.
+#[test]
+fn an_arm_that_creates_energy_is_last_and_not_recommended() {
+    let (manifest, mut rows) = study(&[("a", 0, 0.01, 1.0), ("b", 0, 0.03, 1.0), ("c", 0, 0.04, 1.0)]);
+    let created = |row: &mut Row, share: f64| {
+        row.metrics.push(Metric {
+            name: "energy_created".into(),
+            value: Some(share),
+            ..row.metrics[0].clone()
+        });
+    };
+    created(&mut rows[0], 0.03);
+    created(&mut rows[1], 0.019);
+    let ranking = by_energy(&(manifest.clone(), rows.clone()));
+    let found: Vec<_> = ranking.levels[0].iter().map(|r| (r.arm, r.place, r.sound)).collect();
+    assert_eq!(found, [(1, 1, true), (2, 2, true), (0, 3, false)]);
+    assert_eq!(ranking.verdict.unwrap().arm, 1);
+    rows[1..].iter_mut().for_each(|row| created(row, 0.5));
+    rows[1].metrics.remove(2);
+    let why = by_energy(&(manifest, rows)).verdict.unwrap_err();
+    assert_eq!(why, ["no arm that did not create energy has a value for: energy_drift, which should be 0"]);
+}
