@@ -194,7 +194,7 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
                     td { "Δt " (or_dash(design.steps.get(check.level).copied(), five)) }
                     td { (check.first) } td { (value(check)) } td { (best(check)) }
                     td {
-                        @match check.changes() {
+                        @match &check.better {
                             Some(method) => { "changes: " (method) " is better" },
                             None => "does not change",
                         }

@@ -117,8 +117,11 @@ impl Ranking {
         };
         let levels: Vec<Vec<Ranked>> = (0..count).map(level).collect();
         let verdict = recommended(goal, manifest, &measure, &levels, rows, reference);
-        let crosschecks =
-            if goal == Goal::Cost { Vec::new() } else { crosscheck::of(manifest, rows, &levels) };
+        let crosschecks = if goal == Goal::Cost {
+            Vec::new()
+        } else {
+            crosscheck::of(manifest, rows, &levels, measure.uncertainty)
+        };
         Self { goal, measure: Ok(measure), levels, crosschecks, verdict }
     }
 }

@@ -209,3 +209,41 @@ fn an_arm_that_creates_energy_is_last_and_not_recommended() {
     let why = by_energy(&(manifest, rows)).verdict.unwrap_err();
     assert_eq!(why, ["no arm that did not create energy has a value for: energy_drift, which should be 0"]);
 }
+
+/// A has the error 0.4/cost. At the coarse step B has 0.3 at the cost 2, where A has 0.2: half more,
+/// which is a change unless the uncertainties are as large. At the fine step A does not reach the
+/// cost of B.
+#[test]
+fn conclusions_change_by_more_than_the_uncertainties() {
+    let runs = [("a", 0, 0.4, 1.0), ("b", 0, 0.3, 2.0), ("a", 1, 0.1, 4.0), ("b", 1, 0.03, 8.0)];
+    let (manifest, rows) = study(&runs);
+    let of = |own: f64, reference: f64| {
+        let ranked = |(arm, place)| Ranked {
+            arm,
+            error: runs[arm].2,
+            uncertainty: own,
+            members: 3,
+            sound: true,
+            place,
+        };
+        let levels = [vec![ranked((1, 1)), ranked((0, 2))], vec![ranked((3, 1)), ranked((2, 2))]];
+        crosscheck::of(&manifest, &rows, &levels, reference)
+    };
+    let found = of(0.0, 0.0);
+    assert_eq!(found.len(), 1);
+    assert_eq!((found[0].at, found[0].value, found[0].first.as_str()), ("cost", 2.0, "b"));
+    assert_eq!((found[0].errors[0].0.as_str(), found[0].better.as_deref()), ("a", Some("a")));
+    assert!((found[0].errors[0].1 - 0.2).abs() < 1e-15);
+    assert_eq!(of(0.04, 0.09)[0].better.as_deref(), Some("a"));
+    assert_eq!((&of(0.06, 0.0)[0].better, &of(0.0, 0.11)[0].better), (&None, &None));
+}
+
+/// Of two arms in the first place, table and check begin with the same one, the cheaper.
+#[test]
+fn the_check_begins_with_the_first_arm_of_the_table() {
+    let runs = [("a", 0, 0.100, 2.0), ("b", 0, 0.102, 1.0), ("a", 1, 0.050, 4.0), ("b", 1, 0.051, 3.0)];
+    let ranking = by_energy(&study(&runs));
+    assert_eq!((ranking.levels[1][0].arm, ranking.levels[1][1].place), (3, 1));
+    let [check] = &ranking.crosschecks[..] else { panic!("{:?}", ranking.crosschecks) };
+    assert_eq!((check.level, check.first.as_str(), check.value, &check.better), (1, "b", 3.0, &None));
+}
