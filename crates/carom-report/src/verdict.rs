@@ -230,7 +230,7 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                 thead {
                     tr {
                         th { "Metric" } th { "Unit" } th.n { "Value" } th.n { "Uncertainty" }
-                        th.n { "Observed order" } th.n { "Range of members" }
+                        th.n { "Observed order" } th.n { "Half-width of members" }
                     }
                 }
                 @for (metric, value, uncertainty) in yes {
@@ -244,8 +244,10 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                 }
             }
             p.small {
-                "The uncertainty is that of the refinement (grid convergence index), plus the range of the \
-                 members of the ensemble, plus a step for instants."
+                "The uncertainty is that of the refinement (grid convergence index), plus the half-width of \
+                 the ensemble, which is the largest distance of a member from the median, plus a step for \
+                 instants (half a step with several phases), plus 5/4 of what averaging over 1/16 of the \
+                 contact changes, for extremes and variations."
             }
         }
         details open {

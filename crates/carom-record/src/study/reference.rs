@@ -4,8 +4,9 @@
 //! computed    runs at decreasing steps, and on finer meshes where `mesh` of [fine] says so; each level
 //!             is run with every member of the study's ensemble. Value: the median of the members at the
 //!             finest level. Uncertainty: that of the refinement (convergence.rs), plus the largest
-//!             distance of a member from the median, plus half a step for an instant, plus 5/4 of what
-//!             averaging over a short time changes, for extremes and variations (metrics/averaged.rs)
+//!             distance of a member from the median, plus a step for an instant (half a step if members
+//!             differ in phase), plus 5/4 of what averaging over a short time changes, for extremes and
+//!             variations (metrics/averaged.rs)
 //! an arm      the same with the arms that differ from it only in the step; with a single run nothing is known
 //! exact       the formulas of [exact], and the metrics that can be computed from these columns; uncertainty 0
 //! ideal       the values for elastic bodies: no change or dissipation of energy, no penetration
@@ -128,6 +129,8 @@ pub struct Level {
     pub step: f64,
     /// Factor of mesh refinement.
     pub mesh: f64,
+    /// Number of different phases of the members.
+    pub phases: usize,
     /// The members of its ensemble, the run as given first.
     pub members: Vec<Trajectory>,
 }
@@ -135,7 +138,7 @@ pub struct Level {
 impl Level {
     /// A single run on the given mesh.
     pub fn single(step: f64, run: Trajectory) -> Self {
-        Self { step, mesh: 1.0, members: vec![run] }
+        Self { step, mesh: 1.0, phases: 1, members: vec![run] }
     }
 }
 
@@ -231,8 +234,9 @@ impl Reference {
         let medians: Vec<f64> = levels.iter().map(Spread::median).collect();
         let found = converged(&self.sizes(), &medians).ok_or("a single run gives no error estimate")?;
         let (value, spread) = levels.last().map_or((0.0, 0.0), |s| (s.median(), s.half_width()));
-        // A recorded instant is late by up to a step; the median of several phases by half of one.
-        let late = |level: &Level| if level.members.len() > 1 { level.step / 2.0 } else { level.step };
+        // A recorded instant is late by up to a step; the median of n phases by (n + 1)/2n of one, which
+        // is at most half a step more than the spread of the phases, (n − 1)/2n.
+        let late = |level: &Level| if level.phases > 1 { level.step / 2.0 } else { level.step };
         let instant = self.levels.last().filter(|_| INSTANTS.contains(&name)).map_or(0.0, late);
         let single = self.levels.last().and_then(|level| level.members.first()?.value(name));
         let averaged =
@@ -389,21 +393,26 @@ impl StudyManifest {
         let arms = self.reference_arms();
         let (mut levels, mut averaged) = (Vec::new(), Vec::new());
         for &i in &arms {
-            let mut members = Vec::new();
+            let (mut members, mut phases) = (Vec::new(), Vec::new());
             for run in self.runs_of(i) {
+                let phase = self.run(run).role.member.map_or(0.0, |of| of.member.phase);
                 if self.state(directory, self.run(run))?.0 == Some(Status::Finished) {
                     let run = Run::open(&directory.join(&self.run(run).directory))?;
                     if members.is_empty() && Some(&i) == arms.last() {
                         averaged = metrics::of_averages(&run);
                     }
                     members.push(Trajectory::of(&run, &metrics::of_run(&run)));
+                    if !phases.contains(&phase) {
+                        phases.push(phase);
+                    }
                 } else if run == i {
                     return Ok(None);
                 }
             }
             let arm = &self.arms[i];
             let mesh = arm.case.get("refine").and_then(serde_json::Value::as_f64).unwrap_or(1.0);
-            levels.push(Level { step: step(arm, "time.step").unwrap_or_default(), mesh, members });
+            let step = step(arm, "time.step").unwrap_or_default();
+            levels.push(Level { step, mesh, phases: phases.len(), members });
         }
         let Some(last) = arms.last() else { return Ok(None) };
         let reference = Reference::of_levels(String::new(), levels);
@@ -424,14 +433,9 @@ impl StudyManifest {
 mod tests {
     use super::*;
 
-    fn with(values: &[f64]) -> Trajectory {
-        let metric = |value: &f64| Metric {
-            name: "m".into(),
-            value: Some(*value),
-            unit: String::new(),
-            definition: "",
-        };
-        Trajectory { metrics: values.iter().map(metric).collect(), ..Trajectory::default() }
+    fn with(name: &'static str, value: f64) -> Trajectory {
+        let metric = Metric { name: name.into(), value: Some(value), unit: String::new(), definition: "" };
+        Trajectory { metrics: vec![metric], ..Trajectory::default() }
     }
 
     /// By hand: 1.4, 1.2, 1.1 at halved steps converge with first order to 1.0; members at the
@@ -441,7 +445,8 @@ mod tests {
         let level = |step: f64, values: &[f64]| Level {
             step,
             mesh: 1.0,
-            members: values.iter().map(|v| with(&[*v])).collect(),
+            phases: 1,
+            members: values.iter().map(|v| with("m", *v)).collect(),
         };
         let of = |finest: &[f64]| {
             let levels = vec![level(4.0, &[1.4]), level(2.0, &[1.2]), level(1.0, finest)];
@@ -454,6 +459,64 @@ mod tests {
         assert!(matches!(of(&[3.0]).metric("m"), Standing::Not(_)));
         let single = Reference::of_levels(String::new(), vec![level(1.0, &[1.0])]);
         assert!(matches!(single.metric("m"), Standing::Not(_)) && !single.has_ensemble());
+    }
+
+    /// By hand: instants 1.4, 1.2, 1.1 at the steps 4, 2, 1 are uncertain by 0.125 as above, and late by
+    /// up to one step; half of it where phases are known, not where roles or meshes are swapped only.
+    /// Members 0.2 before and after the median add 0.2.
+    #[test]
+    fn instants_are_late() {
+        let of = |phases: usize, finest: &[f64]| {
+            let level = |step: f64, values: &[f64]| Level {
+                step,
+                mesh: 1.0,
+                phases,
+                members: values.iter().map(|v| with("contact_end", *v)).collect(),
+            };
+            let levels = vec![level(4.0, &[1.4]), level(2.0, &[1.2]), level(1.0, finest)];
+            Reference::of_levels(String::new(), levels).estimate("contact_end").unwrap().uncertainty
+        };
+        assert!((of(1, &[1.1]) - 1.125).abs() < 1e-9);
+        assert!((of(1, &[1.1, 0.9, 1.3]) - 1.325).abs() < 1e-9);
+        assert!((of(3, &[1.1, 0.9, 1.3]) - 0.825).abs() < 1e-9);
+    }
+
+    /// By hand: averaging changes the peak of the finest run from 1.1 to 0.9; 5/4 of that is 0.25.
+    #[test]
+    fn what_averaging_changes_is_uncertain() {
+        let levels = [(4.0, 1.4), (2.0, 1.2), (1.0, 1.1)];
+        let levels = levels.map(|(step, value)| Level::single(step, with("peak_force", value)));
+        let mut reference = Reference::of_levels(String::new(), levels.into());
+        reference.averaged = with("peak_force", 0.9).metrics;
+        assert!((reference.estimate("peak_force").unwrap().uncertainty - 0.375).abs() < 1e-9);
+    }
+
+    /// Columns off from 10 t by 0.4, 0.2 and 0.1 on [0, 1], except at the ends, which set the range: the
+    /// deviations between successive levels are in the ratio of 2, so that the order is 1 and the
+    /// uncertainty 5/4 of the last deviation. By hand, with a row in the middle only of three.
+    #[test]
+    fn uncertainty_and_band_of_a_column() {
+        let run = |off: f64| Trajectory {
+            times: vec![0.0, 0.5, 1.0],
+            columns: [("A.uy".to_owned(), vec![0.0, 5.0 + off, 10.0])].into(),
+            metrics: Vec::new(),
+        };
+        let levels = |finest: Vec<Trajectory>| {
+            let finest = Level { step: 1.0, mesh: 1.0, phases: 1, members: finest };
+            let levels = vec![Level::single(4.0, run(0.4)), Level::single(2.0, run(0.2)), finest];
+            Reference::of_levels(String::new(), levels)
+        };
+        let one = levels(vec![run(0.1)]);
+        let rms = |off: f64| off / 10.0 / 3.0_f64.sqrt();
+        let uncertainty = |of: &Reference| of.uncertainty("A.uy").established().unwrap().1;
+        assert!((uncertainty(&one) - 1.25 * rms(0.1)).abs() < 1e-9);
+        // In the middle the two finest levels differ by 0.1; five quarters of that.
+        let band = one.band("A.uy");
+        assert!(band[0] == 0.0 && (band[1] - 0.125).abs() < 1e-9 && band[2] == 0.0, "{band:?}");
+        // A member 0.3 away adds its deviation.
+        let two = levels(vec![run(0.1), run(0.4)]);
+        assert!((uncertainty(&two) - 1.25 * rms(0.1) - rms(0.3)).abs() < 1e-9);
+        assert!(matches!(one.uncertainty("B.uy"), Standing::Not(_)) && one.band("B.uy").is_empty());
     }
 
     /// The bar on a wall: a force of 300 from 0.5 to 7/6. Its variation is 600; its impulse is a
