@@ -1,7 +1,6 @@
 //! What an ensemble shows: the median of every metric over the members of an arm, and their range.
 
 use carom_record::Status;
-use carom_record::metrics::WORK;
 use carom_record::study::Study;
 use maud::{Markup, html};
 
@@ -13,7 +12,7 @@ use crate::text::Label;
 pub(crate) fn section(study: &Study) -> Markup {
     let Some(ensemble) = &study.manifest.ensemble else { return Markup::default() };
     let failed = study.members.iter().filter(|row| row.status == Some(Status::Failed)).count();
-    let metrics = study.metrics().into_iter().filter(|m| !WORK.iter().any(|(d, _)| d.name == m.name));
+    let metrics = study.metrics().into_iter().filter(|m| !m.is_work());
     let metrics: Vec<_> = metrics.collect();
     html! {
         h2 { "Ensemble" }

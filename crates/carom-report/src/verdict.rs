@@ -1,7 +1,6 @@
 //! The recommendation of a study and its basis: ranking, reference values, orders before and after
 //! the first contact.
 
-use carom_record::metrics::WORK;
 use carom_record::study::design::{Goal, Kind};
 use carom_record::study::ranking::{Crosscheck, Ranking, error, standing};
 use carom_record::study::reference::{Reference, Standing};
@@ -212,7 +211,7 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
 /// What the reference establishes, and what it does not.
 fn reference_values(study: &Study, reference: &Reference) -> Markup {
     let (mut not, mut yes) = (Vec::new(), Vec::new());
-    for metric in study.metrics().into_iter().filter(|m| !WORK.iter().any(|(d, _)| d.name == m.name)) {
+    for metric in study.metrics().into_iter().filter(|m| !m.is_work()) {
         match standing(Some(reference), &metric.name) {
             Standing::Not(why) => not.push((metric.name.to_string(), why)),
             Standing::Established { value, uncertainty } => yes.push((metric, value, uncertainty)),

@@ -20,6 +20,13 @@ pub fn all(history: &History) -> Vec<Metric> {
     HISTORY.iter().map(metric).collect()
 }
 
+impl Metric {
+    /// Whether it is one of the computational work, which says nothing about the solution.
+    pub fn is_work(&self) -> bool {
+        WORK.iter().any(|(definition, _)| definition.name == self.name)
+    }
+}
+
 /// Definition and value of a metric of a column; none if there is no such metric.
 pub fn of_column(history: &History, column: &str, what: &str) -> Option<(&'static Definition, Option<f64>)> {
     let (definition, value) = COLUMNS.iter().chain(&FREE).find(|(d, _)| d.name == what)?;
@@ -76,4 +83,20 @@ pub fn of_run(run: &Run) -> Vec<Metric> {
         metrics.push(Metric { name: definition.name.into(), value, unit, definition: definition.meaning });
     }
     metrics
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_and_counts_are_work() {
+        let is_work = |name: &'static str| {
+            Metric { name: name.into(), value: None, unit: String::new(), definition: "" }.is_work()
+        };
+        let work =
+            ["steps", "newton_iterations", "rejected_steps", "factorisations", "cpu_time", "wall_time"];
+        assert!(work.into_iter().all(is_work));
+        assert!(!is_work("chatter") && !is_work("energy_lost:1") && !is_work("A.ux:max"));
+    }
 }

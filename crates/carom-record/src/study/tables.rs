@@ -6,7 +6,7 @@ use super::ensemble::Spread;
 use super::measure::standing;
 use super::reference::Standing;
 use super::{Study, Verdict};
-use crate::metrics::{Metric, WORK};
+use crate::metrics::Metric;
 use crate::{RecordError, Status, files};
 
 /// A status in the tables.
@@ -121,7 +121,7 @@ impl Study {
             ]
             .map(String::from)
             .to_vec();
-            let metrics = self.metrics().into_iter().filter(|m| !WORK.iter().any(|(d, _)| d.name == m.name));
+            let metrics = self.metrics().into_iter().filter(|m| !m.is_work());
             let line = |m: &Metric| {
                 let estimate = reference.estimate(&m.name).ok();
                 let (yes, known, why) = match standing(Some(reference), &m.name) {
