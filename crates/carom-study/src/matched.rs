@@ -29,7 +29,7 @@ use carom_run::case::Case;
 use carom_run::recording::{self, Options, Progress};
 use serde::{Deserialize, Serialize};
 
-use crate::compute::compute;
+use crate::compute::{case_of, compute};
 use crate::error::StudyError;
 use crate::jobs::{Ended, Event, side_by_side};
 
@@ -258,11 +258,6 @@ fn case_with(manifest: &StudyManifest, i: usize, steps: u64) -> Result<Case, Stu
         case.time.step = case.time.end / steps as f64;
     }
     Ok(case)
-}
-
-fn case_of(arm: &Arm) -> Result<Case, StudyError> {
-    serde_json::from_value(arm.case.clone())
-        .map_err(|e| StudyError::Incompatible { arm: arm.name.clone(), what: e.to_string() })
 }
 
 /// Pilot runs of an arm until its cost matches the budget. Returns how the accepted one ended, its
