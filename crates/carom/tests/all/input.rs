@@ -133,8 +133,35 @@ fn a_silent_pipe_is_named_after_two_seconds() {
         let mut child = spawned(place.command(&["check", "-", option]).stdin(Stdio::piped()));
         std::thread::sleep(Duration::from_millis(2500));
         child.stdin.take().unwrap().write_all(FLIGHT.as_bytes()).unwrap();
-        expect(&child.wait_with_output().unwrap(), 0, &[]);
+        let done = child.wait_with_output().unwrap();
+        expect(&done, 0, &[]);
+        assert!(done.stderr.is_empty(), "{}", text(&done.stderr));
     }
+}
+
+/// The paths of cases start at the folder of a pipe, and at the working directory for standard input.
+#[test]
+fn a_study_is_read_once_from_a_pipe_or_standard_input() {
+    const STUDY: &str = "case = 'case.toml'\nset = { 'time.end' = 0.05 }\n[[arm]]\nname = 'only one'\n";
+    let place = flight("study-pipe");
+    assert!(Command::new("mkfifo").arg(place.0.join("pipe")).status().unwrap().success());
+    for (command, path) in [("check", "pipe"), ("check", "-"), ("study", "pipe"), ("study", "-")] {
+        let options = if command == "study" { &["--no-report"][..] } else { &[] };
+        let mut child = spawned(place.command(&[&[command, path], options].concat()).stdin(Stdio::piped()));
+        let mut input = child.stdin.take().unwrap();
+        if path == "-" {
+            input.write_all(STUDY.as_bytes()).unwrap();
+        } else {
+            std::fs::write(place.0.join(path), STUDY).unwrap();
+        }
+        drop(input);
+        let done = child.wait_with_output().unwrap();
+        expect(&done, 0, &[]);
+        assert!(text(&done.stdout).contains("only one"), "{command} {path}: {}", text(&done.stdout));
+    }
+    assert!(
+        place.0.join("runs/pipe/study.json").is_file() && place.0.join("runs/stdin/study.json").is_file()
+    );
 }
 
 #[test]
