@@ -267,7 +267,11 @@ fn confidence(
         confidence = confidence.min(most);
         reasons.push(why);
     };
-    let close = format!("differences of at most {} or {} %", short(measure.uncertainty), 100.0 * ALIKE);
+    let close = format!(
+        "differences of at most {}, {} % or the half-widths of both ensembles",
+        short(measure.uncertainty),
+        100.0 * ALIKE
+    );
     match decided_by {
         DecidedBy::Error => {}
         DecidedBy::Accuracy => at_most(

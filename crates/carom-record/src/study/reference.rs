@@ -22,11 +22,12 @@ use std::path::Path;
 use carom_formula::Formula;
 
 use super::arm::{Arm, step};
-use super::convergence::{SAFE, converged};
+use super::convergence::converged;
 use super::digits::short;
 use super::ensemble::Spread;
 use super::manifest::StudyManifest;
 use crate::metrics::{self, Metric};
+use crate::order::SAFE;
 use crate::{Column, History, RecordError, Run, Status};
 
 /// Largest uncertainty of an established value, relative to the value; of a column, relative to its
@@ -279,9 +280,8 @@ impl Reference {
             let (fine, coarse) = (b.columns.get(column)?, a.columns.get(column)?);
             metrics::deviation(&a.times, coarse, (&b.times, fine))
         };
-        let first = |level: &Level| level.members.first().cloned();
-        let between: Option<Vec<f64>> =
-            self.levels.windows(2).map(|pair| apart(&first(&pair[0])?, &first(&pair[1])?)).collect();
+        let between = |pair: &[Level]| apart(pair[0].members.first()?, pair[1].members.first()?);
+        let between: Option<Vec<f64>> = self.levels.windows(2).map(between).collect();
         let finest = self.levels.last()?;
         let (one, others) = finest.members.split_first()?;
         let spread = others.iter().map(|other| apart(other, one)).collect::<Option<Vec<f64>>>()?;
