@@ -26,6 +26,8 @@ const MANY: usize = 12;
 pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins: &[Origin]) -> String {
     let failed = study.rows.iter().filter(|row| row.status == Some(Status::Failed)).count();
     let unsound = study.rows.iter().filter(|row| row.is_unsound()).count() - failed;
+    let expectations = || study.rows.iter().flat_map(|row| &row.expectations).chain(&study.expectations);
+    let (expected, missed) = (expectations().count(), expectations().filter(|e| !e.pass).count());
     let (class, word) = match study.manifest.status {
         Status::Finished if failed > 0 => {
             ("failed", format!("finished; {failed} of {} arms failed", study.rows.len()))
@@ -33,6 +35,9 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
         Status::Finished if unsound > 0 => {
             let of = study.rows.len();
             ("failed", format!("finished; {unsound} of {of} arms created more than 2 % of the energy"))
+        }
+        Status::Finished if missed > 0 => {
+            ("failed", format!("finished; {missed} of {expected} expectations missed"))
         }
         Status::Finished => ("finished", "finished".to_owned()),
         Status::Running => ("running", "running or interrupted; can be resumed".to_owned()),
@@ -46,7 +51,7 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
         (verdict::rankings(study))
         (claims(study))
         (ensemble::section(study))
-        (expectations(study))
+        (self::expectations(study))
         (warnings(study, origins))
         h2 { "Figures" }
         @for (i, plot) in plots.iter().enumerate() {
