@@ -27,12 +27,6 @@ pub(crate) fn plots(study: &Study, columns: &[Column], time: &str) -> Vec<Plot> 
     plots
 }
 
-/// The method of an arm, or the name of the arm where there are no methods.
-fn method(study: &Study, arm: usize) -> &str {
-    let arm = &study.manifest.arms[arm];
-    arm.role.method.as_deref().unwrap_or(&arm.name)
-}
-
 /// Methods with their finished arms, the coarsest first, without the arms of the reference.
 pub(crate) fn methods(study: &Study) -> Vec<(&str, Vec<usize>)> {
     let mut found: Vec<(&str, Vec<usize>)> = Vec::new();
@@ -42,7 +36,7 @@ pub(crate) fn methods(study: &Study) -> Vec<(&str, Vec<usize>)> {
         if reference || row.status != Some(Status::Finished) {
             continue;
         }
-        let name = method(study, i);
+        let name = arm.method();
         match found.iter_mut().find(|(n, _)| *n == name) {
             Some((_, arms)) => arms.push(i),
             None => found.push((name, vec![i])),

@@ -4,7 +4,7 @@
 use carom_record::study::design::{Goal, Kind};
 use carom_record::study::ranking::{Crosscheck, Ranking, error, standing};
 use carom_record::study::reference::{Reference, Standing};
-use carom_record::study::{Arm, Study, step};
+use carom_record::study::{Study, step};
 use maud::{Markup, html};
 
 use crate::digits::{five, three};
@@ -60,14 +60,13 @@ pub(crate) fn summary(study: &Study) -> Markup {
         }
     };
     let arm = &study.manifest.arms[verdict.arm];
-    let sets: Vec<&String> =
-        arm.sets.iter().filter(|set| !set.trim_start().starts_with("time.step")).collect();
+    let sets: Vec<&String> = arm.sets_without_step().collect();
     let entry =
         |head: &str, lines: &[String]| html! { dt { (head) } @for line in lines { dd { (Label(line)) } } };
     html! {
         section.verdict {
             h2 {
-                "Recommended: " (name(arm))
+                "Recommended: " (arm.method())
                 @if let Some(h) = step(arm, "time.step") { ", Δt = " (five(h)) }
             }
             p { (Prose(&goal)) }
@@ -84,11 +83,6 @@ pub(crate) fn summary(study: &Study) -> Markup {
             }
         }
     }
-}
-
-/// The method of an arm, or the name of the arm where there are no methods.
-fn name(arm: &Arm) -> &str {
-    arm.role.method.as_ref().unwrap_or(&arm.name)
 }
 
 /// Finished arms at the level of an arm, itself included.
@@ -274,7 +268,7 @@ fn other_goals(study: &Study) -> Markup {
                         (Ok(verdict), Ok(measure)) => {
                             @let arm = &study.manifest.arms[verdict.arm];
                             td {
-                                (name(arm))
+                                (arm.method())
                                 @if !verdict.alike.is_empty() {
                                     br; span.small { "tied with " (verdict.alike.join(" · ")) }
                                 }

@@ -23,7 +23,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
-use carom_record::study::{Arm, StudyManifest};
+use carom_record::study::{Arm, StudyManifest, sets_step};
 use carom_record::{Manifest, RecordError, Status};
 use carom_run::case::Case;
 use carom_run::recording::{self, Options, Progress};
@@ -243,7 +243,7 @@ fn place(manifest: &mut StudyManifest, i: usize, step: f64) -> Result<(), StudyE
         None => &mut manifest.arms[i],
         Some(member) => &mut manifest.members[member],
     };
-    arm.sets.retain(|set| !set.trim_start().starts_with("time.step="));
+    arm.sets.retain(|set| !sets_step(set));
     arm.sets.push(format!("time.step={step:?}"));
     arm.steps = case.time.steps() as u64;
     arm.case = serde_json::to_value(&case).unwrap_or_default();
@@ -337,7 +337,7 @@ fn trial(
     } else {
         let case = case_with(manifest, i, steps)?;
         let mut source = manifest.source_of(&manifest.arms[i]);
-        source.sets.retain(|set| !set.trim_start().starts_with("time.step="));
+        source.sets.retain(|set| !sets_step(set));
         source.sets.push(format!("time.step={:?}", case.time.step));
         recording::run(&case, source, path, options, progress, stop)
     };

@@ -45,7 +45,7 @@ pub(super) fn of(
     let at = |arm: usize| {
         if by_step { step(&manifest.arms[arm], "time.step") } else { rows[arm].value("cpu_time") }
     };
-    let method = |arm: usize| manifest.arms[arm].role.method.clone().unwrap_or_default();
+    let method = |arm: usize| manifest.arms[arm].method().to_owned();
     let mut methods: Vec<Curve> = Vec::new();
     for ranked in levels.iter().flatten().filter(|r| r.sound) {
         let Some(x) = at(ranked.arm).filter(|x| *x > 0.0 && ranked.error > 0.0) else { continue };

@@ -36,7 +36,7 @@ use std::path::{Path, PathBuf};
 use crate::metrics::{self, Metric};
 use crate::question::{Question, Series};
 use crate::{Expectation, RecordError, Run, Status, judge};
-pub use arm::{Arm, step};
+pub use arm::{Arm, sets_step, step};
 pub use arms::ArmRecords;
 use checks::Checks;
 pub use claim::{Claim, Comparison, Held, Verdict};

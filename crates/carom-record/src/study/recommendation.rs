@@ -59,26 +59,26 @@ pub(super) fn recommended(
     rows: &[Row],
     reference: Option<&Reference>,
 ) -> Result<Verdict, Vec<String>> {
-    let name = |arm: usize| manifest.arms[arm].role.method.as_ref().unwrap_or(&manifest.arms[arm].name);
+    let name = |arm: usize| manifest.arms[arm].method();
     // An arm that created much energy is not recommended, nor evidence for its method.
     let sound = |ranked: &Vec<Ranked>| ranked.iter().filter(|r| r.sound).cloned().collect();
     let any_unsound = levels.iter().flatten().any(|r| !r.sound);
     let levels: Vec<Vec<Ranked>> = levels.iter().map(sound).collect();
     let full: Vec<&Vec<Ranked>> = levels.iter().filter(|l| !l.is_empty()).collect();
-    let mut methods: Vec<&String> = Vec::new();
+    let mut methods: Vec<&str> = Vec::new();
     for ranked in full.iter().flat_map(|l| l.iter()) {
         if !methods.contains(&name(ranked.arm)) {
             methods.push(name(ranked.arm));
         }
     }
     // A method without an arm at a level is placed after all others.
-    let places = |method: &String| {
+    let places = |method: &str| {
         let place = |l: &&Vec<Ranked>| {
             l.iter().find(|r| name(r.arm) == method).map_or(manifest.arms.len() + 1, |r| r.place)
         };
         full.iter().map(place).sum::<usize>() as f64 / full.len() as f64
     };
-    let finest = |method: &String| {
+    let finest = |method: &str| {
         full.iter()
             .rev()
             .find_map(|l| l.iter().find(|r| name(r.arm) == method))
@@ -88,13 +88,13 @@ pub(super) fn recommended(
     let without = if any_unsound { "no arm that did not create energy" } else { "no arm" };
     let nothing = || vec![format!("{without} has a value for: {}", measure.words)];
     let least = places(methods.first().ok_or_else(nothing)?);
-    let tied: Vec<&String> = methods.into_iter().filter(|m| places(m) <= least).collect();
+    let tied: Vec<&str> = methods.into_iter().filter(|m| places(m) <= least).collect();
     let accuracy = manifest.accuracy();
     let cost = |r: &Ranked| rows[r.arm].value("cpu_time").unwrap_or(f64::INFINITY);
     // What the goal minimises.
     let minimised = |r: &Ranked| if goal == Goal::Cost { cost(r) } else { r.error };
     // The arm of a method that would be recommended.
-    let arm_of = |method: &String| {
+    let arm_of = |method: &str| {
         let arms: Vec<&Ranked> =
             full.iter().filter_map(|l| l.iter().find(|r| name(r.arm) == method)).collect();
         match goal {
@@ -108,14 +108,14 @@ pub(super) fn recommended(
         }
     };
     // Among equals, one that is accurate enough goes before a cheaper one that is not.
-    let accurate = |m: &&String| goal == Goal::Cost || arm_of(m).is_some_and(|r| r.error <= accuracy);
-    let (fit, unfit): (Vec<&String>, Vec<&String>) = tied.iter().copied().partition(accurate);
+    let accurate = |m: &&str| goal == Goal::Cost || arm_of(m).is_some_and(|r| r.error <= accuracy);
+    let (fit, unfit): (Vec<&str>, Vec<&str>) = tied.iter().copied().partition(accurate);
     let field = if fit.is_empty() { &unfit } else { &fit };
     let costs: Vec<Option<f64>> =
         field.iter().map(|m| rows.get(arm_of(m)?.arm)?.value("cpu_time").filter(|c| *c > 0.0)).collect();
     let picked = cheapest(&costs);
     let best = field[picked];
-    let alike_ones: Vec<String> = tied.iter().filter(|m| **m != best).map(|m| (*m).clone()).collect();
+    let alike_ones: Vec<String> = tied.iter().filter(|m| **m != best).map(|m| (*m).to_owned()).collect();
     let chosen = arm_of(best).ok_or_else(nothing)?;
     let mut against = Vec::new();
     if let Some((name, _)) = measure.passed_over.first() {
@@ -181,7 +181,8 @@ pub(super) fn recommended(
         _ => DecidedBy::Nothing,
     };
     let evidence = Evidence {
-        mesh: reference.is_some_and(Reference::refines_mesh),
+        mesh: reference.map_or_else(|| ensemble_refines(manifest), Reference::refines_mesh),
+        reference: reference.is_some(),
         ensemble: full.iter().flat_map(|l| l.iter()).all(|r| r.members > 1),
     };
     let (mut confidence, mut confidence_reasons) =
@@ -222,6 +223,11 @@ fn inaccurate(manifest: &StudyManifest, levels: &[&Vec<Ranked>], method: &str, c
     )
 }
 
+/// Whether the arms are repeated on finer meshes.
+fn ensemble_refines(manifest: &StudyManifest) -> bool {
+    manifest.ensemble.as_ref().is_some_and(|ensemble| ensemble.mesh.len() > 1)
+}
+
 /// Penetration of an arm whose contact is enforced by a penalty.
 fn penetration(manifest: &StudyManifest, arm: usize, rows: &[Row]) -> Option<f64> {
     let contacts = manifest.arms[arm].case.get("contacts")?.as_array()?;
@@ -247,8 +253,10 @@ enum DecidedBy {
 
 /// What the errors are known to be independent of.
 struct Evidence {
-    /// The reference was computed on finer meshes.
+    /// The reference was computed on finer meshes; without one, the arms were.
     mesh: bool,
+    /// There is a reference.
+    reference: bool,
     /// The arms were run with several phases, roles or meshes.
     ensemble: bool,
 }
@@ -307,10 +315,11 @@ fn confidence(
         );
     }
     let unseen = |what: &str, cure: &str| format!("{what}; {cure}");
-    let mesh = unseen(
-        "the reference was computed on the given mesh only",
-        "`mesh = [1, 2, 4]` in [fine] refines it",
-    );
+    let mesh = if evidence.reference {
+        unseen("the reference was computed on the given mesh only", "`mesh = [1, 2, 4]` in [fine] refines it")
+    } else {
+        unseen("all arms were computed on the given mesh", "`mesh = [1, 2]` in [ensemble] refines it")
+    };
     let ensemble = unseen(
         "there are arms with the value of a single run, so that chance is not told from method",
         "[ensemble] runs every arm with several phases, roles and meshes",

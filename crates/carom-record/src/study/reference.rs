@@ -357,12 +357,7 @@ impl StudyManifest {
             return Vec::new();
         };
         let others = |a: &Arm| {
-            let sets = a
-                .sets
-                .iter()
-                .filter(|s| !s.trim_start().starts_with("time.step"))
-                .cloned()
-                .collect::<Vec<_>>();
+            let sets: Vec<String> = a.sets_without_step().cloned().collect();
             (sets, a.case_path.clone(), a.role.fine)
         };
         let size = |i: &usize| step(&self.arms[*i], "time.step").unwrap_or_default();
@@ -421,8 +416,12 @@ impl StudyManifest {
             n if reference.refines_mesh() => format!("the finest of {n} levels of step and mesh"),
             n => format!("the finest of {n} steps on the given mesh"),
         };
-        let members = reference.levels.last().map_or(1, |level| level.members.len());
-        let ensemble = if members > 1 { format!(", {members} members each") } else { String::new() };
+        let members = || reference.levels.iter().map(|level| level.members.len());
+        let ensemble = match (members().min().unwrap_or(1), members().max().unwrap_or(1)) {
+            (1, 1) => String::new(),
+            (least, most) if least == most => format!(", {most} members each"),
+            (least, most) => format!(", {least} to {most} members each"),
+        };
         let law = begins(&self.arms[*last]);
         let what = format!("\"{}\", {count}{ensemble}{law}", self.arms[*last].name);
         Ok(Some(Reference { what, averaged, ..reference }))

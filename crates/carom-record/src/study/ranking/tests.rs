@@ -172,7 +172,7 @@ fn failed_members_are_no_evidence() {
         assert_eq!((verdict.arm, ranking.levels[0][0].members), (0, 3 - failed));
         (verdict.confidence, verdict.confidence_reasons.join("; "))
     };
-    let mesh = "the reference was computed on the given mesh only";
+    let mesh = "all arms were computed on the given mesh";
     let (confidence, why) = of(0);
     assert_eq!(
         (confidence, why.contains("members of"), why.contains(mesh)),
