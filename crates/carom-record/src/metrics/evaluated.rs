@@ -33,6 +33,20 @@ pub fn of_column(history: &History, column: &str, what: &str) -> Option<(&'stati
     Some((definition, value(history, column)))
 }
 
+/// The metrics of [`COLUMNS`] of a column, named `COLUMN:METRIC`.
+pub(crate) fn of_columns(history: &History, column: &str) -> Vec<Metric> {
+    let metric = |(definition, value): &(Definition, fn(&History, &str) -> Option<f64>)| Metric {
+        name: format!("{column}:{}", definition.name).into(),
+        value: value(history, column),
+        unit: match definition.unit {
+            Unit::Column => history.unit(column).to_owned(),
+            _ => String::new(),
+        },
+        definition: definition.meaning,
+    };
+    COLUMNS.iter().map(metric).collect()
+}
+
 /// Names of the columns of the probes, in the order of the history.
 pub fn probe_columns(run: &Run) -> Vec<&str> {
     let probes = run.manifest.case.get("probes").and_then(|p| p.as_array());
@@ -67,11 +81,7 @@ pub fn of_run(run: &Run) -> Vec<Metric> {
         metrics.push(Metric { name, value: Some(value), unit, definition: definition.meaning });
     }
     for column in probe_columns(run) {
-        for (Definition { name, unit, meaning, .. }, value) in &COLUMNS {
-            let unit = if *unit == Unit::Column { history.unit(column).to_owned() } else { String::new() };
-            let name = format!("{column}:{name}").into();
-            metrics.push(Metric { name, value: value(history, column), unit, definition: meaning });
-        }
+        metrics.extend(of_columns(history, column));
         for (definition, value) in FREE.iter().filter_map(|(d, value)| Some((d, value(history, column)?))) {
             let (name, unit) =
                 (format!("{column}:{}", definition.name).into(), definition.unit.label(history));

@@ -198,13 +198,7 @@ impl Reference {
         let history = History::new(described.collect(), values.collect());
         let mut known = metrics::all(&history);
         for column in columns.keys() {
-            let of = metrics::COLUMNS.iter().map(|(d, value)| Metric {
-                name: format!("{column}:{}", d.name).into(),
-                value: value(&history, column),
-                unit: String::new(),
-                definition: d.meaning,
-            });
-            known.extend(of);
+            known.extend(metrics::of_columns(&history, column));
         }
         if history.column("contact_force_x").is_some() {
             columns.insert(FORCE.to_owned(), metrics::contact_force(&history));
