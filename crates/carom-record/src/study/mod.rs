@@ -28,8 +28,10 @@ mod places;
 pub mod ranking;
 mod recommendation;
 pub mod reference;
+mod reference_of;
 mod row;
 mod tables;
+mod trajectory;
 
 use std::path::{Path, PathBuf};
 

@@ -17,18 +17,16 @@
 //! established values are used for rankings.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use carom_formula::Formula;
 
-use super::arm::{Arm, step};
 use super::convergence::converged;
 use super::digits::short;
 use super::ensemble::Spread;
-use super::manifest::StudyManifest;
+pub use super::trajectory::{FORCE, Trajectory};
 use crate::metrics::{self, Metric};
 use crate::order::SAFE;
-use crate::{Column, History, RecordError, Run, Status};
+use crate::{Column, History};
 
 /// Largest uncertainty of an established value, relative to the value; of a column, relative to its
 /// range.
@@ -86,43 +84,6 @@ pub struct Estimate {
     pub spread: f64,
 }
 
-/// The part of a run that is used for comparisons.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Trajectory {
-    /// Times of the rows.
-    pub times: Vec<f64>,
-    /// Columns of probes and of the striker's centre, and [`FORCE`], the magnitude of the contact
-    /// force.
-    pub columns: BTreeMap<String, Vec<f64>>,
-    /// The metrics.
-    pub metrics: Vec<Metric>,
-}
-
-/// Column name of the magnitude of the contact force.
-pub const FORCE: &str = "contact force";
-
-impl Trajectory {
-    /// From a record.
-    pub fn of(run: &Run, metrics: &[Metric]) -> Self {
-        let history = &run.history;
-        let mut names: Vec<String> = metrics::probe_columns(run).into_iter().map(str::to_owned).collect();
-        if let Some(striker) = metrics::striker(history) {
-            names.extend(["x", "y"].map(|axis| format!("{striker}.center_{axis}")));
-        }
-        let columns = names.into_iter().filter_map(|name| {
-            let values = history.column(&name)?.to_vec();
-            Some((name, values))
-        });
-        let mut columns: BTreeMap<_, _> = columns.collect();
-        columns.insert(FORCE.to_owned(), metrics::contact_force(history));
-        Self { times: history.times().to_vec(), columns, metrics: metrics.to_vec() }
-    }
-
-    fn value(&self, metric: &str) -> Option<f64> {
-        self.metrics.iter().find(|m| m.name == metric)?.value
-    }
-}
-
 /// The runs of one level of refinement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
@@ -152,13 +113,29 @@ pub struct Reference {
     levels: Vec<Level>,
     /// Metrics of the finest run after averaging over a short time.
     averaged: Vec<Metric>,
+    /// Uncertainties of its columns, which take the whole record to compute.
+    uncertainties: BTreeMap<String, Standing>,
     exact: bool,
 }
 
 impl Reference {
     /// Of levels of decreasing steps, the finest last.
     pub fn of_levels(what: String, levels: Vec<Level>) -> Self {
-        Self { what, levels, averaged: Vec::new(), exact: false }
+        let mut reference =
+            Self { what, levels, averaged: Vec::new(), uncertainties: BTreeMap::new(), exact: false };
+        let columns = reference.columns().into_iter();
+        reference.uncertainties = columns.map(|c| (c.to_owned(), reference.of_column(c))).collect();
+        reference
+    }
+
+    /// With a description, and metrics of the finest run after averaging over a short time.
+    pub(super) fn described(self, what: String, averaged: Vec<Metric>) -> Self {
+        Self { what, averaged, ..self }
+    }
+
+    /// Its levels, the finest last.
+    pub(super) fn levels(&self) -> &[Level] {
+        &self.levels
     }
 
     /// Whether its uncertainty includes that of the mesh: it is exact, or its mesh was refined.
@@ -209,6 +186,7 @@ impl Reference {
             what: "the exact formulas of [exact]".to_owned(),
             levels,
             averaged: Vec::new(),
+            uncertainties: BTreeMap::new(),
             exact: true,
         })
     }
@@ -287,6 +265,10 @@ impl Reference {
         if self.exact {
             return Standing::Established { value: 0.0, uncertainty: 0.0 };
         }
+        self.uncertainties.get(column).cloned().unwrap_or_else(|| self.of_column(column))
+    }
+
+    fn of_column(&self, column: &str) -> Standing {
         let Some((apart, spread)) = self.deviations(column) else {
             return Standing::Not("a run of the reference has no such column".to_owned());
         };
@@ -326,99 +308,6 @@ impl Reference {
             there.map_or(0.0, |x| scale * (x - v).abs())
         };
         times.iter().zip(values).map(off).collect()
-    }
-}
-
-/// What happens where contact begins, which is a part of the mathematical problem as long as contact
-/// nodes have mass.
-fn begins(arm: &Arm) -> &'static str {
-    let contacts = arm.case.get("contacts").and_then(serde_json::Value::as_array);
-    let all = |value: &str| {
-        contacts.is_some_and(|c| !c.is_empty() && c.iter().all(|c| c["persistency"].as_str() == Some(value)))
-    };
-    match (all("project"), all("none")) {
-        (true, _) => "; impacts of nodes are inelastic (velocities are projected)",
-        (_, true) => "; velocities of nodes are not changed where contact begins",
-        _ => "",
-    }
-}
-
-impl StudyManifest {
-    /// Indices of the arms of the reference, the finest last: those of a computed reference, or at
-    /// most three: the named arm after those arms that differ from it only in a longer step.
-    fn reference_arms(&self) -> Vec<usize> {
-        let Some(named) = self.arms.iter().position(|a| self.reference.as_ref() == Some(&a.name)) else {
-            return Vec::new();
-        };
-        let others = |a: &Arm| {
-            let sets: Vec<String> = a.sets_without_step().cloned().collect();
-            (sets, a.case_path.clone(), a.role.fine)
-        };
-        let size = |i: &usize| step(&self.arms[*i], "time.step").unwrap_or_default();
-        if self.arms[named].role.fine {
-            let mut found: Vec<usize> = (0..self.arms.len()).filter(|i| self.arms[*i].role.fine).collect();
-            found.sort_by(|a, b| size(b).total_cmp(&size(a)));
-            return found;
-        }
-        let alike =
-            |i: &usize| others(&self.arms[*i]) == others(&self.arms[named]) && size(i) >= size(&named);
-        let mut found: Vec<usize> = (0..self.arms.len()).filter(alike).collect();
-        found.sort_by(|a, b| size(b).total_cmp(&size(a)));
-        found.split_off(found.len().saturating_sub(3))
-    }
-
-    /// The reference that arms are compared with.
-    ///
-    /// # Errors
-    /// Input/output or system error, or a damaged record.
-    pub(super) fn reference(&self, directory: &Path) -> Result<Option<Reference>, RecordError> {
-        if self.reference.as_deref() == Some("exact") {
-            let Some(case) = self.arms.first().map(|a| &a.case) else { return Ok(None) };
-            let formulas =
-                case.get("exact").and_then(|e| serde_json::from_value(e.clone()).ok()).unwrap_or_default();
-            let end = case.pointer("/time/end").and_then(serde_json::Value::as_f64).unwrap_or_default();
-            return Ok(Reference::of_formulas(&formulas, end, 8000));
-        }
-        let arms = self.reference_arms();
-        let (mut levels, mut averaged) = (Vec::new(), Vec::new());
-        for &i in &arms {
-            let (mut members, mut phases) = (Vec::new(), Vec::new());
-            for run in self.runs_of(i) {
-                let phase = self.run(run).role.member.map_or(0.0, |of| of.member.phase);
-                if self.state(directory, self.run(run))?.0 == Some(Status::Finished) {
-                    let run = Run::open(&directory.join(&self.run(run).directory))?;
-                    if members.is_empty() && Some(&i) == arms.last() {
-                        averaged = metrics::of_averages(&run);
-                    }
-                    members.push(Trajectory::of(&run, &metrics::of_run(&run)));
-                    if !phases.contains(&phase) {
-                        phases.push(phase);
-                    }
-                } else if run == i {
-                    return Ok(None);
-                }
-            }
-            let arm = &self.arms[i];
-            let mesh = arm.case.get("refine").and_then(serde_json::Value::as_f64).unwrap_or(1.0);
-            let step = step(arm, "time.step").unwrap_or_default();
-            levels.push(Level { step, mesh, phases: phases.len(), members });
-        }
-        let Some(last) = arms.last() else { return Ok(None) };
-        let reference = Reference::of_levels(String::new(), levels);
-        let count = match arms.len() {
-            1 => "a single run, whose error is not known".to_owned(),
-            n if reference.refines_mesh() => format!("the finest of {n} levels of step and mesh"),
-            n => format!("the finest of {n} steps on the given mesh"),
-        };
-        let members = || reference.levels.iter().map(|level| level.members.len());
-        let ensemble = match (members().min().unwrap_or(1), members().max().unwrap_or(1)) {
-            (1, 1) => String::new(),
-            (least, most) if least == most => format!(", {most} members each"),
-            (least, most) => format!(", {least} to {most} members each"),
-        };
-        let law = begins(&self.arms[*last]);
-        let what = format!("\"{}\", {count}{ensemble}{law}", self.arms[*last].name);
-        Ok(Some(Reference { what, averaged, ..reference }))
     }
 }
 
