@@ -10,11 +10,8 @@ use crate::collected::Origin;
 use crate::digits::{five, three};
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::plot::{APART, Plot, style};
-use crate::text::{Label, Prose};
-use crate::{convergence, design, ensemble, integrity, verdict};
-
-/// Arms in one table of metrics; more arms need more tables.
-const ACROSS: usize = 8;
+use crate::text::Prose;
+use crate::{by_arm, convergence, design, ensemble, integrity, verdict};
 
 /// Largest number of values of a key that are listed one by one.
 const FEW: usize = 4;
@@ -344,22 +341,9 @@ fn metrics(study: &Study) -> Markup {
     shown.retain(|m| study.rows.iter().any(|r| r.value(&m.name).is_some()));
     html! {
         h2 { "Metrics" }
-        @for (part, rows) in study.rows.chunks(ACROSS).enumerate() {
-            table.metrics {
-                thead {
-                    tr {
-                        th { "Metric" } th { "Unit" }
-                        @for i in 1..=rows.len() { th.n { (part * ACROSS + i) } }
-                    }
-                }
-                @for metric in &shown {
-                    tr {
-                        td { code { (metric.name) } } td { (Label(&metric.unit)) }
-                        @for row in rows { td.n { (or_dash(row.value(&metric.name), five)) } }
-                    }
-                }
-            }
-        }
+        (by_arm::tables(study, &shown, |arm, metric| {
+            html! { (or_dash(study.rows[arm].value(&metric.name), five)) }
+        }))
         p.small {
             "Column headings are the numbers of the arms. Every value is computed from the directory of its \
              arm alone. Data in full precision: " (file("study.csv")) ", " (file("study_tidy.csv")) "."
