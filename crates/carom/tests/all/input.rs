@@ -5,13 +5,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::common::{COARSE, IMPACT, Place, text};
-
-/// A square of two triangles.
-const SQUARE: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat
-$PhysicalNames\n1\n2 1 \"square\"\n$EndPhysicalNames
-$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes
-$Elements\n2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 3 4\n$EndElements\n";
+use crate::common::{COARSE, IMPACT, Place, SQUARE, text};
 
 const FLIGHT: &str = "
 dimension = 2
@@ -30,17 +24,6 @@ fn flight(name: &str) -> Place {
 
 fn spawned(command: &mut Command) -> Child {
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
-}
-
-/// A run that is killed after its first checkpoint.
-fn killed(place: &Place, arguments: &[&str], out: &str) {
-    let mut child = spawned(&mut place.command(&[arguments, &["--no-report", "--out", out]].concat()));
-    while !place.0.join(out).join("checkpoint/b.bin").is_file() {
-        assert!(child.try_wait().unwrap().is_none(), "the run ended without a checkpoint");
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
 }
 
 fn expect(done: &Output, code: i32, parts: &[&str]) {
@@ -167,7 +150,7 @@ fn a_study_is_read_once_from_a_pipe_or_standard_input() {
 #[test]
 fn a_changed_mesh_or_record_is_named_when_a_run_is_resumed() {
     let place = flight("changed");
-    killed(&place, &["run", "case.toml"], "out");
+    place.killed(place.command(&["run", "case.toml", "--no-report", "--out", "out"]), "out");
     for (bytes, parts) in [
         (
             Some(SQUARE.replace("1 1 0", "1.5 1 0")),
@@ -211,7 +194,7 @@ fn a_resumed_run_needs_neither_its_table_nor_its_initial_run() {
     let from =
         ["run", "case.toml", "--set", "initial={ from = 'first' }", "--set", "body.b.velocity=[0.0, 0.0]"];
     expect(&place.carom(&[&from[..], &["--no-report", "--out", "whole"]].concat()), 0, &[]);
-    killed(&place, &from, "out");
+    place.killed(place.command(&[&from[..], &["--no-report", "--out", "out"]].concat()), "out");
     place.file("force.csv", "t,value\n0,7\n40,9\n");
     std::fs::remove_dir_all(place.0.join("first")).unwrap();
     expect(&place.carom(&["resume", "out", "--no-report"]), 0, &[]);
