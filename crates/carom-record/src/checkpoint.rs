@@ -36,15 +36,38 @@ pub(crate) struct Header {
     pub(crate) payload: u64,
 }
 
-/// File of a generation, 0 or 1.
-pub(crate) fn path(directory: &Path, generation: usize) -> PathBuf {
-    directory.join("checkpoint").join(["a.bin", "b.bin"][generation % 2])
+/// One of the two checkpoints of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Generation {
+    A,
+    B,
+}
+
+impl Generation {
+    /// Both of them.
+    pub const BOTH: [Self; 2] = [Self::A, Self::B];
+
+    pub(crate) fn other(self) -> Self {
+        match self {
+            Self::A => Self::B,
+            Self::B => Self::A,
+        }
+    }
+}
+
+/// File of a generation.
+pub(crate) fn path(directory: &Path, generation: Generation) -> PathBuf {
+    directory.join("checkpoint").join(match generation {
+        Generation::A => "a.bin",
+        Generation::B => "b.bin",
+    })
 }
 
 /// Replaces one generation.
 pub(crate) fn write(
     directory: &Path,
-    generation: usize,
+    generation: Generation,
     header: &Header,
     payload: &[u8],
 ) -> Result<(), RecordError> {
@@ -60,7 +83,7 @@ pub(crate) fn write(
 }
 
 /// Reads and verifies one generation.
-pub(crate) fn read(directory: &Path, generation: usize) -> Result<(Header, Vec<u8>), RecordError> {
+pub(crate) fn read(directory: &Path, generation: Generation) -> Result<(Header, Vec<u8>), RecordError> {
     let path = path(directory, generation);
     let mut bytes = std::fs::read(&path).map_err(RecordError::io("read", &path))?;
     let damaged = |what: &str| RecordError::corrupt(&path, None, what, "run the case again");

@@ -32,6 +32,7 @@ mod vtu;
 mod warning;
 mod writer;
 
+pub use checkpoint::Generation;
 pub use error::RecordError;
 pub use expectation::{Bound, Deviation, Expect, Norm, OrderOf, judge};
 pub use expression::{Expression, Sign};

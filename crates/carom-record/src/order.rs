@@ -14,6 +14,9 @@
 /// Largest difference of two successive estimates of an established order.
 pub const MARGIN: f64 = 0.3;
 
+/// Safety factor of the distance from a value that is extrapolated with an observed order (P. J. Roache).
+pub(crate) const SAFE: f64 = 1.25;
+
 /// A difference below this fraction of the values is round-off.
 const ROUND_OFF: f64 = 1e-12;
 
@@ -121,7 +124,7 @@ pub fn extrapolated(steps: &[f64], values: &[f64]) -> Result<Extrapolation, Stri
     let [.., h2, h3] = steps else { return Err("four values are needed".to_owned()) };
     let [.., f2, f3] = values else { return Err("four values are needed".to_owned()) };
     let value = f3 - (f2 - f3) / (order * (h2 / h3).ln()).exp_m1();
-    Ok(Extrapolation { order, value, band: 1.25 * (f3 - value).abs() })
+    Ok(Extrapolation { order, value, band: SAFE * (f3 - value).abs() })
 }
 
 fn decreasing(steps: &[f64]) -> Result<(), String> {

@@ -10,7 +10,7 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use crate::checkpoint::{self, Header};
+use crate::checkpoint::{self, Generation, Header};
 use crate::rows::{Table, contact_axes, contact_columns};
 use crate::stream::{self, Stream};
 use crate::{
@@ -32,7 +32,7 @@ pub struct RunWriter {
     /// Header of the next checkpoint; its streams are those of the last one.
     header: Header,
     /// Generation that the next checkpoint replaces.
-    generation: usize,
+    generation: Generation,
     /// Field files written since the last checkpoint.
     unsynced: Vec<PathBuf>,
     /// Locked as long as this writer exists.
@@ -112,7 +112,7 @@ impl RunWriter {
             }
             header.streams[i] = table.flush().and_then(|()| table.stream().sync()).map_err(failed)?;
         }
-        checkpoint::write(partial, 0, &header, payload)
+        checkpoint::write(partial, Generation::A, &header, payload)
     }
 
     /// Reopens the directory at the newest intact checkpoint.
@@ -134,8 +134,8 @@ impl RunWriter {
         Err(fallback.unwrap_or_else(|| no_checkpoint(directory)))
     }
 
-    /// Reopens the directory at the checkpoint of one generation, 0 or 1.
-    pub fn reopen_at(directory: &Path, generation: usize) -> Result<Reopened, RecordError> {
+    /// Reopens the directory at the checkpoint of one generation.
+    pub fn reopen_at(directory: &Path, generation: Generation) -> Result<Reopened, RecordError> {
         let manifest = Manifest::read(directory)?;
         let lock = lock(directory)?;
         let intact = verified(directory, checkpoint::read(directory, generation)?)?;
@@ -146,7 +146,7 @@ impl RunWriter {
         directory: &Path,
         manifest: Manifest,
         lock: File,
-        generation: usize,
+        generation: Generation,
         Intact { header, payload, hashers }: Intact,
     ) -> Result<Reopened, RecordError> {
         let mut rows = Vec::new();
@@ -164,7 +164,7 @@ impl RunWriter {
             history: Table::new(history),
             contact: Table::new(contact),
             log: BufWriter::new(log),
-            generation: 1 - generation % 2,
+            generation: generation.other(),
             header,
             unsynced: Vec::new(),
             _lock: lock,
@@ -252,7 +252,7 @@ impl RunWriter {
         self.header.sequence += 1;
         self.header.payload = payload.len() as u64;
         checkpoint::write(&self.directory, self.generation, &self.header, payload)?;
-        self.generation = 1 - self.generation;
+        self.generation = self.generation.other();
         Ok(())
     }
 
@@ -308,8 +308,8 @@ type Checkpoint = (Header, Vec<u8>);
 
 /// Both generations, the newest first; a damaged or missing one, whose age is unknown, comes before
 /// the other.
-fn newest_first(directory: &Path) -> [(usize, Result<Checkpoint, RecordError>); 2] {
-    let [a, b] = [0, 1].map(|generation| (generation, checkpoint::read(directory, generation)));
+fn newest_first(directory: &Path) -> [(Generation, Result<Checkpoint, RecordError>); 2] {
+    let [a, b] = Generation::BOTH.map(|generation| (generation, checkpoint::read(directory, generation)));
     let age = |found: &Result<Checkpoint, RecordError>| found.as_ref().map_or(u64::MAX, |c| c.0.sequence);
     if age(&a.1) > age(&b.1) { [a, b] } else { [b, a] }
 }

@@ -7,8 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use carom_record::{
-    Block, Cell, Column, ContactRow, Event, FieldFormat, FieldSet, Manifest, PointArray, RecordError, Run,
-    RunWriter, Source, Status,
+    Block, Cell, Column, ContactRow, Event, FieldFormat, FieldSet, Generation, Manifest, PointArray,
+    RecordError, Run, RunWriter, Source, Status,
 };
 
 const STEPS: u64 = 40;
@@ -95,10 +95,15 @@ fn all_bytes(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-fn whole(directory: &Path, format: FieldFormat) -> BTreeMap<PathBuf, Vec<u8>> {
+/// A run at its start.
+fn started(directory: &Path, format: FieldFormat) -> RunWriter {
     let mut writer = RunWriter::create(directory, &manifest(), &0u64.to_le_bytes()).unwrap();
     writer.field_format(format);
-    advance(writer, 0, 0, STEPS).finish(&manifest()).unwrap();
+    writer
+}
+
+fn whole(directory: &Path, format: FieldFormat) -> BTreeMap<PathBuf, Vec<u8>> {
+    advance(started(directory, format), 0, 0, STEPS).finish(&manifest()).unwrap();
     all_bytes(directory)
 }
 
@@ -116,11 +121,9 @@ fn killed_anywhere(format: FieldFormat) {
     let scratch = tempfile::tempdir().unwrap();
     let expected = whole(&scratch.path().join("whole"), format);
     for kill in 0..STEPS {
-        for generation in [None, Some(0), Some(1)] {
+        for generation in [None, Some(Generation::A), Some(Generation::B)] {
             let directory = scratch.path().join(format!("killed-{kill}-{generation:?}"));
-            let mut writer = RunWriter::create(&directory, &manifest(), &0u64.to_le_bytes()).unwrap();
-            writer.field_format(format);
-            drop(advance(writer, 0, 0, kill));
+            drop(advance(started(&directory, format), 0, 0, kill));
             // The record can be read at any time, with every instant.
             let run = Run::open(&directory).unwrap();
             assert_eq!(run.fields.len() as u64, kill / 5 + 1);
@@ -195,9 +198,7 @@ fn an_altered_record_is_not_continued() {
     for format in [FieldFormat::Vtu, FieldFormat::VtkHdf] {
         let scratch = tempfile::tempdir().unwrap();
         let directory = scratch.path().join("run");
-        let mut writer = RunWriter::create(&directory, &manifest(), &0u64.to_le_bytes()).unwrap();
-        writer.field_format(format);
-        drop(advance(writer, 0, 0, STEPS));
+        drop(advance(started(&directory, format), 0, 0, STEPS));
         let (mut refused, mut repeated) = (0, 0);
         for (name, good) in all_bytes(&directory) {
             let row_file = ["csv", "jsonl"].iter().any(|e| name.extension().is_some_and(|x| x == *e));
@@ -257,9 +258,7 @@ fn cut_and_missing_fields_are_refused_or_computed_again() {
     for format in [FieldFormat::Vtu, FieldFormat::VtkHdf] {
         let scratch = tempfile::tempdir().unwrap();
         let directory = scratch.path().join("run");
-        let mut writer = RunWriter::create(&directory, &manifest(), &0u64.to_le_bytes()).unwrap();
-        writer.field_format(format);
-        drop(advance(writer, 0, 0, STEPS));
+        drop(advance(started(&directory, format), 0, 0, STEPS));
         let file = |step: u64| match format {
             FieldFormat::Vtu => directory.join(format!("fields/{step:08}.vtu")),
             FieldFormat::VtkHdf => directory.join("fields.vtkhdf"),

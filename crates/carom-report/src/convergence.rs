@@ -13,9 +13,6 @@ use crate::text::Label;
 /// Fewest steps from which an order can be estimated.
 const LEAST: usize = 3;
 
-/// Metrics of the work, which say nothing about the solution.
-const WORK: [&str; 4] = ["steps", "newton_iterations", "rejected_steps", "wall_time"];
-
 /// The section of the page; nothing for a study without refinement.
 pub(crate) fn section(study: &Study) -> Markup {
     let keys = numeric_keys(&study.manifest, LEAST);
@@ -37,7 +34,7 @@ pub(crate) fn section(study: &Study) -> Markup {
 
 fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
     let mut metrics = study.metrics();
-    metrics.retain(|m| !WORK.contains(&m.name.as_ref()));
+    metrics.retain(|m| !m.is_work());
     html! {
         h3 {
             "Refinement of " code { (key) }

@@ -27,12 +27,6 @@ pub(crate) fn plots(study: &Study, columns: &[Column], time: &str) -> Vec<Plot> 
     plots
 }
 
-/// The method of an arm, or the name of the arm where there are no methods.
-fn method(study: &Study, arm: usize) -> &str {
-    let arm = &study.manifest.arms[arm];
-    arm.role.method.as_deref().unwrap_or(&arm.name)
-}
-
 /// Methods with their finished arms, the coarsest first, without the arms of the reference.
 pub(crate) fn methods(study: &Study) -> Vec<(&str, Vec<usize>)> {
     let mut found: Vec<(&str, Vec<usize>)> = Vec::new();
@@ -42,7 +36,7 @@ pub(crate) fn methods(study: &Study) -> Vec<(&str, Vec<usize>)> {
         if reference || row.status != Some(Status::Finished) {
             continue;
         }
-        let name = method(study, i);
+        let name = arm.method();
         match found.iter_mut().find(|(n, _)| *n == name) {
             Some((_, arms)) => arms.push(i),
             None => found.push((name, vec![i])),
@@ -51,15 +45,29 @@ pub(crate) fn methods(study: &Study) -> Vec<(&str, Vec<usize>)> {
     found
 }
 
-/// One curve with markers per method, through the points of its arms.
+/// One curve with markers per method, through the points of its arms; another one of the arms that
+/// created much energy.
 fn scatter(study: &Study, point: impl Fn(usize) -> Option<(f64, f64)>) -> Vec<Curve> {
-    let curve = |(style, (name, arms)): (usize, (&str, Vec<usize>))| {
-        let points: Vec<(f64, f64)> =
-            arms.into_iter().filter_map(&point).filter(|p| p.0 > 0.0 && p.1 > 0.0).collect();
-        let (x, y) = points.into_iter().unzip();
-        Curve { label: name.to_owned(), style, x, y, marked: true, apart: false }
+    let curves = |(style, (name, arms)): (usize, (&str, Vec<usize>))| {
+        let (unsound, sound): (Vec<usize>, Vec<usize>) =
+            arms.into_iter().partition(|arm| study.rows[*arm].is_unsound());
+        [(sound, false), (unsound, true)].map(|(arms, apart)| {
+            let points = arms.into_iter().filter_map(&point).filter(|p| p.0 > 0.0 && p.1 > 0.0);
+            let (x, y) = points.unzip();
+            let label = if apart { format!("{name}, creates energy") } else { name.to_owned() };
+            Curve { label, style, x, y, marked: true, apart }
+        })
     };
-    methods(study).into_iter().enumerate().map(curve).filter(|c| !c.x.is_empty()).collect()
+    methods(study).into_iter().enumerate().flat_map(curves).filter(|c| !c.x.is_empty()).collect()
+}
+
+/// What dashed grey curves of these panes are.
+fn apart(panes: &[Pane]) -> &'static str {
+    if panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.apart) {
+        " Grey: arms that created more energy than the default guard allows; they do not set the axes."
+    } else {
+        ""
+    }
 }
 
 /// Error of an arm in the ranking.
@@ -97,10 +105,12 @@ fn error_cost(study: &Study) -> Option<Plot> {
     panes.retain(|p| !p.curves.is_empty());
     (!panes.is_empty()).then(|| Plot {
         name: "error-cost".into(),
-        caption: "Error against cost: one point per arm, one curve per method. The lower-left envelope is \
-                  the Pareto front. Cost: processor time of the time steps without output. Zero errors are \
-                  omitted (logarithmic axes)."
-            .into(),
+        caption: format!(
+            "Error against cost: one point per arm, one curve per method. The lower-left envelope is the \
+             Pareto front. Cost: processor time of the time steps without output. Zero errors are omitted \
+             (logarithmic axes).{}",
+            apart(&panes)
+        ),
         x_label: "processor time (s)".into(),
         log: [true, true],
         across: panes.len(),
@@ -146,10 +156,12 @@ fn roughness_dissipation(study: &Study) -> Option<Plot> {
     panes.retain(|p| !p.curves.is_empty());
     (!panes.is_empty()).then(|| Plot {
         name: "roughness-dissipation".into(),
-        caption: "Roughness of the contact force against energy drift: one point per arm, one curve per \
-                  method. Numerical damping reduces roughness at the cost of energy; methods at the lower \
-                  left are smooth without it. TV: total variation during the first contact."
-            .into(),
+        caption: format!(
+            "Roughness of the contact force against energy drift: one point per arm, one curve per method. \
+             Numerical damping reduces roughness at the cost of energy; methods at the lower left are smooth \
+             without it. TV: total variation during the first contact.{}",
+            apart(&panes)
+        ),
         x_label: "energy drift / largest energy".into(),
         log: [true, true],
         across: panes.len(),

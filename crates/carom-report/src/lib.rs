@@ -9,6 +9,7 @@ mod animation;
 mod axis;
 mod bands;
 mod bodies;
+mod by_arm;
 mod chart;
 mod collected;
 mod convergence;

@@ -5,39 +5,21 @@
 
 use std::fmt::Write as _;
 
-use crate::axis::{Axis, range};
+use crate::axis::range;
 use crate::chart::{open, scaled, write_text};
 use crate::labels::with_unit;
-use crate::palette::LINES;
 use crate::{text, trace};
+
+mod curve;
+mod legend;
+mod scale;
+
+pub(crate) use curve::{APART, Curve, style};
+use scale::Scale;
 
 const WIDTH: f64 = 720.0;
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 12.0;
-
-/// A curve.
-#[derive(Clone, Debug)]
-pub(crate) struct Curve {
-    pub(crate) label: String,
-    /// Number of the style.
-    pub(crate) style: usize,
-    pub(crate) x: Vec<f64>,
-    pub(crate) y: Vec<f64>,
-    /// Whether the points have markers.
-    pub(crate) marked: bool,
-    /// Whether it is of an unsound run: dashed and grey, and without influence on the axes.
-    pub(crate) apart: bool,
-}
-
-impl Curve {
-    /// Colour, dashes and marker number.
-    pub(crate) fn style(&self) -> (&'static str, &'static str, usize) {
-        if self.apart { APART } else { style(self.style) }
-    }
-}
-
-/// The style of every unsound run.
-pub(crate) const APART: (&str, &str, usize) = ("#b0b0b0", "4 3", 0);
 
 /// One panel: axes and curves.
 #[derive(Clone, Debug, Default)]
@@ -67,63 +49,6 @@ pub(crate) struct Plot {
     /// Whether all panes share one vertical axis.
     pub(crate) same: bool,
     pub(crate) panes: Vec<Pane>,
-}
-
-/// Colour, dashes and marker number of a style. Seven colours of Okabe and Ito and grey, with five
-/// markers, give forty different styles.
-pub(crate) fn style(i: usize) -> (&'static str, &'static str, usize) {
-    const DASHES: [&str; 8] = ["", "9 3", "3 2", "9 3 2 3", "14 4", "5 2 1.5 2 1.5 2", "1.5 2.5", "6 6"];
-    (LINES.get(i % 8).copied().unwrap_or("#777777"), DASHES[(i + i / 8) % 8], i % 5)
-}
-
-/// A linear or logarithmic scale.
-struct Scale {
-    axis: Axis,
-    log: bool,
-}
-
-impl Scale {
-    fn new(values: (f64, f64), count: f64, tight: bool, log: bool) -> Self {
-        if !log {
-            return Self { axis: Axis::new(values, count, tight), log };
-        }
-        let (low, high) =
-            if values.0.is_finite() { (values.0.log10(), values.1.log10()) } else { (0.0, 1.0) };
-        let air = if tight { 0.0 } else { 0.06 * (high - low).max(0.3) };
-        let (low, high) = (low - air, high + air);
-        let (low, high) = if high - low < 0.2 { (low - 0.15, high + 0.15) } else { (low, high) };
-        let every = ((high - low) / count).ceil().max(1.0) as i64;
-        let factors: &[f64] = match high - low {
-            span if span < 0.6 => &[1.0, 1.5, 2.0, 3.0, 5.0, 7.0],
-            span if span < 1.7 => &[1.0, 2.0, 5.0],
-            _ => &[1.0],
-        };
-        let decades = (low.floor() as i64..=high.ceil() as i64).filter(|d| d % every == 0);
-        let tick = |d: i64, f: &f64| {
-            let power = d.to_string().replace('-', "−");
-            let label = match d {
-                -2..=2 if factors.len() > 1 => format!("{}", (f * 10f64.powi(d as i32) * 1e4).round() / 1e4),
-                _ if *f == 1.0 => format!("10^{{{power}}}"),
-                _ => format!("{f}·10^{{{power}}}"),
-            };
-            (d as f64 + f.log10(), label)
-        };
-        let ticks = decades
-            .flat_map(|d| factors.iter().map(move |f| tick(d, f)))
-            .filter(|(x, _)| (low..=high).contains(x));
-        Self { axis: Axis { low, high, ticks: ticks.collect(), exponent: 0 }, log }
-    }
-
-    /// 0 at the low end, 1 at the high end; NaN for values that a logarithmic axis cannot show.
-    fn position(&self, value: f64) -> f64 {
-        self.axis.position(if !self.log {
-            value
-        } else if value > 0.0 {
-            value.log10()
-        } else {
-            f64::NAN
-        })
-    }
 }
 
 impl Pane {
@@ -196,8 +121,8 @@ impl Plot {
         );
         let rows = self.panes.len().div_ceil(self.across.max(1));
         let legend = self.legend();
-        let lines = legend_lines(&legend);
-        let height = rows as f64 * (TOP + high + BELOW) + 22.0 + 18.0 * lines.len() as f64 + 6.0;
+        let lines = legend::lines(&legend, WIDTH - LEFT);
+        let height = rows as f64 * (TOP + high + BELOW) + 22.0 + legend::LINE * lines.len() as f64 + 6.0;
         let mut out = open(&self.name, WIDTH, height);
         let x_axis = Scale::new(self.x_range(), (wide / 58.0).max(2.0), !self.log[0], self.log[0]);
         for (i, pane) in self.panes.iter().enumerate() {
@@ -258,7 +183,7 @@ impl Plot {
             // Unsound runs lie behind the others.
             let (behind, front): (Vec<_>, Vec<_>) = pane.curves.iter().partition(|curve| curve.apart);
             for curve in behind.into_iter().chain(front) {
-                draw(&mut out, curve, &id, &to_x, &to_y);
+                curve::draw(&mut out, curve, &id, &to_x, &to_y);
             }
             let size = if across > 2.0 { 10.5 } else { 12.0 };
             let place = format!("font-size=\"{size}\" font-weight=\"600\"");
@@ -287,24 +212,7 @@ impl Plot {
             format!("{} × 10^{{{exponent}}}", self.x_label)
         };
         write_text(&mut out, 0.5 * WIDTH, end + 6.0, "text-anchor=\"middle\"", &label);
-        for (row, line) in lines.iter().enumerate() {
-            let (mut x, y) = (LEFT, end + 24.0 + 18.0 * row as f64);
-            for i in line {
-                let Curve { label, marked, .. } = legend[*i];
-                let (color, dashes, marker) = legend[*i].style();
-                let dashes = if *marked { "" } else { dashes };
-                let _ = writeln!(
-                    out,
-                    "<path d=\"M{x:.1} {y:.1}h26\" stroke=\"{color}\" stroke-width=\"1.8\" \
-                     stroke-dasharray=\"{dashes}\"/>"
-                );
-                if *marked {
-                    mark(&mut out, marker, color, x + 13.0, y);
-                }
-                write_text(&mut out, x + 32.0, y + 4.0, "font-size=\"12\"", label);
-                x += entry(label);
-            }
-        }
+        legend::draw(&mut out, &legend, &lines, LEFT, end + 24.0);
         out.push_str("</svg>\n");
         out
     }
@@ -325,26 +233,6 @@ fn fitted(title: &str, width: f64, size: f64) -> String {
         cut.pop();
     }
     cut.trim_end().to_owned() + "…"
-}
-
-fn entry(label: &str) -> f64 {
-    50.0 + text::width(label) * 12.0
-}
-
-fn legend_lines(legend: &[&Curve]) -> Vec<Vec<usize>> {
-    let mut lines: Vec<Vec<usize>> = Vec::new();
-    let mut used = f64::INFINITY;
-    for (i, Curve { label, .. }) in legend.iter().enumerate() {
-        if used + entry(label) > WIDTH - LEFT {
-            lines.push(Vec::new());
-            used = 0.0;
-        }
-        used += entry(label);
-        if let Some(line) = lines.last_mut() {
-            line.push(i);
-        }
-    }
-    lines
 }
 
 fn marks(
@@ -374,41 +262,6 @@ fn marks(
             write_text(out, 0.0, 0.0, &place, word);
         }
     }
-}
-
-fn draw(out: &mut String, curve: &Curve, id: &str, to_x: &dyn Fn(f64) -> f64, to_y: &dyn Fn(f64) -> f64) {
-    let (color, dashes, marker) = curve.style();
-    let points: Vec<(f64, f64)> = curve.x.iter().zip(&curve.y).map(|(x, y)| (to_x(*x), to_y(*y))).collect();
-    let d = trace::path(points.iter().copied());
-    // A curve alone in its pane needs no dashes to be identified.
-    let alone = curve.label.is_empty() && !curve.apart;
-    let dashes = if curve.marked || alone { "" } else { dashes };
-    let _ = writeln!(
-        out,
-        "<path clip-path=\"url(#{id})\" d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.4\" \
-         stroke-linejoin=\"round\" stroke-dasharray=\"{dashes}\"/>"
-    );
-    if curve.marked {
-        for (x, y) in points.into_iter().filter(|p| p.0.is_finite() && p.1.is_finite()) {
-            mark(out, marker, color, x, y);
-        }
-    }
-}
-
-/// Markers: circle, square, triangle, diamond, inverted triangle.
-fn mark(out: &mut String, marker: usize, color: &str, x: f64, y: f64) {
-    let at = |dx: f64, dy: f64| format!("{:.1} {:.1}", x + dx, y + dy);
-    let d = match marker {
-        0 => {
-            let _ = writeln!(out, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.6\" fill=\"{color}\"/>");
-            return;
-        }
-        1 => [at(-3.3, -3.3), at(3.3, -3.3), at(3.3, 3.3), at(-3.3, 3.3)].join("L"),
-        2 => [at(0.0, -4.4), at(4.2, 3.2), at(-4.2, 3.2)].join("L"),
-        3 => [at(0.0, -4.8), at(4.8, 0.0), at(0.0, 4.8), at(-4.8, 0.0)].join("L"),
-        _ => [at(0.0, 4.4), at(4.2, -3.2), at(-4.2, -3.2)].join("L"),
-    };
-    let _ = writeln!(out, "<path d=\"M{d}z\" fill=\"{color}\"/>");
 }
 
 #[cfg(test)]

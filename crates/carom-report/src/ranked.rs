@@ -110,9 +110,8 @@ impl Ranked<'_> {
         let orders = &self.study.phase_orders;
         let named = orders.iter().find(|o| o.across.is_ok() || o.smooth.is_ok()).map(|o| o.column.clone());
         let of = |arm: usize| {
-            let arm = &self.study.manifest.arms[arm];
-            let method = arm.role.method.as_ref().unwrap_or(&arm.name);
-            orders.iter().find(|o| o.method == *method && Some(&o.column) == named.as_ref())
+            let method = self.study.manifest.arms[arm].method();
+            orders.iter().find(|o| o.method == method && Some(&o.column) == named.as_ref())
         };
         let cell =
             |order: &Result<f64, String>| order.as_ref().ok().map(|p| format!("{p:.2}").replace('-', "−"));
@@ -208,7 +207,7 @@ fn table(title: &str, ranking: &Ranking, study: &Study, columns: &[Column]) -> M
                     @let arm = &study.manifest.arms[r.arm];
                     tr {
                         td.n { (r.place) }
-                        td.method { (arm.role.method.as_ref().unwrap_or(&arm.name)) }
+                        td.method { (arm.method()) }
                         @for column in &shown { td.n { (column.cells[row].as_deref().unwrap_or("–")) } }
                     }
                 }

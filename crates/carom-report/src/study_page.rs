@@ -10,11 +10,8 @@ use crate::collected::Origin;
 use crate::digits::{five, three};
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::plot::{APART, Plot, style};
-use crate::text::{Label, Prose};
-use crate::{convergence, design, ensemble, integrity, verdict};
-
-/// Arms in one table of metrics; more arms need more tables.
-const ACROSS: usize = 8;
+use crate::text::Prose;
+use crate::{by_arm, convergence, design, ensemble, integrity, verdict};
 
 /// Largest number of values of a key that are listed one by one.
 const FEW: usize = 4;
@@ -26,6 +23,8 @@ const MANY: usize = 12;
 pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins: &[Origin]) -> String {
     let failed = study.rows.iter().filter(|row| row.status == Some(Status::Failed)).count();
     let unsound = study.rows.iter().filter(|row| row.is_unsound()).count() - failed;
+    let expectations = || study.rows.iter().flat_map(|row| &row.expectations).chain(&study.expectations);
+    let (expected, missed) = (expectations().count(), expectations().filter(|e| !e.pass).count());
     let (class, word) = match study.manifest.status {
         Status::Finished if failed > 0 => {
             ("failed", format!("finished; {failed} of {} arms failed", study.rows.len()))
@@ -33,6 +32,9 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
         Status::Finished if unsound > 0 => {
             let of = study.rows.len();
             ("failed", format!("finished; {unsound} of {of} arms created more than 2 % of the energy"))
+        }
+        Status::Finished if missed > 0 => {
+            ("failed", format!("finished; {missed} of {expected} expectations missed"))
         }
         Status::Finished => ("finished", "finished".to_owned()),
         Status::Running => ("running", "running or interrupted; can be resumed".to_owned()),
@@ -46,7 +48,7 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
         (verdict::rankings(study))
         (claims(study))
         (ensemble::section(study))
-        (expectations(study))
+        (self::expectations(study))
         (warnings(study, origins))
         h2 { "Figures" }
         @for (i, plot) in plots.iter().enumerate() {
@@ -339,22 +341,9 @@ fn metrics(study: &Study) -> Markup {
     shown.retain(|m| study.rows.iter().any(|r| r.value(&m.name).is_some()));
     html! {
         h2 { "Metrics" }
-        @for (part, rows) in study.rows.chunks(ACROSS).enumerate() {
-            table.metrics {
-                thead {
-                    tr {
-                        th { "Metric" } th { "Unit" }
-                        @for i in 1..=rows.len() { th.n { (part * ACROSS + i) } }
-                    }
-                }
-                @for metric in &shown {
-                    tr {
-                        td { code { (metric.name) } } td { (Label(&metric.unit)) }
-                        @for row in rows { td.n { (or_dash(row.value(&metric.name), five)) } }
-                    }
-                }
-            }
-        }
+        (by_arm::tables(study, &shown, |arm, metric| {
+            html! { (or_dash(study.rows[arm].value(&metric.name), five)) }
+        }))
         p.small {
             "Column headings are the numbers of the arms. Every value is computed from the directory of its \
              arm alone. Data in full precision: " (file("study.csv")) ", " (file("study_tidy.csv")) "."

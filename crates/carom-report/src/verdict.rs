@@ -1,11 +1,10 @@
 //! The recommendation of a study and its basis: ranking, reference values, orders before and after
 //! the first contact.
 
-use carom_record::metrics::WORK;
 use carom_record::study::design::{Goal, Kind};
 use carom_record::study::ranking::{Crosscheck, Ranking, error, standing};
 use carom_record::study::reference::{Reference, Standing};
-use carom_record::study::{Arm, Study, step};
+use carom_record::study::{Study, step};
 use maud::{Markup, html};
 
 use crate::digits::{five, three};
@@ -61,14 +60,13 @@ pub(crate) fn summary(study: &Study) -> Markup {
         }
     };
     let arm = &study.manifest.arms[verdict.arm];
-    let sets: Vec<&String> =
-        arm.sets.iter().filter(|set| !set.trim_start().starts_with("time.step")).collect();
+    let sets: Vec<&String> = arm.sets_without_step().collect();
     let entry =
         |head: &str, lines: &[String]| html! { dt { (head) } @for line in lines { dd { (Label(line)) } } };
     html! {
         section.verdict {
             h2 {
-                "Recommended: " (name(arm))
+                "Recommended: " (arm.method())
                 @if let Some(h) = step(arm, "time.step") { ", Δt = " (five(h)) }
             }
             p { (Prose(&goal)) }
@@ -85,11 +83,6 @@ pub(crate) fn summary(study: &Study) -> Markup {
             }
         }
     }
-}
-
-/// The method of an arm, or the name of the arm where there are no methods.
-fn name(arm: &Arm) -> &str {
-    arm.role.method.as_ref().unwrap_or(&arm.name)
 }
 
 /// Finished arms at the level of an arm, itself included.
@@ -194,7 +187,7 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
                     td { "Δt " (or_dash(design.steps.get(check.level).copied(), five)) }
                     td { (check.first) } td { (value(check)) } td { (best(check)) }
                     td {
-                        @match check.changes() {
+                        @match &check.better {
                             Some(method) => { "changes: " (method) " is better" },
                             None => "does not change",
                         }
@@ -212,7 +205,7 @@ fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
 /// What the reference establishes, and what it does not.
 fn reference_values(study: &Study, reference: &Reference) -> Markup {
     let (mut not, mut yes) = (Vec::new(), Vec::new());
-    for metric in study.metrics().into_iter().filter(|m| !WORK.iter().any(|(d, _)| d.name == m.name)) {
+    for metric in study.metrics().into_iter().filter(|m| !m.is_work()) {
         match standing(Some(reference), &metric.name) {
             Standing::Not(why) => not.push((metric.name.to_string(), why)),
             Standing::Established { value, uncertainty } => yes.push((metric, value, uncertainty)),
@@ -230,7 +223,7 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                 thead {
                     tr {
                         th { "Metric" } th { "Unit" } th.n { "Value" } th.n { "Uncertainty" }
-                        th.n { "Observed order" } th.n { "Range of members" }
+                        th.n { "Observed order" } th.n { "Half-width of members" }
                     }
                 }
                 @for (metric, value, uncertainty) in yes {
@@ -244,8 +237,10 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                 }
             }
             p.small {
-                "The uncertainty is that of the refinement (grid convergence index), plus the range of the \
-                 members of the ensemble, plus a step for instants."
+                "The uncertainty is that of the refinement (grid convergence index), plus the half-width of \
+                 the ensemble, which is the largest distance of a member from the median, plus a step for \
+                 instants (half a step with several phases), plus 5/4 of what averaging over 1/16 of the \
+                 contact changes, for extremes and variations."
             }
         }
         details open {
@@ -273,7 +268,7 @@ fn other_goals(study: &Study) -> Markup {
                         (Ok(verdict), Ok(measure)) => {
                             @let arm = &study.manifest.arms[verdict.arm];
                             td {
-                                (name(arm))
+                                (arm.method())
                                 @if !verdict.alike.is_empty() {
                                     br; span.small { "tied with " (verdict.alike.join(" · ")) }
                                 }
@@ -297,9 +292,17 @@ fn ranked_table(study: &Study, ranking: &Ranking) -> Markup {
     let without = methods(study).into_iter().flat_map(|(_, arms)| arms).filter(|arm| !placed(arm));
     let without: Vec<&str> = without.map(|arm| study.rows[arm].name.as_str()).collect();
     let why = if ranking.goal == Goal::Cost { "not accurate enough" } else { "no value of the metric" };
+    let unsound = ranking.levels.iter().flatten().filter(|r| !r.sound);
+    let unsound: Vec<&str> = unsound.map(|r| study.rows[r.arm].name.as_str()).collect();
     html! {
         (ranked::tables(study, ranking))
         @if !without.is_empty() { p.small { "Not ranked (" (why) "): " (without.join("; ")) "." } }
+        @if !unsound.is_empty() {
+            p.small {
+                "Placed behind all others of their level, and not recommended, because they created more \
+                 energy than the default guard allows: " (unsound.join("; ")) "."
+            }
+        }
         p.small {
             "The place of an arm is one more than the number of arms that are distinguishably better: by \
              more than the uncertainty of the reference, than their ranges over the ensemble together, and \

@@ -166,6 +166,8 @@ fn main() -> ExitCode {
                     Ok(estimate) => estimate,
                     Err(why) => {
                         println!("{:17} {scheme:17} {metric:16} {exact:10.5}  {why}", problem.name);
+                        // A quantity without a band is not contained in one.
+                        values += 1;
                         all = false;
                         continue;
                     }

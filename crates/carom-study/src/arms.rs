@@ -3,6 +3,7 @@
 
 use carom_record::study::design::{Kind, Role};
 use carom_record::study::ensemble::{Ensemble, Member};
+use carom_record::study::sets_step;
 use carom_run::case::{Case, Diagnostic, Document, Problem};
 use toml_edit::Value;
 
@@ -84,7 +85,7 @@ fn levels(methods: &[Draft], file: &StudyFile) -> Vec<Draft> {
             (file.design == Some(Kind::MatchedCost) || method.role.by_cost) && cost_of != Some(&method.name);
         let own = sets.iter().find_map(|(set, _)| set.strip_prefix("time.step=")?.trim().parse::<f64>().ok());
         // The step of the level replaces the method's own step.
-        sets.retain(|(set, _)| !set.starts_with("time.step="));
+        sets.retain(|(set, _)| !sets_step(set));
         let first = own.filter(|_| costed).map_or(*step, |own| own * step / steps[0]);
         sets.push((format!("time.step={first:?}"), format!("steps[{level}]")));
         let of = if costed { "cost of " } else { "" };

@@ -13,9 +13,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use carom_record::study::checks::{Checks, fingerprint};
 use carom_record::study::{Arm, StudyManifest};
 use carom_record::{Manifest, RecordError, Status};
-use carom_run::case::Case;
 use carom_run::recording::{self, End, Options, Progress};
 
+use crate::compute::case_of;
 use crate::error::StudyError;
 
 /// Threads of the first repetition; arms have one.
@@ -50,8 +50,7 @@ fn repeated(
     };
     let arms = manifest.arms.iter().filter_map(|arm| Some((work(arm)?, arm)));
     let Some((_, arm)) = arms.min_by_key(|(work, _)| *work) else { return Ok(None) };
-    let case: Case = serde_json::from_value(arm.case.clone())
-        .map_err(|e| StudyError::Incompatible { arm: arm.name.clone(), what: e.to_string() })?;
+    let case = case_of(arm)?;
     let failed = |source| StudyError::Arm { arm: arm.name.clone(), source };
     let io = |action, source| RecordError::Io { action, path: folder.to_owned(), source };
     if folder.exists() {

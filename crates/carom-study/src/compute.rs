@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use carom_record::study::StudyManifest;
+use carom_record::study::{Arm, StudyManifest};
 use carom_run::case::Case;
 use carom_run::recording::{self, Options, Progress};
 
@@ -25,10 +25,15 @@ pub(crate) fn compute(
     let done = if begun {
         recording::resume(&path, options, observe, stop)
     } else {
-        let case: Case = serde_json::from_value(arm.case.clone())
-            .map_err(|e| StudyError::Incompatible { arm: arm.name.clone(), what: e.to_string() })?;
+        let case = case_of(arm)?;
         let source = manifest.source_of(arm);
         recording::run(&case, source, &path, options, observe, stop)
     };
     done.map(Ended::of).map_err(|source| StudyError::Arm { arm: arm.name.clone(), source })
+}
+
+/// The case of a run.
+pub(crate) fn case_of(run: &Arm) -> Result<Case, StudyError> {
+    serde_json::from_value(run.case.clone())
+        .map_err(|e| StudyError::Incompatible { arm: run.name.clone(), what: e.to_string() })
 }

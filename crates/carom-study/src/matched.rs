@@ -23,13 +23,13 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
-use carom_record::study::{Arm, StudyManifest};
+use carom_record::study::{Arm, StudyManifest, sets_step};
 use carom_record::{Manifest, RecordError, Status};
 use carom_run::case::Case;
 use carom_run::recording::{self, Options, Progress};
 use serde::{Deserialize, Serialize};
 
-use crate::compute::compute;
+use crate::compute::{case_of, compute};
 use crate::error::StudyError;
 use crate::jobs::{Ended, Event, side_by_side};
 
@@ -220,36 +220,40 @@ pub(crate) fn settle(
     let settled = settled.into_inner().unwrap_or_else(PoisonError::into_inner);
     let all_settled = settled.len() == others.len();
     for (i, steps, share) in settled {
-        place(manifest, i, steps)?;
+        adopt(manifest, i, steps)?;
         manifest.arms[i].role.cost = share;
-        // Members have the step of their arm.
-        for member in manifest.runs_of(i).into_iter().skip(1) {
-            place(manifest, member, steps)?;
-        }
     }
     manifest.write(directory)?;
     Ok(all_settled)
 }
 
-/// Sets the number of steps of a run, in its case and in its changes.
-fn place(manifest: &mut StudyManifest, i: usize, steps: u64) -> Result<(), StudyError> {
-    let case = case_with(manifest, i, steps)?;
+/// Gives an arm and its members the step of that many steps of the arm. A member with a phase has one
+/// step more.
+fn adopt(manifest: &mut StudyManifest, i: usize, steps: u64) -> Result<(), StudyError> {
+    let step = case_with(manifest, i, steps)?.time.step;
+    manifest.runs_of(i).into_iter().try_for_each(|run| place(manifest, run, step))
+}
+
+/// Sets the step of a run, in its case and in its changes.
+fn place(manifest: &mut StudyManifest, i: usize, step: f64) -> Result<(), StudyError> {
+    let mut case = case_of(manifest.run(i))?;
+    case.time.step = step;
     let first_member = manifest.arms.len();
     let arm = match i.checked_sub(first_member) {
         None => &mut manifest.arms[i],
         Some(member) => &mut manifest.members[member],
     };
-    arm.sets.retain(|set| !set.trim_start().starts_with("time.step="));
-    arm.sets.push(format!("time.step={:?}", case.time.step));
+    arm.sets.retain(|set| !sets_step(set));
+    arm.sets.push(format!("time.step={step:?}"));
     arm.steps = case.time.steps() as u64;
     arm.case = serde_json::to_value(&case).unwrap_or_default();
     Ok(())
 }
 
+/// The case of an arm with a number of steps.
 fn case_with(manifest: &StudyManifest, i: usize, steps: u64) -> Result<Case, StudyError> {
-    let arm = manifest.run(i);
-    let mut case: Case = serde_json::from_value(arm.case.clone())
-        .map_err(|e| StudyError::Incompatible { arm: arm.name.clone(), what: e.to_string() })?;
+    let arm = &manifest.arms[i];
+    let mut case = case_of(arm)?;
     if steps != arm.steps {
         case.time.step = case.time.end / steps as f64;
     }
@@ -333,7 +337,7 @@ fn trial(
     } else {
         let case = case_with(manifest, i, steps)?;
         let mut source = manifest.source_of(&manifest.arms[i]);
-        source.sets.retain(|set| !set.trim_start().starts_with("time.step="));
+        source.sets.retain(|set| !sets_step(set));
         source.sets.push(format!("time.step={:?}", case.time.step));
         recording::run(&case, source, path, options, progress, stop)
     };
@@ -387,5 +391,31 @@ mod tests {
         assert_eq!(weights.cost(&run), 2.0);
         run.counters.insert("newton".to_owned(), 0);
         assert_eq!(Weights::of(&run), Weights { step: 0.4, ..Weights::default() });
+    }
+
+    /// 25 seconds in 500 steps, and in 501 with a phase. A budget that is met with 501 steps of the arm
+    /// gives its member the same step, and therefore 502 steps.
+    #[test]
+    fn members_have_the_step_of_their_arm() {
+        let folder = tempfile::tempdir().unwrap();
+        let bars = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/bar/two-bars.toml");
+        let hu = "set = { \"time.scheme\" = { kind = \"hu\" } }";
+        let study = format!(
+            "case = '{}'\ndesign = \"matched-cost\"\n[ensemble]\nphases = 2\n[[arm]]\nname = \"a\"\n\
+             [[arm]]\nname = \"b\"\n{hu}\n",
+            bars.display()
+        );
+        let path = folder.path().join("study.toml");
+        fs::write(&path, study).unwrap();
+        let mut manifest = crate::Plan::read(&path).unwrap().manifest;
+        let steps = |manifest: &StudyManifest| {
+            manifest.runs_of(1).into_iter().map(|run| manifest.run(run).steps).collect::<Vec<_>>()
+        };
+        assert_eq!(steps(&manifest), [500, 501]);
+        adopt(&mut manifest, 1, 501).unwrap();
+        assert_eq!(steps(&manifest), [501, 502]);
+        for run in manifest.runs_of(1) {
+            assert_eq!(manifest.run(run).case["time"]["step"], 25.0 / 501.0);
+        }
     }
 }

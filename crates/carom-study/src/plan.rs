@@ -1,8 +1,8 @@
 //! Reads and checks a study: the case of every arm is resolved, and its model built, before
 //! anything is written.
 
-use std::collections::{BTreeMap, VecDeque};
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
+use std::path::Path;
 
 use carom_record::study::design::{Design, Goal, MemberOf, Role};
 use carom_record::study::{Arm, Comparison, StudyManifest, StudySource};
@@ -11,7 +11,8 @@ use carom_run::Setup;
 use carom_run::case::{Case, CaseError, Diagnostic, Document, Problem, read};
 
 use crate::arms::{self, Draft};
-use crate::{expects, file};
+use crate::expects;
+use crate::file::{self, StudyFile};
 
 /// A study that can be started.
 #[derive(Clone, Debug)]
@@ -35,12 +36,19 @@ impl Plan {
     /// Reads a study file and its cases.
     ///
     /// # Errors
+    /// As [`Self::of`].
+    pub fn read(path: &Path) -> Result<Self, CaseError> {
+        Self::of(&Document::open(path, &[])?, path.parent().unwrap_or(Path::new("")))
+    }
+
+    /// Of a study file that has been read; the paths of its cases start at `folder`.
+    ///
+    /// # Errors
     /// All problems, with their places in the study file, or in the case file for problems that it
     /// has without any arm.
-    pub fn read(path: &Path) -> Result<Self, CaseError> {
-        let study = Document::open(path, &[])?;
+    pub fn of(study: &Document, folder: &Path) -> Result<Self, CaseError> {
         let mut problems = Vec::new();
-        let file = file::read(&study, &mut problems);
+        let file = file::read(study, &mut problems);
         let drafts = arms::all(&file);
         // Parts that could not be read would give misleading errors about unknown names.
         if problems.is_empty() {
@@ -49,152 +57,202 @@ impl Plan {
         if !problems.is_empty() {
             return Err(study.diagnose_all(&problems));
         }
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let mut cases: BTreeMap<String, Base> = BTreeMap::new();
-        let named = drafts.iter().map(|d| (d.case.as_ref(), format!("{}.case", d.path)));
-        for (name, place) in std::iter::once((file.case.as_ref(), "case".to_owned())).chain(named) {
-            if let Some(name) = name.filter(|name| !cases.contains_key(*name)) {
-                cases.insert(name.clone(), Base::read(&study, folder, name, &place)?);
-            }
-        }
-        let mut found: Vec<Diagnostic> = Vec::new();
-        let mut planned: Vec<(Draft, Vec<String>, Case, &Base)> = Vec::new();
-        let computed = arms::computes_reference(&file, &drafts);
-        let mut waiting: VecDeque<Draft> = drafts.into();
-        let mut methods = waiting.len();
-        while let Some(draft) = waiting.pop_front() {
-            let Some(base) = draft.case.as_ref().or(file.case.as_ref()).and_then(|name| cases.get(name))
-            else {
-                continue;
-            };
-            let mut sets: Vec<String> = draft.sets.iter().map(|(set, _)| set.clone()).collect();
-            sets.push(draft.expect.0.clone());
-            match resolved(&base.path, &sets) {
-                Ok(case) => {
-                    sets.pop();
-                    planned.push((draft, sets, case, base));
-                    // The step of the computed reference depends on those of all methods.
-                    if computed && planned.len() == methods {
-                        let times = planned.iter().map(|(_, _, case, _)| case.time.step);
-                        let step = times.fold(f64::INFINITY, f64::min);
-                        let (end, refine) = (planned[0].2.time.end, planned[0].2.refine);
-                        match arms::fine(&file, step, end, refine) {
-                            Some(levels) => waiting.extend(levels),
-                            None => found.push(study.diagnose(&no_steps())),
-                        }
-                        methods = 0;
-                    }
-                }
-                Err(error) => {
-                    for diagnostic in diagnostics(error)? {
-                        let placed = arms::placed(&study, &draft, &diagnostic, &base.diagnostics);
-                        if !found.contains(&placed) {
-                            found.push(placed);
-                        }
-                    }
-                }
-            }
-        }
-        let known: Vec<(&str, &Case)> =
-            planned.iter().map(|(d, _, case, _)| (d.name.as_str(), case)).collect();
-        let mut problems = Vec::new();
+        let bases = bases(study, folder, &file, &drafts)?;
+        let mut checked = Checked { study, found: Vec::new() };
+        let planned = checked.arms(&file, drafts, &bases)?;
+        let known: Vec<(&str, &Case)> = planned.iter().map(|p| (p.draft.name.as_str(), &p.case)).collect();
         expects::check(&file.expects, &known, &mut problems);
-        if let Err(CaseError::Wrong(more)) =
-            if problems.is_empty() { Ok(()) } else { Err(study.diagnose_all(&problems)) }
-        {
-            found.extend(more);
-        }
-        if !found.is_empty() {
-            return Err(CaseError::Wrong(found));
-        }
-        let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        let texts = |name: &String| cases.get(name).map(|base| base.text.clone()).unwrap_or_default();
-        let main = file.case.clone().unwrap_or_default();
-        let others = cases.keys().filter(|name| **name != main).map(|name| (name.clone(), texts(name)));
-        let sources = StudySource {
-            study: study.text().to_owned(),
-            case: texts(&main),
-            others: others.collect(),
-            case_path: main,
-        };
-        let texts = std::iter::once(sources.case.clone()).chain(sources.others.values().cloned());
-        let hash = Source { text: sources.study.clone(), sets: texts.collect() }.hash();
-        let arm = |(i, (draft, sets, case, _)): (usize, &(Draft, Vec<String>, Case, &Base))| Arm {
-            name: draft.name.clone(),
-            directory: format!("arms/{:02}-{}", i + 1, arms::slug(&draft.name)),
-            sets: sets.clone(),
-            steps: case.time.steps() as u64,
-            role: draft.role.clone(),
-            case_path: draft.case.clone(),
-            case: serde_json::to_value(case).unwrap_or_default(),
-        };
-        let mut members = Vec::new();
-        for (i, (draft, _, case, base)) in planned.iter().enumerate() {
-            let all = file.ensemble.iter().flat_map(|ensemble| arms::members(ensemble, draft, case));
-            for (j, (member, draft)) in all.enumerate() {
-                let mut sets: Vec<String> = draft.sets.iter().map(|(set, _)| set.clone()).collect();
-                sets.push(draft.expect.0.clone());
-                let case = match resolved(&base.path, &sets) {
-                    Ok(case) => case,
-                    Err(error) => {
-                        for diagnostic in diagnostics(error)? {
-                            let placed = arms::placed(&study, &draft, &diagnostic, &base.diagnostics);
-                            if !found.contains(&placed) {
-                                found.push(placed);
-                            }
-                        }
-                        continue;
-                    }
-                };
-                sets.pop();
-                let role = Role { member: Some(MemberOf { arm: i, member }), ..draft.role };
-                members.push(Arm {
-                    directory: format!("members/{:02}-{:03}", i + 1, j + 1),
-                    sets,
-                    steps: case.time.steps() as u64,
-                    role,
-                    case_path: draft.case,
-                    case: serde_json::to_value(&case).unwrap_or_default(),
-                    name: draft.name,
-                });
-            }
-        }
-        if !found.is_empty() {
-            return Err(CaseError::Wrong(found));
-        }
-        let design = file.design.map(|kind| {
-            let of = |level: usize| planned.iter().find(|(d, ..)| d.role.level == level && !d.role.fine);
-            let cost_of = file.cost_of.clone().or_else(|| of(0)?.0.role.method.clone()).unwrap_or_default();
-            let steps = if file.steps.is_empty() {
-                of(0).map(|p| p.2.time.step).into_iter().collect()
-            } else {
-                file.steps.clone()
-            };
-            Design { kind, cost_of, steps }
-        });
-        let manifest = StudyManifest {
-            goal: file.goal.or(design.as_ref().map(|_| Goal::Trajectory)),
-            design,
-            accuracy: file.accuracy,
-            status: Status::Running,
-            title: file.title.unwrap_or(stem),
-            version: env!("CARGO_PKG_VERSION").into(),
-            input_hash: hash,
-            created: now(),
-            machine: Machine::current(),
-            reference: file.reference,
-            arms: planned.iter().enumerate().map(arm).collect(),
-            ensemble: file.ensemble,
-            members,
-            claims: file.claims,
-            expects: file.expects,
-            source: sources,
-        };
-        let arm = |(_, sets, case, base): (Draft, Vec<String>, Case, &Base)| PlannedArm {
-            case,
-            source: Source { text: base.text.clone(), sets },
+        checked.found.extend(diagnostics(study.diagnose_all(&problems))?);
+        checked.end()?;
+        let members = checked.members(&file, &planned)?;
+        checked.end()?;
+        let manifest = manifest(study, file, &bases, &planned, members);
+        let arm = |p: Planned| PlannedArm {
+            case: p.case,
+            source: Source { text: p.base.text.clone(), sets: p.sets },
         };
         Ok(Self { manifest, arms: planned.into_iter().map(arm).collect() })
+    }
+}
+
+/// An arm whose case is valid.
+struct Planned<'a> {
+    draft: Draft,
+    sets: Vec<String>,
+    case: Case,
+    base: &'a Base,
+}
+
+/// The case files of a study, by their names in it.
+fn bases(
+    study: &Document,
+    folder: &Path,
+    file: &StudyFile,
+    drafts: &[Draft],
+) -> Result<BTreeMap<String, Base>, CaseError> {
+    let mut bases = BTreeMap::new();
+    let named = drafts.iter().map(|d| (d.case.as_ref(), format!("{}.case", d.path)));
+    for (name, place) in std::iter::once((file.case.as_ref(), "case".to_owned())).chain(named) {
+        if let Some(name) = name.filter(|name| !bases.contains_key(*name)) {
+            bases.insert(name.clone(), Base::read(study, folder, name, &place)?);
+        }
+    }
+    Ok(bases)
+}
+
+/// The check of the arms of a study, and the problems found so far.
+struct Checked<'a> {
+    study: &'a Document,
+    found: Vec<Diagnostic>,
+}
+
+impl Checked<'_> {
+    /// An error if there are problems.
+    fn end(&mut self) -> Result<(), CaseError> {
+        let found = std::mem::take(&mut self.found);
+        if found.is_empty() { Ok(()) } else { Err(CaseError::Wrong(found)) }
+    }
+
+    /// The changes of a draft and its case; none if that is wrong.
+    fn resolved(&mut self, draft: &Draft, base: &Base) -> Result<Option<(Vec<String>, Case)>, CaseError> {
+        let mut sets: Vec<String> = draft.sets.iter().map(|(set, _)| set.clone()).collect();
+        sets.push(draft.expect.0.clone());
+        match resolved(&base.name, &base.text, &sets) {
+            Ok(case) => {
+                sets.pop();
+                Ok(Some((sets, case)))
+            }
+            Err(error) => {
+                for diagnostic in diagnostics(error)? {
+                    let placed = arms::placed(self.study, draft, &diagnostic, &base.diagnostics);
+                    if !self.found.contains(&placed) {
+                        self.found.push(placed);
+                    }
+                }
+                Ok(None)
+            }
+        }
+    }
+
+    /// The arms, then the runs of the computed reference, whose step depends on those of all arms.
+    fn arms<'a>(
+        &mut self,
+        file: &StudyFile,
+        drafts: Vec<Draft>,
+        bases: &'a BTreeMap<String, Base>,
+    ) -> Result<Vec<Planned<'a>>, CaseError> {
+        let (computed, count) = (arms::computes_reference(file, &drafts), drafts.len());
+        let mut planned = Vec::new();
+        self.plan(file, drafts, bases, &mut planned)?;
+        if computed && planned.len() == count {
+            let step = planned.iter().map(|p| p.case.time.step).fold(f64::INFINITY, f64::min);
+            let first = &planned[0].case;
+            match arms::fine(file, step, first.time.end, first.refine) {
+                Some(levels) => self.plan(file, levels, bases, &mut planned)?,
+                None => self.found.push(self.study.diagnose(&no_steps())),
+            }
+        }
+        Ok(planned)
+    }
+
+    fn plan<'a>(
+        &mut self,
+        file: &StudyFile,
+        drafts: Vec<Draft>,
+        bases: &'a BTreeMap<String, Base>,
+        planned: &mut Vec<Planned<'a>>,
+    ) -> Result<(), CaseError> {
+        for draft in drafts {
+            let base = draft.case.as_ref().or(file.case.as_ref()).and_then(|name| bases.get(name));
+            if let Some(base) = base
+                && let Some((sets, case)) = self.resolved(&draft, base)?
+            {
+                planned.push(Planned { draft, sets, case, base });
+            }
+        }
+        Ok(())
+    }
+
+    /// The members of all arms, except for the arms themselves.
+    fn members(&mut self, file: &StudyFile, planned: &[Planned]) -> Result<Vec<Arm>, CaseError> {
+        let mut members = Vec::new();
+        for (i, arm) in planned.iter().enumerate() {
+            let all = file.ensemble.iter().flat_map(|e| arms::members(e, &arm.draft, &arm.case));
+            for (j, (member, draft)) in all.enumerate() {
+                let Some((sets, case)) = self.resolved(&draft, arm.base)? else { continue };
+                let role = Role { member: Some(MemberOf { arm: i, member }), ..draft.role.clone() };
+                let directory = format!("members/{:02}-{:03}", i + 1, j + 1);
+                members.push(Arm { role, ..stored(&draft, directory, sets, &case) });
+            }
+        }
+        Ok(members)
+    }
+}
+
+/// A run as it is stored.
+fn stored(draft: &Draft, directory: String, sets: Vec<String>, case: &Case) -> Arm {
+    Arm {
+        name: draft.name.clone(),
+        directory,
+        sets,
+        steps: case.time.steps() as u64,
+        role: draft.role.clone(),
+        case_path: draft.case.clone(),
+        case: serde_json::to_value(case).unwrap_or_default(),
+    }
+}
+
+fn manifest(
+    study: &Document,
+    file: StudyFile,
+    bases: &BTreeMap<String, Base>,
+    planned: &[Planned],
+    members: Vec<Arm>,
+) -> StudyManifest {
+    let stem = Path::new(study.name()).file_stem();
+    let stem = stem.map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    let text = |name: &String| bases.get(name).map(|base| base.text.clone()).unwrap_or_default();
+    let main = file.case.clone().unwrap_or_default();
+    let others = bases.keys().filter(|name| **name != main).map(|name| (name.clone(), text(name)));
+    let source = StudySource {
+        study: study.text().to_owned(),
+        case: text(&main),
+        others: others.collect(),
+        case_path: main,
+    };
+    let texts = std::iter::once(source.case.clone()).chain(source.others.values().cloned());
+    let input_hash = Source { text: source.study.clone(), sets: texts.collect() }.hash();
+    let arm = |(i, p): (usize, &Planned)| {
+        let directory = format!("arms/{:02}-{}", i + 1, arms::slug(&p.draft.name));
+        stored(&p.draft, directory, p.sets.clone(), &p.case)
+    };
+    let design = file.design.map(|kind| {
+        let of = |level: usize| planned.iter().find(|p| p.draft.role.level == level && !p.draft.role.fine);
+        let cost_of = file.cost_of.clone().or_else(|| of(0)?.draft.role.method.clone()).unwrap_or_default();
+        let steps = if file.steps.is_empty() {
+            of(0).map(|p| p.case.time.step).into_iter().collect()
+        } else {
+            file.steps.clone()
+        };
+        Design { kind, cost_of, steps }
+    });
+    StudyManifest {
+        goal: file.goal.or(design.as_ref().map(|_| Goal::Trajectory)),
+        design,
+        accuracy: file.accuracy,
+        status: Status::Running,
+        title: file.title.unwrap_or(stem),
+        version: env!("CARGO_PKG_VERSION").into(),
+        input_hash,
+        created: now(),
+        machine: Machine::current(),
+        reference: file.reference,
+        arms: planned.iter().enumerate().map(arm).collect(),
+        ensemble: file.ensemble,
+        members,
+        claims: file.claims,
+        expects: file.expects,
+        source,
     }
 }
 
@@ -210,7 +268,7 @@ fn no_steps() -> Problem {
 
 /// A case file that arms change.
 struct Base {
-    path: PathBuf,
+    name: String,
     text: String,
     /// Its problems without any change.
     diagnostics: Vec<Diagnostic>,
@@ -228,14 +286,15 @@ impl Base {
             }
             error => error,
         })?;
-        let diagnostics = resolved(&path, &[]).err().map_or_else(|| Ok(Vec::new()), diagnostics)?;
-        Ok(Self { text: document.text().to_owned(), path, diagnostics })
+        let (name, text) = (document.name().to_owned(), document.text().to_owned());
+        let diagnostics = resolved(&name, &text, &[]).err().map_or_else(|| Ok(Vec::new()), diagnostics)?;
+        Ok(Self { name, text, diagnostics })
     }
 }
 
 /// Checks the names of arms: that there are some, that they are unique, and that references to them
 /// exist.
-fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) {
+fn names(file: &StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) {
     if drafts.is_empty() {
         problems.push(Problem::new(
             "",
@@ -312,8 +371,9 @@ fn names(file: &file::StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) 
 }
 
 /// A case with changes; its model is built once, to find problems that only the model shows.
-pub(crate) fn resolved(path: &Path, sets: &[String]) -> Result<Case, CaseError> {
-    let document = Document::open(path, sets)?;
+/// Its text is read once: a pipe cannot be read again.
+pub(crate) fn resolved(name: &str, text: &str, sets: &[String]) -> Result<Case, CaseError> {
+    let document = Document::parse(name, text, sets)?;
     let case = read(&document).map_err(|problems| document.diagnose_all(&problems))?;
     Setup::new(&case).start().map_err(|problems| document.diagnose_all(&problems))?;
     Ok(case)

@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use carom_record::study::{Arm, Study, StudyManifest};
+use carom_record::study::{Study, StudyManifest};
 use carom_record::{RecordError, Status};
 use carom_run::recording::Progress;
 
-use crate::compute::compute;
+use crate::compute::{case_of, compute};
 use crate::error::StudyError;
 use crate::jobs::{Event, side_by_side};
 use crate::plan::Plan;
@@ -51,13 +51,6 @@ pub fn start(
     resume(directory, jobs, observe, stop)
 }
 
-/// Relative duration of a run: its steps, times the growth of the number of unknowns under refinement
-/// of a plane mesh.
-fn work(run: &Arm) -> u64 {
-    let refine = run.case.get("refine").and_then(serde_json::Value::as_f64).unwrap_or(1.0);
-    (run.steps as f64 * refine * refine) as u64
-}
-
 /// Runs the arms that have not ended, `jobs` of them concurrently, and writes the tables.
 ///
 /// # Errors
@@ -82,9 +75,12 @@ pub fn resume(
             state => waiting.push((i, state.is_some())),
         }
     }
-    waiting.sort_by_key(|(i, _)| std::cmp::Reverse(work(manifest.run(*i))));
-    let begun: BTreeMap<usize, bool> = waiting.iter().copied().collect();
-    let order = waiting.into_iter().map(|(i, _)| i).collect();
+    let begun: BTreeMap<usize, bool> = waiting.into_iter().collect();
+    // A case that cannot be read is an error when its turn comes.
+    let work = |i: usize| case_of(manifest.run(i)).map_or(0.0, |case| case.work());
+    let mut order: Vec<(usize, f64)> = begun.keys().map(|&i| (i, work(i))).collect();
+    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let order = order.into_iter().map(|(i, _)| i).collect();
     let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
         compute(&manifest, directory, i, begun.get(&i) == Some(&true), progress, stop)
     };

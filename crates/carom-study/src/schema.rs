@@ -77,7 +77,10 @@ pub fn schema() -> Value {
         json!({ "type": "array", "items": object("A claim about the arms, confirmed or denied by a comparison.", &CLAIM, claim, &CLAIM) }),
         expects(),
     ];
-    let mut schema = object("A comparison of many runs of one case.", &KEYS, study, &["case"]);
+    let mut schema = object("A comparison of many runs of one case.", &KEYS, study, &[]);
+    // The case of the study is not needed where every arm has its own.
+    let own = json!({ "properties": { "arm": { "items": { "required": ["case"] } } }, "required": ["arm"], "not": { "required": ["grid"] } });
+    schema["anyOf"] = json!([{ "required": ["case"] }, own]);
     schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
     schema["title"] = json!("Carom study");
     schema

@@ -115,7 +115,7 @@ fn kind(file: &Path, fast: bool) -> Result<Option<Kind>, CaseError> {
         if !document.text().contains("expect") {
             return Ok(None);
         }
-        let plan = Plan::read(file)?;
+        let plan = Plan::of(&document, file.parent().unwrap_or(Path::new("")))?;
         let arms = plan.arms.iter().flat_map(|arm| &arm.case.expects);
         return Ok(wanted(arms.chain(&plan.manifest.expects), fast).then(|| Kind::Study(Box::new(plan))));
     }
@@ -124,5 +124,5 @@ fn kind(file: &Path, fast: bool) -> Result<Option<Kind>, CaseError> {
         return Ok(None);
     }
     let source = Source { text: document.text().to_owned(), sets: Vec::new() };
-    resolved(file, &[]).map(|case| Some(Kind::Case(Box::new(case), source)))
+    resolved(document.name(), document.text(), &[]).map(|case| Some(Kind::Case(Box::new(case), source)))
 }

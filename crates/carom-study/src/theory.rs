@@ -49,7 +49,7 @@ pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
             continue;
         }
         seen.push(scheme);
-        let name = arm.role.method.as_ref().unwrap_or(&arm.name).replace('"', "\"\"");
+        let name = arm.method().replace('"', "\"\"");
         for i in -2 * POINTS..=3 * POINTS {
             let omega_dt = 10f64.powf(f64::from(i) / f64::from(POINTS));
             let [radius, damping, period] = at(scheme, omega_dt);
@@ -72,7 +72,7 @@ pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
     // Arms that differ only in the step have the same springs, and most arms have none.
     let mut seen = BTreeSet::new();
     let stiff = plan.manifest.arms.iter().zip(&plan.arms).filter(|(arm, planned)| {
-        let name = if arm.role.fine { FINE_NAME } else { arm.role.method.as_ref().unwrap_or(&arm.name) };
+        let name = if arm.role.fine { FINE_NAME } else { arm.method() };
         planned.case.contacts.iter().any(|c| c.enforcement == Enforcement::Penalty) && seen.insert(name)
     });
     let mut springs: Vec<f64> = stiff.filter_map(|(_, planned)| spring_of(&planned.case)).collect();

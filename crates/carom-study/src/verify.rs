@@ -1,5 +1,6 @@
 //! Runs a suite and evaluates its expectations: cases and arms run concurrently, the longest first,
-//! with one thread each. Fields and pages are written only on request.
+//! with one thread each. Fields and pages are written only on request. Expectations are about the arms
+//! of a study: the members of its ensemble are not run.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -179,7 +180,7 @@ impl Item {
                 let path = directory.join("arms");
                 let failed = |source| RecordError::Io { action: "create", path: path.clone(), source };
                 std::fs::create_dir_all(&path).map_err(failed)?;
-                plan.manifest.write(directory)?;
+                of_arms(&plan.manifest).write(directory)?;
                 let arms = plan.arms.iter().zip(&plan.manifest.arms);
                 let unit = |(planned, arm): (&crate::PlannedArm, &carom_record::study::Arm)| Unit {
                     item,
@@ -229,8 +230,7 @@ impl Item {
                     judge(&run, &case.expects).into_iter().map(|v| row(None, place.to_owned(), v)).collect();
             }
             Kind::Study(plan) => {
-                let mut manifest = plan.manifest.clone();
-                manifest.status = Status::Finished;
+                let manifest = StudyManifest { status: Status::Finished, ..of_arms(&plan.manifest) };
                 manifest.write(&directory)?;
                 let study = Study::open(&directory, &mut |_, _| ())?;
                 study.write_tables()?;
@@ -255,6 +255,11 @@ impl Item {
         set_up.rows.retain(|row| !(fast && row.verdict.slow));
         Ok(set_up)
     }
+}
+
+/// A study without its ensemble.
+fn of_arms(manifest: &StudyManifest) -> StudyManifest {
+    StudyManifest { ensemble: None, members: Vec::new(), ..manifest.clone() }
 }
 
 /// Whether an expectation of the arm, or one of the study about the arm, depends on `stopped`.

@@ -7,13 +7,9 @@
 
 use super::definition::Metric;
 use super::episode::first_episode;
-use super::evaluated::{all, probe_columns};
-use super::samples::at;
-use super::table::COLUMNS;
+use super::evaluated::{all, of_columns, probe_columns};
+use super::samples::{at, integral};
 use crate::{History, Run};
-
-/// Windows per first contact episode.
-const WINDOWS: f64 = 16.0;
 
 /// Metrics of the history that depend on single rows.
 const OF_FORCE: [&str; 4] = ["peak_force", "force_roughness", "force_variation", "force_high_frequency"];
@@ -23,24 +19,16 @@ const OF_COLUMN: [&str; 5] = ["min", "max", "roughness", "variation", "high_freq
 /// The metrics that depend on single rows, of the averaged record; empty without a contact episode.
 pub fn of_averages(run: &Run) -> Vec<Metric> {
     let history = &run.history;
-    let end = first_episode(history).and_then(|e| Some((e.start, e.end?)));
-    let Some((start, end)) = end else { return Vec::new() };
-    let times = history.times();
-    let window = (times[end] - times[start]) / WINDOWS;
+    let window = first_episode(history).and_then(|episode| episode.window(history.times()));
+    let Some(window) = window else { return Vec::new() };
     let probes = probe_columns(run);
     let averaged =
         averaged(history, window, |name| name.starts_with("contact_force_") || probes.contains(&name));
     let mut metrics = all(&averaged);
     metrics.retain(|metric| OF_FORCE.contains(&metric.name.as_ref()));
     for column in probes {
-        for (definition, value) in COLUMNS.iter().filter(|(d, _)| OF_COLUMN.contains(&d.name)) {
-            metrics.push(Metric {
-                name: format!("{column}:{}", definition.name).into(),
-                value: value(&averaged, column),
-                unit: String::new(),
-                definition: definition.meaning,
-            });
-        }
+        let of_rows = |name: &str| OF_COLUMN.iter().any(|what| name.ends_with(&format!(":{what}")));
+        metrics.extend(of_columns(&averaged, column).into_iter().filter(|metric| of_rows(&metric.name)));
     }
     metrics
 }
@@ -51,10 +39,7 @@ fn averaged(history: &History, window: f64, of: impl Fn(&str) -> bool) -> Histor
     let times = history.times();
     let (first, last) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
     let mean = |values: &[f64]| -> Vec<f64> {
-        let mut integral = vec![0.0; values.len()];
-        for i in 1..values.len() {
-            integral[i] = integral[i - 1] + 0.5 * (values[i - 1] + values[i]) * (times[i] - times[i - 1]);
-        }
+        let integral = integral(times, values);
         let around = |(&time, &value): (&f64, &f64)| {
             let (from, to) = ((time - window / 2.0).max(first), (time + window / 2.0).min(last));
             let change = at(times, &integral, to).zip(at(times, &integral, from)).map(|(b, a)| b - a);
@@ -71,6 +56,13 @@ fn averaged(history: &History, window: f64, of: impl Fn(&str) -> bool) -> Histor
 mod tests {
     use super::*;
     use crate::Column;
+    use crate::metrics::{COLUMNS, HISTORY};
+
+    #[test]
+    fn the_metrics_of_single_rows_exist() {
+        assert!(OF_FORCE.iter().all(|name| HISTORY.iter().any(|(d, _)| d.name == *name)));
+        assert!(OF_COLUMN.iter().all(|name| COLUMNS.iter().any(|(d, _)| d.name == *name)));
+    }
 
     /// By hand: the mean of t over any window inside is t, at the ends it is that of half a window;
     /// of a single spike of 1 over two rows of a window of two steps it is 1/2.

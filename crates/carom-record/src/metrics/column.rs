@@ -7,7 +7,7 @@
 //! between the rows of a coarse `history_every` is not included.
 
 use super::episode::{Episode, first_episode};
-use super::samples::{extreme, peak_mean, total_variation};
+use super::samples::{extreme, integral, peak_mean, total_variation};
 use crate::History;
 
 /// Roughness of a column in the first contact episode; none without an episode or for a constant.
@@ -24,16 +24,8 @@ pub fn column_roughness(history: &History, column: &str) -> Option<f64> {
 /// trapezoidal rule between rows.
 pub(super) fn peak_of_means(history: &History, column: &str) -> Option<f64> {
     let (times, values) = (history.times(), history.column(column)?);
-    let mut integral = Vec::with_capacity(values.len());
-    let mut sum = 0.0;
-    for (i, value) in values.iter().enumerate() {
-        if let Some(before) = i.checked_sub(1) {
-            sum += 0.5 * (values[before] + value) * (times[i] - times[before]);
-        }
-        integral.push(sum);
-    }
-    let Episode { start, end } = first_episode(history)?;
-    peak_mean(times, &[&integral], (times[end?] - times[start]) / 16.0)
+    let window = first_episode(history)?.window(times)?;
+    peak_mean(times, &[&integral(times, values)], window)
 }
 
 /// Values in the rows of the first episode.

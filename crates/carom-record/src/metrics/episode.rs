@@ -13,7 +13,15 @@ pub struct Episode {
     pub end: Option<usize>,
 }
 
+/// Number of windows per episode over which peaks are averaged.
+const WINDOWS: f64 = 16.0;
+
 impl Episode {
+    /// Time over which peaks are averaged, 1/16 of the episode; none if it has not ended.
+    pub(super) fn window(self, times: &[f64]) -> Option<f64> {
+        Some((times[self.end?] - times[self.start]) / WINDOWS)
+    }
+
     /// Its rows, from the row before it to the row that ends it.
     pub(super) fn span(self, history: &History) -> Range<usize> {
         self.start.saturating_sub(1)..self.end.map_or(history.times().len(), |end| end + 1)

@@ -20,10 +20,31 @@ pub fn all(history: &History) -> Vec<Metric> {
     HISTORY.iter().map(metric).collect()
 }
 
+impl Metric {
+    /// Whether it is one of the computational work, which says nothing about the solution.
+    pub fn is_work(&self) -> bool {
+        WORK.iter().any(|(definition, _)| definition.name == self.name)
+    }
+}
+
 /// Definition and value of a metric of a column; none if there is no such metric.
 pub fn of_column(history: &History, column: &str, what: &str) -> Option<(&'static Definition, Option<f64>)> {
     let (definition, value) = COLUMNS.iter().chain(&FREE).find(|(d, _)| d.name == what)?;
     Some((definition, value(history, column)))
+}
+
+/// The metrics of [`COLUMNS`] of a column, named `COLUMN:METRIC`.
+pub(crate) fn of_columns(history: &History, column: &str) -> Vec<Metric> {
+    let metric = |(definition, value): &(Definition, fn(&History, &str) -> Option<f64>)| Metric {
+        name: format!("{column}:{}", definition.name).into(),
+        value: value(history, column),
+        unit: match definition.unit {
+            Unit::Column => history.unit(column).to_owned(),
+            _ => String::new(),
+        },
+        definition: definition.meaning,
+    };
+    COLUMNS.iter().map(metric).collect()
 }
 
 /// Names of the columns of the probes, in the order of the history.
@@ -60,11 +81,7 @@ pub fn of_run(run: &Run) -> Vec<Metric> {
         metrics.push(Metric { name, value: Some(value), unit, definition: definition.meaning });
     }
     for column in probe_columns(run) {
-        for (Definition { name, unit, meaning, .. }, value) in &COLUMNS {
-            let unit = if *unit == Unit::Column { history.unit(column).to_owned() } else { String::new() };
-            let name = format!("{column}:{name}").into();
-            metrics.push(Metric { name, value: value(history, column), unit, definition: meaning });
-        }
+        metrics.extend(of_columns(history, column));
         for (definition, value) in FREE.iter().filter_map(|(d, value)| Some((d, value(history, column)?))) {
             let (name, unit) =
                 (format!("{column}:{}", definition.name).into(), definition.unit.label(history));
@@ -76,4 +93,20 @@ pub fn of_run(run: &Run) -> Vec<Metric> {
         metrics.push(Metric { name: definition.name.into(), value, unit, definition: definition.meaning });
     }
     metrics
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_and_counts_are_work() {
+        let is_work = |name: &'static str| {
+            Metric { name: name.into(), value: None, unit: String::new(), definition: "" }.is_work()
+        };
+        let work =
+            ["steps", "newton_iterations", "rejected_steps", "factorisations", "cpu_time", "wall_time"];
+        assert!(work.into_iter().all(is_work));
+        assert!(!is_work("chatter") && !is_work("energy_lost:1") && !is_work("A.ux:max"));
+    }
 }

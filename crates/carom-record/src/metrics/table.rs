@@ -96,7 +96,10 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             OWN,
             "largest contact force averaged over a window of 1/16 of the first episode",
         ),
-        |f| peak_mean(f.history.times(), &vector(f.history, "contact_impulse"), f.duration()? / 16.0),
+        |f| {
+            let times = f.history.times();
+            peak_mean(times, &vector(f.history, "contact_impulse"), f.first()?.window(times)?)
+        },
     ),
     (
         d(

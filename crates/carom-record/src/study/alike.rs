@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::Study;
+use super::{Study, step};
 use crate::Status;
 
 impl Study {
@@ -13,11 +13,11 @@ impl Study {
             return None;
         }
         let arms = &self.manifest.arms;
-        let (method, own) = (method(&arms[arm].case), step(&arms[arm].case)?);
+        let (method, own) = (method(&arms[arm].case), step(&arms[arm], "time.step")?);
         let finished = (0..arms.len()).filter(|&other| self.rows[other].status == Some(Status::Finished));
         let alike: Vec<usize> = finished.filter(|&other| self::method(&arms[other].case) == method).collect();
         let named = |word: &str, meets: &dyn Fn(f64) -> bool| {
-            let names = alike.iter().filter(|&&other| step(&arms[other].case).is_some_and(meets));
+            let names = alike.iter().filter(|&&other| step(&arms[other], "time.step").is_some_and(meets));
             let names: Vec<String> = names.map(|&other| format!("\"{}\"", arms[other].name)).collect();
             (!names.is_empty()).then(|| format!("with a {word} step: {}", names.join(", ")))
         };
@@ -25,10 +25,6 @@ impl Study {
         let parts: Vec<String> = parts.into_iter().flatten().collect();
         (!parts.is_empty()).then(|| format!("the same method finished {}", parts.join("; ")))
     }
-}
-
-fn step(case: &Value) -> Option<f64> {
-    case.get("time")?.get("step")?.as_f64()
 }
 
 /// A case without step, output and expectations.

@@ -6,6 +6,7 @@
 //!   0.95 ≤ p ≤ 2.05    U = 1.25 δ
 //!   0 < p < 0.95       U = min(1.25 δ, 3 Δ), at least 1.25 Δ
 //!   p > 2.05           U = 1.25 max(δ with p = 2, Δ)
+//!   f₁ = f₂            U = 1.25 Δ, the limit of p → ∞
 //!   not monotone       U = 3 Δ
 //! ```
 //!
@@ -14,6 +15,8 @@
 //! convergence after L. Eça and M. Hoekstra: nothing is extrapolated with an order that was not
 //! observed. Contact limits the order: where a method is of second order in smooth motion, forces
 //! and losses of an impact converge with first order or less.
+
+use crate::order::{SAFE, from_differences};
 
 /// Observed order and uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,10 +30,10 @@ pub(super) struct Converged {
 
 /// Range of orders that are taken as they are.
 const REGULAR: (f64, f64) = (0.95, 2.05);
-/// Safety factor of an observed order.
-pub(super) const SAFE: f64 = 1.25;
-/// Safety factor without one.
+/// Safety factor without an observed order.
 const UNSAFE: f64 = 3.0;
+/// Share of the differences below which the last one is round-off.
+const SETTLED: f64 = 1e-9;
 
 /// From sizes and values, the finest last; none for a single run.
 pub(super) fn converged(sizes: &[f64], values: &[f64]) -> Option<Converged> {
@@ -42,12 +45,17 @@ pub(super) fn converged(sizes: &[f64], values: &[f64]) -> Option<Converged> {
     if n == 2 {
         return Some(Converged { uncertainty: UNSAFE * (f1 - f2).abs() / (r21 - 1.0), order: None });
     }
-    let (f3, r32) = (values[n - 3], sizes[n - 3] / sizes[n - 2]);
+    let f3 = values[n - 3];
     let range = [(f1 - f2).abs(), (f2 - f3).abs(), (f1 - f3).abs()].into_iter().fold(0.0, f64::max);
     if range == 0.0 {
         return Some(Converged { uncertainty: 0.0, order: None });
     }
-    let order = observed([r21, r32], (f3 - f2) / (f2 - f1));
+    // What no longer changes converges faster than any order that is believed.
+    if (f1 - f2).abs() <= SETTLED * range {
+        return Some(Converged { uncertainty: SAFE * range, order: None });
+    }
+    let steps = [sizes[n - 3], sizes[n - 2], sizes[n - 1]];
+    let order = from_differences(steps, [f3 - f2, f2 - f1]).ok().filter(|p| *p > 0.0);
     let error = |p: f64| (f1 - f2).abs() / (r21.powf(p) - 1.0);
     let uncertainty = match order {
         Some(p) if p > REGULAR.1 => SAFE * error(2.0).max(range),
@@ -56,24 +64,6 @@ pub(super) fn converged(sizes: &[f64], values: &[f64]) -> Option<Converged> {
         None => UNSAFE * range,
     };
     Some(Converged { uncertainty, order })
-}
-
-/// Order p > 0 of monotone convergence from the ratio of successive differences, by bisection: the
-/// ratio grows with p.
-fn observed([r21, r32]: [f64; 2], ratio: f64) -> Option<f64> {
-    let of = |p: f64| r21.powf(p) * (r32.powf(p) - 1.0) / (r21.powf(p) - 1.0);
-    let (mut low, mut high) = (1e-3, 10.0);
-    if !(ratio.is_finite() && ratio > of(low)) {
-        return None;
-    }
-    if ratio >= of(high) {
-        return Some(high);
-    }
-    for _ in 0..60 {
-        let middle = f64::midpoint(low, high);
-        if of(middle) < ratio { low = middle } else { high = middle }
-    }
-    Some(f64::midpoint(low, high))
 }
 
 #[cfg(test)]
@@ -94,15 +84,19 @@ mod tests {
         }
     }
 
-    /// By hand: an order of 1/2 needs more than the observed differences, an order of 3 is not
-    /// believed, and values that do not converge have three times their range.
+    /// By hand: the order 1/2 of 2, √2 and 1 puts the limit 1 below, as far as their range; an order of
+    /// 3 is not believed, and values that do not converge have three times their range.
     #[test]
     fn irregular_convergence_is_wider() {
         let h = [4.0, 2.0, 1.0];
         let slow = converged(&h, &h.map(|h: f64| h.sqrt())).unwrap();
-        assert!(slow.uncertainty >= 1.0 && slow.uncertainty <= 3.0, "{slow:?}");
+        assert!((slow.uncertainty - 1.25).abs() < 1e-9, "{slow:?}");
         let fast = converged(&h, &h.map(|h: f64| h.powi(3) / 64.0)).unwrap();
         assert!((fast.uncertainty - 1.25 * 63.0 / 64.0).abs() < 1e-12, "{fast:?}");
+        // Whether the two finest values are equal or almost so makes no difference.
+        for last in [1.0, 1.0 + 1e-15, 1.0 - 1e-15, 1.0 - 1e-8] {
+            assert!((converged(&h, &[1.2, 1.0, last]).unwrap().uncertainty - 0.25).abs() < 1e-7, "{last}");
+        }
         assert_eq!(converged(&h, &[1.4, 1.2, 1.4]).unwrap().order, None);
         assert!((converged(&h, &[1.4, 1.2, 1.4]).unwrap().uncertainty - 0.6).abs() < 1e-12);
         assert!((converged(&[2.0, 1.0], &[1.1, 1.0]).unwrap().uncertainty - 0.3).abs() < 1e-12);

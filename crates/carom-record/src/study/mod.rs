@@ -26,16 +26,19 @@ mod measure;
 mod orders;
 mod places;
 pub mod ranking;
+mod recommendation;
 pub mod reference;
+mod reference_of;
 mod row;
 mod tables;
+mod trajectory;
 
 use std::path::{Path, PathBuf};
 
 use crate::metrics::{self, Metric};
 use crate::question::{Question, Series};
 use crate::{Expectation, RecordError, Run, Status, judge};
-pub use arm::{Arm, step};
+pub use arm::{Arm, sets_step, step};
 pub use arms::ArmRecords;
 use checks::Checks;
 pub use claim::{Claim, Comparison, Held, Verdict};

@@ -2,6 +2,10 @@
 
 /// Relative difference below which errors are not distinguished.
 pub(super) const ALIKE: f64 = 0.05;
+/// Relative difference below which processor times count as equal: measurements do not reproduce
+/// better than this.
+pub(super) const EQUAL_COST: f64 = 0.1;
+
 /// An arm in the ranking of its level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranked {
@@ -11,51 +15,71 @@ pub struct Ranked {
     pub error: f64,
     /// Largest distance of a member of its ensemble from the median.
     pub uncertainty: f64,
+    /// Members of its ensemble that have an error, the arm itself included.
+    pub members: usize,
+    /// Whether it did not create much energy; other arms are placed last.
+    pub sound: bool,
     /// Place, from 1; arms that are not distinguished share one.
     pub place: usize,
 }
 
-/// Assigns places: one more than the number of arms that are distinguishably better.
-pub(super) fn places(ranked: &mut [Ranked], uncertainty: f64) {
-    let alike = |a: &Ranked, b: &Ranked| {
-        let own = f64::max(a.uncertainty + b.uncertainty, ALIKE * f64::min(a.error, b.error));
-        (a.error - b.error).abs() <= f64::max(uncertainty, own)
-    };
+/// Whether two errors with their uncertainties are not distinguished, if the reference has this
+/// uncertainty.
+pub(super) fn alike(a: (f64, f64), b: (f64, f64), reference: f64) -> bool {
+    let own = f64::max(a.1 + b.1, ALIKE * f64::min(a.0, b.0));
+    (a.0 - b.0).abs() <= f64::max(reference, own)
+}
+
+/// Assigns places: one more than the number of arms that are distinguishably better. An arm that
+/// created much energy is worse than any that did not.
+pub(super) fn places(ranked: &mut [Ranked], better: impl Fn(&Ranked, &Ranked) -> bool) {
+    let better = |a: &Ranked, b: &Ranked| if a.sound == b.sound { better(a, b) } else { a.sound };
     for i in 0..ranked.len() {
-        let one = &ranked[i];
-        ranked[i].place = 1 + ranked.iter().filter(|r| r.error < one.error && !alike(r, one)).count();
+        ranked[i].place = 1 + ranked.iter().filter(|r| better(r, &ranked[i])).count();
     }
+}
+
+/// By their errors.
+pub(super) fn more_accurate(a: &Ranked, b: &Ranked, reference: f64) -> bool {
+    a.error < b.error && !alike((a.error, a.uncertainty), (b.error, b.uncertainty), reference)
+}
+
+/// By their costs.
+pub(super) fn cheaper(a: f64, b: f64) -> bool {
+    (1.0 + EQUAL_COST) * a < b
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn of(errors: &[(f64, f64)], reference: f64) -> Vec<usize> {
+        let ranked = |(arm, &(error, uncertainty)): (usize, &(f64, f64))| Ranked {
+            arm,
+            error,
+            uncertainty,
+            members: 1,
+            sound: true,
+            place: 0,
+        };
+        let mut ranked: Vec<Ranked> = errors.iter().enumerate().map(ranked).collect();
+        places(&mut ranked, |a, b| more_accurate(a, b, reference));
+        ranked.iter().map(|r| r.place).collect()
+    }
+
     /// 1.00 and 1.04 share a place, 1.2 does not; with an uncertainty of 0.3 all three do.
     #[test]
     fn places_are_shared() {
-        let of = |uncertainty: f64| {
-            let mut ranked: Vec<Ranked> = [1.0, 1.04, 1.2]
-                .iter()
-                .enumerate()
-                .map(|(arm, e)| Ranked { arm, error: *e, uncertainty: 0.01, place: 0 })
-                .collect();
-            places(&mut ranked, uncertainty);
-            ranked.iter().map(|r| r.place).collect::<Vec<_>>()
-        };
-        assert_eq!((of(0.0), of(0.3)), (vec![1, 1, 3], vec![1, 1, 1]));
+        let three = [(1.0, 0.01), (1.04, 0.01), (1.2, 0.01)];
+        assert_eq!((of(&three, 0.0), of(&three, 0.3)), (vec![1, 1, 3], vec![1, 1, 1]));
         // Ranges of 0.15 about 1 and 1.2 overlap.
-        let mut wide = [1.0, 1.2].map(|error| Ranked { arm: 0, error, uncertainty: 0.15, place: 0 });
-        places(&mut wide, 0.0);
-        assert_eq!(wide.map(|r| r.place), [1, 1]);
+        assert_eq!(of(&[(1.0, 0.15), (1.2, 0.15)], 0.0), [1, 1]);
         // An arm that may be anything from 0 to 2 is not told from any other; the others are.
-        let mut vague = [(0.9, 1.1), (1.0, 0.0), (2.0, 0.0)].map(|(error, uncertainty)| Ranked {
-            arm: 0,
-            error,
-            uncertainty,
-            place: 0,
-        });
-        places(&mut vague, 0.0);
-        assert_eq!(vague.map(|r| r.place), [1, 1, 2]);
+        assert_eq!(of(&[(0.9, 1.1), (1.0, 0.0), (2.0, 0.0)], 0.0), [1, 1, 2]);
+    }
+
+    #[test]
+    fn costs_within_a_tenth_are_equal() {
+        assert!(!cheaper(1.0, 1.09) && cheaper(1.0, 1.11) && !cheaper(1.11, 1.0));
     }
 }

@@ -1,5 +1,4 @@
-//! Ranking of the arms by the goal of a study, with a recommendation and its confidence, or why there
-//! is none.
+//! Ranking of the arms by the goal of a study.
 //!
 //! Every goal has measures in order of preference, and the first established one is used. The error
 //! of a run is |m − r|/|r| (|m| if r = 0) for a metric m, or the root mean square deviation of
@@ -8,68 +7,27 @@
 //! same cost. Two arms of a level are not distinguished if their errors differ by no more than the sum
 //! of their uncertainties, than that of the reference, or than 5 %. The place of an arm is one more
 //! than the number of arms that are distinguishably better; within a place arms are in the order of
-//! their cost.
+//! their cost. An arm that created so much energy that the default guard would have stopped it is placed
+//! behind all others; a member that did counts as failed.
 //!
-//! Methods are ordered by their mean place over the levels. Of those that are not distinguished from
-//! the best, the cheapest is recommended; processor times within 10 % of the smallest count as equal,
-//! and the smaller error then decides. Nothing is recommended if only a substitute for the measure of
-//! the goal is established, or if no arm has the required accuracy.
+//! The goal of least cost ranks the arms with the required accuracy by their own processor times, of
+//! which differences of up to 10 % are not distinguished.
 
 use super::arm::Arm;
 use super::compared::Compared;
 use super::crosscheck;
 pub use super::crosscheck::Crosscheck;
-use super::design::{Goal, Kind};
-use super::digits::short;
+use super::design::Goal;
 use super::ensemble::Spread;
 use super::manifest::StudyManifest;
 use super::measure::{Judge, candidates};
 pub use super::measure::{Measure, error, standing};
 pub use super::places::Ranked;
-use super::places::{ALIKE, places};
+use super::places::{cheaper, more_accurate, places};
+use super::recommendation::recommended;
+pub use super::recommendation::{Confidence, Verdict};
 use super::reference::Reference;
 use super::row::Row;
-
-/// Relative difference below which processor times count as equal: measurements do not reproduce
-/// better than this.
-const EQUAL_COST: f64 = 0.1;
-
-/// Confidence in a recommendation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Confidence {
-    /// The ranking may be accidental.
-    Low,
-    /// The ranking holds for this study.
-    Medium,
-    /// The ranking holds at every level, by more than all uncertainties.
-    High,
-}
-
-impl Confidence {
-    /// As a word.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Low => "low",
-            Self::Medium => "medium",
-            Self::High => "high",
-        }
-    }
-}
-
-/// The recommendation.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Verdict {
-    /// The recommended arm.
-    pub arm: usize,
-    /// Methods (arms in a study without methods) that are not distinguished from it.
-    pub alike: Vec<String>,
-    /// Reasons for the recommendation.
-    pub reasons: Vec<String>,
-    /// Confidence in it.
-    pub confidence: Confidence,
-    /// Reasons for the confidence.
-    pub confidence_reasons: Vec<String>,
-}
 
 /// The ranking of a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,7 +66,7 @@ impl Ranking {
                 Err(why) => passed_over.push(why),
             }
         }
-        let Some((measure, mut errors)) = found else {
+        let Some((measure, errors)) = found else {
             let why =
                 passed_over.iter().map(|(name, why)| format!("{name}: {why}")).collect::<Vec<_>>().join("; ");
             let reasons = vec!["the reference establishes no measure of this goal".to_owned()];
@@ -122,16 +80,8 @@ impl Ranking {
         };
         let mut measure = Measure { passed_over, ..measure };
         if goal == Goal::Cost {
-            // The work of the arms that are accurate enough.
-            let works = rows.iter().map(|r| r.value("cpu_time"));
-            errors = errors
-                .iter()
-                .zip(works)
-                .map(|(e, work)| e.filter(|e| *e <= manifest.accuracy()).and(work))
-                .collect();
             measure.words =
                 format!("processor time of arms whose {} is at most {}", measure.words, manifest.accuracy());
-            measure.uncertainty = 0.0;
         }
         let count = manifest.arms.iter().map(|a| a.role.level + 1).max().unwrap_or(0);
         let level = |level: usize| {
@@ -140,265 +90,41 @@ impl Ranking {
             let not_reference = arms.filter(|(_, a)| manifest.reference.as_ref() != Some(&a.name));
             let one = |(i, _): (usize, &Arm)| {
                 errors[i]?;
-                let members = Spread::of(manifest.runs_of(i).into_iter().filter_map(|run| errors[run]))?;
+                let sound = |run: &usize| !rows[*run].is_unsound();
+                let members = manifest.runs_of(i).into_iter().filter(|run| *run == i || sound(run));
+                let members = Spread::of(members.filter_map(|run| errors[run]))?;
                 let (error, uncertainty) = (members.median(), members.half_width());
-                Some(Ranked { arm: i, error, uncertainty, place: 0 })
+                Some(Ranked {
+                    arm: i,
+                    error,
+                    uncertainty,
+                    members: members.count(),
+                    sound: sound(&i),
+                    place: 0,
+                })
             };
             let mut ranked: Vec<Ranked> = not_reference.filter_map(one).collect();
-            ranked.sort_by(|a, b| a.error.total_cmp(&b.error));
-            places(&mut ranked, measure.uncertainty);
             let cost = |r: &Ranked| rows[r.arm].value("cpu_time").unwrap_or(f64::INFINITY);
+            ranked.sort_by(|a, b| a.error.total_cmp(&b.error));
+            if goal == Goal::Cost {
+                ranked.retain(|r| r.error <= manifest.accuracy() && cost(r).is_finite());
+                places(&mut ranked, |a, b| cheaper(cost(a), cost(b)));
+            } else {
+                places(&mut ranked, |a, b| more_accurate(a, b, measure.uncertainty));
+            }
             ranked.sort_by(|a, b| a.place.cmp(&b.place).then(cost(a).total_cmp(&cost(b))));
             ranked
         };
         let levels: Vec<Vec<Ranked>> = (0..count).map(level).collect();
-        let verdict = verdict(goal, manifest, &measure, &levels, rows, reference);
-        let crosschecks =
-            if goal == Goal::Cost { Vec::new() } else { crosscheck::of(manifest, rows, &levels) };
+        let verdict = recommended(goal, manifest, &measure, &levels, rows, reference);
+        let crosschecks = if goal == Goal::Cost {
+            Vec::new()
+        } else {
+            crosscheck::of(manifest, rows, &levels, measure.uncertainty)
+        };
         Self { goal, measure: Ok(measure), levels, crosschecks, verdict }
     }
 }
 
-fn verdict(
-    goal: Goal,
-    manifest: &StudyManifest,
-    measure: &Measure,
-    levels: &[Vec<Ranked>],
-    rows: &[Row],
-    reference: Option<&Reference>,
-) -> Result<Verdict, Vec<String>> {
-    let name = |arm: usize| manifest.arms[arm].role.method.as_ref().unwrap_or(&manifest.arms[arm].name);
-    let full: Vec<&Vec<Ranked>> = levels.iter().filter(|l| !l.is_empty()).collect();
-    let mut methods: Vec<&String> = Vec::new();
-    for ranked in full.iter().flat_map(|l| l.iter()) {
-        if !methods.contains(&name(ranked.arm)) {
-            methods.push(name(ranked.arm));
-        }
-    }
-    // A method without an arm at a level is placed after all others.
-    let places = |method: &String| {
-        let place = |l: &&Vec<Ranked>| {
-            l.iter().find(|r| name(r.arm) == method).map_or(manifest.arms.len() + 1, |r| r.place)
-        };
-        full.iter().map(place).sum::<usize>() as f64 / full.len() as f64
-    };
-    let finest = |method: &String| {
-        full.iter()
-            .rev()
-            .find_map(|l| l.iter().find(|r| name(r.arm) == method))
-            .map_or(f64::INFINITY, |r| r.error)
-    };
-    methods.sort_by(|a, b| places(a).total_cmp(&places(b)).then(finest(a).total_cmp(&finest(b))));
-    let nothing = || vec![format!("no arm has a value for: {}", measure.words)];
-    let least = places(methods.first().ok_or_else(nothing)?);
-    let tied: Vec<&String> = methods.into_iter().filter(|m| places(m) <= least).collect();
-    let accuracy = manifest.accuracy();
-    // The arm of a method that would be recommended.
-    let arm_of = |method: &String| {
-        let arms: Vec<&Ranked> =
-            full.iter().filter_map(|l| l.iter().find(|r| name(r.arm) == method)).collect();
-        match goal {
-            Goal::Cost => arms.iter().min_by(|a, b| a.error.total_cmp(&b.error)).copied(),
-            _ => arms.iter().find(|r| r.error <= accuracy).or(arms.last()).copied(),
-        }
-    };
-    let costs: Vec<Option<f64>> =
-        tied.iter().map(|m| rows.get(arm_of(m)?.arm)?.value("cpu_time").filter(|c| *c > 0.0)).collect();
-    let picked = cheapest(&costs);
-    let best = tied[picked];
-    let alike_ones: Vec<String> =
-        tied.iter().enumerate().filter(|(i, _)| *i != picked).map(|(_, m)| (*m).clone()).collect();
-    let chosen = arm_of(best).ok_or_else(nothing)?;
-    let mut against = Vec::new();
-    if let Some((name, _)) = measure.passed_over.first() {
-        against.push(format!(
-            "the reference does not establish {name}, the measure of this goal; the arms are ranked by a substitute, {}",
-            measure.name
-        ));
-    }
-    if goal != Goal::Cost && chosen.error > accuracy {
-        against.push(format!(
-            "no arm has the required accuracy, {accuracy}; the best one, {}, has an error of {}",
-            manifest.arms[chosen.arm].name,
-            short(chosen.error)
-        ));
-    }
-    if !against.is_empty() {
-        return Err(against);
-    }
-    let first_at = full.iter().filter(|l| l.iter().any(|r| r.place == 1 && name(r.arm) == best)).count();
-    let mut reasons = vec![format!("{}: {}", measure.words, short(chosen.error))];
-    let others = full
-        .iter()
-        .flat_map(|l| l.iter())
-        .filter(|r| manifest.arms[r.arm].role.level == manifest.arms[chosen.arm].role.level);
-    if let Some(next) = others.filter(|r| name(r.arm) != best).min_by(|a, b| a.error.total_cmp(&b.error)) {
-        reasons.push(format!(
-            "best of the other methods at the same level, {}: {}",
-            name(next.arm),
-            short(next.error)
-        ));
-    }
-    reasons.push(format!("ranked first at {first_at} of {} levels", full.len()));
-    let next = costs.iter().enumerate().filter(|(i, _)| *i != picked).filter_map(|(i, c)| Some((i, (*c)?)));
-    let next = next.min_by(|a, b| a.1.total_cmp(&b.1));
-    // Cost of the cheapest of the others, relative to that of the recommended one.
-    let times = next.zip(costs[picked]).map(|((_, other), own)| other / own);
-    if let Some(((i, other), own)) = next.zip(costs[picked]).filter(|_| goal != Goal::Cost) {
-        let words = if other > (1.0 + EQUAL_COST) * own {
-            "cheapest of the methods that are not distinguished"
-        } else {
-            "none of the methods that are not distinguished is cheaper by more than 10 %"
-        };
-        reasons.push(format!("{words}: {} s of processor time; {}: {} s", short(own), tied[i], short(other)));
-    }
-    if goal != Goal::Cost {
-        reasons.push(format!("the coarsest level at which its error is at most {accuracy}"));
-    }
-    if let Some(depth) = penetration(manifest, chosen.arm, rows) {
-        reasons.push(format!("its contact is a penalty: it penetrates by up to {}", short(depth)));
-    }
-    if !measure.left_out.is_empty() {
-        reasons
-            .push(format!("not established by the reference, and left out: {}", measure.left_out.join(", ")));
-    }
-    let dearer = times.is_some_and(|times| times > 1.0 + EQUAL_COST) && goal != Goal::Cost;
-    let alone = Alone { method: alike_ones.is_empty(), by_cost: dearer };
-    let evidence = Evidence {
-        mesh: reference.is_some_and(Reference::refines_mesh),
-        ensemble: manifest.ensemble.is_some(),
-    };
-    let (mut confidence, mut confidence_reasons) =
-        confidence(manifest, measure, &full, first_at, &alone, &evidence);
-    let arm = &manifest.arms[chosen.arm];
-    if let Some(design) =
-        manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedStep && manifest.by_cost(arm))
-    {
-        confidence = confidence.min(Confidence::Medium);
-        confidence_reasons.push(format!(
-            "it is compared at the cost of {}, the other methods at their common step",
-            design.cost_of
-        ));
-    }
-    Ok(Verdict { arm: chosen.arm, alike: alike_ones, reasons, confidence, confidence_reasons })
-}
-
-/// Penetration of an arm whose contact is enforced by a penalty.
-fn penetration(manifest: &StudyManifest, arm: usize, rows: &[Row]) -> Option<f64> {
-    let contacts = manifest.arms[arm].case.get("contacts")?.as_array()?;
-    let penalty = contacts.iter().any(|c| c.get("enforcement").is_some_and(|e| e == "penalty"));
-    rows.get(arm)?.value("penetration").filter(|_| penalty)
-}
-
-/// Index of the first method whose cost is within 10 % of the smallest; 0 if no cost is known.
-fn cheapest(costs: &[Option<f64>]) -> usize {
-    let least = costs.iter().flatten().copied().fold(f64::INFINITY, f64::min);
-    costs.iter().position(|c| c.is_some_and(|c| c <= (1.0 + EQUAL_COST) * least)).unwrap_or(0)
-}
-
-/// Whether the recommended method is distinguished from all others.
-struct Alone {
-    /// By its errors.
-    method: bool,
-    /// By its cost, if not by its errors.
-    by_cost: bool,
-}
-
-/// What the errors are known to be independent of.
-struct Evidence {
-    /// The reference was computed on finer meshes.
-    mesh: bool,
-    /// The arms were run with several phases, roles or meshes.
-    ensemble: bool,
-}
-
-fn confidence(
-    manifest: &StudyManifest,
-    measure: &Measure,
-    levels: &[&Vec<Ranked>],
-    first_at: usize,
-    alone: &Alone,
-    evidence: &Evidence,
-) -> (Confidence, Vec<String>) {
-    let (mut confidence, mut reasons) = (Confidence::High, Vec::new());
-    let mut at_most = |most: Confidence, why: String| {
-        confidence = confidence.min(most);
-        reasons.push(why);
-    };
-    if !alone.method {
-        let close = format!("differences of at most {} or {} %", short(measure.uncertainty), 100.0 * ALIKE);
-        if alone.by_cost {
-            let why = format!(
-                "its error is not distinguished from that of other methods ({close}); its lower cost decides"
-            );
-            at_most(Confidence::Medium, why);
-        } else {
-            let why = format!(
-                "other methods are not distinguished from it, neither by error ({close}) nor by cost"
-            );
-            at_most(Confidence::Low, why);
-        }
-    }
-    if first_at < levels.len() {
-        at_most(Confidence::Low, format!("it is ranked first at only {first_at} of {} levels", levels.len()));
-    }
-    if levels.len() < 2 {
-        at_most(
-            Confidence::Medium,
-            "there is only one level; the ranking may be different at another step".to_owned(),
-        );
-    }
-    let unseen = |what: &str, cure: &str| format!("{what}; {cure}");
-    let mesh = unseen(
-        "the reference was computed on the given mesh only",
-        "`mesh = [1, 2, 4]` in [fine] refines it",
-    );
-    let ensemble = unseen(
-        "every arm was run once, so that chance is not told from method",
-        "[ensemble] runs it with several phases, roles and meshes",
-    );
-    // One of them alone leaves the ranking of this mesh, or of these instants, open.
-    let most = if evidence.mesh || evidence.ensemble { Confidence::Medium } else { Confidence::Low };
-    for why in [(evidence.mesh, mesh), (evidence.ensemble, ensemble)] {
-        if !why.0 {
-            at_most(most, why.1);
-        }
-    }
-    let off = manifest
-        .arms
-        .iter()
-        .filter(|a| a.role.cost.is_some_and(|share| (share - 1.0).abs() > EQUAL_COST))
-        .count();
-    if off > 0 {
-        at_most(
-            Confidence::Medium,
-            format!("the cost of {off} arms differs from the budget by more than 10 %"),
-        );
-    }
-    if manifest.design.is_none() {
-        at_most(
-            Confidence::Low,
-            "the arms are not matched: the study has no `design` for equal steps or equal cost".to_owned(),
-        );
-    }
-    if reasons.is_empty() {
-        reasons.push(
-            "it is ranked first at every level, by more than the uncertainties of arms and reference and 5 %"
-                .to_owned(),
-        );
-    }
-    (confidence, reasons)
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// 1.05 is equal to 1, 1.2 is not; unknown costs are ignored.
-    #[test]
-    fn the_cheapest_within_a_tenth_is_taken_in_order() {
-        assert_eq!(cheapest(&[Some(9.9), Some(1.05), Some(1.0)]), 1);
-        assert_eq!(cheapest(&[Some(1.2), None, Some(1.0)]), 2);
-        assert_eq!((cheapest(&[None, None]), cheapest(&[Some(3.0)])), (0, 0));
-    }
-}
+mod tests;

@@ -4,8 +4,9 @@
 //! computed    runs at decreasing steps, and on finer meshes where `mesh` of [fine] says so; each level
 //!             is run with every member of the study's ensemble. Value: the median of the members at the
 //!             finest level. Uncertainty: that of the refinement (convergence.rs), plus the largest
-//!             distance of a member from the median, plus half a step for an instant, plus 5/4 of what
-//!             averaging over a short time changes, for extremes and variations (metrics/averaged.rs)
+//!             distance of a member from the median, plus a step for an instant (half a step if members
+//!             differ in phase), plus 5/4 of what averaging over a short time changes, for extremes and
+//!             variations (metrics/averaged.rs)
 //! an arm      the same with the arms that differ from it only in the step; with a single run nothing is known
 //! exact       the formulas of [exact], and the metrics that can be computed from these columns; uncertainty 0
 //! ideal       the values for elastic bodies: no change or dissipation of energy, no penetration
@@ -16,17 +17,16 @@
 //! established values are used for rankings.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use carom_formula::Formula;
 
-use super::arm::{Arm, step};
-use super::convergence::{SAFE, converged};
+use super::convergence::converged;
 use super::digits::short;
 use super::ensemble::Spread;
-use super::manifest::StudyManifest;
+pub use super::trajectory::{FORCE, Trajectory};
 use crate::metrics::{self, Metric};
-use crate::{Column, History, RecordError, Run, Status};
+use crate::order::SAFE;
+use crate::{Column, History};
 
 /// Largest uncertainty of an established value, relative to the value; of a column, relative to its
 /// range.
@@ -84,43 +84,6 @@ pub struct Estimate {
     pub spread: f64,
 }
 
-/// The part of a run that is used for comparisons.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Trajectory {
-    /// Times of the rows.
-    pub times: Vec<f64>,
-    /// Columns of probes and of the striker's centre, and [`FORCE`], the magnitude of the contact
-    /// force.
-    pub columns: BTreeMap<String, Vec<f64>>,
-    /// The metrics.
-    pub metrics: Vec<Metric>,
-}
-
-/// Column name of the magnitude of the contact force.
-pub const FORCE: &str = "contact force";
-
-impl Trajectory {
-    /// From a record.
-    pub fn of(run: &Run, metrics: &[Metric]) -> Self {
-        let history = &run.history;
-        let mut names: Vec<String> = metrics::probe_columns(run).into_iter().map(str::to_owned).collect();
-        if let Some(striker) = metrics::striker(history) {
-            names.extend(["x", "y"].map(|axis| format!("{striker}.center_{axis}")));
-        }
-        let columns = names.into_iter().filter_map(|name| {
-            let values = history.column(&name)?.to_vec();
-            Some((name, values))
-        });
-        let mut columns: BTreeMap<_, _> = columns.collect();
-        columns.insert(FORCE.to_owned(), metrics::contact_force(history));
-        Self { times: history.times().to_vec(), columns, metrics: metrics.to_vec() }
-    }
-
-    fn value(&self, metric: &str) -> Option<f64> {
-        self.metrics.iter().find(|m| m.name == metric)?.value
-    }
-}
-
 /// The runs of one level of refinement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
@@ -128,6 +91,8 @@ pub struct Level {
     pub step: f64,
     /// Factor of mesh refinement.
     pub mesh: f64,
+    /// Number of different phases of the members.
+    pub phases: usize,
     /// The members of its ensemble, the run as given first.
     pub members: Vec<Trajectory>,
 }
@@ -135,7 +100,7 @@ pub struct Level {
 impl Level {
     /// A single run on the given mesh.
     pub fn single(step: f64, run: Trajectory) -> Self {
-        Self { step, mesh: 1.0, members: vec![run] }
+        Self { step, mesh: 1.0, phases: 1, members: vec![run] }
     }
 }
 
@@ -148,13 +113,29 @@ pub struct Reference {
     levels: Vec<Level>,
     /// Metrics of the finest run after averaging over a short time.
     averaged: Vec<Metric>,
+    /// Uncertainties of its columns, which take the whole record to compute.
+    uncertainties: BTreeMap<String, Standing>,
     exact: bool,
 }
 
 impl Reference {
     /// Of levels of decreasing steps, the finest last.
     pub fn of_levels(what: String, levels: Vec<Level>) -> Self {
-        Self { what, levels, averaged: Vec::new(), exact: false }
+        let mut reference =
+            Self { what, levels, averaged: Vec::new(), uncertainties: BTreeMap::new(), exact: false };
+        let columns = reference.columns().into_iter();
+        reference.uncertainties = columns.map(|c| (c.to_owned(), reference.of_column(c))).collect();
+        reference
+    }
+
+    /// With a description, and metrics of the finest run after averaging over a short time.
+    pub(super) fn described(self, what: String, averaged: Vec<Metric>) -> Self {
+        Self { what, averaged, ..self }
+    }
+
+    /// Its levels, the finest last.
+    pub(super) fn levels(&self) -> &[Level] {
+        &self.levels
     }
 
     /// Whether its uncertainty includes that of the mesh: it is exact, or its mesh was refined.
@@ -194,13 +175,7 @@ impl Reference {
         let history = History::new(described.collect(), values.collect());
         let mut known = metrics::all(&history);
         for column in columns.keys() {
-            let of = metrics::COLUMNS.iter().map(|(d, value)| Metric {
-                name: format!("{column}:{}", d.name).into(),
-                value: value(&history, column),
-                unit: String::new(),
-                definition: d.meaning,
-            });
-            known.extend(of);
+            known.extend(metrics::of_columns(&history, column));
         }
         if history.column("contact_force_x").is_some() {
             columns.insert(FORCE.to_owned(), metrics::contact_force(&history));
@@ -211,6 +186,7 @@ impl Reference {
             what: "the exact formulas of [exact]".to_owned(),
             levels,
             averaged: Vec::new(),
+            uncertainties: BTreeMap::new(),
             exact: true,
         })
     }
@@ -231,8 +207,9 @@ impl Reference {
         let medians: Vec<f64> = levels.iter().map(Spread::median).collect();
         let found = converged(&self.sizes(), &medians).ok_or("a single run gives no error estimate")?;
         let (value, spread) = levels.last().map_or((0.0, 0.0), |s| (s.median(), s.half_width()));
-        // A recorded instant is late by up to a step; the median of several phases by half of one.
-        let late = |level: &Level| if level.members.len() > 1 { level.step / 2.0 } else { level.step };
+        // A recorded instant is late by up to a step; the median of n phases by (n + 1)/2n of one, which
+        // is at most half a step more than the spread of the phases, (n − 1)/2n.
+        let late = |level: &Level| if level.phases > 1 { level.step / 2.0 } else { level.step };
         let instant = self.levels.last().filter(|_| INSTANTS.contains(&name)).map_or(0.0, late);
         let single = self.levels.last().and_then(|level| level.members.first()?.value(name));
         let averaged =
@@ -275,9 +252,8 @@ impl Reference {
             let (fine, coarse) = (b.columns.get(column)?, a.columns.get(column)?);
             metrics::deviation(&a.times, coarse, (&b.times, fine))
         };
-        let first = |level: &Level| level.members.first().cloned();
-        let between: Option<Vec<f64>> =
-            self.levels.windows(2).map(|pair| apart(&first(&pair[0])?, &first(&pair[1])?)).collect();
+        let between = |pair: &[Level]| apart(pair[0].members.first()?, pair[1].members.first()?);
+        let between: Option<Vec<f64>> = self.levels.windows(2).map(between).collect();
         let finest = self.levels.last()?;
         let (one, others) = finest.members.split_first()?;
         let spread = others.iter().map(|other| apart(other, one)).collect::<Option<Vec<f64>>>()?;
@@ -289,6 +265,10 @@ impl Reference {
         if self.exact {
             return Standing::Established { value: 0.0, uncertainty: 0.0 };
         }
+        self.uncertainties.get(column).cloned().unwrap_or_else(|| self.of_column(column))
+    }
+
+    fn of_column(&self, column: &str) -> Standing {
         let Some((apart, spread)) = self.deviations(column) else {
             return Standing::Not("a run of the reference has no such column".to_owned());
         };
@@ -331,107 +311,13 @@ impl Reference {
     }
 }
 
-/// What happens where contact begins, which is a part of the mathematical problem as long as contact
-/// nodes have mass.
-fn begins(arm: &Arm) -> &'static str {
-    let contacts = arm.case.get("contacts").and_then(serde_json::Value::as_array);
-    let all = |value: &str| {
-        contacts.is_some_and(|c| !c.is_empty() && c.iter().all(|c| c["persistency"].as_str() == Some(value)))
-    };
-    match (all("project"), all("none")) {
-        (true, _) => "; impacts of nodes are inelastic (velocities are projected)",
-        (_, true) => "; velocities of nodes are not changed where contact begins",
-        _ => "",
-    }
-}
-
-impl StudyManifest {
-    /// Indices of the arms of the reference, the finest last: those of a computed reference, or at
-    /// most three: the named arm after those arms that differ from it only in a longer step.
-    fn reference_arms(&self) -> Vec<usize> {
-        let Some(named) = self.arms.iter().position(|a| self.reference.as_ref() == Some(&a.name)) else {
-            return Vec::new();
-        };
-        let others = |a: &Arm| {
-            let sets = a
-                .sets
-                .iter()
-                .filter(|s| !s.trim_start().starts_with("time.step"))
-                .cloned()
-                .collect::<Vec<_>>();
-            (sets, a.case_path.clone(), a.role.fine)
-        };
-        let size = |i: &usize| step(&self.arms[*i], "time.step").unwrap_or_default();
-        if self.arms[named].role.fine {
-            let mut found: Vec<usize> = (0..self.arms.len()).filter(|i| self.arms[*i].role.fine).collect();
-            found.sort_by(|a, b| size(b).total_cmp(&size(a)));
-            return found;
-        }
-        let alike =
-            |i: &usize| others(&self.arms[*i]) == others(&self.arms[named]) && size(i) >= size(&named);
-        let mut found: Vec<usize> = (0..self.arms.len()).filter(alike).collect();
-        found.sort_by(|a, b| size(b).total_cmp(&size(a)));
-        found.split_off(found.len().saturating_sub(3))
-    }
-
-    /// The reference that arms are compared with.
-    ///
-    /// # Errors
-    /// Input/output or system error, or a damaged record.
-    pub(super) fn reference(&self, directory: &Path) -> Result<Option<Reference>, RecordError> {
-        if self.reference.as_deref() == Some("exact") {
-            let Some(case) = self.arms.first().map(|a| &a.case) else { return Ok(None) };
-            let formulas =
-                case.get("exact").and_then(|e| serde_json::from_value(e.clone()).ok()).unwrap_or_default();
-            let end = case.pointer("/time/end").and_then(serde_json::Value::as_f64).unwrap_or_default();
-            return Ok(Reference::of_formulas(&formulas, end, 8000));
-        }
-        let arms = self.reference_arms();
-        let (mut levels, mut averaged) = (Vec::new(), Vec::new());
-        for &i in &arms {
-            let mut members = Vec::new();
-            for run in self.runs_of(i) {
-                if self.state(directory, self.run(run))?.0 == Some(Status::Finished) {
-                    let run = Run::open(&directory.join(&self.run(run).directory))?;
-                    if members.is_empty() && Some(&i) == arms.last() {
-                        averaged = metrics::of_averages(&run);
-                    }
-                    members.push(Trajectory::of(&run, &metrics::of_run(&run)));
-                } else if run == i {
-                    return Ok(None);
-                }
-            }
-            let arm = &self.arms[i];
-            let mesh = arm.case.get("refine").and_then(serde_json::Value::as_f64).unwrap_or(1.0);
-            levels.push(Level { step: step(arm, "time.step").unwrap_or_default(), mesh, members });
-        }
-        let Some(last) = arms.last() else { return Ok(None) };
-        let reference = Reference::of_levels(String::new(), levels);
-        let count = match arms.len() {
-            1 => "a single run, whose error is not known".to_owned(),
-            n if reference.refines_mesh() => format!("the finest of {n} levels of step and mesh"),
-            n => format!("the finest of {n} steps on the given mesh"),
-        };
-        let members = reference.levels.last().map_or(1, |level| level.members.len());
-        let ensemble = if members > 1 { format!(", {members} members each") } else { String::new() };
-        let law = begins(&self.arms[*last]);
-        let what = format!("\"{}\", {count}{ensemble}{law}", self.arms[*last].name);
-        Ok(Some(Reference { what, averaged, ..reference }))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn with(values: &[f64]) -> Trajectory {
-        let metric = |value: &f64| Metric {
-            name: "m".into(),
-            value: Some(*value),
-            unit: String::new(),
-            definition: "",
-        };
-        Trajectory { metrics: values.iter().map(metric).collect(), ..Trajectory::default() }
+    fn with(name: &'static str, value: f64) -> Trajectory {
+        let metric = Metric { name: name.into(), value: Some(value), unit: String::new(), definition: "" };
+        Trajectory { metrics: vec![metric], ..Trajectory::default() }
     }
 
     /// By hand: 1.4, 1.2, 1.1 at halved steps converge with first order to 1.0; members at the
@@ -441,7 +327,8 @@ mod tests {
         let level = |step: f64, values: &[f64]| Level {
             step,
             mesh: 1.0,
-            members: values.iter().map(|v| with(&[*v])).collect(),
+            phases: 1,
+            members: values.iter().map(|v| with("m", *v)).collect(),
         };
         let of = |finest: &[f64]| {
             let levels = vec![level(4.0, &[1.4]), level(2.0, &[1.2]), level(1.0, finest)];
@@ -454,6 +341,64 @@ mod tests {
         assert!(matches!(of(&[3.0]).metric("m"), Standing::Not(_)));
         let single = Reference::of_levels(String::new(), vec![level(1.0, &[1.0])]);
         assert!(matches!(single.metric("m"), Standing::Not(_)) && !single.has_ensemble());
+    }
+
+    /// By hand: instants 1.4, 1.2, 1.1 at the steps 4, 2, 1 are uncertain by 0.125 as above, and late by
+    /// up to one step; half of it where phases are known, not where roles or meshes are swapped only.
+    /// Members 0.2 before and after the median add 0.2.
+    #[test]
+    fn instants_are_late() {
+        let of = |phases: usize, finest: &[f64]| {
+            let level = |step: f64, values: &[f64]| Level {
+                step,
+                mesh: 1.0,
+                phases,
+                members: values.iter().map(|v| with("contact_end", *v)).collect(),
+            };
+            let levels = vec![level(4.0, &[1.4]), level(2.0, &[1.2]), level(1.0, finest)];
+            Reference::of_levels(String::new(), levels).estimate("contact_end").unwrap().uncertainty
+        };
+        assert!((of(1, &[1.1]) - 1.125).abs() < 1e-9);
+        assert!((of(1, &[1.1, 0.9, 1.3]) - 1.325).abs() < 1e-9);
+        assert!((of(3, &[1.1, 0.9, 1.3]) - 0.825).abs() < 1e-9);
+    }
+
+    /// By hand: averaging changes the peak of the finest run from 1.1 to 0.9; 5/4 of that is 0.25.
+    #[test]
+    fn what_averaging_changes_is_uncertain() {
+        let levels = [(4.0, 1.4), (2.0, 1.2), (1.0, 1.1)];
+        let levels = levels.map(|(step, value)| Level::single(step, with("peak_force", value)));
+        let mut reference = Reference::of_levels(String::new(), levels.into());
+        reference.averaged = with("peak_force", 0.9).metrics;
+        assert!((reference.estimate("peak_force").unwrap().uncertainty - 0.375).abs() < 1e-9);
+    }
+
+    /// Columns off from 10 t by 0.4, 0.2 and 0.1 on [0, 1], except at the ends, which set the range: the
+    /// deviations between successive levels are in the ratio of 2, so that the order is 1 and the
+    /// uncertainty 5/4 of the last deviation. By hand, with a row in the middle only of three.
+    #[test]
+    fn uncertainty_and_band_of_a_column() {
+        let run = |off: f64| Trajectory {
+            times: vec![0.0, 0.5, 1.0],
+            columns: [("A.uy".to_owned(), vec![0.0, 5.0 + off, 10.0])].into(),
+            metrics: Vec::new(),
+        };
+        let levels = |finest: Vec<Trajectory>| {
+            let finest = Level { step: 1.0, mesh: 1.0, phases: 1, members: finest };
+            let levels = vec![Level::single(4.0, run(0.4)), Level::single(2.0, run(0.2)), finest];
+            Reference::of_levels(String::new(), levels)
+        };
+        let one = levels(vec![run(0.1)]);
+        let rms = |off: f64| off / 10.0 / 3.0_f64.sqrt();
+        let uncertainty = |of: &Reference| of.uncertainty("A.uy").established().unwrap().1;
+        assert!((uncertainty(&one) - 1.25 * rms(0.1)).abs() < 1e-9);
+        // In the middle the two finest levels differ by 0.1; five quarters of that.
+        let band = one.band("A.uy");
+        assert!(band[0] == 0.0 && (band[1] - 0.125).abs() < 1e-9 && band[2] == 0.0, "{band:?}");
+        // A member 0.3 away adds its deviation.
+        let two = levels(vec![run(0.1), run(0.4)]);
+        assert!((uncertainty(&two) - 1.25 * rms(0.1) - rms(0.3)).abs() < 1e-9);
+        assert!(matches!(one.uncertainty("B.uy"), Standing::Not(_)) && one.band("B.uy").is_empty());
     }
 
     /// The bar on a wall: a force of 300 from 0.5 to 7/6. Its variation is 600; its impulse is a

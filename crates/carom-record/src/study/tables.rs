@@ -6,7 +6,7 @@ use super::ensemble::Spread;
 use super::measure::standing;
 use super::reference::Standing;
 use super::{Study, Verdict};
-use crate::metrics::{Metric, WORK};
+use crate::metrics::Metric;
 use crate::{RecordError, Status, files};
 
 /// A status in the tables.
@@ -31,21 +31,20 @@ impl Study {
     /// Input/output or system error.
     pub fn write_tables(&self) -> Result<(), RecordError> {
         let names: Vec<&str> = self.metrics().iter().map(|m| m.name.as_ref()).collect();
-        let header =
-            ["arm", "status", "reason"].iter().copied().chain(names.iter().copied()).map(String::from);
+        let header = [&["arm", "status", "reason"], &names[..]].concat();
         let wide = self.rows.iter().map(|row| {
             let first = [row.name.clone(), word(row.status).into(), row.reason.clone().unwrap_or_default()];
             first.into_iter().chain(names.iter().map(|name| cell(row.value(name)))).collect()
         });
-        self.write("study.csv", std::iter::once(header.collect()).chain(wide))?;
+        self.write("study.csv", &header, wide)?;
 
-        let header = ["arm", "metric", "value", "unit"].map(String::from).to_vec();
+        let header = ["arm", "metric", "value", "unit"];
         let tidy = self.rows.iter().flat_map(|row| {
             row.metrics
                 .iter()
                 .map(|m| vec![row.name.clone(), m.name.to_string(), cell(m.value), m.unit.clone()])
         });
-        self.write("study_tidy.csv", std::iter::once(header).chain(tidy))?;
+        self.write("study_tidy.csv", &header, tidy)?;
 
         self.write_ensemble()?;
         self.write_ranking()?;
@@ -63,9 +62,7 @@ impl Study {
             "ratio",
             "ratio_low",
             "ratio_high",
-        ]
-        .map(String::from)
-        .to_vec();
+        ];
         let line = |v: &Verdict| {
             let held = v.held.as_ref();
             let count = |n: Option<usize>| n.map_or_else(String::new, |n| n.to_string());
@@ -83,7 +80,7 @@ impl Study {
                 cell(ratio.map(|r| r.range().1)),
             ]
         };
-        self.write("claims.csv", std::iter::once(header).chain(self.verdicts.iter().map(line)))
+        self.write("claims.csv", &header, self.verdicts.iter().map(line))
     }
 
     /// `ensemble.csv`: median and range of every metric over the members of every arm.
@@ -91,7 +88,7 @@ impl Study {
         if self.manifest.ensemble.is_none() {
             return Ok(());
         }
-        let header = ["arm", "metric", "unit", "members", "median", "low", "high"].map(String::from).to_vec();
+        let header = ["arm", "metric", "unit", "members", "median", "low", "high"];
         let lines = self.rows.iter().enumerate().flat_map(|(arm, row)| {
             row.metrics.iter().filter_map(move |m| {
                 let spread = self.spread(arm, &m.name)?;
@@ -102,7 +99,7 @@ impl Study {
                 Some(first.into_iter().chain(numbers).collect())
             })
         });
-        self.write("ensemble.csv", std::iter::once(header).chain(lines))
+        self.write("ensemble.csv", &header, lines)
     }
 
     /// `reference.csv`: reference value and uncertainty of every metric; `ranking.csv`: level,
@@ -118,10 +115,8 @@ impl Study {
                 "order",
                 "members_half_width",
                 "why not",
-            ]
-            .map(String::from)
-            .to_vec();
-            let metrics = self.metrics().into_iter().filter(|m| !WORK.iter().any(|(d, _)| d.name == m.name));
+            ];
+            let metrics = self.metrics().into_iter().filter(|m| !m.is_work());
             let line = |m: &Metric| {
                 let estimate = reference.estimate(&m.name).ok();
                 let (yes, known, why) = match standing(Some(reference), &m.name) {
@@ -141,12 +136,10 @@ impl Study {
                     why,
                 ]
             };
-            self.write("reference.csv", std::iter::once(header).chain(metrics.map(line)))?;
+            self.write("reference.csv", &header, metrics.map(line))?;
         }
         let Some(ranking) = &self.ranking else { return Ok(()) };
-        let header = ["level", "place", "arm", "method", "step", "error", "error_half_width", "cpu_time"]
-            .map(String::from)
-            .to_vec();
+        let header = ["level", "place", "arm", "method", "step", "error", "error_half_width", "cpu_time"];
         let lines = ranking.levels.iter().enumerate().flat_map(|(level, ranked)| {
             ranked.iter().map(move |r| {
                 let arm = &self.manifest.arms[r.arm];
@@ -164,14 +157,21 @@ impl Study {
                 ]
             })
         });
-        self.write("ranking.csv", std::iter::once(header).chain(lines))
+        self.write("ranking.csv", &header, lines)
     }
 
-    fn write(&self, name: &str, lines: impl Iterator<Item = Vec<String>>) -> Result<(), RecordError> {
+    fn write(
+        &self,
+        name: &str,
+        header: &[&str],
+        lines: impl Iterator<Item = Vec<String>>,
+    ) -> Result<(), RecordError> {
         let path = self.directory.join(name);
+        let failed = |e: csv::Error| RecordError::io("write", &path)(e.into());
         let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(header).map_err(failed)?;
         for line in lines {
-            writer.write_record(&line).map_err(|e| RecordError::io("write", &path)(e.into()))?;
+            writer.write_record(&line).map_err(failed)?;
         }
         let bytes = writer.into_inner().map_err(|e| RecordError::io("write", &path)(e.into_error()))?;
         files::write_atomically(&path, &[&bytes])

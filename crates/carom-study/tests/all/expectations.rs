@@ -6,18 +6,13 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use carom_record::study::Study;
-use carom_run::case::{CaseError, Diagnostic};
+use carom_run::case::Diagnostic;
 use carom_study::{Plan, start};
+
+use crate::common;
 
 /// A bar in free fall, which every scheme of second order integrates exactly up to round-off.
 const FALL: &str = r#"
-dimension = 1
-[[material]]
-name = "steel"
-law = "linear-elastic"
-density = 1.0
-young = 100.0
-poisson = 0.0
 [[body]]
 name = "bar"
 material = "steel"
@@ -47,12 +42,7 @@ fn fixed() -> String {
 }
 
 fn folder(study: &str) -> (tempfile::TempDir, PathBuf) {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("fall.toml"), FALL).unwrap();
-    fs::write(folder.path().join("fixed.toml"), fixed()).unwrap();
-    let path = folder.path().join("study.toml");
-    fs::write(&path, study).unwrap();
-    (folder, path)
+    common::folder(&[("fall.toml", FALL), ("fixed.toml", &fixed())], study)
 }
 
 fn run(study: &str) -> Study {
@@ -62,11 +52,7 @@ fn run(study: &str) -> Study {
 }
 
 fn wrong(study: &str) -> Diagnostic {
-    let (_folder, path) = folder(study);
-    match Plan::read(&path) {
-        Err(CaseError::Wrong(found)) => found[0].clone(),
-        other => panic!("{other:?}"),
-    }
+    common::wrong(folder(study)).swap_remove(0)
 }
 
 #[test]
@@ -224,7 +210,7 @@ tolerance = 0.05
 "#;
     let (folder, path) = folder(study);
     let exact = "[exact]\n\"A.ux\" = \"sin(sqrt(300)*t)/sqrt(300)\"\n";
-    fs::write(folder.path().join("fixed.toml"), format!("{}{exact}", fixed())).unwrap();
+    fs::write(folder.path().join("fixed.toml"), format!("{}{}{exact}", common::STEEL, fixed())).unwrap();
     let plan = Plan::read(&path).unwrap_or_else(|e| panic!("{e}"));
     let study =
         start(&plan, &folder.path().join("out"), 2, &mut |_| (), &AtomicBool::new(false)).unwrap().study;

@@ -6,17 +6,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use carom_record::Status;
 use carom_record::study::checks::fingerprint;
-use carom_run::case::{CaseError, Diagnostic};
+use carom_run::case::Diagnostic;
 use carom_study::{Event, Plan, resume, start};
 
+use crate::common;
+
 const CASE: &str = r#"
-dimension = 1
-[[material]]
-name = "steel"
-law = "linear-elastic"
-density = 1.0
-young = 100.0
-poisson = 0.0
 [[body]]
 name = "bar"
 material = "steel"
@@ -42,19 +37,11 @@ fields_every = 0
 
 /// A folder with the case and a study of it.
 fn folder(study: &str) -> (tempfile::TempDir, PathBuf) {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("bar.toml"), CASE).unwrap();
-    let path = folder.path().join("study.toml");
-    fs::write(&path, format!("case = \"bar.toml\"\n{study}")).unwrap();
-    (folder, path)
+    common::folder(&[("bar.toml", CASE)], &format!("case = \"bar.toml\"\n{study}"))
 }
 
 fn wrong(study: &str) -> Vec<Diagnostic> {
-    let (_folder, path) = folder(study);
-    match Plan::read(&path) {
-        Err(CaseError::Wrong(found)) => found,
-        other => panic!("{other:?}"),
-    }
+    common::wrong(folder(study))
 }
 
 const THREE: &str = r#"

@@ -12,6 +12,12 @@ pub(crate) const IMPACT: &str = include_str!("../../../../cases/impact/impact.to
 pub(crate) const COARSE: [&str; 4] =
     ["--set", "body.cylinder.mesh.size=0.25", "--set", "body.prism.mesh.cells=[4,2]"];
 
+/// A square of two triangles.
+pub(crate) const SQUARE: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat
+$PhysicalNames\n1\n2 1 \"square\"\n$EndPhysicalNames
+$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes
+$Elements\n2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 3 4\n$EndElements\n";
+
 /// A directory of its own per test, removed when it ends.
 pub(crate) struct Place(pub(crate) PathBuf);
 
@@ -35,6 +41,17 @@ impl Place {
 
     pub(crate) fn carom(&self, arguments: &[&str]) -> Output {
         self.command(arguments).output().unwrap()
+    }
+
+    /// A run into `out` that is killed after the checkpoint that follows that of its start.
+    pub(crate) fn killed(&self, mut command: Command, out: &str) {
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        while !self.0.join(out).join("checkpoint/b.bin").is_file() {
+            assert!(child.try_wait().unwrap().is_none(), "the run ended without a checkpoint");
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
     }
 
     pub(crate) fn entries(&self) -> Vec<String> {

@@ -5,13 +5,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::common::{COARSE, IMPACT, Place, text};
-
-/// A square of two triangles.
-const SQUARE: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat
-$PhysicalNames\n1\n2 1 \"square\"\n$EndPhysicalNames
-$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes
-$Elements\n2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 3 4\n$EndElements\n";
+use crate::common::{COARSE, IMPACT, Place, SQUARE, text};
 
 const FLIGHT: &str = "
 dimension = 2
@@ -30,17 +24,6 @@ fn flight(name: &str) -> Place {
 
 fn spawned(command: &mut Command) -> Child {
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
-}
-
-/// A run that is killed after its first checkpoint.
-fn killed(place: &Place, arguments: &[&str], out: &str) {
-    let mut child = spawned(&mut place.command(&[arguments, &["--no-report", "--out", out]].concat()));
-    while !place.0.join(out).join("checkpoint/b.bin").is_file() {
-        assert!(child.try_wait().unwrap().is_none(), "the run ended without a checkpoint");
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
 }
 
 fn expect(done: &Output, code: i32, parts: &[&str]) {
@@ -133,14 +116,41 @@ fn a_silent_pipe_is_named_after_two_seconds() {
         let mut child = spawned(place.command(&["check", "-", option]).stdin(Stdio::piped()));
         std::thread::sleep(Duration::from_millis(2500));
         child.stdin.take().unwrap().write_all(FLIGHT.as_bytes()).unwrap();
-        expect(&child.wait_with_output().unwrap(), 0, &[]);
+        let done = child.wait_with_output().unwrap();
+        expect(&done, 0, &[]);
+        assert!(done.stderr.is_empty(), "{}", text(&done.stderr));
     }
+}
+
+/// The paths of cases start at the folder of a pipe, and at the working directory for standard input.
+#[test]
+fn a_study_is_read_once_from_a_pipe_or_standard_input() {
+    const STUDY: &str = "case = 'case.toml'\nset = { 'time.end' = 0.05 }\n[[arm]]\nname = 'only one'\n";
+    let place = flight("study-pipe");
+    assert!(Command::new("mkfifo").arg(place.0.join("pipe")).status().unwrap().success());
+    for (command, path) in [("check", "pipe"), ("check", "-"), ("study", "pipe"), ("study", "-")] {
+        let options = if command == "study" { &["--no-report"][..] } else { &[] };
+        let mut child = spawned(place.command(&[&[command, path], options].concat()).stdin(Stdio::piped()));
+        let mut input = child.stdin.take().unwrap();
+        if path == "-" {
+            input.write_all(STUDY.as_bytes()).unwrap();
+        } else {
+            std::fs::write(place.0.join(path), STUDY).unwrap();
+        }
+        drop(input);
+        let done = child.wait_with_output().unwrap();
+        expect(&done, 0, &[]);
+        assert!(text(&done.stdout).contains("only one"), "{command} {path}: {}", text(&done.stdout));
+    }
+    assert!(
+        place.0.join("runs/pipe/study.json").is_file() && place.0.join("runs/stdin/study.json").is_file()
+    );
 }
 
 #[test]
 fn a_changed_mesh_or_record_is_named_when_a_run_is_resumed() {
     let place = flight("changed");
-    killed(&place, &["run", "case.toml"], "out");
+    place.killed(place.command(&["run", "case.toml", "--no-report", "--out", "out"]), "out");
     for (bytes, parts) in [
         (
             Some(SQUARE.replace("1 1 0", "1.5 1 0")),
@@ -184,7 +194,7 @@ fn a_resumed_run_needs_neither_its_table_nor_its_initial_run() {
     let from =
         ["run", "case.toml", "--set", "initial={ from = 'first' }", "--set", "body.b.velocity=[0.0, 0.0]"];
     expect(&place.carom(&[&from[..], &["--no-report", "--out", "whole"]].concat()), 0, &[]);
-    killed(&place, &from, "out");
+    place.killed(place.command(&[&from[..], &["--no-report", "--out", "out"]].concat()), "out");
     place.file("force.csv", "t,value\n0,7\n40,9\n");
     std::fs::remove_dir_all(place.0.join("first")).unwrap();
     expect(&place.carom(&["resume", "out", "--no-report"]), 0, &[]);

@@ -214,13 +214,8 @@ fn metrics_of_thinned_rows() {
         let mut command = run(&place, &name, &sets);
         if resumed {
             // A checkpoint between two rows, then a kill.
-            let mut child = command.spawn().unwrap();
-            while !place.0.join(&name).join("checkpoint/b.bin").is_file() {
-                std::thread::sleep(std::time::Duration::from_millis(2));
-            }
-            child.kill().unwrap();
-            child.wait().unwrap();
-            ended(&mut place.command(&["resume", &name, "--no-report"]), 0);
+            place.killed(command, &name);
+            ended(&mut resume(&place, &name), 0);
         } else {
             ended(&mut command, 0);
         }

@@ -2,7 +2,11 @@
 
 use std::path::PathBuf;
 
-use carom::case::CaseError;
+use carom::case::{CaseError, Problem};
+use carom::recording::RunError;
+use carom_record::RecordError;
+use carom_report::ReportError;
+use carom_study::StudyError;
 
 /// Exit codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +24,9 @@ pub(crate) enum Exit {
     /// Stopped by Ctrl-C; `carom resume` continues it.
     Interrupted = 130,
 }
+
+/// What to do about a record that cannot be used.
+const AGAIN: &str = "run the case again, or continue with carom resume";
 
 /// Why a command failed.
 #[derive(Debug, thiserror::Error)]
@@ -55,6 +62,63 @@ impl From<std::io::Error> for Failure {
     }
 }
 
+impl From<RecordError> for Failure {
+    fn from(error: RecordError) -> Self {
+        let what = error.to_string();
+        match error.exit_code() {
+            4 => Self::System { what },
+            _ => Self::Argument { what, help: AGAIN.to_owned() },
+        }
+    }
+}
+
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Self {
+        match error {
+            ReportError::Record(error) => error.into(),
+            error @ ReportError::Write { .. } => Self::System { what: error.to_string() },
+        }
+    }
+}
+
+/// Of a run whose case file is not at hand: problems are told without their lines.
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Record(error) => error.into(),
+            RunError::Case(problems) => {
+                let sentence = |p: &Problem| format!("{}: {}", p.what, p.why);
+                let what = problems.iter().map(sentence).collect::<Vec<_>>().join("; ");
+                if problems.iter().any(|p| p.system) {
+                    return Self::System { what };
+                }
+                let help = problems.first().map_or_else(String::new, |p| p.help.clone());
+                Self::Argument { what, help }
+            }
+            RunError::Incompatible { what } => Self::Argument { what, help: "run the case again".into() },
+        }
+    }
+}
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        match error {
+            StudyError::Record(error) => error.into(),
+            StudyError::Arm { arm, source } => match source.into() {
+                Self::System { what } => Self::System { what: format!("arm \"{arm}\": {what}") },
+                Self::Argument { what, help } => {
+                    Self::Argument { what: format!("arm \"{arm}\": {what}"), help }
+                }
+                other => other,
+            },
+            error @ (StudyError::Incompatible { .. } | StudyError::Exists { .. }) => Self::Argument {
+                what: error.to_string(),
+                help: "run the study again, into another directory".to_owned(),
+            },
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use carom::case::{Document, Problem};
@@ -69,5 +133,28 @@ mod tests {
         let exit = |problem| Failure::Case(document.diagnose_all(&[problem])).exit();
         assert_eq!(exit(problem.clone()), Exit::Wrong);
         assert_eq!(exit(problem.of_system()), Exit::System);
+    }
+
+    /// A lack of memory and a full disk are of the system, and a damaged record is not, whichever
+    /// command finds them.
+    #[test]
+    fn the_same_error_has_the_same_code_in_every_command() {
+        let arm = |source: RunError| Failure::from(StudyError::Arm { arm: "a".to_owned(), source });
+        let memory =
+            || RunError::Case(vec![Problem::new("", "too little memory", "", "").of_system()].into());
+        let full = || RecordError::Io {
+            action: "write",
+            path: "x".into(),
+            source: std::io::ErrorKind::StorageFull.into(),
+        };
+        let damaged = || RecordError::NotARun { path: "x".into() };
+        for failure in [memory().into(), arm(memory()), full().into(), arm(full().into())] {
+            assert_eq!(Failure::exit(&failure), Exit::System, "{failure}");
+        }
+        let reported = Failure::from(ReportError::Record(damaged()));
+        for failure in [damaged().into(), arm(damaged().into()), reported] {
+            assert_eq!(Failure::exit(&failure), Exit::Wrong, "{failure}");
+        }
+        assert!(arm(memory()).to_string().starts_with("arm \"a\": too little memory"));
     }
 }

@@ -11,7 +11,7 @@ use indicatif::ProgressBar;
 use serde::Serialize;
 
 use crate::exit::{Exit, Failure};
-use crate::simulation::Progress;
+use crate::simulation::{Outcome, Progress};
 use crate::{console, out};
 
 /// At most ten events per second.
@@ -41,7 +41,7 @@ impl Live {
     }
 
     /// Shows the warnings of the run that have not been shown yet.
-    pub(crate) fn warn(&mut self) {
+    fn warn(&mut self) {
         // Without a manifest nothing was run.
         let warnings = Manifest::read(&self.directory).map_or_else(|_| Vec::new(), |m| m.warnings);
         for warning in warnings.iter().skip(self.warned.unwrap_or(0)) {
@@ -53,6 +53,13 @@ impl Live {
             }
         }
         self.warned = Some(warnings.len());
+    }
+
+    /// Shows the warnings that a run left at its end, whether it finished or stopped, and erases the bar.
+    pub(crate) fn end(mut self, done: &Result<Outcome, Failure>) {
+        if matches!(done, Ok(_) | Err(Failure::Stopped { .. })) {
+            self.warn();
+        }
     }
 
     /// Shows a step. Not every step is an event, but the last one always is.

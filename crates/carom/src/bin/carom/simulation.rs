@@ -125,7 +125,11 @@ pub(crate) fn run(
     let source = carom_record::Source { text: document.text().to_owned(), sets: document.sets() };
     let library = recording::Options { threads: options.threads };
     let done = recording::run(case, source, out, library, &mut |p| progress(&seen(p)), stop);
-    conclude(done.map_err(|error| failure(error, Some(document)))?, options)
+    let done = done.map_err(|error| match error {
+        RunError::Case(problems) => Failure::Case(document.diagnose_all(&problems)),
+        error => error.into(),
+    });
+    conclude(done?, options)
 }
 
 /// Resumes a run that was stopped; a finished run is returned unchanged.
@@ -137,7 +141,7 @@ pub(crate) fn resume(
 ) -> Result<Outcome, Failure> {
     let library = recording::Options { threads: options.threads };
     let done = recording::resume(directory, library, &mut |p| progress(&seen(p)), stop);
-    conclude(done.map_err(|error| failure(error, None))?, options)
+    conclude(done?, options)
 }
 
 /// Builds the model of a case, which also checks what only the model shows.
@@ -147,14 +151,7 @@ pub(crate) fn facts(case: &Case, document: &Document) -> Result<Facts, Failure> 
 
 /// Makes the figures and the page of a run directory from its records.
 pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
-    match carom_report::report(directory) {
-        Ok(made) => Ok(made.page),
-        Err(error) if error.exit_code() == 4 => Err(Failure::System { what: error.to_string() }),
-        Err(error) => Err(Failure::Argument {
-            what: error.to_string(),
-            help: "run the case again, or continue with carom resume".into(),
-        }),
-    }
+    Ok(carom_report::report(directory)?.page)
 }
 
 fn seen(progress: &recording::Progress) -> Progress {
@@ -174,25 +171,6 @@ fn seen(progress: &recording::Progress) -> Progress {
     }
 }
 
-fn failure(error: RunError, document: Option<&Document>) -> Failure {
-    match error {
-        RunError::Case(problems) => {
-            if let Some(document) = document {
-                return Failure::Case(document.diagnose_all(&problems));
-            }
-            let sentence = |p: &carom::case::Problem| format!("{}: {}", p.what, p.why);
-            let what = problems.iter().map(sentence).collect::<Vec<_>>().join("; ");
-            if problems.iter().any(|p| p.system) {
-                return Failure::System { what };
-            }
-            let help = problems.first().map_or(String::new(), |p| p.help.clone());
-            Failure::Argument { what, help }
-        }
-        RunError::Record(error) if error.exit_code() == 4 => Failure::System { what: error.to_string() },
-        error => Failure::Argument { what: error.to_string(), help: "run the case again".into() },
-    }
-}
-
 /// The report, the extremes of the probes and the expectations of a run that ended.
 fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failure> {
     let page = page(&done, options)?;
@@ -203,8 +181,7 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
             directory: done.directory,
         });
     }
-    let run = carom_record::Run::open(&done.directory)
-        .map_err(|error| Failure::Argument { what: error.to_string(), help: "run the case again".into() })?;
+    let run = carom_record::Run::open(&done.directory)?;
     let expectations = run.manifest.expectations.iter();
     Ok(Outcome {
         directory: done.directory,

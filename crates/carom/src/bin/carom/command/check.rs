@@ -1,7 +1,7 @@
 //! `carom check`: reads and resolves a case or a study and reports errors with their place; it runs
 //! nothing and writes nothing.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use carom::case::{
     Case, Document, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec,
@@ -21,7 +21,7 @@ use crate::{console, out};
     after_help = "Examples:\n  carom check impact.toml --set time.scheme.rho_inf=0.5\n  carom check laboratory.toml"
 )]
 pub(crate) struct Arguments {
-    /// The case file or the study file; - reads a case from standard input
+    /// The case file or the study file; - for standard input
     case: PathBuf,
     /// Replace a value of the case, as in `carom run`
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -33,8 +33,8 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let document = super::document(&arguments.case, &[])?;
-    if document.is_study() && arguments.case != Path::new(super::STDIN) {
-        return study(arguments);
+    if document.is_study() {
+        return study(arguments, &document);
     }
     let document = Document::parse(document.name(), document.text(), &arguments.sets)?;
     let case = super::resolved(&document)?;
@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 /// The arms of a study, every one resolved.
-fn study(arguments: &Arguments) -> Result<Exit, Failure> {
+fn study(arguments: &Arguments, document: &Document) -> Result<Exit, Failure> {
     if !arguments.sets.is_empty() {
         return Err(Failure::Argument {
             what: "--set cannot be used with a study".into(),
@@ -58,7 +58,7 @@ fn study(arguments: &Arguments) -> Result<Exit, Failure> {
                 .into(),
         });
     }
-    let Plan { manifest, arms } = Plan::read(&arguments.case)?;
+    let Plan { manifest, arms } = super::plan(document, &arguments.case)?;
     if arguments.json {
         out::event(&serde_json::json!({ "event": "check", "study": manifest }))?;
         return Ok(Exit::Done);

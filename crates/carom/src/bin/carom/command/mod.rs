@@ -20,6 +20,7 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 use carom::case::{Case, Document, read};
+use carom_study::Plan;
 
 use crate::console;
 use crate::exit::Failure;
@@ -37,6 +38,12 @@ fn case(path: &Path, sets: &[String]) -> Result<(Case, Document), Failure> {
 
 fn resolved(document: &Document) -> Result<Case, Failure> {
     Ok(read(document).map_err(|problems| document.diagnose_all(&problems))?)
+}
+
+/// A study that has been read; the paths of its cases start at its folder, or at the working directory
+/// if it comes from standard input.
+fn plan(document: &Document, path: &Path) -> Result<Plan, Failure> {
+    Ok(Plan::of(document, path.parent().unwrap_or(Path::new("")))?)
 }
 
 /// Reads a case or a study once: a pipe cannot be read again.

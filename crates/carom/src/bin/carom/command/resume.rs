@@ -80,9 +80,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let mut live = Live::new(arguments.json, &arguments.directory);
     let done = simulation::resume(&arguments.directory, options, &mut |p| live.show(p), &stop);
-    if done.is_ok() {
-        live.warn();
-    }
-    drop(live);
+    live.end(&done);
     summary::print(done, arguments.json, arguments.strict)
 }

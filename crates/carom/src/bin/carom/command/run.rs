@@ -64,9 +64,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let mut live = Live::new(arguments.json, &directory);
     let done = simulation::run(&case, &document, &directory, options, &mut |p| live.show(p), &stop);
-    if matches!(&done, Ok(_) | Err(Failure::Stopped { .. })) {
-        live.warn();
-    }
-    drop(live);
+    live.end(&done);
     summary::print(done, arguments.json, arguments.strict)
 }

@@ -10,7 +10,7 @@ use indicatif::ProgressBar;
 use carom_record::Status;
 use carom_record::study::ranking::Ranking;
 use carom_record::study::{Study, StudyManifest};
-use carom_study::{Event, Outcome, Plan, StudyError};
+use carom_study::{Event, Outcome, StudyError};
 use serde_json::json;
 
 use crate::exit::{Exit, Failure};
@@ -31,7 +31,7 @@ Examples:
 
 A failed arm is a row of the table; the exit code is still 0.")]
 pub(crate) struct Arguments {
-    /// The study file
+    /// The study file, or - for standard input
     study: PathBuf,
     /// Directory of the study; must not exist yet [default: runs/NAME, runs/NAME-2, …]
     #[arg(long, value_name = "DIR")]
@@ -50,9 +50,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let jobs = super::parallel("--jobs", arguments.jobs)?;
-    let waiting = super::Waiting::for_input(&arguments.study);
-    let plan = Plan::read(&arguments.study)?;
-    drop(waiting);
+    let plan = super::plan(&super::document(&arguments.study, &[])?, &arguments.study)?;
     let directory = directory::of_run(&arguments.study, arguments.out.as_deref())?;
     let mut seen = Seen::new(&plan.manifest, arguments.json);
     let stop = stop_on_signal()?;
@@ -73,7 +71,7 @@ pub(crate) fn resume(
     json: bool,
 ) -> Result<Exit, Failure> {
     let jobs = super::parallel("--jobs", requested)?;
-    let manifest = StudyManifest::read(directory).map_err(|e| failure(e.into()))?;
+    let manifest = StudyManifest::read(directory)?;
     let mut seen = Seen::new(&manifest, json);
     let stop = stop_on_signal()?;
     if json {
@@ -85,34 +83,14 @@ pub(crate) fn resume(
 
 /// Rebuilds tables, figures and page of a study, and the pages of its arms.
 pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
-    let made = |error: carom_report::ReportError| match error.exit_code() {
-        4 => Failure::System { what: error.to_string() },
-        _ => Failure::Argument {
-            what: error.to_string(),
-            help: "continue with carom resume, or run the study again".into(),
-        },
-    };
-    let manifest = StudyManifest::read(directory).map_err(|e| failure(e.into()))?;
+    let manifest = StudyManifest::read(directory)?;
     for arm in &manifest.arms {
         let arm = directory.join(&arm.directory);
         if arm.join("manifest.json").is_file() {
-            carom_report::report(&arm).map_err(made)?;
+            carom_report::report(&arm)?;
         }
     }
-    Ok(carom_report::study(directory).map_err(made)?.page)
-}
-
-pub(super) fn failure(error: StudyError) -> Failure {
-    match error {
-        StudyError::Record(ref e) if e.exit_code() == 4 => Failure::System { what: error.to_string() },
-        StudyError::Arm { source: carom::recording::RunError::Record(ref e), .. } if e.exit_code() == 4 => {
-            Failure::System { what: error.to_string() }
-        }
-        error => Failure::Argument {
-            what: error.to_string(),
-            help: "run the study again, into another directory".into(),
-        },
-    }
+    Ok(carom_report::study(directory)?.page)
 }
 
 fn conclude(
@@ -123,7 +101,7 @@ fn conclude(
 ) -> Result<Exit, Failure> {
     let json = seen.json;
     drop(seen);
-    let outcome = done.map_err(failure)?;
+    let outcome = done?;
     let page = if page { Some(report(directory)?) } else { None };
     if json {
         let study = &outcome.study;

@@ -12,7 +12,7 @@ use include_dir::{Dir, include_dir};
 use indicatif::ProgressBar;
 use serde_json::json;
 
-use super::study::{failure, report as study_report};
+use super::study::report as study_report;
 use crate::exit::{Exit, Failure};
 use crate::live::{duration, stop_on_signal};
 use crate::summary::short;
@@ -87,7 +87,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut begin = |runs: &[Named]| seen.borrow_mut().begin(runs);
     let done = suite.verify(&directory, options, &mut begin, &mut |e| seen.borrow_mut().event(e), &stop);
     drop(seen);
-    let Some(verification) = done.map_err(failure)? else {
+    let Some(verification) = done? else {
         if arguments.json {
             out::event(&json!({ "event": "interrupted", "directory": &*directory }))?;
         } else if !console::is_quiet() && !arguments.csv {
@@ -98,9 +98,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if arguments.report {
         pages(&suite, &verification, &directory)?;
     }
-    let page = carom_report::verify(&directory).map_err(|e| unwritten(&e))?;
+    let page = carom_report::verify(&directory)?;
     if let Some(folder) = &arguments.markdown {
-        carom_report::verify_markdown(&directory, folder).map_err(|e| unwritten(&e))?;
+        carom_report::verify_markdown(&directory, folder)?;
     }
     print(&verification, arguments, &page)?;
     let unjudged = suite.items.len() - verification.set_ups.len();
@@ -117,17 +117,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     })
 }
 
-fn unwritten(error: &carom_report::ReportError) -> Failure {
-    Failure::System { what: error.to_string() }
-}
-
 /// Figures and pages of every run.
 fn pages(suite: &Suite, verification: &Verification, directory: &Path) -> Result<(), Failure> {
     for (item, set_up) in suite.items.iter().zip(&verification.set_ups) {
         let place = directory.join(&set_up.directory);
         match item.kind {
-            Kind::Case(..) => carom_report::report(&place).map(drop).map_err(|e| unwritten(&e))?,
-            Kind::Study(_) => study_report(&place).map(drop)?,
+            Kind::Case(..) => drop(carom_report::report(&place)?),
+            Kind::Study(_) => drop(study_report(&place)?),
         }
     }
     Ok(())

@@ -1,0 +1,387 @@
+//! The recommendation that follows from a ranking, with its confidence, or why there is none.
+//!
+//! Methods are ordered by their mean place over the levels. Of those that are not distinguished from
+//! the best and have the required accuracy, the cheapest is recommended; processor times within 10 % of
+//! the smallest count as equal, and the smaller error then decides. Nothing is recommended if only a
+//! substitute for the measure of the goal is established, or if none of them has the required accuracy.
+
+use super::design::{Goal, Kind};
+use super::digits::short;
+use super::manifest::StudyManifest;
+use super::measure::Measure;
+use super::places::{ALIKE, EQUAL_COST, Ranked};
+use super::reference::Reference;
+use super::row::Row;
+
+/// Confidence in a recommendation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Confidence {
+    /// The ranking may be accidental.
+    Low,
+    /// The ranking holds for this study.
+    Medium,
+    /// The ranking holds at every level, by more than all uncertainties.
+    High,
+}
+
+impl Confidence {
+    /// As a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Low => "low",
+            Self::Medium => "medium",
+            Self::High => "high",
+        }
+    }
+}
+
+/// The recommendation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// The recommended arm.
+    pub arm: usize,
+    /// Methods (arms in a study without methods) that are not distinguished from it.
+    pub alike: Vec<String>,
+    /// Reasons for the recommendation.
+    pub reasons: Vec<String>,
+    /// Confidence in it.
+    pub confidence: Confidence,
+    /// Reasons for the confidence.
+    pub confidence_reasons: Vec<String>,
+}
+
+/// The recommendation, or the reasons why there is none.
+pub(super) fn recommended(
+    goal: Goal,
+    manifest: &StudyManifest,
+    measure: &Measure,
+    levels: &[Vec<Ranked>],
+    rows: &[Row],
+    reference: Option<&Reference>,
+) -> Result<Verdict, Vec<String>> {
+    let name = |arm: usize| manifest.arms[arm].method();
+    // An arm that created much energy is not recommended, nor evidence for its method.
+    let sound = |ranked: &Vec<Ranked>| ranked.iter().filter(|r| r.sound).cloned().collect();
+    let any_unsound = levels.iter().flatten().any(|r| !r.sound);
+    let levels: Vec<Vec<Ranked>> = levels.iter().map(sound).collect();
+    let full: Vec<&Vec<Ranked>> = levels.iter().filter(|l| !l.is_empty()).collect();
+    let mut methods: Vec<&str> = Vec::new();
+    for ranked in full.iter().flat_map(|l| l.iter()) {
+        if !methods.contains(&name(ranked.arm)) {
+            methods.push(name(ranked.arm));
+        }
+    }
+    // A method without an arm at a level is placed after all others.
+    let places = |method: &str| {
+        let place = |l: &&Vec<Ranked>| {
+            l.iter().find(|r| name(r.arm) == method).map_or(manifest.arms.len() + 1, |r| r.place)
+        };
+        full.iter().map(place).sum::<usize>() as f64 / full.len() as f64
+    };
+    let finest = |method: &str| {
+        full.iter()
+            .rev()
+            .find_map(|l| l.iter().find(|r| name(r.arm) == method))
+            .map_or(f64::INFINITY, |r| r.error)
+    };
+    methods.sort_by(|a, b| places(a).total_cmp(&places(b)).then(finest(a).total_cmp(&finest(b))));
+    let without = if any_unsound { "no arm that did not create energy" } else { "no arm" };
+    let nothing = || vec![format!("{without} has a value for: {}", measure.words)];
+    let least = places(methods.first().ok_or_else(nothing)?);
+    let tied: Vec<&str> = methods.into_iter().filter(|m| places(m) <= least).collect();
+    let accuracy = manifest.accuracy();
+    let cost = |r: &Ranked| rows[r.arm].value("cpu_time").unwrap_or(f64::INFINITY);
+    // What the goal minimises.
+    let minimised = |r: &Ranked| if goal == Goal::Cost { cost(r) } else { r.error };
+    // The arm of a method that would be recommended.
+    let arm_of = |method: &str| {
+        let arms: Vec<&Ranked> =
+            full.iter().filter_map(|l| l.iter().find(|r| name(r.arm) == method)).collect();
+        match goal {
+            Goal::Cost => arms.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).copied(),
+            // Without an accurate one, the most accurate.
+            _ => arms
+                .iter()
+                .find(|r| r.error <= accuracy)
+                .or(arms.iter().min_by(|a, b| a.error.total_cmp(&b.error)))
+                .copied(),
+        }
+    };
+    // Among equals, one that is accurate enough goes before a cheaper one that is not.
+    let accurate = |m: &&str| goal == Goal::Cost || arm_of(m).is_some_and(|r| r.error <= accuracy);
+    let (fit, unfit): (Vec<&str>, Vec<&str>) = tied.iter().copied().partition(accurate);
+    let field = if fit.is_empty() { &unfit } else { &fit };
+    let costs: Vec<Option<f64>> =
+        field.iter().map(|m| rows.get(arm_of(m)?.arm)?.value("cpu_time").filter(|c| *c > 0.0)).collect();
+    let picked = cheapest(&costs);
+    let best = field[picked];
+    let alike_ones: Vec<String> = tied.iter().filter(|m| **m != best).map(|m| (*m).to_owned()).collect();
+    let chosen = arm_of(best).ok_or_else(nothing)?;
+    let mut against = Vec::new();
+    if let Some((name, _)) = measure.passed_over.first() {
+        against.push(format!(
+            "the reference does not establish {name}, the measure of this goal; the arms are ranked by a substitute, {}",
+            measure.name
+        ));
+    }
+    if goal != Goal::Cost && chosen.error > accuracy {
+        against.push(inaccurate(manifest, &full, best, chosen));
+    }
+    if !against.is_empty() {
+        return Err(against);
+    }
+    let first_at = full.iter().filter(|l| l.iter().any(|r| r.place == 1 && name(r.arm) == best)).count();
+    let unit = if goal == Goal::Cost { " s" } else { "" };
+    let mut reasons = vec![format!("{}: {}{unit}", measure.words, short(minimised(chosen)))];
+    let others = full
+        .iter()
+        .flat_map(|l| l.iter())
+        .filter(|r| manifest.arms[r.arm].role.level == manifest.arms[chosen.arm].role.level);
+    let others = others.filter(|r| name(r.arm) != best);
+    if let Some(next) = others.min_by(|a, b| minimised(a).total_cmp(&minimised(b))) {
+        reasons.push(format!(
+            "best of the other methods at the same level, {}: {}{unit}",
+            name(next.arm),
+            short(minimised(next))
+        ));
+    }
+    reasons.push(format!("ranked first at {first_at} of {} levels", full.len()));
+    let next = costs.iter().enumerate().filter(|(i, _)| *i != picked).filter_map(|(i, c)| Some((i, (*c)?)));
+    let next = next.min_by(|a, b| a.1.total_cmp(&b.1));
+    // Cost of the cheapest of the others, relative to that of the recommended one.
+    let times = next.zip(costs[picked]).map(|((_, other), own)| other / own);
+    if let Some(((i, other), own)) = next.zip(costs[picked]).filter(|_| goal != Goal::Cost) {
+        let words = if other > (1.0 + EQUAL_COST) * own {
+            "cheapest of the methods that are not distinguished"
+        } else {
+            "none of the methods that are not distinguished is cheaper by more than 10 %"
+        };
+        reasons.push(format!(
+            "{words}: {} s of processor time; {}: {} s",
+            short(own),
+            field[i],
+            short(other)
+        ));
+    }
+    if goal != Goal::Cost {
+        reasons.push(format!("the coarsest level at which its error is at most {accuracy}"));
+    }
+    if let Some(depth) = penetration(manifest, chosen.arm, rows) {
+        reasons.push(format!("its contact is a penalty: it penetrates by up to {}", short(depth)));
+    }
+    if !measure.left_out.is_empty() {
+        reasons
+            .push(format!("not established by the reference, and left out: {}", measure.left_out.join(", ")));
+    }
+    let dearer = times.is_some_and(|times| times > 1.0 + EQUAL_COST) && goal != Goal::Cost;
+    let decided_by = match (alike_ones.len(), field.len()) {
+        (0, _) => DecidedBy::Error,
+        (_, 1) => DecidedBy::Accuracy,
+        _ if dearer => DecidedBy::Cost,
+        _ => DecidedBy::Nothing,
+    };
+    let evidence = Evidence {
+        mesh: reference.map_or_else(|| ensemble_refines(manifest), Reference::refines_mesh),
+        reference: reference.is_some(),
+        ensemble: full.iter().flat_map(|l| l.iter()).all(|r| r.members > 1),
+    };
+    let (mut confidence, mut confidence_reasons) =
+        confidence(goal, manifest, measure, &full, first_at, decided_by, &evidence);
+    let arm = &manifest.arms[chosen.arm];
+    if let Some(design) =
+        manifest.design.as_ref().filter(|d| d.kind == Kind::MatchedStep && manifest.by_cost(arm))
+    {
+        confidence = confidence.min(Confidence::Medium);
+        confidence_reasons.push(format!(
+            "it is compared at the cost of {}, the other methods at their common step",
+            design.cost_of
+        ));
+    }
+    Ok(Verdict { arm: chosen.arm, alike: alike_ones, reasons, confidence, confidence_reasons })
+}
+
+/// Why a method without the required accuracy is not recommended: no arm has it, or only arms of
+/// methods with worse places have.
+fn inaccurate(manifest: &StudyManifest, levels: &[&Vec<Ranked>], method: &str, chosen: &Ranked) -> String {
+    let accuracy = manifest.accuracy();
+    let name = |r: &Ranked| &manifest.arms[r.arm].name;
+    let least = levels.iter().flat_map(|l| l.iter()).min_by(|a, b| a.error.total_cmp(&b.error));
+    let least = least.unwrap_or(chosen);
+    if least.error > accuracy {
+        return format!(
+            "no arm has the required accuracy, {accuracy}; the best one, {}, has an error of {}",
+            name(least),
+            short(least.error)
+        );
+    }
+    format!(
+        "the method with the best places, {method}, does not have the required accuracy, {accuracy}: its \
+         smallest error is {}; {} has an error of {}",
+        short(chosen.error),
+        name(least),
+        short(least.error)
+    )
+}
+
+/// Whether the arms are repeated on finer meshes.
+fn ensemble_refines(manifest: &StudyManifest) -> bool {
+    manifest.ensemble.as_ref().is_some_and(|ensemble| ensemble.mesh.len() > 1)
+}
+
+/// Penetration of an arm whose contact is enforced by a penalty.
+fn penetration(manifest: &StudyManifest, arm: usize, rows: &[Row]) -> Option<f64> {
+    let contacts = manifest.arms[arm].case.get("contacts")?.as_array()?;
+    let penalty = contacts.iter().any(|c| c.get("enforcement").is_some_and(|e| e == "penalty"));
+    rows.get(arm)?.value("penetration").filter(|_| penalty)
+}
+
+/// Index of the first method whose cost is within 10 % of the smallest; 0 if no cost is known.
+fn cheapest(costs: &[Option<f64>]) -> usize {
+    let least = costs.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+    costs.iter().position(|c| c.is_some_and(|c| c <= (1.0 + EQUAL_COST) * least)).unwrap_or(0)
+}
+
+/// What distinguishes the recommended method from all others.
+#[derive(Clone, Copy)]
+enum DecidedBy {
+    Error,
+    /// Its error alone is small enough, though not distinguished from the others.
+    Accuracy,
+    Cost,
+    Nothing,
+}
+
+/// What the errors are known to be independent of.
+struct Evidence {
+    /// The reference was computed on finer meshes; without one, the arms were.
+    mesh: bool,
+    /// There is a reference.
+    reference: bool,
+    /// The arms were run with several phases, roles or meshes.
+    ensemble: bool,
+}
+
+fn confidence(
+    goal: Goal,
+    manifest: &StudyManifest,
+    measure: &Measure,
+    levels: &[&Vec<Ranked>],
+    first_at: usize,
+    decided_by: DecidedBy,
+    evidence: &Evidence,
+) -> (Confidence, Vec<String>) {
+    let (mut confidence, mut reasons) = (Confidence::High, Vec::new());
+    let mut at_most = |most: Confidence, why: String| {
+        confidence = confidence.min(most);
+        reasons.push(why);
+    };
+    let close = format!(
+        "differences of at most {}, {} % or the half-widths of both ensembles",
+        short(measure.uncertainty),
+        100.0 * ALIKE
+    );
+    match decided_by {
+        DecidedBy::Error => {}
+        DecidedBy::Accuracy => at_most(
+            Confidence::Low,
+            format!(
+                "its error is not distinguished from that of other methods ({close}); it alone has the \
+                 required accuracy, {}",
+                manifest.accuracy()
+            ),
+        ),
+        DecidedBy::Cost => at_most(
+            Confidence::Medium,
+            format!(
+                "its error is not distinguished from that of other methods ({close}); its lower cost decides"
+            ),
+        ),
+        DecidedBy::Nothing if goal == Goal::Cost => at_most(
+            Confidence::Low,
+            format!("other methods cost as much as it (differences of at most {} %)", 100.0 * EQUAL_COST),
+        ),
+        DecidedBy::Nothing => at_most(
+            Confidence::Low,
+            format!("other methods are not distinguished from it, neither by error ({close}) nor by cost"),
+        ),
+    }
+    if first_at < levels.len() {
+        at_most(Confidence::Low, format!("it is ranked first at only {first_at} of {} levels", levels.len()));
+    }
+    if levels.len() < 2 {
+        at_most(
+            Confidence::Medium,
+            "there is only one level; the ranking may be different at another step".to_owned(),
+        );
+    }
+    let unseen = |what: &str, cure: &str| format!("{what}; {cure}");
+    let mesh = if evidence.reference {
+        unseen("the reference was computed on the given mesh only", "`mesh = [1, 2, 4]` in [fine] refines it")
+    } else {
+        unseen("all arms were computed on the given mesh", "`mesh = [1, 2]` in [ensemble] refines it")
+    };
+    let ensemble = unseen(
+        "there are arms with the value of a single run, so that chance is not told from method",
+        "[ensemble] runs every arm with several phases, roles and meshes",
+    );
+    // One of them alone leaves the ranking of this mesh, or of these instants, open.
+    let most = if evidence.mesh || evidence.ensemble { Confidence::Medium } else { Confidence::Low };
+    for why in [(evidence.mesh, mesh), (evidence.ensemble, ensemble)] {
+        if !why.0 {
+            at_most(most, why.1);
+        }
+    }
+    // Members that failed or have no such number do not show how far it is spread.
+    let all = |r: &&Ranked| manifest.runs_of(r.arm).len();
+    let incomplete = levels.iter().flat_map(|l| l.iter()).filter(|r| r.members < all(r));
+    if let Some(worst) = incomplete.min_by_key(|r| r.members) {
+        at_most(
+            Confidence::Medium,
+            format!(
+                "only {} of {} members of \"{}\" have a value",
+                worst.members,
+                all(&worst),
+                manifest.arms[worst.arm].name
+            ),
+        );
+    }
+    let off = manifest
+        .arms
+        .iter()
+        .filter(|a| a.role.cost.is_some_and(|share| (share - 1.0).abs() > EQUAL_COST))
+        .count();
+    if off > 0 {
+        at_most(
+            Confidence::Medium,
+            format!("the cost of {off} arms differs from the budget by more than 10 %"),
+        );
+    }
+    if manifest.design.is_none() {
+        at_most(
+            Confidence::Low,
+            "the arms are not matched: the study has no `design` for equal steps or equal cost".to_owned(),
+        );
+    }
+    if reasons.is_empty() {
+        let by = if goal == Goal::Cost {
+            "10 % of the cost"
+        } else {
+            "the uncertainties of arms and reference and 5 %"
+        };
+        reasons.push(format!("it is ranked first at every level, by more than {by}"));
+    }
+    (confidence, reasons)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 1.05 is equal to 1, 1.2 is not; unknown costs are ignored.
+    #[test]
+    fn the_cheapest_within_a_tenth_is_taken_in_order() {
+        assert_eq!(cheapest(&[Some(9.9), Some(1.05), Some(1.0)]), 1);
+        assert_eq!(cheapest(&[Some(1.2), None, Some(1.0)]), 2);
+        assert_eq!((cheapest(&[None, None]), cheapest(&[Some(3.0)])), (0, 0));
+    }
+}

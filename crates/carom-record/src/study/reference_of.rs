@@ -1,0 +1,103 @@
+//! The reference of a study, from the records of its runs.
+
+use std::path::Path;
+
+use super::arm::{Arm, step};
+use super::manifest::StudyManifest;
+use super::reference::{Level, Reference};
+use super::trajectory::Trajectory;
+use crate::metrics;
+use crate::{RecordError, Run, Status};
+
+/// What happens where contact begins, which is a part of the mathematical problem as long as contact
+/// nodes have mass.
+fn begins(arm: &Arm) -> &'static str {
+    let contacts = arm.case.get("contacts").and_then(serde_json::Value::as_array);
+    let all = |value: &str| {
+        contacts.is_some_and(|c| !c.is_empty() && c.iter().all(|c| c["persistency"].as_str() == Some(value)))
+    };
+    match (all("project"), all("none")) {
+        (true, _) => "; impacts of nodes are inelastic (velocities are projected)",
+        (_, true) => "; velocities of nodes are not changed where contact begins",
+        _ => "",
+    }
+}
+
+impl StudyManifest {
+    /// Indices of the arms of the reference, the finest last: those of a computed reference, or at
+    /// most three: the named arm after those arms that differ from it only in a longer step.
+    fn reference_arms(&self) -> Vec<usize> {
+        let Some(named) = self.arms.iter().position(|a| self.reference.as_ref() == Some(&a.name)) else {
+            return Vec::new();
+        };
+        let others = |a: &Arm| {
+            let sets: Vec<String> = a.sets_without_step().cloned().collect();
+            (sets, a.case_path.clone(), a.role.fine)
+        };
+        let size = |i: &usize| step(&self.arms[*i], "time.step").unwrap_or_default();
+        if self.arms[named].role.fine {
+            let mut found: Vec<usize> = (0..self.arms.len()).filter(|i| self.arms[*i].role.fine).collect();
+            found.sort_by(|a, b| size(b).total_cmp(&size(a)));
+            return found;
+        }
+        let alike =
+            |i: &usize| others(&self.arms[*i]) == others(&self.arms[named]) && size(i) >= size(&named);
+        let mut found: Vec<usize> = (0..self.arms.len()).filter(alike).collect();
+        found.sort_by(|a, b| size(b).total_cmp(&size(a)));
+        found.split_off(found.len().saturating_sub(3))
+    }
+
+    /// The reference that arms are compared with.
+    ///
+    /// # Errors
+    /// Input/output or system error, or a damaged record.
+    pub(super) fn reference(&self, directory: &Path) -> Result<Option<Reference>, RecordError> {
+        if self.reference.as_deref() == Some("exact") {
+            let Some(case) = self.arms.first().map(|a| &a.case) else { return Ok(None) };
+            let formulas =
+                case.get("exact").and_then(|e| serde_json::from_value(e.clone()).ok()).unwrap_or_default();
+            let end = case.pointer("/time/end").and_then(serde_json::Value::as_f64).unwrap_or_default();
+            return Ok(Reference::of_formulas(&formulas, end, 8000));
+        }
+        let arms = self.reference_arms();
+        let (mut levels, mut averaged) = (Vec::new(), Vec::new());
+        for &i in &arms {
+            let (mut members, mut phases) = (Vec::new(), Vec::new());
+            for run in self.runs_of(i) {
+                let phase = self.run(run).role.member.map_or(0.0, |of| of.member.phase);
+                if self.state(directory, self.run(run))?.0 == Some(Status::Finished) {
+                    let run = Run::open(&directory.join(&self.run(run).directory))?;
+                    if members.is_empty() && Some(&i) == arms.last() {
+                        averaged = metrics::of_averages(&run);
+                    }
+                    members.push(Trajectory::of(&run, &metrics::of_run(&run)));
+                    if !phases.contains(&phase) {
+                        phases.push(phase);
+                    }
+                } else if run == i {
+                    return Ok(None);
+                }
+            }
+            let arm = &self.arms[i];
+            let mesh = arm.case.get("refine").and_then(serde_json::Value::as_f64).unwrap_or(1.0);
+            let step = step(arm, "time.step").unwrap_or_default();
+            levels.push(Level { step, mesh, phases: phases.len(), members });
+        }
+        let Some(last) = arms.last() else { return Ok(None) };
+        let reference = Reference::of_levels(String::new(), levels);
+        let count = match arms.len() {
+            1 => "a single run, whose error is not known".to_owned(),
+            n if reference.refines_mesh() => format!("the finest of {n} levels of step and mesh"),
+            n => format!("the finest of {n} steps on the given mesh"),
+        };
+        let members = || reference.levels().iter().map(|level| level.members.len());
+        let ensemble = match (members().min().unwrap_or(1), members().max().unwrap_or(1)) {
+            (1, 1) => String::new(),
+            (least, most) if least == most => format!(", {most} members each"),
+            (least, most) => format!(", {least} to {most} members each"),
+        };
+        let law = begins(&self.arms[*last]);
+        let what = format!("\"{}\", {count}{ensemble}{law}", self.arms[*last].name);
+        Ok(Some(reference.described(what, averaged)))
+    }
+}

@@ -1,0 +1,79 @@
+//! A curve of a plot: its style, and how it is drawn.
+
+use std::fmt::Write as _;
+
+use crate::palette::LINES;
+use crate::trace;
+
+/// A curve.
+#[derive(Clone, Debug)]
+pub(crate) struct Curve {
+    pub(crate) label: String,
+    /// Number of the style.
+    pub(crate) style: usize,
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    /// Whether the points have markers.
+    pub(crate) marked: bool,
+    /// Whether it is of an unsound run: dashed and grey, and without influence on the axes.
+    pub(crate) apart: bool,
+}
+
+impl Curve {
+    /// Colour, dashes and marker number.
+    pub(crate) fn style(&self) -> (&'static str, &'static str, usize) {
+        if self.apart { APART } else { style(self.style) }
+    }
+}
+
+/// The style of every unsound run.
+pub(crate) const APART: (&str, &str, usize) = ("#b0b0b0", "4 3", 0);
+
+/// Colour, dashes and marker number of a style. Seven colours of Okabe and Ito and grey, with five
+/// markers, give forty different styles.
+pub(crate) fn style(i: usize) -> (&'static str, &'static str, usize) {
+    const DASHES: [&str; 8] = ["", "9 3", "3 2", "9 3 2 3", "14 4", "5 2 1.5 2 1.5 2", "1.5 2.5", "6 6"];
+    (LINES.get(i % 8).copied().unwrap_or("#777777"), DASHES[(i + i / 8) % 8], i % 5)
+}
+
+/// Draws a curve inside the rectangle `id`.
+pub(super) fn draw(
+    out: &mut String,
+    curve: &Curve,
+    id: &str,
+    to_x: &dyn Fn(f64) -> f64,
+    to_y: &dyn Fn(f64) -> f64,
+) {
+    let (color, dashes, marker) = curve.style();
+    let points: Vec<(f64, f64)> = curve.x.iter().zip(&curve.y).map(|(x, y)| (to_x(*x), to_y(*y))).collect();
+    let d = trace::path(points.iter().copied());
+    // A curve alone in its pane needs no dashes to be identified.
+    let alone = curve.label.is_empty() && !curve.apart;
+    let dashes = if curve.marked || alone { "" } else { dashes };
+    let _ = writeln!(
+        out,
+        "<path clip-path=\"url(#{id})\" d=\"{d}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.4\" \
+         stroke-linejoin=\"round\" stroke-dasharray=\"{dashes}\"/>"
+    );
+    if curve.marked {
+        for (x, y) in points.into_iter().filter(|p| p.0.is_finite() && p.1.is_finite()) {
+            mark(out, marker, color, x, y);
+        }
+    }
+}
+
+/// Markers: circle, square, triangle, diamond, inverted triangle.
+pub(super) fn mark(out: &mut String, marker: usize, color: &str, x: f64, y: f64) {
+    let at = |dx: f64, dy: f64| format!("{:.1} {:.1}", x + dx, y + dy);
+    let d = match marker {
+        0 => {
+            let _ = writeln!(out, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.6\" fill=\"{color}\"/>");
+            return;
+        }
+        1 => [at(-3.3, -3.3), at(3.3, -3.3), at(3.3, 3.3), at(-3.3, 3.3)].join("L"),
+        2 => [at(0.0, -4.4), at(4.2, 3.2), at(-4.2, 3.2)].join("L"),
+        3 => [at(0.0, -4.8), at(4.8, 0.0), at(0.0, 4.8), at(-4.8, 0.0)].join("L"),
+        _ => [at(0.0, 4.4), at(4.2, -3.2), at(-4.2, -3.2)].join("L"),
+    };
+    let _ = writeln!(out, "<path d=\"M{d}z\" fill=\"{color}\"/>");
+}
