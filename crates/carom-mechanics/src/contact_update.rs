@@ -139,11 +139,11 @@ impl ContactUpdate {
         for (k, contact) in constraints {
             let stiffness = system.mean_stiffness(equations);
             let pairs = &mut evaluation.at.pairings[k].pairs;
-            let contender = |(pair, row): (&Pair, Row)| Contender {
-                active: pair.active,
-                gap: row.gap,
-                lambda: pair.lambda,
-                stiffness,
+            let contender = |(pair, row): (&Pair, Row)| {
+                // Few nodes that may be inside reach their depth: they wait for the others.
+                let waits = !settled && !pair.active && contact.kinematics.allowed(pair.node) > 0.0;
+                let gap = if waits { f64::INFINITY } else { row.gap };
+                Contender { active: pair.active, gap, lambda: pair.lambda, stiffness }
             };
             let contenders: Vec<Contender> =
                 pairs.iter().zip(evaluation.rows[k].iter()).map(contender).collect();

@@ -234,7 +234,9 @@ impl Penetration {
             // An active pair on its facet is no deeper than its gap.
             let rows = rows.get_or_insert_with(|| Rows::new(model.dimension));
             let contact = &model.contacts[k];
-            for pair in state.pairs[k].iter().filter(|pair| pair.active && pair.xi.abs() <= 1.0) {
+            for pair in state.pairs[k].iter().filter(|pair| {
+                pair.active && pair.xi.abs() <= 1.0 && contact.kinematics.allowed(pair.node) == 0.0
+            }) {
                 rows.clear();
                 // A frozen contact point is not the closest one.
                 let mut pair = *pair;
@@ -313,9 +315,11 @@ impl Watched {
 
 /// The nodes of a side's facets, with the depths that its contact allows.
 fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -> Vec<Watched> {
-    let constrained = contact.kinematics.secondary();
+    let nodes = contact.kinematics.secondary().iter().enumerate();
+    let strict = nodes.filter(|(k, _)| contact.kinematics.allowed(*k) == 0.0).map(|(_, &node)| node);
+    let strict: std::collections::HashSet<usize> = strict.collect();
     let watched = |(node, length)| {
-        let constrained = constrained.contains(&node);
+        let constrained = strict.contains(&node);
         Watched::new(node, length, constrained, contact.depths[usize::from(!constrained)])
     };
     lengths(model, facets).map(watched).collect()

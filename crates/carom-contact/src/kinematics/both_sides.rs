@@ -1,8 +1,16 @@
-//! Secondary nodes against the primary side, and the corners of the primary side against the
-//! secondary one: no secondary node enters the primary, and no corner of the primary cuts into an
-//! edge of the secondary between two of its nodes.
+//! Secondary nodes against the primary side, and nodes of the primary side against the secondary
+//! one, in one set of constraints:
 //!
-//! The nodes of the corners follow those of the secondary side. Where a corner meets a secondary
+//! ```text
+//! secondary nodes, corners of the primary    g ≥ 0
+//! other nodes of the primary                 g ≥ −d,   d a hundredth of a secondary facet
+//! ```
+//!
+//! No secondary node enters the primary, and no corner of the primary cuts into an edge of the
+//! secondary between two of its nodes. The other nodes follow the secondary side's edges to within
+//! d: with d = 0 the sides would be constrained twice, and meshes that do not match would lock.
+//!
+//! The nodes of the primary follow those of the secondary side. Where a corner meets a secondary
 //! node and a facet at the corner is parallel to the secondary one, either row would prevent
 //! penetration, and both would be nearly dependent: the corner is then left to the node.
 
@@ -18,52 +26,49 @@ const NEAR_NODE: f64 = 0.5 * PAST_SIDE;
 /// Cosine of the angle up to which two facets are parallel: 10°.
 const PARALLEL: f64 = 0.985;
 
-/// Contact in both directions: secondary nodes and the corners of the primary.
+/// Contact in both directions.
 #[derive(Debug)]
 pub struct BothSides {
-    nodes: NodeToFacet,
-    corners: NodeToFacet,
-    /// Facets of the primary side at each corner, with the corner's ξ.
-    facets: Vec<Vec<(usize, f64)>>,
+    forward: NodeToFacet,
+    reverse: NodeToFacet,
+    /// Facets of the primary side at each of its nodes that is a corner, with the corner's ξ.
+    corners: Vec<Vec<(usize, f64)>>,
     all: Vec<usize>,
 }
 
 impl BothSides {
-    /// `nodes`: secondary nodes against the primary side; `corners`: the nodes of the primary's
-    /// corners against the secondary side.
-    pub fn new(nodes: NodeToFacet, corners: NodeToFacet) -> Self {
-        let all = [nodes.secondary(), corners.secondary()].concat();
-        let primary = nodes.primary();
+    /// `forward`: secondary nodes against the primary side; `reverse`: nodes of the primary against
+    /// the secondary side, corners without an allowed depth.
+    pub fn new(forward: NodeToFacet, reverse: NodeToFacet) -> Self {
+        let all = [forward.secondary(), reverse.secondary()].concat();
+        let primary = forward.primary();
         let end = |facet: usize, node: usize| {
             let nodes = primary.facet(facet).nodes;
             (nodes[0] == node).then_some((facet, -1.0)).or((nodes[1] == node).then_some((facet, 1.0)))
         };
-        let facets = corners
-            .secondary()
-            .iter()
-            .map(|&node| (0..primary.facets()).filter_map(|f| end(f, node)).collect());
-        Self { facets: facets.collect(), nodes, corners, all }
+        let corner = |(k, &node): (usize, &usize)| match reverse.allowed(k) {
+            0.0 => (0..primary.facets()).filter_map(|facet| end(facet, node)).collect(),
+            _ => Vec::new(),
+        };
+        let corners = reverse.secondary().iter().enumerate().map(corner).collect();
+        Self { corners, forward, reverse, all }
     }
 
-    /// The direction to which a pair belongs, and the pair in its numbering.
-    fn direction(&self, pair: &Pair) -> (&NodeToFacet, Pair) {
-        let count = self.nodes.secondary().len();
-        if pair.node < count {
-            (&self.nodes, *pair)
-        } else {
-            (&self.corners, Pair { node: pair.node - count, ..*pair })
-        }
+    /// The direction to which a node belongs, and its number there.
+    fn direction(&self, node: usize) -> (&NodeToFacet, usize) {
+        let count = self.forward.secondary().len();
+        if node < count { (&self.forward, node) } else { (&self.reverse, node - count) }
     }
 
     /// Whether a corner meets a node of the secondary facet that it faces, and has a facet parallel to
     /// that.
     fn is_left_to_node(&self, corner: &Pair, y: &[f64]) -> bool {
-        let (primary, secondary) = (self.nodes.primary(), self.corners.primary());
+        let (primary, secondary) = (self.forward.primary(), self.reverse.primary());
         let y = Places::new(y, primary.shape().dimension());
-        let at = y.at(self.corners.secondary()[corner.node]);
+        let at = y.at(self.reverse.secondary()[corner.node]);
         let faced = secondary.facet(corner.facet);
         let normal = faced.at(y, corner.xi).normal;
-        self.facets[corner.node].iter().any(|&(facet, xi)| {
+        self.corners[corner.node].iter().any(|&(facet, xi)| {
             let near = NEAR_NODE * primary.length(facet, y);
             primary.facet(facet).at(y, xi).normal.dot(&normal) < -PARALLEL
                 && faced.nodes.iter().any(|&other| (y.at(other) - at).norm() < near)
@@ -72,10 +77,10 @@ impl BothSides {
 
     /// Applies `of` to the pairs of either direction in its own numbering.
     fn each(&self, pairing: &mut Pairing, mut of: impl FnMut(&NodeToFacet, &mut Pairing) -> bool) -> bool {
-        let count = self.nodes.secondary().len();
-        let mut corners = pairing.split_off(count);
-        let changed = of(&self.nodes, pairing) | of(&self.corners, &mut corners);
-        pairing.append(corners, count);
+        let count = self.forward.secondary().len();
+        let mut reverse = pairing.split_off(count);
+        let changed = of(&self.forward, pairing) | of(&self.reverse, &mut reverse);
+        pairing.append(reverse, count);
         changed
     }
 }
@@ -85,17 +90,22 @@ impl Kinematics for BothSides {
         &self.all
     }
 
+    fn allowed(&self, node: usize) -> f64 {
+        let (direction, node) = self.direction(node);
+        direction.allowed(node)
+    }
+
     fn facet_nodes(&self, facet: usize) -> &[usize] {
-        self.nodes.facet_nodes(facet)
+        self.forward.facet_nodes(facet)
     }
 
     fn stencil(&self) -> usize {
-        self.nodes.stencil().max(self.corners.stencil())
+        self.forward.stencil().max(self.reverse.stencil())
     }
 
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
-        let (direction, pair) = self.direction(&Pair::open(node, 0, 0.0));
-        direction.signed_distance(pair.node, y)
+        let (direction, node) = self.direction(node);
+        direction.signed_distance(node, y)
     }
 
     fn search(
@@ -113,22 +123,23 @@ impl Kinematics for BothSides {
     }
 
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
-        let (direction, mut local) = self.direction(pair);
-        let corner = pair.node >= self.nodes.secondary().len();
-        if corner && !pair.active && self.is_left_to_node(&local, y) {
+        let (direction, node) = self.direction(pair.node);
+        let mut local = Pair { node, ..*pair };
+        let is_reverse = node != pair.node;
+        if is_reverse && !pair.active && self.is_left_to_node(&local, y) {
             rows.push_open();
             return Ok(());
         }
         direction.measure(&mut local, y, rows)?;
         pair.xi = local.xi;
-        if corner {
+        if is_reverse {
             rows.reverse_last();
         }
         Ok(())
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
-        let (direction, pair) = self.direction(pair);
-        direction.curvature_into(&pair, y, curvature);
+        let (direction, node) = self.direction(pair.node);
+        direction.curvature_into(&Pair { node, ..*pair }, y, curvature);
     }
 }

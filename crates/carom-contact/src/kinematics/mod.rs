@@ -28,6 +28,13 @@ pub trait Kinematics: Send + Sync {
     /// Global numbers of the secondary nodes, without duplicates.
     fn secondary(&self) -> &[usize];
 
+    /// Depth that a secondary node, given by index, may have without contact: its gap is larger by
+    /// that.
+    fn allowed(&self, node: usize) -> f64 {
+        let _ = node;
+        0.0
+    }
+
     /// Global numbers of the nodes of a primary facet; empty for a rigid primary.
     fn facet_nodes(&self, facet: usize) -> &[usize];
 

@@ -13,7 +13,7 @@
 //!                        its facet, which is extrapolated up to |ξ| = 1.2
 //! dent                   a node that would be handed back within the step has a pair with either facet,
 //!                        g ≥ 0 for both: it may lie in the joint
-//! corner, end of side    nothing is faced past the end, |ξ| > 1.05; a pair that slides past it keeps its
+//! corner, end of side    nothing is faced past the end, |ξ| > 1.001; a pair that slides past it keeps its
 //!                        facet to the end of the step and leaves at the start of the next one
 //! ```
 //!
@@ -38,7 +38,7 @@ const REACH: f64 = 1.2;
 const PAST: f64 = 1e-9;
 /// The same at a corner or at the end of a side: where sides of equal length are pressed together,
 /// their ends bulge differently.
-pub(super) const PAST_SIDE: f64 = 0.05;
+pub(super) const PAST_SIDE: f64 = 1e-3;
 /// |ξ| allowed for the closest point before Newton has converged.
 const WANDER: f64 = 3.0;
 /// |ξ| beyond which a pair is handed over, or back, before Newton has converged.
@@ -73,6 +73,8 @@ pub struct NodeToFacet {
     primary: Surface,
     detection: Detection,
     point: ContactPoint,
+    /// Depth that each node may have without contact; empty if none may have any.
+    allowed: Vec<f64>,
     tools: Mutex<Tools>,
 }
 
@@ -88,7 +90,14 @@ impl NodeToFacet {
     /// from the secondary.
     pub fn new(secondary: Vec<usize>, primary: Surface, detection: Detection) -> Self {
         let tools = Tools { search: Search::new(&primary), swept: SweptTest::new(primary.shape()) };
-        Self { secondary, primary, detection, point: ContactPoint::Closest, tools: Mutex::new(tools) }
+        Self {
+            secondary,
+            primary,
+            detection,
+            point: ContactPoint::Closest,
+            allowed: Vec::new(),
+            tools: Mutex::new(tools),
+        }
     }
 
     /// The same with another rule for the contact point. Only [`Detection::Trajectory`] finds a
@@ -96,6 +105,13 @@ impl NodeToFacet {
     #[must_use]
     pub fn with_point(self, point: ContactPoint) -> Self {
         Self { point, ..self }
+    }
+
+    /// The same with a depth for each node that it may have without contact: its gap is larger by
+    /// that.
+    #[must_use]
+    pub fn with_allowed(self, allowed: Vec<f64>) -> Self {
+        Self { allowed, ..self }
     }
 
     /// The primary side.
@@ -136,10 +152,11 @@ impl NodeToFacet {
     fn candidate(
         &self,
         tools: &mut Tools,
-        node: usize,
+        place: usize,
         before: Places,
         now: Places,
     ) -> Option<(usize, f64, bool)> {
+        let node = self.secondary[place];
         let mut first: Option<(f64, usize, f64)> = None;
         let mut closest: Option<(f64, usize, f64)> = None;
         for &facet in tools.search.near(node, before, now) {
@@ -168,7 +185,8 @@ impl NodeToFacet {
         }
         let (_, facet, xi) = closest.filter(|&(_, facet, _)| self.primary.is_of_side(facet))?;
         let start = self.primary.facet(facet).closest_point(before, before.at(node), REACH);
-        let behind = |s| self.gap(node, facet, s, before) < -BEHIND * self.primary.length(facet, before);
+        let depth = |length: f64| self.allowed(place) + BEHIND * length;
+        let behind = |s| self.gap(node, facet, s, before) < -depth(self.primary.length(facet, before));
         (!start.map_or(entered_elsewhere, behind)).then_some((facet, xi, false))
     }
 
@@ -240,6 +258,10 @@ impl Kinematics for NodeToFacet {
             .min_by(|a, b| a.abs().total_cmp(&b.abs()))
     }
 
+    fn allowed(&self, node: usize) -> f64 {
+        self.allowed.get(node).copied().unwrap_or(0.0)
+    }
+
     fn search(
         &self,
         before: &[f64],
@@ -288,7 +310,8 @@ impl Kinematics for NodeToFacet {
                         }
                         // At a concave joint an inactive pair may be in front of one facet and
                         // behind the other.
-                        changed |= pair.active || self.gap(node, facet, xi, now) < 0.0;
+                        changed |=
+                            pair.active || self.gap(node, facet, xi, now) + self.allowed(pair.node) < 0.0;
                         left.insert(pair.node, pair.facet);
                         (pair.facet, pair.xi) = (facet, xi);
                     }
@@ -321,11 +344,11 @@ impl Kinematics for NodeToFacet {
                 if next > first {
                     continue;
                 }
-                let Some((facet, xi, crossed)) = self.candidate(&mut tools, node, before, now) else {
+                let Some((facet, xi, crossed)) = self.candidate(&mut tools, k, before, now) else {
                     continue;
                 };
                 let pair = Pair::open(k, facet, xi);
-                let gap = self.gap(node, facet, xi, now);
+                let gap = self.gap(node, facet, xi, now) + self.allowed(k);
                 match self.detection {
                     Detection::ClosestPoint => {
                         // A candidate that already penetrates must be rechecked by the solver.
@@ -399,7 +422,10 @@ impl Kinematics for NodeToFacet {
             return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a: gap.a });
         }
         let nodes = std::iter::once(&node).chain(facet.nodes);
-        rows.push(gap.distance, nodes.zip(gap.gradient(facet.nodes.len())).map(|(&n, slope)| (n, slope.0)));
+        rows.push(
+            gap.distance + self.allowed(pair.node),
+            nodes.zip(gap.gradient(facet.nodes.len())).map(|(&n, slope)| (n, slope.0)),
+        );
         Ok(())
     }
 

@@ -13,6 +13,9 @@ use carom_mechanics::model::{BodyInstance, Contact, Model};
 use super::obstacles::{self, Moving};
 use super::side::{Side, side};
 
+/// Depth of smooth nodes of the primary in edges of the secondary, over its shortest facet.
+const ALLOWED: f64 = 0.02;
+
 /// The contacts of a case.
 pub(super) fn contacts(
     case: &Case,
@@ -78,13 +81,14 @@ pub(super) fn contacts(
                         carom_case::ContactPoint::Frozen => ContactPoint::Frozen,
                     };
                     let [side, opposite] = [&primary, &secondary].map(|side| surface_of(side, parts));
-                    let corners = side.corners(&reference);
+                    let (others, allowed) = others(&primary, &secondary, &side, &reference);
                     primary_facets = Some((primary.shape, primary.facets));
                     let nodes = NodeToFacet::new(secondary.nodes.clone(), side, detection).with_point(point);
-                    if corners.is_empty() || detection == Detection::Trajectory {
+                    if case.dimension == 1 || detection == Detection::Trajectory {
                         Box::new(nodes)
                     } else {
-                        Box::new(BothSides::new(nodes, NodeToFacet::new(corners, opposite, detection)))
+                        let others = NodeToFacet::new(others, opposite, detection).with_allowed(allowed);
+                        Box::new(BothSides::new(nodes, others))
                     }
                 }
                 Err(problem) => {
@@ -125,7 +129,11 @@ pub(super) fn contacts(
                 Enforcement::Penalty if conserves => Box::new(ConservingPenalty::new(stiffnesses())),
                 Enforcement::Penalty => Box::new(Penalty::new(stiffnesses())),
             },
-            depths: if spec.enforcement == Enforcement::Multiplier { [0.01, 0.1] } else { [0.25; 2] },
+            // A law on velocities lets positions drift.
+            depths: match (spec.enforcement, spec.law) {
+                (Enforcement::Multiplier, Some(_)) => [0.01, 0.1],
+                _ => [0.25; 2],
+            },
             predictor: spec.law == Some(ContactLaw::Predictor),
             kinematics,
             // A mass that is thrown is a body; a prescribed obstacle is not.
@@ -158,6 +166,22 @@ pub(super) fn contacts(
         contacts.push(contact);
     }
     contacts
+}
+
+/// The nodes of the primary side, each with the depth to which it may enter edges of the secondary
+/// side: none at corners.
+fn others(primary: &Side, secondary: &Side, surface: &Surface, reference: &[f64]) -> (Vec<usize>, Vec<f64>) {
+    let lengths = secondary.facets.iter().filter(|facet| facet.len() > 1).map(|facet| {
+        let [start, end] = [facet[0], facet[1]].map(|node| &reference[2 * node..2 * node + 2]);
+        (end[0] - start[0]).hypot(end[1] - start[1])
+    });
+    let shortest = lengths.fold(f64::INFINITY, f64::min);
+    let corners = surface.corners(reference);
+    let mut nodes = primary.nodes.clone();
+    nodes.sort_unstable();
+    let allowed = nodes.iter().map(|node| if corners.contains(node) { 0.0 } else { ALLOWED * shortest });
+    let allowed = allowed.collect();
+    (nodes, allowed)
 }
 
 /// A side with the rest of its body's boundary.

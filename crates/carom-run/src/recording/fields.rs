@@ -129,7 +129,7 @@ pub(super) fn consistent_weights(contact: &Contact, state: &State, thickness: f6
 pub(super) fn gap_of(contact: &Contact, pair: &Pair, state: &State) -> (f64, [f64; 3]) {
     let mut rows = Rows::new(contact.facets[0].0.dimension());
     match contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows) {
-        Ok(()) => (rows.row(0).gap, rows.row(0).normal()),
+        Ok(()) => (rows.row(0).gap - contact.kinematics.allowed(pair.node), rows.row(0).normal()),
         Err(_) => (f64::NAN, [f64::NAN; 3]),
     }
 }
