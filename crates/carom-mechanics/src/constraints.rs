@@ -75,7 +75,13 @@ impl Constraints {
         let model = equations.model;
         let mut constraints = Self::none(model.dimension);
         let (mut rows, mut gradient) = (Rows::new(model.dimension), DiscreteGradient::default());
-        for place in independent_rows(model, evaluation.pressing(), &evaluation.rows) {
+        // Springs may depend on each other: each adds its stiffness.
+        let is_spring = |&(k, _): &(usize, usize)| !model.contacts[k].interface.is_constraint();
+        let held = evaluation.pressing().filter(|place| !is_spring(place));
+        let mut places = independent_rows(model, held, &evaluation.rows);
+        places.extend(evaluation.pressing().filter(is_spring));
+        places.sort_unstable();
+        for place in places {
             let (k, p) = place;
             let contact = &model.contacts[k];
             let answer = &evaluation.answers[k][p];

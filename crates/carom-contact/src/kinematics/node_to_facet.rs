@@ -47,6 +47,9 @@ const HAND_BACK: f64 = 1.1;
 /// A node this far behind a facet (relative to its length) at the start of a step has not crossed
 /// the facet.
 const BEHIND: f64 = 1e-6;
+/// The same where the whole boundary is known: a node whose nearest facet is of the side has entered
+/// the body there.
+const RECAPTURED: f64 = 0.02;
 
 /// The gap that decides that a node has reached the primary side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -180,12 +183,23 @@ impl NodeToFacet {
             }
         }
         let entered_elsewhere = first.is_some_and(|(_, facet, _)| !self.primary.is_of_side(facet));
-        if let Some((_, facet, xi)) = first.filter(|_| !entered_elsewhere) {
+        // A node that has entered near the end of a facet may be in front of another one now.
+        let still_faced = |facet: usize| {
+            let xi = self.primary.facet(facet).closest_point(now, now.at(node), REACH);
+            self.detection == Detection::Trajectory
+                || xi.is_some_and(|xi| !self.faces_nothing(facet, xi, now))
+        };
+        let entered = first.filter(|&(_, facet, _)| !entered_elsewhere && still_faced(facet));
+        if let Some((_, facet, xi)) = entered {
             return Some((facet, xi, true));
         }
         let (_, facet, xi) = closest.filter(|&(_, facet, _)| self.primary.is_of_side(facet))?;
+        if first.is_some() && !entered_elsewhere {
+            return Some((facet, xi, true));
+        }
         let start = self.primary.facet(facet).closest_point(before, before.at(node), REACH);
-        let depth = |length: f64| self.allowed(place) + BEHIND * length;
+        let behind_by = if self.primary.is_whole() { RECAPTURED } else { BEHIND };
+        let depth = |length: f64| self.allowed(place) + behind_by * length;
         let behind = |s| self.gap(node, facet, s, before) < -depth(self.primary.length(facet, before));
         (!start.map_or(entered_elsewhere, behind)).then_some((facet, xi, false))
     }

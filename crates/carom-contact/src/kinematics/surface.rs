@@ -21,6 +21,7 @@ pub struct Surface {
     neighbours: Vec<[Option<usize>; 2]>,
     /// Number of facets of the side; those of the rest come after them.
     side: usize,
+    is_whole: bool,
 }
 
 impl Surface {
@@ -33,12 +34,13 @@ impl Surface {
         let ends: HashMap<usize, usize> = facets.iter().enumerate().map(|(k, f)| (end(f), k)).collect();
         let neighbours_of = |f: &Vec<usize>| [ends.get(&f[0]).copied(), starts.get(&end(f)).copied()];
         let none = |_| [None, None];
-        let neighbours = match shape {
+        let neighbours: Vec<[Option<usize>; 2]> = match shape {
             FacetShape::Point => facets.iter().map(none).collect(),
             FacetShape::L2 | FacetShape::L3 | FacetShape::L4 => facets.iter().map(neighbours_of).collect(),
         };
         let (nodes, orientations) = (facets.concat(), orientations.to_vec());
-        Self { shape, nodes, orientations, neighbours, side: facets.len() }
+        let is_whole = neighbours.iter().flatten().all(Option::is_some);
+        Self { shape, nodes, orientations, neighbours, side: facets.len(), is_whole }
     }
 
     /// The same side with the `rest` of its body's boundary, whose facets are traversed with the
@@ -65,6 +67,11 @@ impl Surface {
     /// Number of facets with those of the rest of the boundary.
     pub(crate) fn all(&self) -> usize {
         self.neighbours.len()
+    }
+
+    /// Whether the rest of the body's boundary is known, or there is none.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.is_whole
     }
 
     /// Whether a facet belongs to the side.

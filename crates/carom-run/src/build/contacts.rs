@@ -131,7 +131,7 @@ pub(super) fn contacts(
             },
             // A law on velocities lets positions drift.
             depths: match (spec.enforcement, spec.law) {
-                (Enforcement::Multiplier, Some(_)) => [0.01, 0.1],
+                (Enforcement::Multiplier, Some(ContactLaw::Position | ContactLaw::Predictor)) => [0.01, 0.1],
                 _ => [0.25; 2],
             },
             predictor: spec.law == Some(ContactLaw::Predictor),
