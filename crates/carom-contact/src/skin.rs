@@ -23,8 +23,10 @@ pub struct Skin {
 pub struct Depth {
     /// Distance to the boundary, positive outside.
     pub distance: f64,
-    /// Nearest facet.
+    /// Nearest facet, and its point.
     pub facet: usize,
+    /// ξ of that point.
+    pub xi: f64,
     /// Distance between its ends.
     pub length: f64,
 }
@@ -60,7 +62,12 @@ impl Skin {
         let outside =
             if joint { Self::is_outside_joint } else { Self::is_outside }(self, facet, xi, point, y);
         let distance = if outside { distance } else { -distance };
-        Some(Depth { distance, facet, length: self.surface.length(facet, y) })
+        Some(Depth { distance, facet, xi, length: self.surface.length(facet, y) })
+    }
+
+    /// Distance between a point and the boundary at ξ of a facet, which may lie elsewhere.
+    pub fn distance(&self, facet: usize, xi: f64, point: [f64; 2], y: &[f64]) -> f64 {
+        (Vector(point) - self.surface.facet(facet).at(Places::new(y, 2), xi).position).norm()
     }
 
     /// Whether two facets that do not meet at a joint cross each other at the positions of the last

@@ -34,9 +34,12 @@ pub(crate) struct Penetration {
 struct Way {
     /// The contact; none for bodies without one.
     contact: Option<usize>,
-    /// The body that must not be entered.
+    /// The body that must not be entered, and the nodes of its boundary.
     body: usize,
+    boundary: Vec<usize>,
     nodes: Vec<Watched>,
+    /// The node that was deepest, with which the next search begins.
+    first: usize,
 }
 
 #[derive(Debug)]
@@ -50,8 +53,8 @@ struct Watched {
     share: f64,
     /// Distance that it and the body may still move together before it can be inside.
     clearance: f64,
-    /// Its nearest facet, where the next search begins.
-    facet: Option<usize>,
+    /// Its nearest facet and ξ, where the next search begins.
+    near: Option<(usize, f64)>,
 }
 
 /// Largest depths of nodes of the sides of contacts in the other body, ≥ 0.
@@ -101,7 +104,7 @@ impl Penetration {
                 continue;
             };
             for (body, facets) in [(primary, secondary_facets), (secondary, primary_facets)] {
-                ways.push(Way { contact: Some(k), body, nodes: watched(model, contact, facets) });
+                ways.push(Way::new(model, Some(k), body, watched(model, contact, facets)));
             }
         }
         Self::new(model, ways)
@@ -123,7 +126,7 @@ impl Penetration {
             for body in (0..model.parts.len()).filter(|&b| b != a && !declared(a, b)) {
                 let nodes = lengths(model, &facets)
                     .map(|(node, length)| Watched::new(node, length, false, UNDECLARED));
-                ways.push(Way { contact: None, body, nodes: nodes.collect() });
+                ways.push(Way::new(model, None, body, nodes.collect()));
             }
         }
         Self::new(model, ways)
@@ -204,12 +207,13 @@ impl Penetration {
     /// Subtracts the motion since the last call from the clearances.
     fn begin(&mut self, model: &Model, y: &[f64]) {
         if self.y.len() == y.len() {
-            let moved = |node: usize| distance(&self.y, y, node);
-            let of_body = |way: &Way| model.parts[way.body].nodes().map(moved).fold(0.0, f64::max);
+            let moved = |node: usize| square(&self.y, y, node);
             for way in &mut self.ways {
                 if way.nodes.iter().any(|watched| watched.clearance > 0.0) {
-                    let body = of_body(way);
-                    way.nodes.iter_mut().for_each(|watched| watched.clearance -= moved(watched.node) + body);
+                    let body = way.boundary.iter().map(|&node| moved(node)).fold(0.0, f64::max).sqrt();
+                    for watched in way.nodes.iter_mut().filter(|watched| watched.clearance > 0.0) {
+                        watched.clearance -= moved(watched.node).sqrt() + body;
+                    }
                 }
             }
         }
@@ -224,7 +228,7 @@ impl Penetration {
     /// Depths of the nodes of a way, and the node that is furthest beyond its limit.
     fn deepest(&mut self, model: &Model, way: usize, state: Option<&State>) -> (Depths, Option<Inside>) {
         let Self { skins, ways, y, current, held, rows, .. } = self;
-        let Way { contact, body, nodes } = &mut ways[way];
+        let Way { contact, body, nodes, first, .. } = &mut ways[way];
         let (mut deepest, mut worst) = (Depths::default(), None::<Inside>);
         let Some(skin) = skins[*body].as_mut() else { return (deepest, worst) };
         held.clear();
@@ -247,20 +251,35 @@ impl Penetration {
             }
             held.sort_unstable_by_key(|(node, _)| *node);
         }
-        for watched in nodes.iter_mut().filter(|watched| watched.clearance <= 0.0) {
+        let order = std::iter::once(*first).chain((0..nodes.len()).filter(|k| *k != *first));
+        for k in order.collect::<Vec<_>>() {
+            let watched = &mut nodes[k];
+            if watched.clearance > 0.0 {
+                continue;
+            }
             let node = watched.node;
+            let at = [y[2 * node], y[2 * node + 1]];
             let (depth, length) = if let Ok(p) = held.binary_search_by_key(&node, |(held, _)| *held) {
                 (held[p].1, 0.0)
             } else {
                 if !std::mem::replace(&mut current[*body], true) {
                     skin.update(y);
                 }
-                let Some(found) = skin.depth([y[2 * node], y[2 * node + 1]], watched.facet, y) else {
+                // No deeper than any point of the boundary is away: neither the deepest nor too deep.
+                let bound = watched.near.map_or(f64::INFINITY, |(facet, xi)| skin.distance(facet, xi, at, y));
+                let known = if watched.constrained { deepest.constrained } else { deepest.all };
+                if bound <= known && bound <= watched.share * watched.length {
+                    continue;
+                }
+                let Some(found) = skin.depth(at, watched.near.map(|near| near.0), y) else {
                     continue;
                 };
-                (watched.clearance, watched.facet) = (found.distance, Some(found.facet));
+                (watched.clearance, watched.near) = (found.distance, Some((found.facet, found.xi)));
                 (-found.distance, found.length)
             };
+            if depth > deepest.all {
+                *first = k;
+            }
             deepest.add(depth, watched.constrained);
             let limit = watched.share * watched.length.max(length);
             if depth > limit && worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
@@ -307,9 +326,18 @@ fn has_gaps(model: &Model, contact: &Contact) -> bool {
 /// Allowed depth of bodies without a contact, over the length of a facet.
 const UNDECLARED: f64 = 0.01;
 
+impl Way {
+    fn new(model: &Model, contact: Option<usize>, body: usize, nodes: Vec<Watched>) -> Self {
+        let mut boundary = skin_facets(&model.parts[body]).concat();
+        boundary.sort_unstable();
+        boundary.dedup();
+        Self { contact, body, boundary, nodes, first: 0 }
+    }
+}
+
 impl Watched {
     fn new(node: usize, length: f64, constrained: bool, share: f64) -> Self {
-        Self { node, length, constrained, share, clearance: 0.0, facet: None }
+        Self { node, length, constrained, share, clearance: 0.0, near: None }
     }
 }
 
@@ -339,8 +367,9 @@ fn lengths(model: &Model, facets: &[Vec<usize>]) -> impl Iterator<Item = (usize,
     nodes.into_iter()
 }
 
-fn distance(a: &[f64], b: &[f64], node: usize) -> f64 {
-    (a[2 * node] - b[2 * node]).hypot(a[2 * node + 1] - b[2 * node + 1])
+/// Square of the distance between two positions of a node.
+fn square(a: &[f64], b: &[f64], node: usize) -> f64 {
+    (a[2 * node] - b[2 * node]).powi(2) + (a[2 * node + 1] - b[2 * node + 1]).powi(2)
 }
 
 fn part_of(model: &Model, node: usize) -> Option<usize> {

@@ -159,27 +159,23 @@ impl NodeToFacet {
         before: Places,
         now: Places,
     ) -> Option<(usize, f64, bool)> {
-        let node = self.secondary[place];
+        let (node, allowed) = (self.secondary[place], self.allowed(place));
+        let near = tools.search.near(node, before, now);
+        let closest = self.closest_facet(near, node, now);
+        if allowed > 0.0 {
+            // It may be inside, and is no candidate before it is too deep, or has moved too far to
+            // tell from its end alone.
+            let moved = (now.at(node) - before.at(node)).norm();
+            if moved < allowed && closest.is_none_or(|c| c.gap + allowed >= 0.0) {
+                return None;
+            }
+        }
         let mut first: Option<(f64, usize, f64)> = None;
-        let mut closest: Option<(f64, usize, f64)> = None;
-        for &facet in tools.search.near(node, before, now) {
-            let side = self.primary.facet(facet);
-            if let Some(c) = crossing(&mut tools.swept, side, before, now, node)
+        for &facet in near {
+            if let Some(c) = crossing(&mut tools.swept, self.primary.facet(facet), before, now, node)
                 && first.is_none_or(|(theta, ..)| c.theta < theta)
             {
                 first = Some((c.theta, facet, c.xi));
-            }
-            let Some(xi) = side.closest_point(now, now.at(node), REACH) else { continue };
-            let gap = self.gap(node, facet, xi, now);
-            let of_side = self.primary.is_of_side(facet);
-            // A node beside the rest of the boundary may still face the side.
-            if if of_side { self.faces_nothing(facet, xi, now) } else { gap >= 0.0 || xi.abs() > 1.0 } {
-                continue;
-            }
-            let distance = gap.abs() + (xi.abs() - 1.0).max(0.0) * self.primary.length(facet, now);
-            // The facets of the side come first: one that is as near as the rest is preferred.
-            if closest.is_none_or(|(d, ..)| distance < if of_side { d } else { (1.0 - PAST) * d }) {
-                closest = Some((distance, facet, xi));
             }
         }
         let entered_elsewhere = first.is_some_and(|(_, facet, _)| !self.primary.is_of_side(facet));
@@ -193,15 +189,37 @@ impl NodeToFacet {
         if let Some((_, facet, xi)) = entered {
             return Some((facet, xi, true));
         }
-        let (_, facet, xi) = closest.filter(|&(_, facet, _)| self.primary.is_of_side(facet))?;
+        let Closest { facet, xi, .. } = closest.filter(|c| self.primary.is_of_side(c.facet))?;
         if first.is_some() && !entered_elsewhere {
             return Some((facet, xi, true));
         }
         let start = self.primary.facet(facet).closest_point(before, before.at(node), REACH);
         let behind_by = if self.primary.is_whole() { RECAPTURED } else { BEHIND };
-        let depth = |length: f64| self.allowed(place) + behind_by * length;
+        let depth = |length: f64| allowed + behind_by * length;
         let behind = |s| self.gap(node, facet, s, before) < -depth(self.primary.length(facet, before));
         (!start.map_or(entered_elsewhere, behind)).then_some((facet, xi, false))
+    }
+
+    /// The closest of some facets that a node faces at positions `y`.
+    fn closest_facet(&self, facets: &[usize], node: usize, y: Places) -> Option<Closest> {
+        let mut closest: Option<Closest> = None;
+        for &facet in facets {
+            let side = self.primary.facet(facet);
+            let Some(xi) = side.closest_point(y, y.at(node), REACH) else { continue };
+            let gap = self.gap(node, facet, xi, y);
+            let of_side = self.primary.is_of_side(facet);
+            // A node beside the rest of the boundary may still face the side.
+            if if of_side { self.faces_nothing(facet, xi, y) } else { gap >= 0.0 || xi.abs() > 1.0 } {
+                continue;
+            }
+            let distance = gap.abs() + (xi.abs() - 1.0).max(0.0) * self.primary.length(facet, y);
+            // The facets of the side come first: one that is as near as the rest is preferred.
+            if closest.is_none_or(|c| distance < if of_side { c.distance } else { (1.0 - PAST) * c.distance })
+            {
+                closest = Some(Closest { facet, xi, gap, distance });
+            }
+        }
+        closest
     }
 
     /// The next facet of a pair that is past the end of its facet.
@@ -237,6 +255,16 @@ impl NodeToFacet {
         let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
         self.primary.is_corner(first, second, y)
     }
+}
+
+/// The closest facet of a node.
+#[derive(Clone, Copy)]
+struct Closest {
+    facet: usize,
+    xi: f64,
+    gap: f64,
+    /// Distance from the facet, with the distance past its end.
+    distance: f64,
 }
 
 /// Where a pair past the end of its facet belongs.
@@ -364,6 +392,7 @@ impl Kinematics for NodeToFacet {
                 let pair = Pair::open(k, facet, xi);
                 let gap = self.gap(node, facet, xi, now) + self.allowed(k);
                 match self.detection {
+                    Detection::ClosestPoint if self.allowed(k) > 0.0 && gap >= 0.0 => {}
                     Detection::ClosestPoint => {
                         // A candidate that already penetrates must be rechecked by the solver.
                         changed |= gap < 0.0;

@@ -87,10 +87,19 @@ impl Facet<'_> {
             return Some(0.0);
         }
         let at = |k: usize| reach * (2.0 * k as f64 / SAMPLES as f64 - 1.0);
+        // The curve relative to `from` in powers of ξ, up to the cubic one: samples only bracket.
+        let (middle, end) = (self.at(y, 0.0), self.at(y, 1.0));
+        let (p, q, r) = (middle.position - from, middle.tangent, middle.second * 0.5);
+        let s = (end.second - middle.second) * (1.0 / 6.0);
+        let slope_at = |xi: f64| {
+            let position = p + (q + (r + s * xi) * xi) * xi;
+            let tangent = q + (r * 2.0 + s * (3.0 * xi)) * xi;
+            position.dot(&tangent)
+        };
         let mut best: Option<(f64, f64)> = None;
-        let mut last = self.distance_slope(y, from, at(0)).0;
+        let mut last = slope_at(at(0));
         for k in 1..=SAMPLES {
-            let slope = self.distance_slope(y, from, at(k)).0;
+            let slope = slope_at(at(k));
             if last <= 0.0 && slope > 0.0 {
                 let xi = self.bisected(y, from, at(k - 1), at(k));
                 let distance = (from - self.at(y, xi).position).norm();
