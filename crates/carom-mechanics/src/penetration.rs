@@ -251,8 +251,10 @@ impl Penetration {
             }
             held.sort_unstable_by_key(|(node, _)| *node);
         }
-        let order = std::iter::once(*first).chain((0..nodes.len()).filter(|k| *k != *first));
-        for k in order.collect::<Vec<_>>() {
+        let start = *first;
+        for i in 0..nodes.len() {
+            // `start` comes before those that precede it.
+            let k = if i == 0 { start } else { i - usize::from(i <= start) };
             let watched = &mut nodes[k];
             if watched.clearance > 0.0 {
                 continue;
