@@ -248,10 +248,19 @@ impl NodeToFacet {
 
     /// Whether ξ lies past a facet's end and no blunt joint with the side follows there.
     fn faces_nothing(&self, facet: usize, xi: f64, y: Places) -> bool {
+        if xi.abs() < 1.0 - PAST {
+            return false;
+        }
+        let neighbour = self.primary.neighbour(facet, xi > 0.0);
+        if neighbour.is_some_and(|neighbour| self.primary.is_of_sibling(neighbour)) {
+            return xi > 1.0 + PAST || xi < -1.0 + PAST;
+        }
         if xi.abs() <= 1.0 + PAST_SIDE {
             return false;
         }
-        let Some(neighbour) = self.primary.neighbour_of_side(facet, xi > 0.0) else { return true };
+        let Some(neighbour) = neighbour.filter(|&neighbour| self.primary.is_of_side(neighbour)) else {
+            return true;
+        };
         let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
         self.primary.is_corner(first, second, y)
     }

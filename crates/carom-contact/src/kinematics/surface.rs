@@ -21,6 +21,8 @@ pub struct Surface {
     neighbours: Vec<[Option<usize>; 2]>,
     /// Number of facets of the side; those of the rest come after them.
     side: usize,
+    /// Number of facets of the side and its siblings: the adjoining sides, which come next.
+    siblings: usize,
     is_whole: bool,
 }
 
@@ -40,18 +42,20 @@ impl Surface {
         };
         let (nodes, orientations) = (facets.concat(), orientations.to_vec());
         let is_whole = neighbours.iter().flatten().all(Option::is_some);
-        Self { shape, nodes, orientations, neighbours, side: facets.len(), is_whole }
+        Self { shape, nodes, orientations, neighbours, side: facets.len(), siblings: facets.len(), is_whole }
     }
 
     /// The same side with the `rest` of its body's boundary, whose facets are traversed with the
-    /// body on their left. They only say where the side ends.
+    /// body on their left. They only say where the side ends. The first `siblings` of them belong to
+    /// sides that other contacts keep the same nodes away from: a joint with one belongs to the
+    /// facet that ends there.
     #[must_use]
-    pub fn bounded_by(self, rest: &[Vec<usize>]) -> Self {
+    pub fn bounded_by(self, rest: &[Vec<usize>], siblings: usize) -> Self {
         let of_side = self.nodes.chunks_exact(self.shape.nodes()).map(<[usize]>::to_vec);
         let facets: Vec<Vec<usize>> = of_side.chain(rest.iter().cloned()).collect();
         let orientations: Vec<f64> =
             self.orientations.iter().copied().chain(rest.iter().map(|_| 1.0)).collect();
-        Self { side: self.side, ..Self::new(self.shape, &facets, &orientations) }
+        Self { side: self.side, siblings: self.side + siblings, ..Self::new(self.shape, &facets, &orientations) }
     }
 
     /// Shape of every facet.
@@ -67,6 +71,11 @@ impl Surface {
     /// Number of facets with those of the rest of the boundary.
     pub(crate) fn all(&self) -> usize {
         self.neighbours.len()
+    }
+
+    /// Whether a facet belongs to a side with which this one forms one surface.
+    pub(crate) fn is_of_sibling(&self, facet: usize) -> bool {
+        (self.side..self.siblings).contains(&facet)
     }
 
     /// Whether the rest of the body's boundary is known, or there is none.

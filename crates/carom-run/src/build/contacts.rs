@@ -2,7 +2,7 @@
 //! new contact method is one line here.
 
 use carom_case::{
-    ActiveSetRule, Case, ContactLaw, Enforcement, ForceTime, ObstacleMotion, Persistency, Problem,
+    ActiveSetRule, Case, ContactLaw, ContactSpec, Enforcement, ForceTime, ObstacleMotion, Persistency, Problem,
 };
 use carom_contact::{
     BothSides, ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet,
@@ -36,6 +36,9 @@ pub(super) fn contacts(
                 continue;
             }
         };
+        // A node at the joint of two sides has its pair in the first of their contacts.
+        let (earlier, _) = siblings(case, parts, k, secondary.part, Which::Secondary);
+        let nodes = without(&secondary.nodes, &earlier);
         let mut primary_part = None;
         let mut primary_facets = None;
         let mut surface = secondary.nodes.clone();
@@ -49,7 +52,7 @@ pub(super) fn contacts(
         let obstacle = obstacles.iter().find(|obstacle| obstacle.contact == k);
         let kinematics: Box<dyn Kinematics> = match (shape, spec.primary.side()) {
             (Some(shape), _) => {
-                let mut contact = NodeToObstacle::new(secondary.nodes.clone(), case.dimension, shape);
+                let mut contact = NodeToObstacle::new(nodes, case.dimension, shape);
                 if let Some(obstacle) = obstacle {
                     surface.extend(parts[obstacle.part].nodes());
                     contact = contact.carried_by(obstacle.carrier.clone());
@@ -80,10 +83,14 @@ pub(super) fn contacts(
                         carom_case::ContactPoint::Closest => ContactPoint::Closest,
                         carom_case::ContactPoint::Frozen => ContactPoint::Frozen,
                     };
-                    let [side, opposite] = [&primary, &secondary].map(|side| surface_of(side, parts));
-                    let (others, allowed) = others(&primary, &secondary, &side, &reference);
+                    let beside = |side: &Side, found: &[Side]| surface_of(side, found, parts);
+                    let (before, after) = siblings(case, parts, k, primary.part, Which::Primary);
+                    let side = beside(&primary, &[&before[..], &after].concat());
+                    let (of_earlier, of_later) = siblings(case, parts, k, secondary.part, Which::Secondary);
+                    let opposite = beside(&secondary, &[of_earlier, of_later].concat());
+                    let (others, allowed) = others(&primary, &before, &secondary, &side, &reference);
                     primary_facets = Some((primary.shape, primary.facets));
-                    let nodes = NodeToFacet::new(secondary.nodes.clone(), side, detection).with_point(point);
+                    let nodes = NodeToFacet::new(nodes, side, detection).with_point(point);
                     if case.dimension == 1 || detection == Detection::Trajectory {
                         Box::new(nodes)
                     } else {
@@ -170,23 +177,67 @@ pub(super) fn contacts(
 
 /// The nodes of the primary side, each with the depth to which it may enter edges of the secondary
 /// side: none at corners.
-fn others(primary: &Side, secondary: &Side, surface: &Surface, reference: &[f64]) -> (Vec<usize>, Vec<f64>) {
+fn others(
+    primary: &Side,
+    earlier: &[Side],
+    secondary: &Side,
+    surface: &Surface,
+    reference: &[f64],
+) -> (Vec<usize>, Vec<f64>) {
     let lengths = secondary.facets.iter().filter(|facet| facet.len() > 1).map(|facet| {
         let [start, end] = [facet[0], facet[1]].map(|node| &reference[2 * node..2 * node + 2]);
         (end[0] - start[0]).hypot(end[1] - start[1])
     });
     let shortest = lengths.fold(f64::INFINITY, f64::min);
     let corners = surface.corners(reference);
-    let mut nodes = primary.nodes.clone();
+    let mut nodes = without(&primary.nodes, earlier);
     nodes.sort_unstable();
     let allowed = nodes.iter().map(|node| if corners.contains(node) { 0.0 } else { ALLOWED * shortest });
     let allowed = allowed.collect();
     (nodes, allowed)
 }
 
-/// A side with the rest of its body's boundary.
-fn surface_of(side: &Side, parts: &[BodyInstance]) -> Surface {
-    Surface::new(side.shape, &side.facets, &side.orientations).bounded_by(&side.rest(parts))
+/// A side of a contact.
+#[derive(Clone, Copy, PartialEq)]
+enum Which {
+    Primary,
+    Secondary,
+}
+
+/// The sides of a body that other contacts have in the place of this one's, with the same opposite
+/// side: of earlier contacts, and of later ones. Together they are one surface.
+fn siblings(
+    case: &Case,
+    parts: &[BodyInstance],
+    k: usize,
+    part: usize,
+    which: Which,
+) -> (Vec<Side>, Vec<Side>) {
+    let spec = &case.contacts[k];
+    let of = |other: &ContactSpec| {
+        let (same, name) = match which {
+            Which::Primary => (other.secondary == spec.secondary, other.primary.side()?),
+            Which::Secondary => (other.primary == spec.primary, other.secondary.as_str()),
+        };
+        side(parts, name, "").ok().filter(|side| same && side.part == part)
+    };
+    let of_contacts = |contacts: &[ContactSpec]| contacts.iter().filter_map(of).collect();
+    (of_contacts(&case.contacts[..k]), of_contacts(&case.contacts[k + 1..]))
+}
+
+/// Nodes that belong to none of these sides.
+fn without(nodes: &[usize], sides: &[Side]) -> Vec<usize> {
+    let belongs = |node: &usize| sides.iter().any(|side| side.nodes.contains(node));
+    nodes.iter().copied().filter(|node| !belongs(node)).collect()
+}
+
+/// A side with its siblings and the rest of its body's boundary.
+fn surface_of(side: &Side, siblings: &[Side], parts: &[BodyInstance]) -> Surface {
+    let mut rest = side.rest(parts);
+    let of_sibling = |facet: &Vec<usize>| siblings.iter().any(|sibling| sibling.facets.contains(facet));
+    rest.sort_by_key(|facet| !of_sibling(facet));
+    let count = rest.iter().filter(|facet| of_sibling(facet)).count();
+    Surface::new(side.shape, &side.facets, &side.orientations).bounded_by(&rest, count)
 }
 
 /// Mean over the directions of a node's diagonal of the tangent in the reference configuration.

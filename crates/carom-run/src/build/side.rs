@@ -7,6 +7,7 @@ use carom_mechanics::model::BodyInstance;
 use carom_solid::FacetShape;
 
 /// A side in global node numbers.
+#[derive(Clone)]
 pub(crate) struct Side {
     pub(crate) part: usize,
     pub(crate) nodes: Vec<usize>,
