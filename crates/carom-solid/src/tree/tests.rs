@@ -31,7 +31,8 @@ fn check(tree: &Tree, boxes: &[Bounds], queries: &[Bounds]) {
         let first =
             (0..boxes.len()).filter_map(|k| Some((k, distance(k)?))).min_by(|a, b| a.1.total_cmp(&b.1));
         assert_eq!(tree.nearest(&point, None, distance), first);
-        assert_eq!(tree.nearest(&point, Some(boxes.len() / 2), distance), first);
+        let near = (!boxes.is_empty()).then_some(boxes.len() / 2);
+        assert_eq!(tree.nearest(&point, near, distance), first);
     }
     let all = boxes.iter().fold(Bounds::EMPTY, Bounds::union);
     assert!(boxes.is_empty() || (tree.bounds().low(), tree.bounds().high()) == (all.low(), all.high()));
