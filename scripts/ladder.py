@@ -1,0 +1,206 @@
+#!/usr/bin/env python3
+"""Runs seeded hard contact cases and judges their records with field_check.py, which is independent.
+
+    python scripts/ladder.py --carom target/release/carom --seed 1 --count 400 --out DIR
+    python scripts/ladder.py --carom CAROM --cases FOLDER --out DIR      existing cases instead
+    python scripts/ladder.py --check RUN                                 one record
+                                                                         (needs: pip install numpy)
+
+Case k of a seed is the same for every --count and on every machine. Categories alternate; all other
+parameters are random (ladder_cases.py). A case ends as one of
+
+    right      exit 0 and nothing wrong in the record
+    wrong      exit 0, but bodies penetrate or pass through, or energy is created without a warning
+    marked     exit 0 with the warning that energy was created, and nothing else wrong
+    stopped    exit 3, with the reason of the manifest
+    timeout    killed after --timeout seconds of wall time
+    refused    exit 2: the case was refused before it ran, rightly (a fault of the generator) or not
+    crash      any other exit
+
+DIR/results.csv has a row per case: depths as multiples of h as defined in field_check.py, the energy
+created by the checker's formula and by the record, rows of contact.csv, wall
+time, names of the warnings of the record. What is wrong in the record of a case
+that stopped is listed too. Fields of cases that end right are deleted, unless --keep is given.
+"""
+
+import argparse
+import csv
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import field_check
+import ladder_cases
+
+OUTCOMES = ["right", "wrong", "marked", "stopped", "timeout", "refused", "crash"]
+COLUMNS = (
+    "case category family enforcement elements outcome kind nodes edges self initial created created_recorded momentum "
+    "contacts wall warnings wrong message"
+).split()
+
+# Kind of a stop, by words of its reason.
+KINDS = {
+    "energy guard": "energy was created",
+    "overlap at the start": "overlap at the start",
+    "no unique closest point": "no unique closest point",
+    "lost facet": "is beyond primary facet",
+    "active set": "does not settle|active set cycles",
+    "inverted cell": "inverted|det F|J ≤ 0",
+    "explicit contact": "explicit step did not converge",
+    "penetrates": "penetrates by",
+    "not finite": "not finite",
+    "Newton": "Newton's method did not converge",
+}
+
+
+def kind_of(message):
+    last = re.search(r"last correction (\S+) L, residual (\S+) of", message)
+    if last and max(float(x) for x in last.groups()) < 1e-9:
+        return "Newton, but converged"
+    return next((kind for kind, words in KINDS.items() if re.search(words, message)), "other")
+
+
+def run(carom, case, out, timeout):
+    """(outcome, message, wall time) of a run."""
+    command = [carom, "run", case, "--out", out, "--no-report", "--threads", "1", "--color", "never", "-q"]
+    start = time.monotonic()
+    try:
+        done = subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=timeout)
+    except subprocess.TimeoutExpired:
+        return "timeout", "", time.monotonic() - start
+    wall = time.monotonic() - start
+    lines = [line for line in done.stderr.splitlines() if line.startswith("error")]
+    message = (lines or [done.stderr.strip().split("\n")[0]])[0].removeprefix("error: ")
+    outcome = {0: "right", 2: "refused", 3: "stopped"}.get(done.returncode, "crash")
+    return outcome, message, wall
+
+
+def judge(carom, meta, case, out, timeout, keep):
+    """The row of results.csv of a case."""
+    outcome, message, wall = run(carom, case, out, timeout)
+    row = {**meta, "case": case.stem, "outcome": outcome, "message": message, "wall": f"{wall:.2f}", "kind": ""}
+    if outcome in ("stopped", "refused", "crash"):
+        row["kind"] = kind_of(message)
+    if (out / "manifest.json").exists() and (out / "fields.pvd").exists() and outcome != "timeout":
+        try:
+            found = field_check.check(out)
+        except Exception as error:  # a record that cannot be read is a result, too
+            found = {"wrong": [f"record: {type(error).__name__}: {error}"], "marked": False}
+        for key in ("nodes", "edges", "self", "initial", "created", "created_recorded", "momentum"):
+            value = found.get(key)
+            row[key] = "" if value is None else f"{value:.4g}"
+        row["wrong"], row["contacts"] = "; ".join(found["wrong"]), found.get("contacts", "")
+        row["warnings"] = " ".join(found.get("warnings", []))
+        if outcome == "right":
+            row["outcome"] = "wrong" if found["wrong"] else "marked" if found["marked"] else "right"
+            row["kind"] = ", ".join(sorted({w.split(":")[0] for w in found["wrong"]}))
+    if row["outcome"] == "right" and not keep:
+        shutil.rmtree(out / "fields", ignore_errors=True)
+        shutil.rmtree(out / "checkpoint", ignore_errors=True)
+    return row
+
+
+def table(rows):
+    """Summary: outcomes by category × scheme family, and kinds of stops and errors."""
+    total = Counter(r["outcome"] for r in rows)
+    n = max(len(rows), 1)
+    lines = ["", f"{len(rows)} cases: " + ", ".join(f"{total[o]} {o} ({100 * total[o] / n:.0f} %)" for o in OUTCOMES if total[o])]
+    families = [f for f in ladder_cases.FAMILIES if any(r["family"] == f for r in rows)] or sorted({r["family"] for r in rows})
+    categories = list(dict.fromkeys(r["category"] for r in sorted(rows, key=lambda r: r["category"])))
+
+    def cell(chosen):
+        count = Counter(r["outcome"] for r in chosen)
+        rest = sum(count[o] for o in ("timeout", "refused", "crash"))
+        if not chosen:
+            return "."
+        return f"{count['right']}/{count['wrong'] + count['marked']}/{count['stopped']}" + (f"/{rest}" if rest else "")
+
+    width = 1 + max([len(c) for c in categories] + [8])
+    lines += ["", "right / wrong or marked / stopped [/ timed out, refused or crashed]", ""]
+    lines.append(" " * width + "".join(f"{f:>14}" for f in [*families, "all"]))
+    for c in [*categories, "all"]:
+        mine = [r for r in rows if c in ("all", r["category"])]
+        cells = [cell([r for r in mine if f in ("all", r["family"])]) for f in [*families, "all"]]
+        lines.append(f"{c:<{width}}" + "".join(f"{x:>14}" for x in cells))
+    for outcome in OUTCOMES[1:]:
+        kinds = Counter(r["kind"] for r in rows if r["outcome"] == outcome)
+        for kind, count in kinds.most_common():
+            cases = [r["case"] for r in rows if (r["outcome"], r["kind"]) == (outcome, kind)]
+            lines.append(f"{outcome:>8} {count:4}  {kind or '-':<28} {' '.join(cases[:8])}{' …' if len(cases) > 8 else ''}")
+        if outcome == "stopped" and kinds:
+            before = [r["case"] for r in rows if r["outcome"] == outcome and r.get("wrong")]
+            lines.append(f"{len(before):13}  of them wrong before the stop {' '.join(before[:8])}")
+    idle = [r["case"] for r in rows if r["outcome"] == "right" and r.get("contacts") == 0]
+    lines += [f"   right {len(idle):4}  without a row in contact.csv {' '.join(idle)}"] if idle else []
+    return "\n".join(lines)
+
+
+def show(run):
+    """Prints the check of one record; exit code 1 if it is wrong."""
+    found = field_check.check(run)
+    for key in ("status", "reason", "fields", "initial", "nodes", "edges", "self", "created", "created_recorded", "momentum"):
+        value = found[key]
+        print(f"{key:>17}  {value:.4g}" if isinstance(value, float) else f"{key:>17}  {value}")
+    print("\n".join(f"{'wrong':>17}  {w}" for w in found["wrong"]) or "nothing wrong")
+    return 1 if found["wrong"] else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--carom", type=Path, help="the program")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--count", type=int, default=400)
+    parser.add_argument("--out", type=Path, help="directory that is created")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--only", help="number of one case, or a word of its category or scheme family")
+    parser.add_argument("--timeout", type=float, default=120.0)
+    parser.add_argument("--keep", action="store_true", help="keep the fields of all cases")
+    parser.add_argument("--cases", type=Path, help="folder of existing cases to run instead")
+    parser.add_argument("--check", type=Path, metavar="RUN", help="check one record and stop")
+    parser.add_argument("--dry", action="store_true", help="write the cases only")
+    options = parser.parse_args()
+    if options.check:
+        return show(options.check)
+    if not options.out or not (options.carom or options.dry):
+        parser.error("--carom and --out are needed")
+    if (options.out / "results.csv").exists():
+        parser.error(f"{options.out} has results already; give another --out")
+    (options.out / "cases").mkdir(parents=True, exist_ok=True)
+    (options.out / "runs").mkdir(exist_ok=True)
+    work = []
+    if options.cases:
+        meta = {"category": "given", "family": "given", "enforcement": "", "elements": ""}
+        work = [(meta, case) for case in sorted(options.cases.glob("*.toml"))]
+    for k in range(1, options.count + 1) if not options.cases else []:
+        meta, text = ladder_cases.case(options.seed, k)
+        only = options.only
+        if only and not (str(k) == only.lstrip("0") or not only.isdigit() and only in meta["category"] + " " + meta["family"]):
+            continue
+        path = options.out / "cases" / f"{k:04}.toml"
+        path.write_text(text)
+        work.append((meta, path))
+    if options.dry:
+        return 0
+    rows = []
+    with (options.out / "results.csv").open("w", newline="") as file, ThreadPoolExecutor(options.jobs) as pool:
+        writer = csv.DictWriter(file, COLUMNS, restval="")
+        writer.writeheader()
+        one = lambda w: judge(options.carom, w[0], w[1], options.out / "runs" / w[1].stem, options.timeout, options.keep)
+        for row in pool.map(one, work):
+            rows.append(row)
+            writer.writerow({key: row.get(key, "") for key in COLUMNS})
+            file.flush()
+            note = row.get("wrong") if row["outcome"] == "wrong" else row["message"]
+            print(f"{row['case']} {row['category']:<15} {row['family']:<14} {row['outcome']:<8} {row['wall']:>6} s  {(note or '')[:150]}", flush=True)
+    print(table(rows))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.dont_write_bytecode = True
+    sys.exit(main())
