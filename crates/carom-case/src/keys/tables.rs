@@ -30,7 +30,7 @@ pub const CASE: Table = Table {
         key(
             "refine",
             Number(AT_LEAST_ONE),
-            "Refinement of all meshes: built-in shapes are made with cells smaller by this factor; for meshes of files it must be an integer, the number of parts into which every edge is divided.",
+            "Refinement of all meshes: built-in shapes are made with cells smaller by this factor; numbers of `cells` are multiplied by it and must remain whole; for meshes of files it must be an integer, the number of parts into which every edge is divided.",
         )
         .default("1.0"),
         key("units", Kind::Table(&UNITS), "Unit labels in figures and columns; values are not converted.")

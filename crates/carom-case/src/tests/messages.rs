@@ -60,6 +60,13 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     ),
     (&["body.prism.mesh.cells=[8, 0]"], &["must be an integer ≥ 1, not the integer 0"]),
     (&["body.prism.mesh.cells=[8, 4.0]"], &["must be a list of 2 integers ≥ 1, not the number 4"]),
+    (
+        &["refine=1.3"],
+        &[
+            "`refine` = 1.3 makes body[1].mesh.cells = [8, 4] into [10.4, 5.2]",
+            "`refine = 1.25` or `refine = 1.5`",
+        ],
+    ),
     (&["body.prism.mesh.max=[1.0, -0.5]"], &["`max` = -0.5 is not greater than `min` = -0.5"]),
     (&["thickness=0"], &["`thickness` must be a number > 0"]),
     (&["material.rubber.mu=0"], &["`mu` must be a number > 0"]),
