@@ -195,13 +195,9 @@ impl<'a> Session<'a> {
     }
 
     /// Adds the warnings that only the record of a finished run shows.
-    fn add_warnings(&mut self) -> Result<(), RunError> {
-        if self.case.contacts.is_empty() {
-            return Ok(());
-        }
-        let run = Run::open(self.writer.directory())?;
+    fn add_warnings(&mut self, run: &Run) -> Result<(), RunError> {
         let known = self.manifest.warnings.len();
-        self.manifest.warnings.extend(warnings_of_record(self.case, &run));
+        self.manifest.warnings.extend(warnings_of_record(self.case, run));
         self.log_warnings(known)
     }
 
@@ -388,7 +384,8 @@ impl<'a> Session<'a> {
     fn close(mut self, end: End, remarks: Vec<String>) -> Result<Outcome, RunError> {
         self.checkpoint()?;
         if end == End::Finished {
-            self.add_warnings()?;
+            let run = Run::open(self.writer.directory())?;
+            self.add_warnings(&run)?;
         }
         let state = self.simulation.state();
         let wall = self.began.elapsed().as_secs_f64();
