@@ -8,7 +8,7 @@ use crate::model::Model;
 use crate::penetration::Depths;
 use crate::rejected::Rejected;
 use crate::start::{Before, start};
-use crate::state::State;
+use crate::state::{OtherModel, State};
 use crate::stepper::Stepper;
 use crate::timings::Timings;
 use crate::workspace::Workspace;
@@ -49,16 +49,6 @@ pub enum Stopped {
         /// Largest kinetic + strain energy so far, or Σ |ΔW| of the external work.
         scale: f64,
     },
-}
-
-/// A state that cannot be continued from.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the state has {got} degrees of freedom and belongs to another model; this one has {wanted}")]
-pub struct OtherModel {
-    /// Degrees of freedom of the model.
-    pub wanted: usize,
-    /// Degrees of freedom of the state.
-    pub got: usize,
 }
 
 /// An event for the log.
@@ -150,14 +140,28 @@ impl Simulation {
         before: Option<Before>,
         threads: usize,
     ) -> Result<Self, Rejected> {
-        let mut simulation = Self::resume(model, stepper, grid, State::default(), threads);
+        let mut simulation = Self::at(model, stepper, grid, State::default(), threads);
         let Self { model, work, .. } = &mut simulation;
         simulation.state = start(model, inertia, before, &mut work.system)?;
         Ok(simulation)
     }
 
     /// A model resumed from a state of an earlier run.
-    pub fn resume(model: Model, stepper: Box<dyn Stepper>, grid: Grid, state: State, threads: usize) -> Self {
+    ///
+    /// # Errors
+    /// If the state is of another model.
+    pub fn resume(
+        model: Model,
+        stepper: Box<dyn Stepper>,
+        grid: Grid,
+        state: State,
+        threads: usize,
+    ) -> Result<Self, OtherModel> {
+        state.fits(&model)?;
+        Ok(Self::at(model, stepper, grid, state, threads))
+    }
+
+    fn at(model: Model, stepper: Box<dyn Stepper>, grid: Grid, state: State, threads: usize) -> Self {
         let model = model.on_threads(threads);
         let work = Workspace::new(&model);
         Self { model, state, grid, stepper, work }
@@ -199,11 +203,7 @@ impl Simulation {
     /// # Errors
     /// If the state is of another model.
     pub fn restore(&mut self, state: State) -> Result<(), OtherModel> {
-        let sizes = |state: &State| (state.y.len(), state.v.len(), state.a.len(), state.pairs.len());
-        let [wanted, got] = [sizes(&self.state), sizes(&state)];
-        if wanted != got {
-            return Err(OtherModel { wanted: wanted.0, got: got.0 });
-        }
+        state.fits(&self.model)?;
         self.state = state;
         Ok(())
     }

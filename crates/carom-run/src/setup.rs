@@ -128,14 +128,11 @@ impl<'a> Setup<'a> {
     /// As [`Setup::build`].
     pub fn resume(self, state: State) -> Result<Simulation, Problems> {
         let model = self.build()?;
-        let sizes = [state.y.len(), state.v.len(), state.a.len()];
-        if sizes != [model.dofs(); 3] || state.pairs.len() != model.contacts.len() {
-            let what = format!("the state has {} dofs, the case {}", state.y.len(), model.dofs());
-            let why = "a run is resumed from a state of the same case";
-            return Err(vec![Problem::new("", what, why, "give a state of this case")].into());
-        }
         let stepper = stepper(self.case, &model, self.kernel)?;
-        Ok(Simulation::resume(model, stepper, grid(self.case), state, self.threads))
+        Simulation::resume(model, stepper, grid(self.case), state, self.threads).map_err(|other| {
+            let why = "a run is resumed from a state of the same case";
+            vec![Problem::new("", other.to_string(), why, "give a state of this case")].into()
+        })
     }
 }
 
