@@ -97,6 +97,13 @@ pub enum LogEvent {
         /// Jump of kinetic energy.
         jump: f64,
     },
+    /// Velocities of nodes that left contact were changed by its restitution.
+    Restitution {
+        /// Time.
+        time: f64,
+        /// Jump of kinetic energy.
+        jump: f64,
+    },
 }
 
 /// Events between two grid times.
@@ -299,6 +306,9 @@ impl Simulation {
                     }));
                     if step.projection != 0.0 {
                         report.events.push(LogEvent::Projection { time: now, jump: step.projection });
+                    }
+                    if step.restitution != 0.0 {
+                        report.events.push(LogEvent::Restitution { time: now, jump: step.restitution });
                     }
                     while level > 0 && done % 2 == 0 {
                         level -= 1;
