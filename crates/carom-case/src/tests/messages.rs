@@ -123,6 +123,14 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
         &["preset=paper", "contact.strike.xi=frozen", "contact.strike.law=predictor"],
         &["xi = \"frozen\" cannot be used with law = \"predictor\""],
     ),
+    (
+        &[
+            "preset=paper",
+            "contact.strike.xi=frozen",
+            "contact.strike.primary={ circle = { center = [0.0, -1.0], radius = 1.0 } }",
+        ],
+        &["xi = \"frozen\" cannot be used with a rigid obstacle", "leave xi out"],
+    ),
     // names
     (&["body.cylinder.material=ruber"], &["there is no material `ruber`", "did you mean `rubber`?"]),
     (&["body.prism.name=cylinder"], &["two tables [[body]] are named `cylinder`"]),
@@ -409,7 +417,11 @@ fn wrong_bars() {
             "secondary = \"left.top\"",
             &["body `left` has no side `top`", "left.left, left.right"],
         ),
-        ("primary = { plane = { point = [-1.0], normal = [2] } }", "primary = \"right.left\"\n#", &[]),
+        (
+            "primary = { plane = { point = [-1.0], normal = [2] } }",
+            "detection = \"trajectory\"\nxi = \"frozen\"\nprimary = \"right.left\"",
+            &["xi = \"frozen\" cannot be used in dimension 1", "the primary side is a point"],
+        ),
     ];
     for (from, to, parts) in cases {
         let text = BARS.replacen(from, to, 1);
