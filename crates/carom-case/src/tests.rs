@@ -138,6 +138,16 @@ fn resolved_case_survives_json_bit_for_bit() {
     assert!(back.output.at_times.iter().zip(odd).all(|(a, b)| a.to_bits() == b.to_bits()));
 }
 
+/// Keys that were added later have the value of records without them.
+#[test]
+fn records_without_later_keys_are_read() {
+    let case = resolved(IMPACT, &[]).unwrap();
+    let mut json = serde_json::to_value(&case).unwrap();
+    assert!(json["contacts"][0].as_object_mut().unwrap().remove("xi").is_some());
+    assert!(json.as_object_mut().unwrap().remove("refine").is_some());
+    assert_eq!(serde_json::from_value::<Case>(json).unwrap(), case);
+}
+
 #[test]
 fn overrides_replace_values() {
     let sets = [
