@@ -11,7 +11,7 @@ pub struct Grid {
     pub steps: u64,
     /// Shift as a fraction of a step, in [0, 1).
     pub phase: f64,
-    /// Fraction of the largest energy so far that may be created before the run stops; none
+    /// Fraction of the energy scale so far that may be created before the run stops; none
     /// disables the guard.
     pub guard: Option<f64>,
 }

@@ -37,7 +37,7 @@ pub enum Stopped {
     },
     /// The scheme created energy.
     #[error(
-        "energy was created at t = {time:.6}: {created:.4e}, which is {:.2} % of the energy scale {scale:.4e}; the limit is {:.3} %", 100.0 * created / scale, 100.0 * share
+        "energy was created at t = {time:.6}: {created:.4e}, which is {} % of the energy scale {scale:.4e}; the limit is {} %", percent(created / scale), percent(*share)
     )]
     EnergyGuard {
         /// Time.
@@ -49,6 +49,12 @@ pub enum Stopped {
         /// Largest kinetic + strain energy so far, or Σ |ΔW| of the external work.
         scale: f64,
     },
+}
+
+/// A fraction in per cent, to three significant digits.
+fn percent(fraction: f64) -> f64 {
+    let percent = 100.0 * fraction;
+    format!("{percent:.2e}").parse().unwrap_or(percent)
 }
 
 /// An event for the log.
@@ -357,5 +363,17 @@ impl Simulation {
             return Err(Stopped::EnergyGuard { time: state.time, created, share, scale });
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn percentages_have_three_digits() {
+        let stopped = Stopped::EnergyGuard { time: 0.5, created: 0.0123456, share: 5e-6, scale: 0.1 };
+        let message = "energy was created at t = 0.500000: 1.2346e-2, which is 12.3 % of the energy scale 1.0000e-1; the limit is 0.0005 %";
+        assert_eq!(stopped.to_string(), message);
     }
 }

@@ -37,7 +37,7 @@ pub(crate) struct Progress {
     /// Contact nodes that were activated and released in it.
     pub(crate) activations: usize,
     pub(crate) releases: usize,
-    /// Energy created so far over the largest energy so far.
+    /// Energy created so far over the energy scale so far.
     pub(crate) created: f64,
     /// Wall seconds so far and left.
     pub(crate) wall: f64,
