@@ -1,5 +1,7 @@
 //! The shipped cases, defaults and presets, overrides, and messages.
 
+mod contact_messages;
+mod files;
 mod mesh_file;
 mod messages;
 mod misspelt;
