@@ -196,7 +196,7 @@ fn no_start(case: &Case, placed: bool, rejected: &Rejected) -> Problem {
                 "change the formulas so that the determinant of their derivatives is positive everywhere";
             (format!("body[{k}].position"), "the initial position inverts a cell", help)
         }
-        Rejected::Linear(LinearError::Engine { .. }) => {
+        Rejected::Linear(LinearError::Memory { .. }) => {
             let help = "use a coarser mesh or an element of lower degree, or give the process more memory";
             let what = "there is not enough memory for the linear system";
             return Problem::new("body", what, rejected.to_string(), help).of_system();
