@@ -140,6 +140,24 @@ fn resolved_case_survives_json_bit_for_bit() {
     assert!(back.output.at_times.iter().zip(odd).all(|(a, b)| a.to_bits() == b.to_bits()));
 }
 
+/// √((200 + 2·15)/0.25), and with Λ = 2·200·15/230 in plane stress √((26.087 + 30)/0.25).
+#[test]
+fn pressure_waves() {
+    let material = &resolved(IMPACT, &[]).unwrap().materials[0];
+    assert!((material.wave_speed(Plane::Strain) - 30.33150).abs() < 1e-5);
+    assert!((material.wave_speed(Plane::Stress) - 14.97825).abs() < 1e-5);
+}
+
+#[test]
+fn bodies_of_contacts() {
+    let of = |sets: &[&str]| {
+        resolved(IMPACT, sets).unwrap().contacts[0].bodies().map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(of(&[]), ["cylinder", "prism"]);
+    let plane = "contact.strike.primary={ plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }";
+    assert_eq!(of(&[plane]), ["cylinder"]);
+}
+
 /// Keys that were added later have the value of records without them.
 #[test]
 fn records_without_later_keys_are_read() {

@@ -39,6 +39,14 @@ pub struct ContactSpec {
     pub restitution: f64,
 }
 
+impl ContactSpec {
+    /// Names of the bodies of its sides, the secondary one first.
+    pub fn bodies(&self) -> impl Iterator<Item = &str> {
+        let sides = [Some(self.secondary.as_str()), self.primary.side()];
+        sides.into_iter().flatten().filter_map(|side| Some(side.split_once('.')?.0))
+    }
+}
+
 /// Primary side of a contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

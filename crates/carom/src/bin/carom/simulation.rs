@@ -309,7 +309,7 @@ fn model_facts(case: &Case) -> Result<Facts, carom::case::Problems> {
         if let Some(m) = case.materials.iter().find(|m| m.name == spec.material)
             && m.density > 0.0
         {
-            let speed = carom::wave_speed(case, m);
+            let speed = m.wave_speed(case.plane);
             let least = |i: usize| {
                 let at = mesh.nodes.iter().map(|x| x[i]);
                 at.clone().fold(f64::NEG_INFINITY, f64::max) - at.fold(f64::INFINITY, f64::min)
