@@ -13,39 +13,39 @@ pub(super) struct Counts {
     /// Whether its cells are those of a file: every edge is one part.
     of_file: bool,
     /// Numbers of cells.
-    counts: Vec<usize>,
+    numbers: Vec<usize>,
 }
 
 impl Counts {
     /// Of a mesh; none if it is given by the size of its cells.
     pub(super) fn of(mesh: &Table, path: String) -> Option<Self> {
         if mesh.get("file").is_some() {
-            return Some(Self { path, of_file: true, counts: vec![1] });
+            return Some(Self { path, of_file: true, numbers: vec![1] });
         }
         let cells = mesh.get("cells")?;
         let counts = match cells.list() {
             Some(list) => list.iter().map(Node::count).collect::<Option<Vec<_>>>()?,
             None => vec![cells.count()?],
         };
-        counts.iter().all(|n| *n > 0).then_some(Self { path, of_file: false, counts })
+        counts.iter().all(|n| *n > 0).then_some(Self { path, of_file: false, numbers: counts })
     }
 }
 
 /// The problem of a factor with which the numbers of a mesh do not remain whole.
 pub(super) fn problem(factor: f64, meshes: &[Counts]) -> Option<Problem> {
-    let Counts { path, of_file, counts } =
-        meshes.iter().find(|mesh| !whole(factor, divisor(&mesh.counts)))?;
+    let Counts { path, of_file, numbers } =
+        meshes.iter().find(|mesh| !whole(factor, divisor(&mesh.numbers)))?;
     let (what, why) = if *of_file {
         let what = format!("`refine` = {factor} is not an integer, and {path} comes from a file");
         (what, "the cells of a file are divided into whole parts")
     } else {
-        let products: Vec<_> = counts.iter().map(|n| rounded(*n as f64 * factor).to_string()).collect();
+        let products: Vec<_> = numbers.iter().map(|n| rounded(*n as f64 * factor).to_string()).collect();
         let what =
-            format!("`refine` = {factor} makes {path}.cells = {counts:?} into [{}]", products.join(", "));
+            format!("`refine` = {factor} makes {path}.cells = {numbers:?} into [{}]", products.join(", "));
         (what, "numbers of cells are multiplied by it, and must remain whole")
     };
     // Factors with which the cells of all meshes are whole are the multiples of 1/n.
-    let n = divisor(&meshes.iter().flat_map(|mesh| &mesh.counts).copied().collect::<Vec<_>>()) as f64;
+    let n = divisor(&meshes.iter().flat_map(|mesh| &mesh.numbers).copied().collect::<Vec<_>>()) as f64;
     let [below, above] = [(factor * n).floor() / n, (factor * n).ceil() / n];
     let help = if below >= 1.0 {
         format!("write `refine = {}` or `refine = {}`", rounded(below), rounded(above))
@@ -80,7 +80,7 @@ mod tests {
         let counts = |(k, n): (usize, &&[usize])| Counts {
             path: format!("body[{k}].mesh"),
             of_file: **n == [1],
-            counts: n.to_vec(),
+            numbers: n.to_vec(),
         };
         let meshes: Vec<_> = meshes.iter().enumerate().map(counts).collect();
         problem(factor, &meshes).map(|problem| format!("{}: {}", problem.what, problem.help))
