@@ -4,7 +4,8 @@
     scripts/plant_faults.py [WORD…] [--markdown FILE]
         all faults, or those whose names contain a word; exit code 1 if one is not detected
     scripts/plant_faults.py --check
-        whether each fault still fits the source, without building anything
+        whether each fault still fits the source, and is in the book's table and in README's number,
+        without building anything
 
 A fault of scripts/faults.json replaces one string of one file by another; the string must occur
 exactly once. The faults are planted in target/faults, in a copy of the last commit with its own
@@ -15,9 +16,11 @@ tested with the whole suite.
 
 import argparse
 import io
+import itertools
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -41,6 +44,8 @@ def main():
     given = options.parse_args()
     if unfit := [f"{fault['name']}: {why}" for fault in FAULTS if (why := misfit(ROOT, fault))]:
         sys.exit("\n".join(unfit))
+    if stale := undocumented():
+        sys.exit(stale)
     if given.check:
         print(f"{len(FAULTS)} faults fit the source")
         return
@@ -56,7 +61,7 @@ def main():
             continue
         begin, found = time.time(), planted(fault)
         print(f"{'found   ' if found else 'SURVIVED'}  {fault['name']}  ({time.time() - begin:.0f} s)  {found or ''}", flush=True)
-        rows.append([fault["name"], f"`{pathlib.Path(fault['file']).relative_to('crates')}`", found or "**survived**"])
+        rows.append([fault["name"], place(fault), found or "**survived**"])
         if not found:
             survived.append(fault["name"])
     if given.markdown:
@@ -65,6 +70,24 @@ def main():
         given.markdown.write_text("".join(f"| {line} |\n" for line in lines), encoding="utf-8")
     print(f"{len(rows)} faults, {len(survived)} survived{': ' + ', '.join(survived) if survived else ''}")
     sys.exit(1 if survived else 0)
+
+
+def undocumented():
+    """What the book's table or README say of other faults than these; None if they agree."""
+    table = (ROOT / "docs/book/src/verification/faults.md").read_text(encoding="utf-8").splitlines()[2:]
+    told = [line.removeprefix("| ").split(" | ")[:2] for line in table]
+    for fault, row in itertools.zip_longest(FAULTS, told):
+        here = fault and [fault["name"], place(fault)]
+        if here != row:
+            return f"faults.md has the row {row} where faults.json has {here}"
+    count = re.search(r"(\d+)\s+faults", (ROOT / "README.md").read_text(encoding="utf-8"))
+    if not count or int(count[1]) != len(FAULTS):
+        return f"README.md does not say {len(FAULTS)} faults"
+    return None
+
+
+def place(fault):
+    return f"`{pathlib.Path(fault['file']).relative_to('crates')}`"
 
 
 def misfit(tree, fault):

@@ -8,7 +8,6 @@
 use std::ops::Range;
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::cholesky::simplicial::{
     prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
 };
@@ -17,6 +16,7 @@ use faer::sparse::linalg::cholesky::supernodal::{
     factorize_supernodal_symbolic_cholesky_scratch,
 };
 use faer::sparse::linalg::{SymbolicSupernodalParams, amd};
+use faer::sparse::{FaerError, SymbolicSparseColMatRef};
 
 use crate::forest::{Cut, cut};
 use crate::linear::LinearError;
@@ -92,10 +92,13 @@ impl Elimination {
     /// Orders and analyses a pattern. Unknowns of a group stay together; those in `last` come last.
     ///
     /// # Errors
-    /// The engine ran out of memory.
+    /// The engine ran out of memory or indices.
     pub fn new(pattern: &Pattern, groups: &[usize], last: &[usize]) -> Result<Self, LinearError> {
         let n = pattern.size();
-        let engine = |reason: String| LinearError::Engine { size: n, reason };
+        let engine = |error: FaerError| match error {
+            FaerError::OutOfMemory => LinearError::Memory { size: n },
+            other => LinearError::Engine { size: n, reason: format!("{other:?}") },
+        };
         let mut is_last = vec![false; n];
         last.iter().for_each(|&i| is_last[i] = true);
         let whole = groups.iter().max().map_or(0, |g| g + 1);
@@ -383,7 +386,7 @@ impl Upper {
 
     /// Parent of each column in the elimination tree (negative: none), and the column counts of the
     /// factor.
-    fn tree(&self) -> Result<(Vec<i32>, Vec<u32>), String> {
+    fn tree(&self) -> Result<(Vec<i32>, Vec<u32>), FaerError> {
         let n = self.starts.len() - 1;
         let (mut parents, mut counts) = (vec![0; n], vec![0; n]);
         let mut scratch = memory(prefactorize_symbolic_cholesky_scratch::<u32>(n, self.rows.len()))?;
@@ -391,7 +394,7 @@ impl Upper {
         Ok((parents, counts))
     }
 
-    fn supernodes(&self) -> Result<SymbolicSupernodalCholesky<u32>, String> {
+    fn supernodes(&self) -> Result<SymbolicSupernodalCholesky<u32>, FaerError> {
         let n = self.starts.len() - 1;
         let (mut parents, mut counts) = (vec![0; n], vec![0; n]);
         let mut scratch = memory(
@@ -407,12 +410,11 @@ impl Upper {
             stack,
             SymbolicSupernodalParams::default(),
         )
-        .map_err(|e| format!("{e:?}"))
     }
 }
 
 /// Elimination order: AMD on the graph of groups, each group expanded in ascending order.
-fn grouped_ordering(pattern: &Pattern, groups: &[usize]) -> Result<Vec<usize>, String> {
+fn grouped_ordering(pattern: &Pattern, groups: &[usize]) -> Result<Vec<usize>, FaerError> {
     let count = groups.iter().max().map_or(0, |g| g + 1);
     let entries =
         (0..pattern.size()).flat_map(|j| pattern.column(j).iter().map(move |&i| (groups[i], groups[j])));
@@ -426,8 +428,7 @@ fn grouped_ordering(pattern: &Pattern, groups: &[usize]) -> Result<Vec<usize>, S
         graph,
         amd::Control::default(),
         MemStack::new(&mut scratch),
-    )
-    .map_err(|e| format!("{e:?}"))?;
+    )?;
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
     for (i, &g) in groups.iter().enumerate() {
         members[g].push(i);
@@ -435,6 +436,17 @@ fn grouped_ordering(pattern: &Pattern, groups: &[usize]) -> Result<Vec<usize>, S
     Ok(order.iter().flat_map(|&g| members[g].iter().copied()).collect())
 }
 
-fn memory(space: StackReq) -> Result<MemBuffer, String> {
-    MemBuffer::try_new(space).map_err(|e| format!("{e:?}"))
+fn memory(space: StackReq) -> Result<MemBuffer, FaerError> {
+    MemBuffer::try_new(space).map_err(|_| FaerError::OutOfMemory)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lack_of_memory_is_told_apart() {
+        let error = memory(StackReq::new::<u8>(usize::MAX >> 2)).err();
+        assert!(matches!(error, Some(FaerError::OutOfMemory)), "{error:?}");
+    }
 }

@@ -21,7 +21,13 @@ pub enum LinearError {
         /// Residual after refinement.
         residual: f64,
     },
-    /// The engine ran out of memory or indices.
+    /// There is not enough memory for the factorisation.
+    #[error("there is not enough memory to factorise a matrix of {size} unknowns")]
+    Memory {
+        /// Unknowns.
+        size: usize,
+    },
+    /// The engine ran out of indices, or did not end.
     #[error("the factorisation of {size} unknowns failed: {reason}")]
     Engine {
         /// Unknowns.

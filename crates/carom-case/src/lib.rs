@@ -21,6 +21,7 @@ mod overrides;
 mod place;
 mod problem;
 mod read;
+mod refine;
 mod schema;
 mod scheme;
 mod spec;

@@ -17,6 +17,7 @@ use super::mesh;
 use super::obstacle;
 use super::place;
 use super::problem::{CaseError, Diagnostic, Problem, Problems};
+use super::refine::{self, Counts};
 use super::suggest;
 use super::tree::{Entry, Node, Table};
 use super::view::{View, word};
@@ -78,6 +79,9 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
     };
     let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
     let refine = reader.root.number("refine").filter(|factor| *factor >= 1.0).unwrap_or(1.0);
+    let counts = |v: View, path: &str| Counts::of(v.table.get("mesh")?.table()?, format!("{path}.mesh"));
+    let counts: Vec<_> = reader.each("body", counts).into_iter().flatten().collect();
+    problems.extend(refine::problem(refine, &counts));
     draft.bodies =
         reader.each("body", |v, path| body(v, reader.dimension?, refine, folder, path, &mut problems));
     draft.loads = reader.each("load", |v, path| load::read(v, folder, path, &mut problems));
@@ -256,20 +260,11 @@ fn body(
         &format!("{path}.mesh"),
         problems,
     )?;
-    let Some(mesh) = mesh.refined(refine) else {
-        let what = format!("`refine` = {refine} is not an integer, and {path}.mesh comes from a file");
-        let why = "the cells of a file are divided into whole parts";
-        // One mistake, however many bodies come from files.
-        if problems.iter().all(|problem| problem.path != "refine") {
-            problems.push(Problem::new("refine", what, why, format!("write `refine = {}`", refine.ceil())));
-        }
-        return None;
-    };
     Some(BodySpec {
         name: v.text("name")?,
         material: v.text("material")?,
         element: v.choice("element")?,
-        mesh,
+        mesh: mesh.refined(refine),
         place: match v.table.get("place") {
             Some(node) => {
                 let Some(Kind::Table(spec)) = v.keys.iter().find(|k| k.name == "place").map(|k| k.kind)

@@ -1,5 +1,7 @@
 //! The shipped cases, defaults and presets, overrides, and messages.
 
+mod contact_messages;
+mod files;
 mod mesh_file;
 mod messages;
 mod misspelt;
@@ -136,6 +138,34 @@ fn resolved_case_survives_json_bit_for_bit() {
     case.output.at_times = odd.to_vec();
     let back: Case = serde_json::from_str(&serde_json::to_string(&case).unwrap()).unwrap();
     assert!(back.output.at_times.iter().zip(odd).all(|(a, b)| a.to_bits() == b.to_bits()));
+}
+
+/// √((200 + 2·15)/0.25), and with Λ = 2·200·15/230 in plane stress √((26.087 + 30)/0.25).
+#[test]
+fn pressure_waves() {
+    let material = &resolved(IMPACT, &[]).unwrap().materials[0];
+    assert!((material.wave_speed(Plane::Strain) - 30.33150).abs() < 1e-5);
+    assert!((material.wave_speed(Plane::Stress) - 14.97825).abs() < 1e-5);
+}
+
+#[test]
+fn bodies_of_contacts() {
+    let of = |sets: &[&str]| {
+        resolved(IMPACT, sets).unwrap().contacts[0].bodies().map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(of(&[]), ["cylinder", "prism"]);
+    let plane = "contact.strike.primary={ plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }";
+    assert_eq!(of(&[plane]), ["cylinder"]);
+}
+
+/// Keys that were added later have the value of records without them.
+#[test]
+fn records_without_later_keys_are_read() {
+    let case = resolved(IMPACT, &[]).unwrap();
+    let mut json = serde_json::to_value(&case).unwrap();
+    assert!(json["contacts"][0].as_object_mut().unwrap().remove("xi").is_some());
+    assert!(json.as_object_mut().unwrap().remove("refine").is_some());
+    assert_eq!(serde_json::from_value::<Case>(json).unwrap(), case);
 }
 
 #[test]

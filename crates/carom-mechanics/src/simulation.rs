@@ -3,11 +3,12 @@
 
 use carom_contact::PairEvent;
 
+use crate::grid::Grid;
 use crate::model::Model;
 use crate::penetration::Depths;
 use crate::rejected::Rejected;
 use crate::start::{Before, start};
-use crate::state::State;
+use crate::state::{OtherModel, State};
 use crate::stepper::Stepper;
 use crate::timings::Timings;
 use crate::workspace::Workspace;
@@ -36,7 +37,7 @@ pub enum Stopped {
     },
     /// The scheme created energy.
     #[error(
-        "energy was created at t = {time:.6}: {created:.4e}, which is {:.2} % of the energy scale {scale:.4e}; the limit is {:.3} %", 100.0 * created / scale, 100.0 * share
+        "energy was created at t = {time:.6}: {created:.4e}, which is {} % of the energy scale {scale:.4e}; the limit is {} %", percent(created / scale), percent(*share)
     )]
     EnergyGuard {
         /// Time.
@@ -50,14 +51,10 @@ pub enum Stopped {
     },
 }
 
-/// A state that cannot be continued from.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the state has {got} degrees of freedom and belongs to another model; this one has {wanted}")]
-pub struct OtherModel {
-    /// Degrees of freedom of the model.
-    pub wanted: usize,
-    /// Degrees of freedom of the state.
-    pub got: usize,
+/// A fraction in per cent, to three significant digits.
+fn percent(fraction: f64) -> f64 {
+    let percent = 100.0 * fraction;
+    format!("{percent:.2e}").parse().unwrap_or(percent)
 }
 
 /// An event for the log.
@@ -106,6 +103,13 @@ pub enum LogEvent {
         /// Jump of kinetic energy.
         jump: f64,
     },
+    /// Velocities of nodes that left contact were changed by its restitution.
+    Restitution {
+        /// Time.
+        time: f64,
+        /// Jump of kinetic energy.
+        jump: f64,
+    },
 }
 
 /// Events between two grid times.
@@ -123,58 +127,6 @@ pub struct GridReport {
     pub penetration: Depths,
     /// Events in order.
     pub events: Vec<LogEvent>,
-}
-
-/// A grid of times with its energy guard: 0, (1 − phase)Δt, (2 − phase)Δt, … , end. A phase other
-/// than 0 shifts all instants between by this fraction of a step; the first and the last step are
-/// shorter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grid {
-    /// Step Δt.
-    pub dt: f64,
-    /// Steps to the end.
-    pub steps: u64,
-    /// Shift as a fraction of a step, in [0, 1).
-    pub phase: f64,
-    /// Fraction of the largest energy so far that may be created before the run stops; none
-    /// disables the guard.
-    pub guard: Option<f64>,
-}
-
-impl Grid {
-    /// The time after so many steps.
-    pub fn time(&self, step: u64) -> f64 {
-        if self.phase == 0.0 {
-            step as f64 * self.dt
-        } else if step == 0 {
-            0.0
-        } else if step < self.steps {
-            (step as f64 - self.phase) * self.dt
-        } else {
-            (self.steps - 1) as f64 * self.dt
-        }
-    }
-
-    /// Length of a step, counted from 1.
-    pub fn length(&self, step: u64) -> f64 {
-        if self.phase == 0.0 {
-            self.dt
-        } else if step <= 1 {
-            (1.0 - self.phase) * self.dt
-        } else if step < self.steps {
-            self.dt
-        } else {
-            self.phase * self.dt
-        }
-    }
-
-    /// Number of the step whose end is nearest to a time.
-    pub fn nearest(&self, time: f64) -> u64 {
-        let last = self.steps.saturating_sub(1);
-        let step = ((time / self.dt + self.phase).round() as u64).min(self.steps);
-        let nearer = |other: u64| (self.time(other) - time).abs() < (self.time(step) - time).abs();
-        [step.saturating_sub(1), last].into_iter().find(|&other| nearer(other)).unwrap_or(step)
-    }
 }
 
 /// A model with its state.
@@ -201,14 +153,28 @@ impl Simulation {
         before: Option<Before>,
         threads: usize,
     ) -> Result<Self, Rejected> {
-        let mut simulation = Self::resume(model, stepper, grid, State::default(), threads);
+        let mut simulation = Self::at(model, stepper, grid, State::default(), threads);
         let Self { model, work, .. } = &mut simulation;
         simulation.state = start(model, inertia, before, &mut work.system)?;
         Ok(simulation)
     }
 
     /// A model resumed from a state of an earlier run.
-    pub fn resume(model: Model, stepper: Box<dyn Stepper>, grid: Grid, state: State, threads: usize) -> Self {
+    ///
+    /// # Errors
+    /// If the state is of another model.
+    pub fn resume(
+        model: Model,
+        stepper: Box<dyn Stepper>,
+        grid: Grid,
+        state: State,
+        threads: usize,
+    ) -> Result<Self, OtherModel> {
+        state.fits(&model)?;
+        Ok(Self::at(model, stepper, grid, state, threads))
+    }
+
+    fn at(model: Model, stepper: Box<dyn Stepper>, grid: Grid, state: State, threads: usize) -> Self {
         let model = model.on_threads(threads);
         let work = Workspace::new(&model);
         Self { model, state, grid, stepper, work }
@@ -250,11 +216,7 @@ impl Simulation {
     /// # Errors
     /// If the state is of another model.
     pub fn restore(&mut self, state: State) -> Result<(), OtherModel> {
-        let sizes = |state: &State| (state.y.len(), state.v.len(), state.a.len(), state.pairs.len());
-        let [wanted, got] = [sizes(&self.state), sizes(&state)];
-        if wanted != got {
-            return Err(OtherModel { wanted: wanted.0, got: got.0 });
-        }
+        state.fits(&self.model)?;
         self.state = state;
         Ok(())
     }
@@ -351,6 +313,9 @@ impl Simulation {
                     if step.projection != 0.0 {
                         report.events.push(LogEvent::Projection { time: now, jump: step.projection });
                     }
+                    if step.restitution != 0.0 {
+                        report.events.push(LogEvent::Restitution { time: now, jump: step.restitution });
+                    }
                     while level > 0 && done % 2 == 0 {
                         level -= 1;
                         done /= 2;
@@ -398,5 +363,17 @@ impl Simulation {
             return Err(Stopped::EnergyGuard { time: state.time, created, share, scale });
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn percentages_have_three_digits() {
+        let stopped = Stopped::EnergyGuard { time: 0.5, created: 0.0123456, share: 5e-6, scale: 0.1 };
+        let message = "energy was created at t = 0.500000: 1.2346e-2, which is 12.3 % of the energy scale 1.0000e-1; the limit is 0.0005 %";
+        assert_eq!(stopped.to_string(), message);
     }
 }

@@ -3,6 +3,7 @@
 use carom_contact::{Pair, Pairing};
 use serde::{Deserialize, Serialize};
 
+use crate::model::Model;
 use crate::renewal::FrozenTangent;
 
 /// Energies and works, design.md §5: cumulative from the start of the run.
@@ -162,6 +163,13 @@ pub struct HalfStepVelocity {
     pub dt: f64,
 }
 
+/// A state that a model cannot be continued from.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the state belongs to another model: {what}")]
+pub struct OtherModel {
+    what: String,
+}
+
 /// The state at the end of a step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
@@ -205,6 +213,51 @@ pub struct State {
 }
 
 impl State {
+    /// Whether every vector and every node of a pair belongs to this model. Facets are not compared:
+    /// kinematics does not tell how many it has.
+    ///
+    /// # Errors
+    /// What does not.
+    pub fn fits(&self, model: &Model) -> Result<(), OtherModel> {
+        let (dofs, contacts) = (model.dofs(), model.contacts.len());
+        let is = |what: &str, got: usize, wanted: usize| {
+            let what = format!("it has {got} {what}, this one {wanted}");
+            if got == wanted { Ok(()) } else { Err(OtherModel { what }) }
+        };
+        is("positions", self.y.len(), dofs)?;
+        is("velocities", self.v.len(), dofs)?;
+        is("accelerations", self.a.len(), dofs)?;
+        is("internal forces", self.f_internal.len(), dofs)?;
+        is("loads", self.f_external.len(), dofs)?;
+        is("averaged contact forces", self.f_contact.len(), dofs)?;
+        is("contacts with pairs", self.pairs.len(), contacts)?;
+        is("contacts with forces", self.contact_forces.len(), contacts)?;
+        is("contacts with impulses", self.impulses.len(), contacts)?;
+        is("contacts with forces in accelerations", self.carried.forces.len(), contacts)?;
+        if let Some(Previous { increment, velocity, means, .. }) = &self.previous {
+            for list in
+                [increment, velocity, &means.contact, &means.loads, &means.supports, &means.accelerations]
+            {
+                is("values of a previous step", list.len(), dofs)?;
+            }
+            is("contacts with means", means.contact_forces.len(), contacts)?;
+        }
+        if !self.half_step.velocity.is_empty() {
+            is("velocities at half a step", self.half_step.velocity.len(), dofs)?;
+        }
+        if let Some(point) = &self.frozen.point {
+            is("positions of a factor", point.at.len(), dofs)?;
+        }
+        for (pairs, contact) in self.pairs.iter().zip(&model.contacts) {
+            let nodes = contact.kinematics.secondary().len();
+            if let Some(pair) = pairs.iter().find(|pair| pair.node >= nodes) {
+                let what = format!("node {} of contact \"{}\" with {nodes} nodes", pair.node, contact.name);
+                return Err(OtherModel { what });
+            }
+        }
+        Ok(())
+    }
+
     /// Impulse of all contacts on their secondary sides since the start.
     pub fn impulse(&self) -> [f64; 3] {
         std::array::from_fn(|i| self.impulses.iter().map(|impulse| impulse[i]).sum())

@@ -4,9 +4,10 @@ use carom_contact::{Detection, NodeToFacet, Surface, Unilateral};
 use carom_solid::{Law, LoadedSide, Mesh, body};
 use carom_time::Kernel;
 
+use crate::grid::Grid;
 use crate::model::{BodyInstance, Contact, Loads, Mass, Model, Motions};
 use crate::settings::{Settings, Tangent};
-use crate::simulation::{Grid, Simulation};
+use crate::simulation::Simulation;
 use crate::stepper::Implicit;
 
 /// Bodies of one material, with consecutive node numbers.

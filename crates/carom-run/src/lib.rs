@@ -15,4 +15,4 @@ pub use carom_mechanics::{
     StepReport, Stepper, Stopped, Tangent, Timings, Workspace, frequencies, model, stability,
 };
 pub use setup::{Setup, too_long};
-pub use warnings::{Entry, Found, Rule, WARNINGS, warnings, wave_speed};
+pub use warnings::{Entry, Found, Rule, WARNINGS, warnings};

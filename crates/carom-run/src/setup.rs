@@ -1,7 +1,7 @@
 //! Builds the simulation of a case: the model with a stepper, on the grid of times.
 
 use carom_algebra::LinearError;
-use carom_case::{Case, ContactLaw, NewtonSpec, Problem, Problems, TangentRule};
+use carom_case::{Case, ContactLaw, ContactPoint, ContactSpec, NewtonSpec, Problem, Problems, TangentRule};
 use carom_mechanics::model::Model;
 use carom_mechanics::stability::{SAFETY, stable_step};
 use carom_mechanics::{
@@ -91,22 +91,8 @@ impl<'a> Setup<'a> {
             let help = "give it the name of one of the [[material]] tables";
             return Err(vec![Problem::new("material", format!("no material \"{name}\""), why, help)].into());
         }
-        if let Some(kernel) = &self.kernel {
-            let scheme = &self.case.time.scheme;
-            if scheme.is_static() || scheme.nonsmooth().is_some() {
-                let what = format!("a kernel cannot replace the scheme {}", scheme.kind);
-                let why = "a kernel is a list of implicit stages with inertia";
-                let help = "give the case an implicit scheme such as chung-hulbert";
-                return Err(vec![Problem::new("time.scheme", what, why, help)].into());
-            }
-            if !kernel.has_predictor()
-                && let Some(k) = self.case.contacts.iter().position(|c| c.law == Some(ContactLaw::Predictor))
-            {
-                let what = "this kernel has no predictor";
-                let why = "law = \"predictor\" replaces y + Δt v in Newmark's formula";
-                let path = format!("contact[{k}].law");
-                return Err(vec![Problem::new(path, what, why, "leave `law` out")].into());
-            }
+        if let Some(problem) = self.kernel.as_deref().and_then(|kernel| unfit(kernel, self.case)) {
+            return Err(vec![problem].into());
         }
         Ok(build(self.case, &self.materials)?)
     }
@@ -142,15 +128,50 @@ impl<'a> Setup<'a> {
     /// As [`Setup::build`].
     pub fn resume(self, state: State) -> Result<Simulation, Problems> {
         let model = self.build()?;
-        let sizes = [state.y.len(), state.v.len(), state.a.len()];
-        if sizes != [model.dofs(); 3] || state.pairs.len() != model.contacts.len() {
-            let what = format!("the state has {} dofs, the case {}", state.y.len(), model.dofs());
-            let why = "a run is resumed from a state of the same case";
-            return Err(vec![Problem::new("", what, why, "give a state of this case")].into());
-        }
         let stepper = stepper(self.case, &model, self.kernel)?;
-        Ok(Simulation::resume(model, stepper, grid(self.case), state, self.threads))
+        Simulation::resume(model, stepper, grid(self.case), state, self.threads).map_err(|other| {
+            let why = "a run is resumed from a state of the same case";
+            vec![Problem::new("", other.to_string(), why, "give a state of this case")].into()
+        })
     }
+}
+
+/// Why a kernel cannot replace the scheme of a case: the model is built for the contact laws of the
+/// scheme.
+fn unfit(kernel: &dyn Kernel, case: &Case) -> Option<Problem> {
+    let scheme = &case.time.scheme;
+    let another = "give the case an implicit scheme such as chung-hulbert";
+    if scheme.is_static() || scheme.nonsmooth().is_some() {
+        let what = format!("a kernel cannot replace the scheme {}", scheme.kind);
+        return Some(Problem::new(
+            "time.scheme",
+            what,
+            "a kernel is a list of implicit stages with inertia",
+            another,
+        ));
+    }
+    if scheme.conserves() && !case.contacts.is_empty() {
+        let what = format!("a kernel cannot replace the scheme {} in contact", scheme.kind);
+        let why =
+            "its contact forces do no work over the velocities of the midpoint rule, and would with others";
+        return Some(Problem::new("time.scheme", what, why, another));
+    }
+    let first = |wrong: &dyn Fn(&ContactSpec) -> bool| case.contacts.iter().position(wrong);
+    if !kernel.has_predictor()
+        && let Some(k) = first(&|contact| contact.law == Some(ContactLaw::Predictor))
+    {
+        let what = "this kernel has no predictor";
+        let why = "law = \"predictor\" replaces y + Δt v in Newmark's formula";
+        return Some(Problem::new(format!("contact[{k}].law"), what, why, "leave `law` out"));
+    }
+    if kernel.stages() > 1
+        && let Some(k) = first(&|contact| contact.xi == ContactPoint::Frozen)
+    {
+        let what = format!("this kernel has {} stages", kernel.stages());
+        let why = "xi = \"frozen\" keeps ξ during the one solve of a step";
+        return Some(Problem::new(format!("contact[{k}].xi"), what, why, "give xi = \"closest\""));
+    }
+    None
 }
 
 fn grid(case: &Case) -> Grid {
@@ -175,7 +196,7 @@ fn no_start(case: &Case, placed: bool, rejected: &Rejected) -> Problem {
                 "change the formulas so that the determinant of their derivatives is positive everywhere";
             (format!("body[{k}].position"), "the initial position inverts a cell", help)
         }
-        Rejected::Linear(LinearError::Engine { .. }) => {
+        Rejected::Linear(LinearError::Memory { .. }) => {
             let help = "use a coarser mesh or an element of lower degree, or give the process more memory";
             let what = "there is not enough memory for the linear system";
             return Problem::new("body", what, rejected.to_string(), help).of_system();

@@ -174,6 +174,15 @@ impl Mesh {
         alone.into_values().flatten().collect()
     }
 
+    /// Area in the plane, of triangles with straight sides between their corners.
+    pub fn area(&self) -> f64 {
+        let of_cell = |cell: usize| {
+            let [a, b, c] = [0, 1, 2].map(|k| &self.nodes[self.cell(cell)[k]]);
+            0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs()
+        };
+        (0..self.cell_count()).map(of_cell).sum()
+    }
+
     /// Whether each node lies on the boundary.
     pub fn on_boundary(&self) -> Vec<bool> {
         let mut on = vec![false; self.nodes.len()];

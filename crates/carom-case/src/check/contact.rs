@@ -67,15 +67,23 @@ impl Check<'_> {
         }
     }
 
-    /// What a frozen contact point needs: a detection that finds one, a constraint whose gap may be
-    /// that of the tangent line, and one stage per step.
+    /// What a frozen contact point needs: a curve on which it can be, a detection that finds one, a
+    /// constraint whose gap may be that of the tangent line, and one stage per step.
     fn frozen_point(&mut self, i: usize, contact: &ContactSpec) {
         if contact.xi != ContactPoint::Frozen {
             return;
         }
+        let draft = self.draft;
         let mut add = |what: &str, why: &str, hint: &str| {
             self.add(format!("contact[{i}].xi"), format!("xi = \"frozen\" cannot be used {what}"), why, hint);
         };
+        if contact.primary.side().is_none() {
+            let why = "ξ is a place on a facet of a deformable body, and an obstacle has none";
+            add("with a rigid obstacle", why, "leave xi out");
+        }
+        if draft.dimension == Some(1) {
+            add("in dimension 1", "the primary side is a point, which has no ξ", "leave xi out");
+        }
         if contact.detection != Detection::Trajectory {
             let why =
                 "the ξ that is frozen in the first step of a contact is that of the trajectory crossing";
@@ -85,19 +93,16 @@ impl Check<'_> {
             let why = "ξ changes at the start of every step, and the energy of a spring would change with it";
             add("with a penalty", why, "give enforcement = \"multiplier\", or xi = \"closest\"");
         }
-        let predictor = contact.law == Some(ContactLaw::Predictor);
-        if let Some(scheme) = self.draft.time.as_ref().map(|time| &time.scheme)
-            && (predictor || !scheme.is_alpha())
-        {
-            let what = if predictor {
-                "with law = \"predictor\"".to_owned()
-            } else {
-                format!("with scheme `{}`", scheme.kind)
-            };
-            let why = "it is the paper's method: ξ is kept during the one solve of a step of the generalised-α family";
-            let hint = "use a scheme such as chung-hulbert with law = \"position\", or xi = \"closest\"";
-            self.add(format!("contact[{i}].xi"), format!("xi = \"frozen\" cannot be used {what}"), why, hint);
-        }
+        let scheme = draft.time.as_ref().map(|time| &time.scheme).filter(|scheme| !scheme.is_alpha());
+        let what = match scheme {
+            _ if contact.law == Some(ContactLaw::Predictor) => "with law = \"predictor\"",
+            Some(scheme) => &format!("with scheme `{}`", scheme.kind),
+            None => return,
+        };
+        let why =
+            "it is the paper's method: ξ is kept during the one solve of a step of the generalised-α family";
+        let hint = "use a scheme such as chung-hulbert with law = \"position\", or xi = \"closest\"";
+        add(what, why, hint);
     }
 
     /// What an obstacle that moves needs: inertia if it is free, and a name for its columns.

@@ -1,7 +1,7 @@
 //! Checks of the restitution of a conserving scheme: it returns the energy that closing contacts
 //! take, after the projection of velocities and to the whole system at once.
 
-use super::super::{ContactLaw, ContactSpec, Enforcement, Persistency, PrimarySpec, SchemeSpec};
+use super::super::{ContactLaw, ContactSpec, Enforcement, Persistency, SchemeSpec};
 use super::Check;
 
 impl Check<'_> {
@@ -20,13 +20,8 @@ impl Check<'_> {
 
     /// Why, and what to do; `first`: the restitution of the first contact by multipliers.
     fn restitution_is_unusable(&self, contact: &ContactSpec, first: f64) -> Option<(&'static str, String)> {
-        let light = |side: &str| {
-            let body = side.split_once('.').and_then(|(body, _)| self.body(body));
-            body.is_some_and(|body| body.mass.is_redistributed())
-        };
-        let massless = || {
-            light(&contact.secondary) || matches!(&contact.primary, PrimarySpec::Side(side) if light(side))
-        };
+        let light = |name: &str| self.body(name).is_some_and(|body| body.mass.is_redistributed());
+        let massless = || contact.bodies().any(light);
         let multiplier = contact.enforcement == Enforcement::Multiplier;
         let instead = |other: &str| format!("leave restitution out, or use {other}");
         if multiplier && contact.restitution != first {

@@ -1,6 +1,9 @@
 //! The keys of a case file, declared once: the reader, the schema and the documentation use the
 //! same tables.
 
+mod bodies;
+mod contact;
+mod loads;
 mod schemes;
 mod shapes;
 mod tables;

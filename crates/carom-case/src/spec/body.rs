@@ -20,6 +20,29 @@ pub struct MaterialSpec {
     pub mu: f64,
 }
 
+impl MaterialSpec {
+    /// Speed of pressure waves, √((Λ + 2μ)/ρ), with Λ replaced by 2Λμ/(Λ + 2μ) in plane stress;
+    /// infinite without density.
+    pub fn wave_speed(&self, plane: Plane) -> f64 {
+        let Self { lambda, mu, density, .. } = *self;
+        let lambda = match plane {
+            Plane::Strain => lambda,
+            Plane::Stress => 2.0 * lambda * mu / (lambda + 2.0 * mu),
+        };
+        ((lambda + 2.0 * mu) / density).sqrt()
+    }
+}
+
+/// Plane state of a two-dimensional body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Plane {
+    /// No strain out of the plane.
+    Strain,
+    /// No stress out of the plane.
+    Stress,
+}
+
 /// Constitutive law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

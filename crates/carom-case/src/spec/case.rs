@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use carom_record::Expect as ExpectSpec;
 use serde::{Deserialize, Serialize};
 
-use super::body::{BodySpec, MaterialSpec};
+use super::body::{BodySpec, MaterialSpec, Plane};
 use super::contact::ContactSpec;
 use super::formula::FormulaSpec;
 use super::load::{LoadSpec, SupportSpec};
@@ -74,16 +74,6 @@ impl Case {
         let nodes: f64 = self.bodies.iter().map(|body| body.mesh.estimate(body.element).1).sum();
         self.time.steps() as f64 * nodes
     }
-}
-
-/// Plane state of a two-dimensional body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Plane {
-    /// No strain out of the plane.
-    Strain,
-    /// No stress out of the plane.
-    Stress,
 }
 
 /// Unit labels of the numbers of a case.

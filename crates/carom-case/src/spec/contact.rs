@@ -28,12 +28,23 @@ pub struct ContactSpec {
     pub active_set: ActiveSetRule,
     /// Which gap decides about activation.
     pub detection: Detection,
-    /// Where the gap is measured during a step.
+    /// Where the gap is measured during a step; the closest point in records written before this key
+    /// existed.
+    #[serde(default)]
     pub xi: ContactPoint,
     /// What contact constrains; once resolved, the default is the law of the scheme.
     pub law: Option<ContactLaw>,
-    /// Newton's coefficient of restitution e, 0 … 1.
+    /// Coefficient of restitution e, 0 … 1: Newton's, for laws on velocities; for a constraint that
+    /// conserves, e² is the share of the energy taken that is returned.
     pub restitution: f64,
+}
+
+impl ContactSpec {
+    /// Names of the bodies of its sides, the secondary one first.
+    pub fn bodies(&self) -> impl Iterator<Item = &str> {
+        let sides = [Some(self.secondary.as_str()), self.primary.side()];
+        sides.into_iter().flatten().filter_map(|side| Some(side.split_once('.')?.0))
+    }
 }
 
 /// Primary side of a contact.
@@ -137,10 +148,11 @@ pub enum Detection {
 }
 
 /// The point of the primary facet at which the gap is measured during a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ContactPoint {
     /// The closest point of the iterate.
+    #[default]
     Closest,
     /// The crossing of the paths, then the closest point at the start of the step, as in the paper.
     Frozen,

@@ -96,10 +96,13 @@ fn whole() -> usize {
 }
 
 impl MeshSpec {
-    /// The mesh with cells smaller by a factor: a built-in shape is made anew with smaller cells, the
-    /// cells of a file are divided, for which the factor must be an integer; otherwise none.
-    pub fn refined(mut self, factor: f64) -> Option<Self> {
-        let more = |cells: usize| (cells as f64 * factor).round().max(1.0) as usize;
+    /// The mesh with cells smaller by a factor ≥ 1: a built-in shape is made anew with smaller cells,
+    /// the cells of a file are divided. `refine.rs` rejects factors with which given numbers of cells,
+    /// or the parts of an edge of a file, are not whole; the cells of a rectangle that is given by
+    /// their size are rounded up, as without a factor.
+    #[must_use]
+    pub fn refined(mut self, factor: f64) -> Self {
+        let more = |cells: usize| (cells as f64 * factor * (1.0 - 2e-9)).ceil() as usize;
         match &mut self {
             Self::Interval { cells, .. } => *cells = more(*cells),
             Self::Rectangle { cells, .. } => *cells = cells.map(more),
@@ -110,9 +113,9 @@ impl MeshSpec {
                 *size /= factor;
                 refine.iter_mut().for_each(|region| region.size /= factor);
             }
-            Self::File { parts, .. } => *parts = Some(factor).filter(|f| f.fract() == 0.0)? as usize,
+            Self::File { parts, .. } => *parts = factor.round() as usize,
         }
-        Some(self)
+        self
     }
 
     /// Names of the sides, in order along the boundary.

@@ -10,8 +10,8 @@ mod obstacle;
 mod output;
 mod time;
 
-pub use body::{BodySpec, Law, MassKind, MaterialSpec, PlaceSpec};
-pub use case::{Case, InitialSpec, Plane, Preset, Units, Velocities};
+pub use body::{BodySpec, Law, MassKind, MaterialSpec, PlaceSpec, Plane};
+pub use case::{Case, InitialSpec, Preset, Units, Velocities};
 pub use contact::{
     ActiveSetRule, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime, Persistency,
     PrimarySpec,

@@ -1,9 +1,8 @@
 //! Messages: some compared word by word, the others by parts of them.
 
 use super::{BARS, IMPACT, resolved};
-use crate::{CaseError, Document, read};
 
-fn shown(text: &str, sets: &[&str]) -> String {
+pub(super) fn shown(text: &str, sets: &[&str]) -> String {
     let found = resolved(text, sets).expect_err("the case is wrong");
     found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n")
 }
@@ -60,6 +59,13 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     ),
     (&["body.prism.mesh.cells=[8, 0]"], &["must be an integer ≥ 1, not the integer 0"]),
     (&["body.prism.mesh.cells=[8, 4.0]"], &["must be a list of 2 integers ≥ 1, not the number 4"]),
+    (
+        &["refine=1.3"],
+        &[
+            "`refine` = 1.3 makes body[1].mesh.cells = [8, 4] into [10.4, 5.2]",
+            "`refine = 1.25` or `refine = 1.5`",
+        ],
+    ),
     (&["body.prism.mesh.max=[1.0, -0.5]"], &["`max` = -0.5 is not greater than `min` = -0.5"]),
     (&["thickness=0"], &["`thickness` must be a number > 0"]),
     (&["material.rubber.mu=0"], &["`mu` must be a number > 0"]),
@@ -101,21 +107,6 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["time.step=1.0"], &["the step 1 is longer than the run"]),
     (&["time.step=7.5e-13"], &["too many steps"]),
     (&["output.at_times=[0.1, 0.8]"], &["the time 0.8 is outside the run"]),
-    // a frozen contact point
-    (&["contact.strike.xi=froze"], &["`xi` cannot be \"froze\"", "did you mean `frozen`?"]),
-    (&["contact.strike.xi=frozen"], &["cannot be used with this detection", "xi = \"closest\""]),
-    (
-        &["preset=paper", "contact.strike.xi=frozen", "contact.strike.enforcement=penalty"],
-        &["xi = \"frozen\" cannot be used with a penalty"],
-    ),
-    (
-        &["preset=paper", "contact.strike.xi=frozen", "time.scheme={ kind = \"bathe\", rho_inf = 0.5 }"],
-        &["xi = \"frozen\" cannot be used with scheme `bathe`"],
-    ),
-    (
-        &["preset=paper", "contact.strike.xi=frozen", "contact.strike.law=predictor"],
-        &["xi = \"frozen\" cannot be used with law = \"predictor\""],
-    ),
     // names
     (&["body.cylinder.material=ruber"], &["there is no material `ruber`", "did you mean `rubber`?"]),
     (&["body.prism.name=cylinder"], &["two tables [[body]] are named `cylinder`"]),
@@ -221,108 +212,6 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     ),
     (&["manufactured.y=[\"X\"]"], &["`y` must be a list of 2 numbers or formulas"]),
     (&["expect=[{ what = \"last error_l2\", at_most = 0 }]"], &["no column `error_l2`"]),
-    // contact without mass
-    (&["material.rubber.density=0"], &["no node in contact `strike` has mass", "persistency = \"none\""]),
-    // invalid combinations
-    (
-        &["contact.strike.law=predictor", "time.scheme.kind=bathe"],
-        &["scheme `bathe` has no predictor to project", "several stages"],
-    ),
-    (
-        &["contact.strike.law=predictor", "contact.strike.enforcement=penalty"],
-        &["law = \"predictor\" cannot be used with a penalty"],
-    ),
-    (
-        &["contact.strike.law=predictor", "contact.strike.persistency=project"],
-        &["persistency = \"project\" cannot be used here", "nothing to project"],
-    ),
-    (
-        &["contact.strike.stiffness=3.0"],
-        &["`stiffness` is given without a penalty", "only enforcement = \"penalty\" has a stiffness"],
-    ),
-    // schemes with their own contact law
-    (
-        &["contact.strike.restitution=0.5"],
-        &["chung-hulbert has no restitution, but e = 0.5 is given", "moreau-jean"],
-    ),
-    (
-        &[
-            "time.scheme={ kind = \"energy-momentum\" }",
-            "contact.strike.restitution=0.5",
-            "contact.strike.persistency=none",
-        ],
-        &["`strike` cannot have restitution = 0.5 with energy-momentum", "persistency = \"project\""],
-    ),
-    (
-        &[
-            "time.scheme={ kind = \"energy-momentum\" }",
-            "contact.strike.restitution=0.5",
-            "contact.strike.enforcement=penalty",
-        ],
-        &[
-            "`strike` cannot have restitution = 0.5",
-            "springs return the energy",
-            "enforcement = \"multiplier\"",
-        ],
-    ),
-    (
-        &[
-            "time.scheme={ kind = \"energy-momentum\" }",
-            "contact.strike.restitution=0.5",
-            "contact.strike.law=predictor",
-        ],
-        &["`strike` cannot have restitution = 0.5", "law = \"position\""],
-    ),
-    (
-        &["time.scheme={ kind = \"energy-momentum\" }", "contact.strike.restitution=1.5"],
-        &["`restitution` must be a number in [0, 1]"],
-    ),
-    (
-        &["contact.strike.law=velocity"],
-        &["law = \"velocity\" constrains velocities", "the unknowns of chung-hulbert"],
-    ),
-    (&["time.scheme={ kind = \"moreau-jean\", theta = 0.4 }"], &["`theta` must be a number in [0.5, 1]"]),
-    (
-        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.law=position"],
-        &[
-            "law = \"position\" constrains positions",
-            "the unknowns of moreau-jean are velocities and impulses",
-        ],
-    ),
-    (
-        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.persistency=project"],
-        &["persistency = \"project\" cannot be used with this scheme", "leave it out"],
-    ),
-    (
-        &["time.scheme={ kind = \"central-difference\" }"],
-        &[
-            "central-difference needs a lumped mass, but that of body `cylinder` is consistent",
-            "mass = \"lumped\"",
-        ],
-    ),
-    (
-        &[
-            "time.scheme={ kind = \"paoli-schatzman\" }",
-            "material.rubber.density=0",
-            "contact.strike.persistency=none",
-        ],
-        &["body `cylinder` has no mass, and paoli-schatzman divides by it"],
-    ),
-    (
-        &[
-            "time.scheme={ kind = \"moreau-jean\", theta = 1.0 }",
-            "support=[{ on = [\"prism.bottom\"], move = { y = \"0.1*t\" } }]",
-        ],
-        &["moving supports are not available with moreau-jean", "chung-hulbert"],
-    ),
-    (
-        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.enforcement=penalty"],
-        &["enforcement = \"penalty\" cannot be used with this scheme"],
-    ),
-    (
-        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "body.prism.mass=redistributed"],
-        &["body `prism` has nodes without mass, and moreau-jean divides by it"],
-    ),
     // later versions
     (&["plane=axisymmetric"], &["`plane = \"axisymmetric\"` is not supported yet"]),
     (&["contact.strike.method=mortar"], &["`method = \"mortar\"` is not supported yet"]),
@@ -372,15 +261,20 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["tim.step=1e-3"], &["unknown key `tim`", "did you mean"]),
 ];
 
-#[test]
-fn wrong_impacts() {
-    for (sets, parts) in IMPACTS {
+/// Compares parts of the messages of overrides of the impact.
+pub(super) fn compare(cases: &[(&[&str], &[&str])]) {
+    for (sets, parts) in cases {
         let message = shown(IMPACT, sets);
         for part in *parts {
             assert!(message.contains(part), "{sets:?}: {part:?} not in\n{message}");
         }
         assert!(message.lines().all(|line| !line.ends_with(": ")), "{message}");
     }
+}
+
+#[test]
+fn wrong_impacts() {
+    compare(IMPACTS);
 }
 
 #[test]
@@ -402,7 +296,11 @@ fn wrong_bars() {
             "secondary = \"left.top\"",
             &["body `left` has no side `top`", "left.left, left.right"],
         ),
-        ("primary = { plane = { point = [-1.0], normal = [2] } }", "primary = \"right.left\"\n#", &[]),
+        (
+            "primary = { plane = { point = [-1.0], normal = [2] } }",
+            "detection = \"trajectory\"\nxi = \"frozen\"\nprimary = \"right.left\"",
+            &["xi = \"frozen\" cannot be used in dimension 1", "the primary side is a point"],
+        ),
     ];
     for (from, to, parts) in cases {
         let text = BARS.replacen(from, to, 1);
@@ -412,40 +310,6 @@ fn wrong_bars() {
             assert!(message.contains(part), "{to}: {part:?} not in\n{message}");
         }
     }
-}
-
-#[test]
-fn wrong_obstacles() {
-    let plane = "plane = { point = [-1.0], normal = [2] }";
-    let cases: &[(&str, &[&str])] = &[
-        ("{ }", &["exactly one shape; this one has none", "`plane`, `circle` or `polyline`"]),
-        ("{ PLANE, circle = { center = [0.0], radius = 1.0 } }", &["this one has plane, circle"]),
-        ("{ circle = { center = [0.0], radius = 1.0 } }", &["a circle needs dimension = 2"]),
-        ("{ PLANE, mass = 1.0, motion = { x = 0.0 } }", &["both `motion` and `mass`"]),
-        ("{ PLANE, velocity = [1.0] }", &["`velocity` needs `mass`"]),
-        ("{ PLANE, mass = 0.0 }", &["`mass` must be a number > 0, not 0"]),
-        ("{ PLANE, motion = {} }", &["the motion is empty"]),
-        ("{ PLANE, motion = { y = 0.0 } }", &["there is no motion `y` in dimension 1"]),
-        ("{ PLANE, motion = { rotate = 1.0 } }", &["`rotate` and `about` belong together", "add `about"]),
-        ("{ PLANE, motion = { x = \"X\" } }", &["X"]),
-        ("{ PLANE, moton = { x = 0.0 } }", &["unknown key `moton`", "did you mean `motion`?"]),
-    ];
-    for (primary, parts) in cases {
-        let primary = primary.replace("PLANE", plane);
-        let text = BARS.replacen(&format!("{{ {plane} }}"), &primary, 1);
-        assert_ne!(&text, BARS);
-        let message = resolved(&text, &[]).map_or_else(|_| shown(&text, &[]), |_| String::new());
-        for part in *parts {
-            assert!(message.contains(part), "{primary}: {part:?} not in\n{message}");
-        }
-    }
-}
-
-#[test]
-fn pairs_are_contacts_once() {
-    let twice = "\n[[contact]]\nname = \"again\"\nsecondary = \"prism.top\"\nprimary = \"cylinder.arc\"\n";
-    let message = shown(&format!("{IMPACT}{twice}"), &[]);
-    assert!(message.contains("this pair of sides is already a contact"), "{message}");
 }
 
 #[test]
@@ -465,79 +329,4 @@ fn all_problems_in_one_pass() {
         message.lines().filter(|l| l.starts_with("a/case") || l.starts_with("--set")).collect();
     assert_eq!(lines.len(), 4);
     assert!(lines[3].starts_with("--set"));
-}
-
-#[test]
-fn texts_that_are_not_cases() {
-    let message = |text: &str| shown(text, &[]);
-    assert_eq!(
-        message(
-            "title = \"a
-"
-        )
-        .lines()
-        .next(),
-        Some("a/case.toml:1:11: this is not TOML")
-    );
-    let open = message(&IMPACT.replace("half model\"", "half model"));
-    assert!(open.starts_with("a/case.toml:4:49: this is not TOML\n  title = \"Cylinder"), "{open}");
-    assert!(message("").contains("the case is empty"));
-    assert!(message("# nothing\n").contains("the case is empty"));
-    assert!(message("title = 1\ntitle = 2\n").contains("duplicate key"));
-    assert!(message(&format!("a = {}", "[".repeat(100_000))).contains("this is not TOML"));
-    let study = message("case = \"impact.toml\"\n[[arm]]\nname = \"a\"\n");
-    assert!(study.starts_with("a/case.toml:1:1: this is a study, not a case"), "{study}");
-    assert!(message("a = 1\n\u{0}").contains("this is not TOML"));
-}
-
-/// Errors in tables of loads are reported at the key that names the table, with file and line.
-#[test]
-fn tables_of_loads() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("case.toml");
-    let load = "\n[[load]]\non = [\"prism.top\"]\npressure = 1\ntable = \"a.csv\"\n";
-    std::fs::write(&path, format!("{IMPACT}{load}")).unwrap();
-    let line = IMPACT.lines().count() + 5;
-    let message = |table: &str| {
-        std::fs::write(folder.path().join("a.csv"), table).unwrap();
-        let document = Document::open(&path, &[]).unwrap();
-        document.diagnose_all(&read(&document).unwrap_err()).to_string()
-    };
-    for (table, messages) in [
-        (
-            "t,force\n0,1\n9,1\n",
-            ["the table \"a.csv\" cannot be used", "a.csv:1: there is no column `value`"],
-        ),
-        ("t,value\n0,1\n0.5,1\n", ["the table \"a.csv\" does not cover the run", "its last t = 0.5"]),
-        (
-            "t,value\n0.1,1\n9,1\n",
-            ["the table \"a.csv\" does not cover the run", "its first line is t = 0.1"],
-        ),
-    ] {
-        let message = message(table);
-        assert!(message.contains(&format!("case.toml:{line}:9: ")), "{message}");
-        assert!(messages.iter().all(|m| message.contains(m)), "{message}");
-    }
-}
-
-#[test]
-fn files_that_are_not_cases() {
-    let place = std::env::temp_dir().join(format!("carom-case-{}", std::process::id()));
-    std::fs::create_dir_all(&place).unwrap();
-    let message = |name: &str, bytes: Option<&[u8]>| {
-        let path = place.join(name);
-        if let Some(bytes) = bytes {
-            std::fs::write(&path, bytes).unwrap();
-        }
-        match Document::open(&path, &[]) {
-            Err(CaseError::Wrong(found)) => found[0].to_string(),
-            other => panic!("{other:?}"),
-        }
-    };
-    assert!(message("none.toml", None).contains("there is no such file"));
-    assert!(message("", None).contains("this is a directory"));
-    assert!(message("empty.toml", Some(b"")).contains("the case is empty"));
-    assert!(message("binary.toml", Some(b"\x7fELF\xff\x00")).contains("byte 5 is not valid UTF-8"));
-    assert!(message("huge.toml", Some(&vec![b'#'; 10_000_001])).contains("too large to be a case"));
-    std::fs::remove_dir_all(&place).unwrap();
 }

@@ -148,7 +148,7 @@ impl Stepper for Implicit {
             }
         }
         if !report.releases.is_empty() {
-            report.projection += separate(model, &mut next, &report.releases, &mut work.system)?;
+            report.restitution = separate(model, &mut next, &report.releases, &mut work.system)?;
         }
         next.previous = (self.kernel.two_step() && report.activations.is_empty()).then(|| Previous {
             dt,

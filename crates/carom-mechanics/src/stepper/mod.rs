@@ -33,6 +33,8 @@ pub struct StepReport {
     pub events: Vec<(usize, PairEvent)>,
     /// Jump of kinetic energy at activation.
     pub projection: f64,
+    /// Jump of kinetic energy by restitution where contact ends.
+    pub restitution: f64,
     /// Penetration at the end.
     pub penetration: Depths,
 }

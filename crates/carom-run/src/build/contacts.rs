@@ -11,7 +11,7 @@ use carom_contact::{
 use carom_mechanics::model::{BodyInstance, Contact, Model};
 
 use super::obstacles::{self, Moving};
-use super::side::{Side, side};
+use super::side::{Side, coordinates, side};
 
 /// Depth of smooth nodes of the primary in edges of the secondary, over its shortest facet.
 const ALLOWED: f64 = 0.02;
@@ -254,12 +254,6 @@ fn node_stiffness(parts: &[BodyInstance], node: usize) -> f64 {
         }
     }
     sum
-}
-
-/// A position for messages, without the noise of its last digits.
-fn coordinates(place: &[f64]) -> String {
-    let places: Vec<_> = place.iter().map(|x| ((x * 1e9).round() / 1e9 + 0.0).to_string()).collect();
-    format!("[{}]", places.join(", "))
 }
 
 /// Initial overlaps deeper than round-off: a problem per contact with the deepest point.

@@ -7,7 +7,7 @@ use carom_formula::Formula;
 use carom_mechanics::model::{BodyInstance, Motions};
 
 use super::obstacles::Moving;
-use super::side::side;
+use super::side::{coordinates, side};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -47,7 +47,7 @@ pub(super) fn motions(
                     problems.push(Problem::new(
                         path.clone(),
                         format!("a node of {label} is moved along {} and also {with}", AXES[*axis]),
-                        format!("the node at {:?} is on two supports", place_of(parts, node)),
+                        format!("the node at {} is on two supports", coordinates(&place_of(parts, node))),
                         "remove one of the sides, or give both the same motion",
                     ));
                     break;

@@ -43,17 +43,14 @@ pub(super) fn massless(case: &Case, parts: &[BodyInstance], massless: &[bool]) -
         let help = "use a scheme other than the midpoint rule, such as bathe, or give a small density";
         problems.push(Problem::new("time.scheme.kind", what("kind = \"energy-momentum\""), why, help));
     }
-    let involves = |name: &str| {
-        name.split_once('.').is_some_and(|(body, _)| parts.iter().any(|p| light(p) && p.name == body))
-    };
+    let is_light = |body: &str| parts.iter().any(|p| light(p) && p.name == body);
     for (k, contact) in case.contacts.iter().enumerate() {
         if contact.law == Some(ContactLaw::Predictor) {
             let why = "the predictor is projected with the mass matrix";
             let help = "use law = \"position\", which suffices where contact nodes have no mass";
             problems.push(Problem::new(format!("contact[{k}].law"), what("law = \"predictor\""), why, help));
         }
-        let primary = contact.primary.side().is_some_and(involves);
-        if contact.force == ForceTime::End && (primary || involves(&contact.secondary)) {
+        if contact.force == ForceTime::End && contact.bodies().any(is_light) {
             let why =
                 "on a massless side, contact and internal forces must act at the same instant of the step";
             let help = "use force = \"alpha_f\", or give a small density";

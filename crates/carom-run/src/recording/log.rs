@@ -73,5 +73,9 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
                 format!("velocities projected at contact activation: kinetic energy changes by {jump:.6e}");
             Event::new(step, *time, "projection", message).with("kinetic_jump", *jump)
         }
+        LogEvent::Restitution { time, jump } => {
+            let message = format!("restitution where contact ends: kinetic energy changes by {jump:.6e}");
+            Event::new(step, *time, "restitution", message).with("kinetic_jump", *jump)
+        }
     }
 }

@@ -34,7 +34,7 @@ pub struct Progress {
     pub activations: u32,
     /// Pairs that left contact in it.
     pub releases: u32,
-    /// Energy created so far over the largest energy so far.
+    /// Energy created so far over the energy scale so far.
     pub created: f64,
     /// Wall seconds of this process.
     pub wall: f64,

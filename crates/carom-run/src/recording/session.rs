@@ -100,8 +100,8 @@ pub fn resume(
     let case = &case;
     if manifest.status == Status::Finished {
         // The process may have been killed between the last row and the verdicts.
-        if manifest.expectations.is_empty() {
-            judge(directory, &case.expects, manifest)?;
+        if manifest.expectations.is_empty() && !case.expects.is_empty() {
+            judge(Run::open(directory)?, &case.expects)?;
         }
         let steps = case.time.steps();
         return Ok(Outcome {
@@ -121,13 +121,7 @@ pub fn resume(
                 directory.display()
             ),
         })?;
-    let dofs = state.y.len();
     let simulation = Setup::new(case).threads(options.threads).resume(state).map_err(RunError::Case)?;
-    if dofs != simulation.model().dofs() {
-        return Err(RunError::Incompatible {
-            what: format!("the checkpoint has {dofs} dofs, the case {}", simulation.model().dofs()),
-        });
-    }
     let mut manifest = reopened.manifest;
     manifest.status = Status::Running;
     // Those of a killed process are older in the manifest.
@@ -195,13 +189,9 @@ impl<'a> Session<'a> {
     }
 
     /// Adds the warnings that only the record of a finished run shows.
-    fn add_warnings(&mut self) -> Result<(), RunError> {
-        if self.case.contacts.is_empty() {
-            return Ok(());
-        }
-        let run = Run::open(self.writer.directory())?;
+    fn add_warnings(&mut self, run: &Run) -> Result<(), RunError> {
         let known = self.manifest.warnings.len();
-        self.manifest.warnings.extend(warnings_of_record(self.case, &run));
+        self.manifest.warnings.extend(warnings_of_record(self.case, run));
         self.log_warnings(known)
     }
 
@@ -384,11 +374,18 @@ impl<'a> Session<'a> {
         Ok(self.writer.checkpoint(state.step, &bytes(state, self.since, &tally)?)?)
     }
 
-    /// Writes the last checkpoint and manifest.
+    /// Writes the last checkpoint and manifest, with the warnings and verdicts on the record.
     fn close(mut self, end: End, remarks: Vec<String>) -> Result<Outcome, RunError> {
         self.checkpoint()?;
-        if end == End::Finished {
-            self.add_warnings()?;
+        // A record that cannot be read does not make a finished run unfinished.
+        let asked = match end {
+            End::Finished => true,
+            End::Stopped(_) => !self.case.expects.is_empty(),
+            End::Interrupted => false,
+        };
+        let read = asked.then(|| Run::open(self.writer.directory()));
+        if let (End::Finished, Some(Ok(run))) = (&end, &read) {
+            self.add_warnings(run)?;
         }
         let state = self.simulation.state();
         let wall = self.began.elapsed().as_secs_f64();
@@ -407,8 +404,8 @@ impl<'a> Session<'a> {
             end,
         };
         self.writer.finish(&self.manifest)?;
-        if outcome.end != End::Interrupted {
-            judge(&outcome.directory, &self.case.expects, self.manifest)?;
+        if let Some(run) = read.transpose()? {
+            judge(Run { manifest: self.manifest, ..run }, &self.case.expects)?;
         }
         Ok(outcome)
     }

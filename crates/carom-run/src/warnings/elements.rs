@@ -5,11 +5,9 @@
 //! thickness h of a body are the roots of x² − (P/2) x + A = 0, with its area A and its perimeter P:
 //! exact for a rectangle, to first order for a strip or ring that is bent.
 
-use std::collections::BTreeSet;
-
 use carom_case::{Case, Plane};
 use carom_mechanics::model::{BodyInstance, Model};
-use carom_solid::{Element, Mesh};
+use carom_solid::{Element, Facet};
 
 use super::found::{Found, short};
 
@@ -47,8 +45,12 @@ pub(super) fn stiff_bending(_: &Case, model: &Model) -> Vec<Found> {
 
 fn too_stiff(part: &BodyInstance) -> Option<String> {
     let mesh = part.body.mesh();
-    let (area, boundary) = (area(mesh), boundary(mesh));
-    let half = 0.5 * boundary.iter().sum::<f64>();
+    let (area, skin) = (mesh.area(), mesh.skin());
+    let length = |facet: &Facet| {
+        let [a, b] = [0, 1].map(|k| &mesh.nodes[facet.nodes[k]]);
+        (b[0] - a[0]).hypot(b[1] - a[1])
+    };
+    let half = 0.5 * skin.iter().map(length).sum::<f64>();
     // A disc has no such roots.
     let root = (0.25 * half * half - area).sqrt();
     let (length, thickness) = (0.5 * half + root, 0.5 * half - root);
@@ -56,7 +58,7 @@ fn too_stiff(part: &BodyInstance) -> Option<String> {
         return None;
     }
     // Two triangles make a cell of the length of a facet.
-    let facet = 2.0 * half / boundary.len() as f64;
+    let facet = 2.0 * half / skin.len() as f64;
     let across = 0.5 * mesh.cell_count() as f64 * facet / length;
     let excess = 3.0 / (across * across);
     (excess > TOO_STIFF).then(|| {
@@ -67,33 +69,4 @@ fn too_stiff(part: &BodyInstance) -> Option<String> {
             short(100.0 * excess)
         )
     })
-}
-
-/// Area of triangles with straight sides.
-pub(super) fn area(mesh: &Mesh) -> f64 {
-    let of_cell = |cell: usize| {
-        let [a, b, c] = [0, 1, 2].map(|k| &mesh.nodes[mesh.cell(cell)[k]]);
-        0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs()
-    };
-    (0..mesh.cell_count()).map(of_cell).sum()
-}
-
-/// Lengths of the edges that belong to one triangle only.
-fn boundary(mesh: &Mesh) -> Vec<f64> {
-    let mut open = BTreeSet::new();
-    for cell in 0..mesh.cell_count() {
-        let corners = &mesh.cell(cell)[..3];
-        for k in 0..3 {
-            let (a, b) = (corners[k], corners[(k + 1) % 3]);
-            let edge = (a.min(b), a.max(b));
-            if !open.remove(&edge) {
-                open.insert(edge);
-            }
-        }
-    }
-    let length = |(a, b): (usize, usize)| {
-        let (a, b) = (&mesh.nodes[a], &mesh.nodes[b]);
-        (b[0] - a[0]).hypot(b[1] - a[1])
-    };
-    open.into_iter().map(length).collect()
 }

@@ -15,7 +15,6 @@ use carom_mechanics::model::Model;
 use carom_record::{Run, Warning};
 
 pub use found::Found;
-pub use steps::wave_speed;
 
 /// How a warning is found.
 #[derive(Clone, Copy, Debug)]

@@ -6,42 +6,25 @@
 //! C h. At C = 10 these are 63 cells, more than the bodies of an impact usually have across: no wave
 //! that the mesh carries and the contact excites is resolved by the step.
 
-use carom_case::{Case, MaterialSpec, Plane};
+use carom_case::{Case, ContactSpec};
 use carom_mechanics::model::Model;
 use carom_solid::Mesh;
 
-use super::elements::area;
 use super::found::{Found, short};
 
 /// Courant number that is warned about.
 const LONG: f64 = 10.0;
 
-/// √((Λ + 2μ)/ρ), with Λ replaced by 2Λμ/(Λ + 2μ) in plane stress; infinite without density.
-pub fn wave_speed(case: &Case, material: &MaterialSpec) -> f64 {
-    let MaterialSpec { lambda, mu, density, .. } = *material;
-    let lambda = match case.plane {
-        Plane::Strain => lambda,
-        Plane::Stress => 2.0 * lambda * mu / (lambda + 2.0 * mu),
-    };
-    ((lambda + 2.0 * mu) / density).sqrt()
-}
-
 pub(super) fn long_step(case: &Case, model: &Model) -> Vec<Found> {
     if case.time.scheme.is_static() {
         return Vec::new();
     }
-    let body = |side: &str| side.split('.').next().map(str::to_owned);
-    let touches = |name: &str| {
-        case.contacts.iter().any(|contact| {
-            let primary = contact.primary.side().and_then(body);
-            [body(&contact.secondary), primary].into_iter().flatten().any(|other| other == name)
-        })
-    };
+    let touches = |name: &str| case.contacts.iter().flat_map(ContactSpec::bodies).any(|body| body == name);
     let mut found = Vec::new();
     for (part, spec) in model.parts.iter().zip(&case.bodies).filter(|(part, _)| touches(&part.name)) {
         let Some(material) = case.materials.iter().find(|m| m.name == spec.material) else { continue };
         let cell = cell_size(part.body.mesh());
-        let courant = wave_speed(case, material) * case.time.step / cell;
+        let courant = material.wave_speed(case.plane) * case.time.step / cell;
         if courant > LONG && material.density > 0.0 {
             found.push(Found::of_body(
                 &part.name,
@@ -61,7 +44,7 @@ pub(super) fn long_step(case: &Case, model: &Model) -> Vec<Found> {
 fn cell_size(mesh: &Mesh) -> f64 {
     let count = mesh.cell_count() as f64;
     if mesh.dimension() > 1 {
-        return (2.0 * area(mesh) / count).sqrt();
+        return (2.0 * mesh.area() / count).sqrt();
     }
     let places = || mesh.nodes.iter().map(|x| x[0]);
     (places().fold(f64::NEG_INFINITY, f64::max) - places().fold(f64::INFINITY, f64::min)) / count

@@ -1,6 +1,6 @@
 //! The multiplier law of energy–momentum: what it conserves in collisions, and its restitution.
 
-use carom_run::{GridReport, Simulation};
+use carom_run::{GridReport, LogEvent, Simulation};
 
 use super::common::simulation;
 
@@ -84,6 +84,28 @@ fn the_energy_that_an_elastic_impact_does_not_restore_is_owed() {
         collision(OFFSET, &["contact.strike.restitution=1.0", "time.step=5e-3"]);
     assert!(momentum < 1e-10 && unbooked < 1e-10, "{momentum:e} {unbooked:e}");
     assert!(change.abs() < 5e-3 && (change + owed).abs() < 1e-10, "{change:e} {owed:e}");
+}
+
+/// Energy is returned where contact begins, as part of the projection, and where it ends.
+#[test]
+fn the_log_tells_restitution_from_projection() {
+    let mut sim = simulation(OFFSET, &[SCHEME, TIGHT, "contact.strike.restitution=1.0"]);
+    let mut returned = 0;
+    while !sim.finished() {
+        let mut report = GridReport::default();
+        sim.advance(&mut report).unwrap();
+        for event in &report.events {
+            match event {
+                LogEvent::Projection { .. } => assert!(report.activations > 0),
+                LogEvent::Restitution { .. } => {
+                    assert!(report.releases > 0);
+                    returned += 1;
+                }
+                _ => {}
+            }
+        }
+    }
+    assert!(returned > 0);
 }
 
 /// A bar under gravity, from rest: impacts are episodes of contact separated by flights.

@@ -7,7 +7,7 @@ use carom_run::case::Case;
 use carom_solid::material::{Material, NotPositive, SaintVenantKirchhoff, Thickness};
 use carom_time::{Kernel, Memory, Stage};
 
-use super::common::{case, finish};
+use super::common::{DISCS, case, finish};
 
 const STRETCHED: &str = r#"
 title = "A sheet pulled at its end"
@@ -109,4 +109,40 @@ fn own_kernel() {
     let own = end(Setup::new(&damped).kernel(Trapezoidal));
     assert!(apart(&own.y, &wanted.y) < 1e-10 && apart(&own.v, &wanted.v) < 1e-8);
     assert!(apart(&hu.y, &wanted.y) > 1e-3);
+}
+
+/// Two equal halves of a step.
+#[derive(Debug)]
+struct Twice;
+
+impl Kernel for Twice {
+    fn stages(&self) -> usize {
+        2
+    }
+
+    fn stage_into(&self, _: usize, dt: f64, memory: &Memory, stage: &mut Stage) {
+        Trapezoidal.stage_into(0, dt, memory, stage);
+    }
+}
+
+/// What a contact is built for, and another kernel would not do.
+#[test]
+fn kernels_that_contacts_do_not_allow() {
+    let why = |sets: &[&str], kernel: fn(Setup) -> Setup| {
+        kernel(Setup::new(&case(DISCS, sets)))
+            .build()
+            .err()
+            .map(|problems| problems.to_string())
+            .unwrap_or_default()
+    };
+    let conserving = "time.scheme={ kind = \"energy-momentum\" }";
+    let refused = why(&[conserving], |setup| setup.kernel(Trapezoidal));
+    assert!(refused.contains("cannot replace the scheme energy-momentum in contact"), "{refused}");
+    let frozen = ["contact.strike.detection=trajectory", "contact.strike.xi=frozen"];
+    let refused = why(&frozen, |setup| setup.kernel(Twice));
+    assert!(refused.contains("this kernel has 2 stages"), "{refused}");
+    assert_eq!(why(&frozen, |setup| setup.kernel(Trapezoidal)), "");
+    assert_eq!(why(&[], |setup| setup.kernel(Twice)), "");
+    let free = case(STRETCHED, &[conserving]);
+    assert!(Setup::new(&free).kernel(Trapezoidal).build().is_ok());
 }

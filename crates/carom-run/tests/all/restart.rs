@@ -1,8 +1,9 @@
 //! Resumed runs, and runs that start where another ended.
 
-use carom_run::GridReport;
+use carom_contact::Pair;
+use carom_run::{GridReport, State};
 
-use super::common::{case as case_of, finish, simulation};
+use super::common::{DISCS, case as case_of, finish, simulation};
 use super::loads::time;
 
 /// A run resumed from a state in the middle ends bitwise equal, including loads, motions and
@@ -129,4 +130,56 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
         let problems = carom_run::Setup::new(&case_of(&text, &[""; 0])).start().err().unwrap();
         assert!(problems[0].what.contains(expected), "{problems:?}");
     }
+}
+
+/// A state of another model is refused with the difference, wherever it is given.
+#[test]
+fn states_of_other_models() {
+    let state = simulation(DISCS, &[""; 0]).into_state();
+    let (dofs, nodes) =
+        (state.y.len(), simulation(DISCS, &[""; 0]).model().contacts[0].kinematics.secondary().len());
+    let why = |state: &State, sets: &[&str]| {
+        let resumed = carom_run::Setup::new(&case_of(DISCS, sets)).resume(state.clone());
+        let message = resumed.err().map(|problems| problems[0].what.clone()).unwrap_or_default();
+        let restored = simulation(DISCS, sets).restore(state.clone());
+        assert_eq!(restored.err().map(|other| other.to_string()).unwrap_or_default(), message);
+        message
+    };
+    assert_eq!(why(&state, &[]), "");
+    assert_eq!(
+        why(&state, &["contact=[]"]),
+        "the state belongs to another model: it has 1 contacts with pairs, this one 0"
+    );
+    assert!(
+        why(&state, &["body.left.mesh.size=0.5"]).contains(&format!("it has {dofs} positions, this one "))
+    );
+    let changed = |how: fn(&mut State)| {
+        let mut state = state.clone();
+        how(&mut state);
+        why(&state, &[])
+    };
+    assert!(changed(|state| state.f_contact.truncate(1)).contains("averaged contact forces"));
+    assert!(changed(|state| state.impulses.clear()).contains("it has 0 contacts with impulses, this one 1"));
+    let foreign = changed(|state| state.pairs[0].push(Pair::open(1000, 0, 0.0)));
+    assert!(foreign.contains(&format!("node 1000 of contact \"strike\" with {nodes} nodes")), "{foreign}");
+}
+
+/// The steps are computed, whatever happens to the record behind them.
+#[test]
+fn a_run_is_finished_even_if_its_record_cannot_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let directory = folder.path().join("run");
+    let source = carom_record::Source { text: DISCS.to_owned(), sets: Vec::new() };
+    let options = carom_run::recording::Options { threads: 1 };
+    let stop = std::sync::atomic::AtomicBool::new(false);
+    let damage = &mut |progress: &carom_run::recording::Progress| {
+        if progress.step == progress.steps {
+            std::fs::write(directory.join("contact.csv"), "no columns\n").unwrap();
+        }
+    };
+    let case = case_of(DISCS, &["time.end=0.01"]);
+    let run = carom_run::recording::run(&case, source, &directory, options, damage, &stop);
+    assert!(matches!(run, Err(carom_run::recording::RunError::Record(_))), "{run:?}");
+    let manifest = carom_record::Manifest::read(&directory).unwrap();
+    assert_eq!(manifest.status, carom_record::Status::Finished);
 }

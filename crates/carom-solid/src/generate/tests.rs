@@ -236,3 +236,14 @@ fn curved_cells_are_nowhere_near_folding() {
         assert!(quadratic.min(cubic) > bound, "size {size}: {quadratic}, {cubic}");
     }
 }
+
+/// Three by two, then a hexagon in a circle of radius 2: 3√3/2 r².
+#[test]
+fn areas() {
+    for element in TRIANGLES {
+        let area = rectangle(element, [0.0, -0.5], [3.0, 1.5], [5, 2]).unwrap().area();
+        assert!((area - 6.0).abs() < 1e-13, "{element:?}: {area}");
+        let hexagon = disc(element, 2.0, [1.0, 1.0], 2.0).unwrap().area();
+        assert!((hexagon - 6.0 * 3.0_f64.sqrt()).abs() < 1e-13, "{element:?}: {hexagon}");
+    }
+}

@@ -37,7 +37,7 @@ pub(crate) struct Progress {
     /// Contact nodes that were activated and released in it.
     pub(crate) activations: usize,
     pub(crate) releases: usize,
-    /// Energy created so far over the largest energy so far.
+    /// Energy created so far over the energy scale so far.
     pub(crate) created: f64,
     /// Wall seconds so far and left.
     pub(crate) wall: f64,
@@ -286,7 +286,7 @@ fn model_facts(case: &Case) -> Result<Facts, carom::case::Problems> {
         if let Some(m) = case.materials.iter().find(|m| m.name == spec.material)
             && m.density > 0.0
         {
-            let speed = carom::wave_speed(case, m);
+            let speed = m.wave_speed(case.plane);
             let least = |i: usize| {
                 let at = mesh.nodes.iter().map(|x| x[i]);
                 at.clone().fold(f64::NEG_INFINITY, f64::max) - at.fold(f64::INFINITY, f64::min)

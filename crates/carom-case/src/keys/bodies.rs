@@ -1,0 +1,121 @@
+//! Keys of materials and bodies.
+
+use super::Kind::{Choice, Formulas, FormulasOr, Name, Number, Variant, Vector};
+use super::{ANY, IN_SPACE, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key, shapes};
+
+pub(super) const MATERIAL: Table = Table {
+    name: "[[material]]",
+    doc: "A hyperelastic material, given by lambda and mu or by young and poisson.",
+    keys: &[
+        key("name", Name, "Name by which bodies refer to it.").example("\"rubber\""),
+        key(
+            "law",
+            Choice(&["neo-hookean", "saint-venant-kirchhoff", "linear-elastic"], &[]),
+            "Constitutive law.",
+        )
+        .example("\"neo-hookean\""),
+        key("density", Number(NOT_NEGATIVE), "Mass per reference volume; 0 for a massless body.")
+            .unit("mass/length³")
+            .example("0.25"),
+        key("lambda", Number(ANY), "First Lamé constant Λ; 3Λ + 2μ > 0.")
+            .unit("mass/(length·time²)")
+            .optional()
+            .example("200.0"),
+        key("mu", Number(POSITIVE), "Second Lamé constant (shear modulus) μ.")
+            .unit("mass/(length·time²)")
+            .optional()
+            .example("15.0"),
+        key("young", Number(POSITIVE), "Young's modulus, with poisson instead of lambda and mu.")
+            .unit("mass/(length·time²)")
+            .optional()
+            .example("43.95"),
+        key(
+            "poisson",
+            Number(Range { low: Some((-1.0, false)), high: Some((0.5, false)) }),
+            "Poisson's ratio; given together with young. At 0.5 the material would be incompressible and its bulk modulus infinite.",
+        )
+        .optional()
+        .example("0.49"),
+    ],
+    later: &[],
+};
+
+pub(super) const BODY: Table = Table {
+    name: "[[body]]",
+    doc: "A deformable body; its sides are written name.side.",
+    keys: &[
+        key("name", Name, "Name; its sides are written name.side.").example("\"cylinder\""),
+        key("material", Name, "Name of its material.").example("\"rubber\""),
+        key(
+            "element",
+            Choice(&["L2", "L3", "L4", "T3", "T6", "T10"], &[]),
+            "Cell type: L2 L3 L4 in dimension 1, T3 T6 T10 in dimension 2.",
+        )
+        .example("\"T6\""),
+        key("mesh", Variant(shapes), "Mesh: a built-in shape with its mesh size, or a body of a Gmsh file.")
+            .example("{ shape = \"rectangle\", min = [0.0, 0.0], max = [1.0, 1.0], cells = [8, 8] }"),
+        key("place", Kind::Table(&PLACE), "Rotation and translation of the mesh, applied before anything else.")
+            .optional()
+            .example("{ rotate = 30.0, about = [0.0, 0.0], shift = [0.0, 1.0] }"),
+        key("position", Formulas(IN_SPACE), "Positions at t = 0 as formulas in X, Y, for a body that starts deformed. Default: X, Y.")
+            .unit("length")
+            .optional()
+            .example("[\"X + 0.1*X*Y\", \"Y\"]"),
+        key("gravity", Vector, "Gravitational acceleration. Default: zero.")
+            .unit("length/time²")
+            .optional()
+            .example("[0.0, -9.81]"),
+        key(
+            "velocity",
+            FormulasOr(IN_SPACE, &VELOCITY),
+            "Initial velocity: numbers or formulas in X, Y, or the table of a rigid-body motion. Default: zero.",
+        )
+        .unit("length/time")
+        .optional()
+        .example("[0.0, -1.0]"),
+        key(
+            "mass",
+            Choice(&["consistent", "lumped", "redistributed", "redistributed-nearest"], &[]),
+            "Mass matrix. consistent; lumped: diagonal, by HRZ scaling; redistributed: no mass on contact nodes, and the smallest change at the other \
+             nodes that preserves the total mass, the centre of mass and the second moments; redistributed-nearest: no mass on contact nodes, and \
+             their mass is added to the nearest other nodes.",
+        )
+        .default("\"consistent\""),
+    ],
+    later: &[],
+};
+
+const VELOCITY: Table = Table {
+    name: "velocity",
+    doc: "Initial velocity of a rigid-body motion: linear + angular × (X − about).",
+    keys: &[
+        key("linear", Vector, "Velocity of the point `about`. Default: zero.")
+            .unit("length/time")
+            .optional()
+            .example("[0.0, -1.0]"),
+        key("angular", Number(ANY), "Angular velocity, counter-clockwise; dimension 2.")
+            .unit("1/time")
+            .default("0.0"),
+        key("about", Vector, "Centre of the rotation; required with `angular`.")
+            .unit("length")
+            .optional()
+            .example("[0.0, 1.0]"),
+    ],
+    later: &[],
+};
+
+const PLACE: Table = Table {
+    name: "place",
+    doc: "Rotation, then translation of a mesh, built in or from a file.",
+    keys: &[
+        key("rotate", Number(ANY), "Angle of rotation, counter-clockwise; dimension 2.")
+            .unit("degrees")
+            .default("0.0"),
+        key("about", Vector, "Centre of rotation. Default: the origin.")
+            .unit("length")
+            .optional()
+            .example("[0.0, 0.0]"),
+        key("shift", Vector, "Translation. Default: zero.").unit("length").optional().example("[0.0, 1.0]"),
+    ],
+    later: &[],
+};

@@ -1,0 +1,180 @@
+//! Keys of contacts and rigid obstacles.
+
+use super::Kind::{Choice, Formula, Name, Number, Side, SideOr, Truth, Vector};
+use super::{IN_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key};
+
+pub(super) const CONTACT: Table = Table {
+    name: "[[contact]]",
+    doc: "A contact pair: two sides that may come into contact.",
+    keys: &[
+        key("name", Name, "Name used in records and messages.").example("\"strike\""),
+        key("secondary", Side, "Secondary (slave) side: its nodes may not penetrate the primary.").example("\"cylinder.arc\""),
+        key("primary", SideOr(&RIGID), "Primary (master) side, or a rigid obstacle: a table with one of `plane`, `circle` and `polyline`.").example("\"prism.top\""),
+        key("method", Choice(&["node-to-segment"], &["mortar"]), "Discretisation of the contact.")
+            .default("\"node-to-segment\""),
+        key(
+            "enforcement",
+            Choice(&["multiplier", "penalty"], &["augmented"]),
+            "How the constraint is enforced: exactly by a Lagrange multiplier, or by penalty springs whose energy counts as strain energy.",
+        )
+        .default("\"multiplier\""),
+        key("stiffness", Number(POSITIVE), "Penalty stiffness, as a multiple of the reference stiffness of the secondary node.")
+            .default("10.0"),
+        key(
+            "law",
+            Choice(&["position", "predictor", "velocity"], &[]),
+            "What contact constrains: positions at the end of the step; positions and the predictor y + Δt v (contact-stabilised); or velocities, \
+             by impulses. Default: the law of the scheme.",
+        )
+        .optional()
+        .example("\"position\""),
+        key(
+            "force",
+            Choice(&["alpha_f", "end"], &[]),
+            "How the contact force enters the balance of a step: averaged with α_f (eq. 15), or at the end of the step.",
+        )
+        .default("\"alpha_f\""),
+        key(
+            "persistency",
+            Choice(&["project", "none"], &[]),
+            "Velocities and accelerations at activation: projected onto the constraints, so that they are compatible with them, or left unchanged.",
+        )
+        .default("\"project\"")
+        .paper("\"none\""),
+        key(
+            "active_set",
+            Choice(&["within", "after"], &[]),
+            "When the active set is updated: within Newton's method, or after it has converged.",
+        )
+        .default("\"within\"")
+        .paper("\"after\""),
+        key(
+            "detection",
+            Choice(&["closest-point", "trajectory"], &[]),
+            "Gap that decides whether a pair becomes active: at the closest point, or at the ξ where the trajectories cross (eq. 8 as printed in the paper).",
+        )
+        .default("\"closest-point\"")
+        .paper("\"trajectory\""),
+        key(
+            "xi",
+            Choice(&["closest", "frozen"], &[]),
+            "Point of the primary facet at which the gap is measured during a step: the closest point, recomputed in every iteration; or, as printed \
+             in the paper, that of the trajectory crossing in the first step of a contact and the closest point at the start of the step in later ones.",
+        )
+        .default("\"closest\""),
+        key(
+            "restitution",
+            Number(RESTITUTION),
+            "Coefficient of restitution e: Newton's, for contact laws on velocities; with energy-momentum and multipliers, e² is the fraction of the \
+             energy taken by contact that is returned where nodes close or open (1 elastic, 0 inelastic); with paoli-schatzman, the weight of the previous position.",
+        )
+        .default("0.0"),
+    ],
+    later: &["passes", "normals", "overlap", "between", "friction"],
+};
+
+const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };
+
+const RIGID: Table = Table {
+    name: "a rigid primary",
+    doc: "A primary surface that does not deform: exactly one shape, fixed, moved by `motion`, or free with `mass`.",
+    keys: &[
+        key("plane", Kind::Table(&PLANE), "A rigid half-space.")
+            .optional()
+            .example("{ point = [0.0, 0.0], normal = [0.0, 1.0] }"),
+        key("circle", Kind::Table(&CIRCLE), "A rigid circle, with bodies outside or inside it; dimension 2.")
+            .optional()
+            .example("{ center = [0.0, 0.0], radius = 1.0, inside = true }"),
+        key("polyline", Kind::Table(&POLYLINE), "A rigid chain of segments; dimension 2.")
+            .optional()
+            .example("{ points = [[2.0, 0.0], [0.0, 0.0], [-2.0, 1.0]], radius = 0.1 }"),
+        key(
+            "motion",
+            Kind::Table(&MOTION),
+            "Prescribed motion by formulas in t. Its reaction forces are recorded under the name of the contact, and its work is external_work.",
+        )
+        .optional()
+        .example("{ x = \"0.1*t\" }"),
+        key(
+            "mass",
+            Number(POSITIVE),
+            "Mass of an obstacle that is free in translation and does not turn; its position and velocity are recorded under the name of the contact.",
+        )
+        .unit("mass")
+        .optional()
+        .example("0.5"),
+        key("velocity", Vector, "Initial velocity, with `mass`. Default: zero.")
+            .unit("length/time")
+            .optional()
+            .example("[0.0, -1.0]"),
+        key("gravity", Vector, "Gravitational acceleration, with `mass`. Default: zero.")
+            .unit("length/time²")
+            .optional()
+            .example("[0.0, -9.81]"),
+    ],
+    later: &["spring"],
+};
+
+const CIRCLE: Table = Table {
+    name: "circle",
+    doc: "A rigid circle.",
+    keys: &[
+        key("center", Vector, "Its centre.").unit("length").example("[0.0, 0.0]"),
+        key("radius", Number(POSITIVE), "Its radius.").unit("length").example("1.0"),
+        key("inside", Truth, "Whether bodies are inside it; outside otherwise.").default("false"),
+    ],
+    later: &[],
+};
+
+const POLYLINE: Table = Table {
+    name: "polyline",
+    doc: "A rigid chain of straight segments, with the rigid material to the left of the direction of travel.",
+    keys: &[
+        key(
+            "points",
+            Kind::Points(2),
+            "Its points in order; closed if the last one repeats the first. The first and last segment of an open chain continue to infinity.",
+        )
+        .unit("length")
+        .example("[[2.0, 0.0], [0.0, 0.0], [-2.0, 1.0]]"),
+        key(
+            "radius",
+            Number(NOT_NEGATIVE),
+            "Radius of the arcs that round the corners, tangent to both segments; 0: sharp corners. A sharp corner that is concave holds a node by one of its segments only.",
+        )
+        .unit("length")
+        .default("0.0"),
+    ],
+    later: &[],
+};
+
+const MOTION: Table = Table {
+    name: "motion",
+    doc: "Prescribed motion of a rigid obstacle, zero at t = 0: rotation about a point that moves with it.",
+    keys: &[
+        key("x", Formula(IN_TIME), "Displacement along x.").unit("length").optional().example("\"0.1*t\""),
+        key("y", Formula(IN_TIME), "Displacement along y; dimension 2.")
+            .unit("length")
+            .optional()
+            .example("\"-0.1*t\""),
+        key("rotate", Formula(IN_TIME), "Angle of rotation, counter-clockwise; dimension 2.")
+            .unit("degrees")
+            .optional()
+            .example("\"360*t\""),
+        key("about", Vector, "Centre of the rotation at t = 0; required with `rotate`.")
+            .unit("length")
+            .optional()
+            .example("[0.0, 0.0]"),
+    ],
+    later: &[],
+};
+
+const PLANE: Table = Table {
+    name: "plane",
+    doc: "A rigid half-space.",
+    keys: &[
+        key("point", Vector, "A point on its boundary.").unit("length").example("[0.0, 0.0]"),
+        key("normal", Vector, "Outward normal, of any length > 0.").example("[0.0, 1.0]"),
+    ],
+    later: &[],
+};

@@ -1,0 +1,74 @@
+//! Keys of supports and loads.
+
+use super::Kind::{Choices, Formula, Formulas, Name, Sides, Text};
+use super::{IN_SPACE_AND_TIME, Kind, Table, key};
+
+pub(super) const SUPPORT: Table = Table {
+    name: "[[support]]",
+    doc: "Displacement boundary condition: sides fixed in some directions with `fix`, or moved with `move`.",
+    keys: &[
+        key("name", Name, "Name; the reaction forces of a named support are recorded.").optional().example("\"floor\""),
+        key("on", Sides, "Sides that are constrained.").example("[\"prism.bottom\"]"),
+        key("fix", Choices(&["x", "y"]), "Directions that are fixed.").optional().example("[\"x\", \"y\"]"),
+        key(
+            "move",
+            Kind::Table(&MOVE),
+            "Prescribed displacements by direction, zero at t = 0; velocity and acceleration are the time derivatives of the formula.",
+        )
+        .optional()
+        .example("{ y = \"-0.1*t\" }"),
+    ],
+    later: &[],
+};
+
+const MOVE: Table = Table {
+    name: "move",
+    doc: "Displacements of a side from its reference position.",
+    keys: &[
+        key("x", Formula(IN_SPACE_AND_TIME), "Displacement along x.")
+            .unit("length")
+            .optional()
+            .example("\"0.1*t\""),
+        key("y", Formula(IN_SPACE_AND_TIME), "Displacement along y.")
+            .unit("length")
+            .optional()
+            .example("\"-0.1*t\""),
+    ],
+    later: &[],
+};
+
+pub(super) const LOAD: Table = Table {
+    name: "[[load]]",
+    doc: "A load on sides (`on` with `traction` or `pressure`) or in a body (`body` with `body_force`). Formulas are functions of the reference position X, Y and the time t.",
+    keys: &[
+        key("name", Name, "Name used in messages.").optional().example("\"press\""),
+        key("on", Sides, "Loaded sides, with `traction` or `pressure`.")
+            .optional()
+            .example("[\"prism.top\"]"),
+        key("body", Name, "Loaded body, with `body_force`.").optional().example("\"prism\""),
+        key("traction", Formulas(IN_SPACE_AND_TIME), "Dead load per reference area.")
+            .unit("mass/(length·time²)")
+            .optional()
+            .example("[\"0\", \"-5*min(t/0.1, 1)\"]"),
+        key(
+            "pressure",
+            Formula(IN_SPACE_AND_TIME),
+            "Follower load per current area, acting against the outward normal.",
+        )
+        .unit("mass/(length·time²)")
+        .optional()
+        .example("\"2*t\""),
+        key("body_force", Formulas(IN_SPACE_AND_TIME), "Dead load per reference volume.")
+            .unit("mass/(length²·time²)")
+            .optional()
+            .example("[\"0\", \"-3*X\"]"),
+        key(
+            "table",
+            Text,
+            "CSV file with the columns t and value: a factor on the load, linearly interpolated in time.",
+        )
+        .optional()
+        .example("\"amplitude.csv\""),
+    ],
+    later: &[],
+};

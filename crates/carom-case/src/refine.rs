@@ -1,0 +1,111 @@
+//! The factor `refine` of a case: it multiplies numbers of cells, which must remain whole.
+
+use super::problem::{Problem, rounded};
+use super::tree::{Node, Table};
+
+/// Relative distance of a product from an integer, for factors such as 1.3333333333.
+const WHOLE: f64 = 1e-9;
+
+/// The numbers of a mesh that are multiplied by the factor.
+pub(super) struct Counts {
+    /// Path of the mesh.
+    path: String,
+    /// Whether its cells are those of a file: every edge is one part.
+    of_file: bool,
+    /// Numbers of cells.
+    numbers: Vec<usize>,
+}
+
+impl Counts {
+    /// Of a mesh; none if it is given by the size of its cells.
+    pub(super) fn of(mesh: &Table, path: String) -> Option<Self> {
+        if mesh.get("file").is_some() {
+            return Some(Self { path, of_file: true, numbers: vec![1] });
+        }
+        let cells = mesh.get("cells")?;
+        let counts = match cells.list() {
+            Some(list) => list.iter().map(Node::count).collect::<Option<Vec<_>>>()?,
+            None => vec![cells.count()?],
+        };
+        counts.iter().all(|n| *n > 0).then_some(Self { path, of_file: false, numbers: counts })
+    }
+}
+
+/// The problem of a factor with which the numbers of a mesh do not remain whole.
+pub(super) fn problem(factor: f64, meshes: &[Counts]) -> Option<Problem> {
+    let Counts { path, of_file, numbers } =
+        meshes.iter().find(|mesh| !whole(factor, divisor(&mesh.numbers)))?;
+    let (what, why) = if *of_file {
+        let what = format!("`refine` = {factor} is not an integer, and {path} comes from a file");
+        (what, "the cells of a file are divided into whole parts")
+    } else {
+        let products: Vec<_> = numbers.iter().map(|n| rounded(*n as f64 * factor).to_string()).collect();
+        let what =
+            format!("`refine` = {factor} makes {path}.cells = {numbers:?} into [{}]", products.join(", "));
+        (what, "numbers of cells are multiplied by it, and must remain whole")
+    };
+    // Factors with which the cells of all meshes are whole are the multiples of 1/n.
+    let n = divisor(&meshes.iter().flat_map(|mesh| &mesh.numbers).copied().collect::<Vec<_>>()) as f64;
+    let [below, above] = [(factor * n).floor() / n, (factor * n).ceil() / n];
+    let help = if below >= 1.0 {
+        format!("write `refine = {}` or `refine = {}`", rounded(below), rounded(above))
+    } else {
+        format!("write `refine = {}`", rounded(above))
+    };
+    Some(Problem::new("refine", what, why, help))
+}
+
+fn whole(factor: f64, n: usize) -> bool {
+    let product = factor * n as f64;
+    (product - product.round()).abs() <= WHOLE * product
+}
+
+/// The greatest common divisor: the multiples of 1/n are the factors with which all are whole.
+fn divisor(numbers: &[usize]) -> usize {
+    let of_two = |a: usize, b: usize| {
+        let (mut a, mut b) = (a, b);
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    numbers.iter().copied().fold(0, of_two)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message(factor: f64, meshes: &[&[usize]]) -> Option<String> {
+        let counts = |(k, n): (usize, &&[usize])| Counts {
+            path: format!("body[{k}].mesh"),
+            of_file: **n == [1],
+            numbers: n.to_vec(),
+        };
+        let meshes: Vec<_> = meshes.iter().enumerate().map(counts).collect();
+        problem(factor, &meshes).map(|problem| format!("{}: {}", problem.what, problem.help))
+    }
+
+    #[test]
+    fn numbers_of_cells_remain_whole() {
+        for (factor, meshes) in [
+            (1.25, &[&[8, 4][..]][..]),
+            (1.5, &[&[8, 4], &[2]]),
+            (4.0 / 3.0, &[&[3]]),
+            (1.333_333_333_333, &[&[3]]),
+            (3.0, &[&[1], &[7]]),
+            (1.1, &[]),
+        ] {
+            assert_eq!(message(factor, meshes), None);
+        }
+        let text = message(1.25, &[&[8, 4], &[4, 3]]).unwrap();
+        for part in ["body[1].mesh.cells = [4, 3] into [5, 3.75]", "`refine = 1` or `refine = 2`"] {
+            assert!(text.contains(part), "{text}");
+        }
+        assert!(message(1.5, &[&[8, 4], &[1]]).unwrap().contains("body[1].mesh comes from a file"));
+        // Multiples of 1/6.
+        assert!(
+            message(1.25, &[&[12, 6]]).unwrap().contains("`refine = 1.166666667` or `refine = 1.333333333`")
+        );
+    }
+}

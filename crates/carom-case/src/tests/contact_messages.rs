@@ -1,0 +1,172 @@
+//! Messages about contacts and rigid obstacles, by parts of them.
+
+use super::messages::{compare, shown};
+use super::{BARS, IMPACT, resolved};
+
+/// (overrides of the impact, what the message contains)
+const CONTACTS: &[(&[&str], &[&str])] = &[
+    // a frozen contact point
+    (&["contact.strike.xi=froze"], &["`xi` cannot be \"froze\"", "did you mean `frozen`?"]),
+    (&["contact.strike.xi=frozen"], &["cannot be used with this detection", "xi = \"closest\""]),
+    (
+        &["preset=paper", "contact.strike.xi=frozen", "contact.strike.enforcement=penalty"],
+        &["xi = \"frozen\" cannot be used with a penalty"],
+    ),
+    (
+        &["preset=paper", "contact.strike.xi=frozen", "time.scheme={ kind = \"bathe\", rho_inf = 0.5 }"],
+        &["xi = \"frozen\" cannot be used with scheme `bathe`"],
+    ),
+    (
+        &["preset=paper", "contact.strike.xi=frozen", "contact.strike.law=predictor"],
+        &["xi = \"frozen\" cannot be used with law = \"predictor\""],
+    ),
+    (
+        &[
+            "preset=paper",
+            "contact.strike.xi=frozen",
+            "contact.strike.primary={ circle = { center = [0.0, -1.0], radius = 1.0 } }",
+        ],
+        &["xi = \"frozen\" cannot be used with a rigid obstacle", "leave xi out"],
+    ),
+    // contact without mass
+    (&["material.rubber.density=0"], &["no node in contact `strike` has mass", "persistency = \"none\""]),
+    // invalid combinations
+    (
+        &["contact.strike.law=predictor", "time.scheme.kind=bathe"],
+        &["scheme `bathe` has no predictor to project", "several stages"],
+    ),
+    (
+        &["contact.strike.law=predictor", "contact.strike.enforcement=penalty"],
+        &["law = \"predictor\" cannot be used with a penalty"],
+    ),
+    (
+        &["contact.strike.law=predictor", "contact.strike.persistency=project"],
+        &["persistency = \"project\" cannot be used here", "nothing to project"],
+    ),
+    (
+        &["contact.strike.stiffness=3.0"],
+        &["`stiffness` is given without a penalty", "only enforcement = \"penalty\" has a stiffness"],
+    ),
+    // schemes with their own contact law
+    (
+        &["contact.strike.restitution=0.5"],
+        &["chung-hulbert has no restitution, but e = 0.5 is given", "moreau-jean"],
+    ),
+    (
+        &[
+            "time.scheme={ kind = \"energy-momentum\" }",
+            "contact.strike.restitution=0.5",
+            "contact.strike.persistency=none",
+        ],
+        &["`strike` cannot have restitution = 0.5 with energy-momentum", "persistency = \"project\""],
+    ),
+    (
+        &[
+            "time.scheme={ kind = \"energy-momentum\" }",
+            "contact.strike.restitution=0.5",
+            "contact.strike.enforcement=penalty",
+        ],
+        &[
+            "`strike` cannot have restitution = 0.5",
+            "springs return the energy",
+            "enforcement = \"multiplier\"",
+        ],
+    ),
+    (
+        &[
+            "time.scheme={ kind = \"energy-momentum\" }",
+            "contact.strike.restitution=0.5",
+            "contact.strike.law=predictor",
+        ],
+        &["`strike` cannot have restitution = 0.5", "law = \"position\""],
+    ),
+    (
+        &["time.scheme={ kind = \"energy-momentum\" }", "contact.strike.restitution=1.5"],
+        &["`restitution` must be a number in [0, 1]"],
+    ),
+    (
+        &["contact.strike.law=velocity"],
+        &["law = \"velocity\" constrains velocities", "the unknowns of chung-hulbert"],
+    ),
+    (&["time.scheme={ kind = \"moreau-jean\", theta = 0.4 }"], &["`theta` must be a number in [0.5, 1]"]),
+    (
+        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.law=position"],
+        &[
+            "law = \"position\" constrains positions",
+            "the unknowns of moreau-jean are velocities and impulses",
+        ],
+    ),
+    (
+        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.persistency=project"],
+        &["persistency = \"project\" cannot be used with this scheme", "leave it out"],
+    ),
+    (
+        &["time.scheme={ kind = \"central-difference\" }"],
+        &[
+            "central-difference needs a lumped mass, but that of body `cylinder` is consistent",
+            "mass = \"lumped\"",
+        ],
+    ),
+    (
+        &[
+            "time.scheme={ kind = \"paoli-schatzman\" }",
+            "material.rubber.density=0",
+            "contact.strike.persistency=none",
+        ],
+        &["body `cylinder` has no mass, and paoli-schatzman divides by it"],
+    ),
+    (
+        &[
+            "time.scheme={ kind = \"moreau-jean\", theta = 1.0 }",
+            "support=[{ on = [\"prism.bottom\"], move = { y = \"0.1*t\" } }]",
+        ],
+        &["moving supports are not available with moreau-jean", "chung-hulbert"],
+    ),
+    (
+        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "contact.strike.enforcement=penalty"],
+        &["enforcement = \"penalty\" cannot be used with this scheme"],
+    ),
+    (
+        &["time.scheme={ kind = \"moreau-jean\", theta = 1.0 }", "body.prism.mass=redistributed"],
+        &["body `prism` has nodes without mass, and moreau-jean divides by it"],
+    ),
+];
+
+#[test]
+fn wrong_contacts() {
+    compare(CONTACTS);
+}
+
+#[test]
+fn wrong_obstacles() {
+    let plane = "plane = { point = [-1.0], normal = [2] }";
+    let cases: &[(&str, &[&str])] = &[
+        ("{ }", &["exactly one shape; this one has none", "`plane`, `circle` or `polyline`"]),
+        ("{ PLANE, circle = { center = [0.0], radius = 1.0 } }", &["this one has plane, circle"]),
+        ("{ circle = { center = [0.0], radius = 1.0 } }", &["a circle needs dimension = 2"]),
+        ("{ PLANE, mass = 1.0, motion = { x = 0.0 } }", &["both `motion` and `mass`"]),
+        ("{ PLANE, velocity = [1.0] }", &["`velocity` needs `mass`"]),
+        ("{ PLANE, mass = 0.0 }", &["`mass` must be a number > 0, not 0"]),
+        ("{ PLANE, motion = {} }", &["the motion is empty"]),
+        ("{ PLANE, motion = { y = 0.0 } }", &["there is no motion `y` in dimension 1"]),
+        ("{ PLANE, motion = { rotate = 1.0 } }", &["`rotate` and `about` belong together", "add `about"]),
+        ("{ PLANE, motion = { x = \"X\" } }", &["X"]),
+        ("{ PLANE, moton = { x = 0.0 } }", &["unknown key `moton`", "did you mean `motion`?"]),
+    ];
+    for (primary, parts) in cases {
+        let primary = primary.replace("PLANE", plane);
+        let text = BARS.replacen(&format!("{{ {plane} }}"), &primary, 1);
+        assert_ne!(&text, BARS);
+        let message = resolved(&text, &[]).map_or_else(|_| shown(&text, &[]), |_| String::new());
+        for part in *parts {
+            assert!(message.contains(part), "{primary}: {part:?} not in\n{message}");
+        }
+    }
+}
+
+#[test]
+fn pairs_are_contacts_once() {
+    let twice = "\n[[contact]]\nname = \"again\"\nsecondary = \"prism.top\"\nprimary = \"cylinder.arc\"\n";
+    let message = shown(&format!("{IMPACT}{twice}"), &[]);
+    assert!(message.contains("this pair of sides is already a contact"), "{message}");
+}

@@ -1,0 +1,94 @@
+//! The grid of times of a run.
+
+/// A grid of times with its energy guard: 0, (1 − phase)Δt, (2 − phase)Δt, … , end. A phase other
+/// than 0 shifts all instants between by this fraction of a step; the first and the last step are
+/// shorter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// Step Δt.
+    pub dt: f64,
+    /// Steps to the end.
+    pub steps: u64,
+    /// Shift as a fraction of a step, in [0, 1).
+    pub phase: f64,
+    /// Fraction of the energy scale so far that may be created before the run stops; none
+    /// disables the guard.
+    pub guard: Option<f64>,
+}
+
+impl Grid {
+    /// The time after so many steps.
+    pub fn time(&self, step: u64) -> f64 {
+        if self.phase == 0.0 {
+            step as f64 * self.dt
+        } else if step == 0 {
+            0.0
+        } else if step < self.steps {
+            (step as f64 - self.phase) * self.dt
+        } else {
+            (self.steps - 1) as f64 * self.dt
+        }
+    }
+
+    /// Length of a step, counted from 1.
+    pub fn length(&self, step: u64) -> f64 {
+        if self.phase == 0.0 {
+            self.dt
+        } else if step <= 1 {
+            (1.0 - self.phase) * self.dt
+        } else if step < self.steps {
+            self.dt
+        } else {
+            self.phase * self.dt
+        }
+    }
+
+    /// Number of the step whose end is nearest to a time.
+    pub fn nearest(&self, time: f64) -> u64 {
+        // The first and the last step may be shorter.
+        let step = ((time / self.dt + self.phase).round() as u64).min(self.steps);
+        let nearer = |other: &u64| (self.time(*other) - time).abs() < (self.time(step) - time).abs();
+        [step.saturating_sub(1), (step + 1).min(self.steps)].into_iter().find(nearer).unwrap_or(step)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 200 steps from 0 to 0.75; a shifted grid has one more.
+    fn grid(phase: f64) -> Grid {
+        Grid { dt: 3.75e-3, steps: 200 + u64::from(phase > 0.0), phase, guard: None }
+    }
+
+    #[test]
+    fn steps_fill_the_interval() {
+        for phase in [0.0, 0.2, 0.5, 0.7] {
+            let grid = grid(phase);
+            let mut sum = 0.0;
+            for step in 1..=grid.steps {
+                sum += grid.length(step);
+                assert!((grid.time(step) - sum).abs() < 1e-12, "{phase} {step}");
+            }
+            assert!(grid.time(0) == 0.0 && (sum - 0.75).abs() < 1e-12, "{phase}: {sum}");
+        }
+    }
+
+    #[test]
+    fn the_nearest_step() {
+        for phase in [0.0, 0.2, 0.3, 0.5, 0.7, 0.95] {
+            let grid = grid(phase);
+            for k in 0..=1000_u32 {
+                let time = 0.75 * f64::from(k) / 1000.0;
+                let away = |step: u64| (grid.time(step) - time).abs();
+                let least = (0..=grid.steps).map(away).fold(f64::INFINITY, f64::min);
+                assert!(away(grid.nearest(time)) <= least + 1e-12, "{phase} {time}: {}", grid.nearest(time));
+            }
+        }
+        // The last step, shorter than half of one, ends at the end.
+        assert_eq!(
+            [grid(0.3).nearest(0.75), grid(0.3).nearest(0.748), grid(0.0).nearest(0.75)],
+            [201, 200, 200]
+        );
+    }
+}
