@@ -51,6 +51,7 @@ FIGURES = {
     "invariance": ("", "bodies"),
     "impact": ("impact", "bodies"),
     "disc": ("offset", "bodies"),
+    "corner": ("skin", "bodies"),
     "obstacle": ("paddle", "bodies"),
     "loads": ("", "bodies"),
     "static": ("", "bodies"),

@@ -17,6 +17,21 @@ pub struct Warning {
     pub advice: String,
 }
 
+impl Warning {
+    /// The warnings of several runs, each once, in order of their first occurrence, with the runs
+    /// that gave it.
+    pub fn shared<'a, R: Copy>(given: impl Iterator<Item = (R, &'a Self)>) -> Vec<(&'a Self, Vec<R>)> {
+        let mut shared: Vec<(&Self, Vec<R>)> = Vec::new();
+        for (run, warning) in given {
+            match shared.iter_mut().find(|(known, _)| *known == warning) {
+                Some((_, runs)) => runs.push(run),
+                None => shared.push((warning, vec![run])),
+            }
+        }
+        shared
+    }
+}
+
 impl std::fmt::Display for Warning {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { id, place, what, why, advice } = self;

@@ -1,10 +1,10 @@
 //! What the page of a study needs from the records of its arms: columns, thinned, and the origin of
 //! each record.
 
+use carom_record::Run;
 use carom_record::metrics::{contact_force, probe_columns};
 use carom_record::study::checks::fingerprint;
 use carom_record::study::reference::FORCE;
-use carom_record::{Run, Warning};
 
 use crate::labels::{symbol, words};
 
@@ -35,8 +35,6 @@ pub(crate) struct Origin {
     pub(crate) rejected: u64,
     /// Number of fallbacks and cycles of the solver.
     pub(crate) fallbacks: usize,
-    /// Warnings.
-    pub(crate) warnings: Vec<Warning>,
 }
 
 impl Origin {
@@ -47,7 +45,7 @@ impl Origin {
         let rejected = run.manifest.counters.get("rejected").copied().unwrap_or_default();
         let (input, record) =
             (run.manifest.input_hash.clone(), fingerprint(&run.directory).unwrap_or_default());
-        Self { arm, input, record, rejected, fallbacks, warnings: run.manifest.warnings.clone() }
+        Self { arm, input, record, rejected, fallbacks }
     }
 }
 

@@ -1,9 +1,9 @@
 //! `study.html`: recommendation, arms, ranking, figures and metrics of a study as a single
 //! self-contained page.
 
+use carom_record::Status;
 use carom_record::study::ensemble::Spread;
 use carom_record::study::{Held, Row, Study, Verdict};
-use carom_record::{Status, Warning};
 use maud::{Markup, PreEscaped, Render, html};
 
 use crate::collected::Origin;
@@ -49,7 +49,7 @@ pub(crate) fn page(study: &Study, picture: Option<&str>, plots: &[Plot], origins
         (claims(study))
         (ensemble::section(study))
         (self::expectations(study))
-        (warnings(study, origins))
+        (warnings(study))
         h2 { "Figures" }
         @for (i, plot) in plots.iter().enumerate() {
             (figure(i + 1, &plot.name, &["svg", "csv", "py"], &plot.caption, &plot.svg()))
@@ -268,14 +268,8 @@ fn expectations(study: &Study) -> Markup {
 }
 
 /// The warnings of all arms; one that several arms share is listed once.
-fn warnings(study: &Study, origins: &[Origin]) -> Markup {
-    let mut shared: Vec<(&Warning, Vec<usize>)> = Vec::new();
-    for (arm, warning) in origins.iter().flat_map(|o| o.warnings.iter().map(|warning| (o.arm, warning))) {
-        match shared.iter_mut().find(|(known, _)| *known == warning) {
-            Some((_, arms)) => arms.push(arm),
-            None => shared.push((warning, vec![arm])),
-        }
-    }
+fn warnings(study: &Study) -> Markup {
+    let shared = study.warnings();
     html! {
         @if !shared.is_empty() {
             h2 { "Warnings" }

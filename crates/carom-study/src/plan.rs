@@ -6,9 +6,9 @@ use std::path::Path;
 
 use carom_record::study::design::{Design, Goal, MemberOf, Role};
 use carom_record::study::{Arm, Comparison, StudyManifest, StudySource};
-use carom_record::{Machine, Source, Status, now};
-use carom_run::Setup;
+use carom_record::{Machine, Source, Status, Warning, now};
 use carom_run::case::{Case, CaseError, Diagnostic, Document, Problem, read};
+use carom_run::{Setup, warnings};
 
 use crate::arms::{self, Draft};
 use crate::expects;
@@ -30,9 +30,18 @@ pub struct PlannedArm {
     pub case: Case,
     /// Text of the case file, and changes.
     pub source: Source,
+    /// The warnings that the case and its model give.
+    pub warnings: Vec<Warning>,
 }
 
 impl Plan {
+    /// The warnings that the cases of all arms give before they run, each once, with the numbers of
+    /// the arms.
+    pub fn warnings(&self) -> Vec<(&Warning, Vec<usize>)> {
+        let given = self.arms.iter().enumerate();
+        Warning::shared(given.flat_map(|(arm, planned)| planned.warnings.iter().map(move |w| (arm, w))))
+    }
+
     /// Reads a study file and its cases.
     ///
     /// # Errors
@@ -70,16 +79,21 @@ impl Plan {
         let arm = |p: Planned| PlannedArm {
             case: p.case,
             source: Source { text: p.base.text.clone(), sets: p.sets },
+            warnings: p.warnings,
         };
         Ok(Self { manifest, arms: planned.into_iter().map(arm).collect() })
     }
 }
+
+/// Changes of a case, the case and its warnings.
+type Resolved = (Vec<String>, Case, Vec<Warning>);
 
 /// An arm whose case is valid.
 struct Planned<'a> {
     draft: Draft,
     sets: Vec<String>,
     case: Case,
+    warnings: Vec<Warning>,
     base: &'a Base,
 }
 
@@ -113,14 +127,14 @@ impl Checked<'_> {
         if found.is_empty() { Ok(()) } else { Err(CaseError::Wrong(found)) }
     }
 
-    /// The changes of a draft and its case; none if that is wrong.
-    fn resolved(&mut self, draft: &Draft, base: &Base) -> Result<Option<(Vec<String>, Case)>, CaseError> {
+    /// The changes of a draft, its case and warnings; none if the case is wrong.
+    fn resolved(&mut self, draft: &Draft, base: &Base) -> Result<Option<Resolved>, CaseError> {
         let mut sets: Vec<String> = draft.sets.iter().map(|(set, _)| set.clone()).collect();
         sets.push(draft.expect.0.clone());
         match resolved(&base.name, &base.text, &sets) {
-            Ok(case) => {
+            Ok((case, warnings)) => {
                 sets.pop();
-                Ok(Some((sets, case)))
+                Ok(Some((sets, case, warnings)))
             }
             Err(error) => {
                 for diagnostic in diagnostics(error)? {
@@ -165,9 +179,9 @@ impl Checked<'_> {
         for draft in drafts {
             let base = draft.case.as_ref().or(file.case.as_ref()).and_then(|name| bases.get(name));
             if let Some(base) = base
-                && let Some((sets, case)) = self.resolved(&draft, base)?
+                && let Some((sets, case, warnings)) = self.resolved(&draft, base)?
             {
-                planned.push(Planned { draft, sets, case, base });
+                planned.push(Planned { draft, sets, case, warnings, base });
             }
         }
         Ok(())
@@ -179,7 +193,7 @@ impl Checked<'_> {
         for (i, arm) in planned.iter().enumerate() {
             let all = file.ensemble.iter().flat_map(|e| arms::members(e, &arm.draft, &arm.case));
             for (j, (member, draft)) in all.enumerate() {
-                let Some((sets, case)) = self.resolved(&draft, arm.base)? else { continue };
+                let Some((sets, case, _)) = self.resolved(&draft, arm.base)? else { continue };
                 let role = Role { member: Some(MemberOf { arm: i, member }), ..draft.role.clone() };
                 let directory = format!("members/{:02}-{:03}", i + 1, j + 1);
                 members.push(Arm { role, ..stored(&draft, directory, sets, &case) });
@@ -370,13 +384,14 @@ fn names(file: &StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) {
     }
 }
 
-/// A case with changes; its model is built once, to find problems that only the model shows.
-/// Its text is read once: a pipe cannot be read again.
-pub(crate) fn resolved(name: &str, text: &str, sets: &[String]) -> Result<Case, CaseError> {
+/// A case with changes, and its warnings; its model is built once, to find what only the model
+/// shows. Its text is read once: a pipe cannot be read again.
+pub(crate) fn resolved(name: &str, text: &str, sets: &[String]) -> Result<(Case, Vec<Warning>), CaseError> {
     let document = Document::parse(name, text, sets)?;
     let case = read(&document).map_err(|problems| document.diagnose_all(&problems))?;
-    Setup::new(&case).start().map_err(|problems| document.diagnose_all(&problems))?;
-    Ok(case)
+    let simulation = Setup::new(&case).start().map_err(|problems| document.diagnose_all(&problems))?;
+    let given = warnings(&case, simulation.model());
+    Ok((case, given))
 }
 
 /// The diagnostics of a wrong case; input/output and system errors are returned as errors.

@@ -124,5 +124,5 @@ fn kind(file: &Path, fast: bool) -> Result<Option<Kind>, CaseError> {
         return Ok(None);
     }
     let source = Source { text: document.text().to_owned(), sets: Vec::new() };
-    resolved(document.name(), document.text(), &[]).map(|case| Some(Kind::Case(Box::new(case), source)))
+    resolved(document.name(), document.text(), &[]).map(|(case, _)| Some(Kind::Case(Box::new(case), source)))
 }

@@ -37,7 +37,7 @@ use std::path::{Path, PathBuf};
 
 use crate::metrics::{self, Metric};
 use crate::question::{Question, Series};
-use crate::{Expectation, RecordError, Run, Status, judge};
+use crate::{Expectation, RecordError, Run, Status, Warning, judge};
 pub use arm::{Arm, sets_step, step};
 pub use arms::ArmRecords;
 use checks::Checks;
@@ -82,6 +82,12 @@ pub struct Study {
 }
 
 impl Study {
+    /// The warnings of all arms, each once, with the numbers of the arms that gave it.
+    pub fn warnings(&self) -> Vec<(&Warning, Vec<usize>)> {
+        let given = self.rows.iter().enumerate();
+        Warning::shared(given.flat_map(|(arm, row)| row.warnings.iter().map(move |w| (arm, w))))
+    }
+
     /// Reads a study arm by arm, with only one record in memory at a time. `visit` is called for
     /// every arm that has a record.
     ///
@@ -108,6 +114,7 @@ impl Study {
         for (i, arm) in manifest.runs().enumerate() {
             let (status, reason) = manifest.state(directory, arm)?;
             let (mut metrics, mut expectations, mut had_contact) = (Vec::new(), Vec::new(), false);
+            let mut warnings = Vec::new();
             let mut comparison = None;
             if status.is_some() {
                 let run = Run::open(&directory.join(&arm.directory))?;
@@ -130,6 +137,7 @@ impl Study {
                 }
                 expectations = judge(&run, &arm.expects());
                 had_contact = run.had_dynamic_contact();
+                warnings = run.manifest.warnings;
             }
             compared.push(comparison);
             rows.push(Row {
@@ -139,6 +147,7 @@ impl Study {
                 metrics,
                 expectations,
                 contact: had_contact,
+                warnings,
             });
         }
         let verdicts = manifest

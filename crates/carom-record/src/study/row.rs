@@ -1,7 +1,7 @@
 //! Results of an arm: a row of the tables.
 
 use crate::metrics::{MUCH_CREATED, Metric};
-use crate::{Expectation, Status};
+use crate::{Expectation, Status, Warning};
 
 /// An arm with its metrics.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +19,8 @@ pub struct Row {
     pub expectations: Vec<Expectation>,
     /// Whether it had dynamic contact.
     pub contact: bool,
+    /// Its warnings.
+    pub warnings: Vec<Warning>,
 }
 
 impl Row {

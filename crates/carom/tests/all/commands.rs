@@ -96,6 +96,33 @@ fn a_study_is_checked_as_a_study_and_not_run_as_a_case() {
 }
 
 #[test]
+fn warnings_of_a_study_are_listed_once_with_their_arms() {
+    let place = Place::new("study-warnings");
+    let short = "\"time.end\" = 1.875e-2, \"output.fields_every\" = 0";
+    let arms = format!(
+        "[[arm]]\nname = \"as it is\"\nset = {{ {short} }}\n[[arm]]\nname = \"Hu\"\nset = {{ \"time.scheme\" = {{ kind = \"hu\" }}, {short} }}\n\
+         [[arm]]\nname = \"coarse\"\nset = {{ \"body.cylinder.mesh.size\" = 0.25, {short} }}\n"
+    );
+    place.file("case.toml", IMPACT).file("study.toml", format!("case = \"case.toml\"\n{arms}"));
+    let check = place.carom(&["check", "study.toml"]);
+    let study = place.carom(&["study", "study.toml", "--out", "s", "--no-report"]);
+    for (output, start) in [(text(&check.stdout), "  warning  "), (text(&study.stderr), "warning: ")] {
+        let lines: Vec<_> = output.lines().filter_map(|line| line.strip_prefix(start)).collect();
+        let of = |id: &str| {
+            let mut found = lines.iter().filter(|line| line.ends_with(id));
+            (found.next().unwrap_or_else(|| panic!("{id} not in\n{output}")), found.count())
+        };
+        let ((shared, again), (coarse, twice)) = (of("(unmatched-pressure)"), of("(coarse-secondary)"));
+        assert!(shared.starts_with("all arms: contact ") && again == 0, "{output}");
+        assert!(coarse.starts_with("\"coarse\": contact ") && twice == 0, "{output}");
+    }
+    let json = text(&place.carom(&["check", "study.toml", "--json"]).stdout);
+    assert!(json.contains("\"arms\":[\"as it is\",\"Hu\",\"coarse\"]"), "{json}");
+    let quiet = place.carom(&["study", "study.toml", "--out", "q", "--no-report", "--quiet"]);
+    assert_eq!((text(&quiet.stdout), text(&quiet.stderr)), (String::new(), String::new()));
+}
+
+#[test]
 fn files_that_cannot_be_read() {
     let place = Place::new("files");
     for (name, part) in [("none.toml", "no such file"), (".", "this is a directory")] {

@@ -39,6 +39,7 @@ fn row(name: &str, metrics: &[(&'static str, f64)]) -> Row {
         metrics: metrics.iter().map(metric).collect(),
         expectations: Vec::new(),
         contact: true,
+        warnings: Vec::new(),
     }
 }
 

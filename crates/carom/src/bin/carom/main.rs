@@ -7,6 +7,7 @@ mod directory;
 mod exit;
 mod live;
 mod out;
+mod shared;
 mod simulation;
 mod summary;
 

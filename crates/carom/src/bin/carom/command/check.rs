@@ -11,6 +11,7 @@ use carom_study::Plan;
 use carom_time::Explained;
 
 use crate::exit::{Exit, Failure};
+use crate::shared::{of_arms, warnings};
 use crate::simulation::{self, BodyFacts, Facts};
 use crate::summary::short;
 use crate::{console, out};
@@ -58,14 +59,17 @@ fn study(arguments: &Arguments, document: &Document) -> Result<Exit, Failure> {
                 .into(),
         });
     }
-    let Plan { manifest, arms } = super::plan(document, &arguments.case)?;
+    let plan = super::plan(document, &arguments.case)?;
+    let Plan { manifest, arms } = &plan;
     if arguments.json {
-        out::event(&serde_json::json!({ "event": "check", "study": manifest }))?;
+        out::event(
+            &serde_json::json!({ "event": "check", "study": manifest, "warnings": warnings(&plan.warnings(), manifest) }),
+        )?;
         return Ok(Exit::Done);
     }
     let mut lines =
         vec![format!("{} ({} runs of {})", manifest.title, arms.len(), manifest.source.case_path)];
-    for (arm, planned) in manifest.arms.iter().zip(&arms) {
+    for (arm, planned) in manifest.arms.iter().zip(arms) {
         let time = &planned.case.time;
         let role = if manifest.reference.as_ref() == Some(&arm.name) { ", the reference" } else { "" };
         lines.push(format!(
@@ -80,6 +84,8 @@ fn study(arguments: &Arguments, document: &Document) -> Result<Exit, Failure> {
         let runs = arms.len() + manifest.members.len();
         lines.push(format!("  ensemble {}: {runs} runs in all", ensemble.words()));
     }
+    lines
+        .extend(plan.warnings().iter().map(|(w, arms)| format!("  warning  {}{w}", of_arms(arms, manifest))));
     if !console::is_quiet() {
         out::line(&lines.join("\n"))?;
     }

@@ -15,6 +15,7 @@ use serde_json::json;
 
 use crate::exit::{Exit, Failure};
 use crate::live::{duration, stop_on_signal};
+use crate::shared::{of_arms, warnings};
 use crate::summary::short;
 use crate::{console, directory, out};
 
@@ -114,9 +115,15 @@ fn conclude(
             });
         let claims: Vec<_> = claims.collect();
         let event = if outcome.interrupted { "interrupted" } else { "done" };
-        out::event(&json!({ "event": event, "directory": directory, "report": page, "claims": claims }))?;
+        out::event(
+            &json!({ "event": event, "directory": directory, "report": page, "claims": claims, "warnings": warnings(&study.warnings(), &study.manifest) }),
+        )?;
     } else if !console::is_quiet() {
-        out::line(&text(&outcome.study))?;
+        let study = &outcome.study;
+        out::line(&text(study))?;
+        for (warning, arms) in study.warnings() {
+            console::say(format_args!("warning: {}{warning}", of_arms(&arms, &study.manifest)));
+        }
         if outcome.interrupted {
             out::line(&format!("stopped by Ctrl-C; continue with: carom resume {}", directory.display()))?;
         }
