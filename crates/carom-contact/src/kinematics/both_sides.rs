@@ -51,7 +51,7 @@ impl BothSides {
             _ => Vec::new(),
         };
         let corners = reverse.secondary().iter().enumerate().map(corner).collect();
-        Self { corners, forward, reverse, all }
+        Self { forward, reverse, corners, all }
     }
 
     /// The direction to which a node belongs, and its number there.

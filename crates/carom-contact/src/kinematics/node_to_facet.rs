@@ -253,7 +253,7 @@ impl NodeToFacet {
         }
         let neighbour = self.primary.neighbour(facet, xi > 0.0);
         if neighbour.is_some_and(|neighbour| self.primary.is_of_sibling(neighbour)) {
-            return xi > 1.0 + PAST || xi < -1.0 + PAST;
+            return !(-1.0 + PAST..=1.0 + PAST).contains(&xi);
         }
         if xi.abs() <= 1.0 + PAST_SIDE {
             return false;

@@ -55,7 +55,11 @@ impl Surface {
         let facets: Vec<Vec<usize>> = of_side.chain(rest.iter().cloned()).collect();
         let orientations: Vec<f64> =
             self.orientations.iter().copied().chain(rest.iter().map(|_| 1.0)).collect();
-        Self { side: self.side, siblings: self.side + siblings, ..Self::new(self.shape, &facets, &orientations) }
+        Self {
+            side: self.side,
+            siblings: self.side + siblings,
+            ..Self::new(self.shape, &facets, &orientations)
+        }
     }
 
     /// Shape of every facet.

@@ -4,5 +4,6 @@
 
 mod derivatives;
 mod discrete_gradient;
+mod kinks;
 mod obstacles;
 mod update_facets;

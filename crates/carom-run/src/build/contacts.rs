@@ -2,7 +2,8 @@
 //! new contact method is one line here.
 
 use carom_case::{
-    ActiveSetRule, Case, ContactLaw, ContactSpec, Enforcement, ForceTime, ObstacleMotion, Persistency, Problem,
+    ActiveSetRule, Case, ContactLaw, ContactSpec, Enforcement, ForceTime, ObstacleMotion, Persistency,
+    Problem,
 };
 use carom_contact::{
     BothSides, ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet,
