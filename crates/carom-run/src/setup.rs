@@ -105,6 +105,10 @@ impl<'a> Setup<'a> {
     pub fn start(self) -> Result<Simulation, Problems> {
         let (case, model) = (self.case, self.build()?);
         let placed = case.initial.is_some() || case.manufactured.is_some();
+        // A body whose cells are inverted has its outside within.
+        if let Some(rejected) = inverted(case, &model).filter(|_| !placed) {
+            return Err(vec![no_start(case, placed, &rejected)].into());
+        }
         let overlaps = if placed { Vec::new() } else { overlaps(&model) };
         let problems = [overlaps, too_long(case, &model)].concat();
         if !problems.is_empty() {
@@ -179,6 +183,14 @@ fn grid(case: &Case) -> Grid {
     // over few steps.
     let guard = case.time.energy_guard.filter(|_| !case.time.scheme.is_static());
     Grid { dt: case.time.step, steps: case.time.steps() as u64, phase: case.time.phase, guard }
+}
+
+/// Whether the formulas of an initial position invert a cell.
+fn inverted(case: &Case, model: &Model) -> Option<Rejected> {
+    case.bodies.iter().find(|body| body.position.is_some())?;
+    let mut force = vec![0.0; model.dofs()];
+    let (body, inverted) = model.internal_force(&model.initial_position, &mut force).err()?;
+    Some(Rejected::Inverted { body, inverted })
 }
 
 /// Why a case has no initial state, with its key and a suggestion.

@@ -75,7 +75,8 @@ impl Balance {
             for (k, impulse) in state.impulses.iter().enumerate() {
                 let of = |is: bool| if is { impulse[i] } else { 0.0 };
                 let secondary = model.contacts[k].kinematics.secondary();
-                contact += of(secondary.iter().any(|node| body.nodes().contains(node)));
+                // Corners of the primary side, if there are any, follow the secondary nodes.
+                contact += of(secondary.first().is_some_and(|node| body.nodes().contains(node)));
                 contact -= of(model.contacts[k].primary_part == Some(self.body));
                 scale = scale.max(impulse[i].abs());
             }
