@@ -225,11 +225,12 @@ def verified(carom, given, place):
         fast = ["--fast"] if given.fast else []
         # Missed expectations and stopped runs are rows of the tables, not errors.
         run(carom, "verify", *fast, "--report", "--out", out, "--markdown", out, accept=(0, 1, 3))
-    for family, (case, figure) in FIGURES.items():
+    for family in [*FIGURES, "paper"]:
         if (out / f"{family}.md").is_file():
             shutil.copy(out / f"{family}.md", GENERATED)
         else:
             problems.append(f"{family}.md, the table of `carom verify`")
+    for family, (case, figure) in FIGURES.items():
         if found := figure_of(out, family, case, figure):
             shutil.copy(found, GENERATED / f"{family}.svg")
         else:
@@ -298,6 +299,9 @@ def build():
     if done.returncode != 0:
         problems.append(f"mdbook build: {done.stderr.strip()}")
         return
+    # Reasons follow a warning in lines of their own.
+    said = [line.strip() for line in done.stderr.splitlines()]
+    problems.extend(line for line in said if line.startswith(("WARN", "ERROR")) and "Caused By:" not in line)
     site = ROOT / "target/book"
     pages = {page.resolve(): Page(page) for page in site.rglob("*.html") if page.name not in ("print.html", "toc.html", "404.html")}
     for path, page in pages.items():
