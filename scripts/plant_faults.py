@@ -61,12 +61,14 @@ def main():
             continue
         begin, found = time.time(), planted(fault)
         print(f"{'found   ' if found else 'SURVIVED'}  {fault['name']}  ({time.time() - begin:.0f} s)  {found or ''}", flush=True)
-        rows.append([fault["name"], place(fault), found or "**survived**"])
+        rows.append([fault["name"], place(fault), found or "survived"])
         if not found:
             survived.append(fault["name"])
     if given.markdown:
         lines = [["Fault", "In", "Found by"], ["---"] * 3, *rows]
-        lines = [" | ".join(cell.replace("|", "\\|") for cell in line) for line in lines]
+        # A file is in code, where only a bar needs to be escaped.
+        escaped = lambda cell: re.sub(r"[|]" if cell.startswith("`") else r"[|*_]", r"\\\g<0>", cell)
+        lines = [" | ".join(map(escaped, line)) for line in lines]
         given.markdown.write_text("".join(f"| {line} |\n" for line in lines), encoding="utf-8")
     print(f"{len(rows)} faults, {len(survived)} survived{': ' + ', '.join(survived) if survived else ''}")
     sys.exit(1 if survived else 0)

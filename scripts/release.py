@@ -14,6 +14,7 @@ import hashlib
 import os
 import pathlib
 import subprocess
+import sys
 import tarfile
 import tempfile
 import tomllib
@@ -31,6 +32,11 @@ def host() -> str:
 
 def build(triple: str) -> pathlib.Path:
     """The binary, linked statically."""
+    where = subprocess.run(["rustc", "--print", "target-libdir", "--target", triple], capture_output=True, text=True, check=False)
+    if where.returncode != 0:
+        sys.exit(where.stderr.strip())
+    if not pathlib.Path(where.stdout.strip()).is_dir():
+        sys.exit(f"the standard library of {triple} is not installed: `rustup target add {triple}`, which needs the network")
     flags = f"{os.environ.get('RUSTFLAGS', '')} -C target-feature=+crt-static".strip()
     # Assertions are for developers; a release does without them.
     profile = {"CARGO_PROFILE_RELEASE_DEBUG_ASSERTIONS": "false", "CARGO_PROFILE_RELEASE_LTO": "thin"}

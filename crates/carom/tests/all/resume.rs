@@ -175,30 +175,31 @@ fn threads_and_outputs_change_no_bit() {
     };
     let (all, some) = (steps(&expected), steps(&sparse));
     assert_eq!((all.len(), some.len()), (402, 1 + 134 + 1), "heading, every third of 0..=400, the last");
-    // Counts are those since the previous row; all else is that of the instant.
-    let counts = ["activations", "releases", "newton", "rejected", "penetration"];
+    // Counts and depths are those since the previous row; all else is that of the instant.
+    let counts = ["activations", "releases", "newton", "rejected"];
+    let depths = ["penetration", "penetration_secondary"];
     let heads: Vec<&str> = all["step"].split(',').collect();
     let values = |line: &str| -> Vec<f64> { line.split(',').map(|cell| cell.parse().unwrap()).collect() };
-    let (mut sums, mut deepest) = (vec![0.0; heads.len()], 0.0_f64);
+    let (mut sums, mut deepest) = (vec![0.0; heads.len()], vec![0.0_f64; heads.len()]);
     let mut rows: Vec<_> = all.iter().filter(|(step, _)| *step != "step").collect();
     rows.sort_by_key(|(step, _)| step.parse::<u64>().unwrap());
     for (step, line) in rows {
         let row = values(line);
-        for (i, head) in heads.iter().enumerate() {
-            sums[i] += row[i];
-            deepest = if *head == "penetration" { deepest.max(row[i]) } else { deepest };
+        for (i, value) in row.iter().enumerate() {
+            sums[i] += value;
+            deepest[i] = deepest[i].max(*value);
         }
         let Some(other) = some.get(step) else { continue };
         for (i, other) in values(other).into_iter().enumerate() {
             let expected = match heads[i] {
-                "penetration" => deepest,
+                head if depths.contains(&head) => deepest[i],
                 head if counts.contains(&head) => sums[i],
                 _ => row[i],
             };
             assert_eq!(other, expected, "step {step}, {}", heads[i]);
         }
         sums.fill(0.0);
-        deepest = 0.0;
+        deepest.fill(0.0);
     }
 }
 
