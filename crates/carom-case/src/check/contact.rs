@@ -1,8 +1,6 @@
 //! Checks of contacts: two different bodies, each pair once, mass where the projection needs it,
 //! laws that are compatible with each other and with the scheme, and what a frozen ξ needs.
 
-use super::super::suggest;
-use super::super::tree::Node;
 use super::super::{
     ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ObstacleMotion, Persistency, PrimarySpec,
 };
@@ -22,11 +20,7 @@ impl Check<'_> {
             let what = "persistency = \"project\" cannot be used here";
             self.add(path("persistency"), what, why, "leave persistency out");
         }
-        // `enforcement` may be misspelt.
-        let misspelt = tables.get(i).and_then(Node::table).is_some_and(|table| {
-            table.0.iter().any(|entry| suggest::nearest(&entry.key, ["enforcement"]).is_some())
-        });
-        if !penalty && given("stiffness") && (given("enforcement") || !misspelt) {
+        if !penalty && given("stiffness") && !self.is_misspelt("contact", i, "enforcement") {
             let why = "a multiplier enforces the constraint exactly; only enforcement = \"penalty\" has a stiffness";
             self.add(
                 path("stiffness"),

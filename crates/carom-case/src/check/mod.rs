@@ -59,6 +59,15 @@ impl<'a> Check<'a> {
         self.document.root().get(list).and_then(Node::list).unwrap_or(&[])
     }
 
+    /// Whether a key of a table in a list is missing, and another one resembles it: one mistake is
+    /// reported once.
+    fn is_misspelt(&self, list: &str, i: usize, key: &'static str) -> bool {
+        self.tables(list).get(i).and_then(Node::table).is_some_and(|table| {
+            let resembles = |name: &str| suggest::nearest(name, [key]).is_some();
+            table.get(key).is_none() && table.0.iter().any(|entry| resembles(&entry.key))
+        })
+    }
+
     /// Names of a list of tables; `None` if one of them cannot be read, occurs twice or has a
     /// misspelt header, because a reference might be to that one.
     fn names(&self, list: &str) -> Option<Vec<&'a str>> {
