@@ -13,8 +13,6 @@ use crate::stepper::Stepper;
 use crate::timings::Timings;
 use crate::workspace::Workspace;
 
-/// Grid steps between two checks whether a body crosses itself.
-const SELF_CHECK: u64 = 10;
 /// Bisections of Δt before the run stops.
 const MAX_BISECTIONS: u32 = 12;
 
@@ -337,9 +335,7 @@ impl Simulation {
         state.step += 1;
         state.time = self.grid.time(state.step);
         let mut overlapping = self.work.others.overlapping(&self.model, &state.y);
-        if state.step % SELF_CHECK == 0 {
-            overlapping.extend(self.work.others.crossing_themselves(&self.model, &state.y));
-        }
+        overlapping.extend(self.work.others.crossing_themselves(&self.model, &state.y));
         for pair in overlapping {
             if !state.overlaps.contains(&pair) {
                 state.overlaps.push(pair);
