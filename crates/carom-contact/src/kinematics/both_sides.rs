@@ -15,7 +15,8 @@
 //! penetration, and both would be nearly dependent: the corner is then left to the node.
 
 use super::Kinematics;
-use super::node_to_facet::{NodeToFacet, PAST_SIDE};
+use super::facing::PAST_SIDE;
+use super::node_to_facet::NodeToFacet;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
 use crate::rows::Rows;

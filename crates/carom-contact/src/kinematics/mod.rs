@@ -4,6 +4,7 @@
 //! Positions are flat over all nodes, `dimension` components each.
 
 mod both_sides;
+mod facing;
 mod gap;
 mod node_to_facet;
 mod node_to_obstacle;

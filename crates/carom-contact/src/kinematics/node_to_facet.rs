@@ -6,23 +6,14 @@
 //! the paths in the first step of a pair, and of the closest point at the start of the step in the
 //! later ones; a step leaves it unchanged.
 //!
-//! Joints and ends of facets, with the body on the left:
-//!
-//! ```text
-//! joint, convex          a pair past the end is handed to the neighbour; past the ends of both, it keeps
-//!                        its facet, which is extrapolated up to |ξ| = 1.2
-//! dent                   a node that would be handed back within the step has a pair with either facet,
-//!                        g ≥ 0 for both: it may lie in the joint
-//! corner, end of side    nothing is faced past the end, |ξ| > 1.001; a pair that slides past it keeps its
-//!                        facet to the end of the step and leaves at the start of the next one
-//! ```
-//!
-//! A pair is handed to the neighbour only between solves.
+//! Which facet a node faces, at joints and ends, is in `facing.rs`. A pair is handed to the neighbour
+//! only between solves.
 
 use std::sync::{Mutex, PoisonError};
 
 use carom_solid::FacetShape;
 
+use super::facing::{Closest, Next, REACH};
 use super::gap::Gap;
 use super::surface::{Search, Surface};
 use super::swept::SweptTest;
@@ -32,18 +23,12 @@ use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
 use crate::rows::Rows;
 
-/// |ξ| up to which a facet is extrapolated.
-const REACH: f64 = 1.2;
-/// |ξ| − 1 above which a closest point is past the end of its facet.
-const PAST: f64 = 1e-9;
-/// The same at a corner or at the end of a side: where sides of equal length are pressed together,
-/// their ends bulge differently.
-pub(super) const PAST_SIDE: f64 = 1e-3;
 /// |ξ| allowed for the closest point before Newton has converged.
 const WANDER: f64 = 3.0;
 /// |ξ| beyond which a pair is handed over, or back, before Newton has converged.
 const HAND_OVER: f64 = 1.02;
 const HAND_BACK: f64 = 1.1;
+
 /// A node this far behind a facet (relative to its length) at the start of a step has not crossed
 /// the facet.
 const BEHIND: f64 = 1e-6;
@@ -131,8 +116,7 @@ impl NodeToFacet {
     }
 
     fn gap(&self, node: usize, facet: usize, xi: f64, y: Places) -> f64 {
-        let c = self.primary.facet(facet).at(y, xi);
-        (y.at(node) - c.position).dot(&c.normal)
+        self.primary.gap(facet, xi, y.at(node), y)
     }
 
     /// ξ of the point of a pair's facet closest to its node, from the last one.
@@ -161,7 +145,7 @@ impl NodeToFacet {
     ) -> Option<(usize, f64, bool)> {
         let (node, allowed) = (self.secondary[place], self.allowed(place));
         let near = tools.search.near(node, before, now);
-        let closest = self.closest_facet(near, node, now);
+        let closest = self.primary.closest_facet(near, now.at(node), now);
         if allowed > 0.0 {
             // It may be inside, and is no candidate before it is too deep, or has moved too far to
             // tell from its end alone.
@@ -183,7 +167,7 @@ impl NodeToFacet {
         let still_faced = |facet: usize| {
             let xi = self.primary.facet(facet).closest_point(now, now.at(node), REACH);
             self.detection == Detection::Trajectory
-                || xi.is_some_and(|xi| !self.faces_nothing(facet, xi, now))
+                || xi.is_some_and(|xi| !self.primary.faces_nothing(facet, xi, now))
         };
         let entered = first.filter(|&(_, facet, _)| !entered_elsewhere && still_faced(facet));
         if let Some((_, facet, xi)) = entered {
@@ -199,91 +183,6 @@ impl NodeToFacet {
         let behind = |s| self.gap(node, facet, s, before) < -depth(self.primary.length(facet, before));
         (!start.map_or(entered_elsewhere, behind)).then_some((facet, xi, false))
     }
-
-    /// The closest of some facets that a node faces at positions `y`.
-    fn closest_facet(&self, facets: &[usize], node: usize, y: Places) -> Option<Closest> {
-        let mut closest: Option<Closest> = None;
-        for &facet in facets {
-            let side = self.primary.facet(facet);
-            let Some(xi) = side.closest_point(y, y.at(node), REACH) else { continue };
-            let gap = self.gap(node, facet, xi, y);
-            let of_side = self.primary.is_of_side(facet);
-            // A node beside the rest of the boundary may still face the side.
-            if if of_side { self.faces_nothing(facet, xi, y) } else { gap >= 0.0 || xi.abs() > 1.0 } {
-                continue;
-            }
-            let distance = gap.abs() + (xi.abs() - 1.0).max(0.0) * self.primary.length(facet, y);
-            // The facets of the side come first: one that is as near as the rest is preferred.
-            if closest.is_none_or(|c| distance < if of_side { c.distance } else { (1.0 - PAST) * c.distance })
-            {
-                closest = Some(Closest { facet, xi, gap, distance });
-            }
-        }
-        closest
-    }
-
-    /// The next facet of a pair that is past the end of its facet.
-    fn next_facet(&self, pair: &Pair, came_from: Option<usize>, y: Places) -> Next {
-        if pair.xi.abs() <= 1.0 + PAST {
-            return Next::Stay;
-        }
-        let node = self.secondary[pair.node];
-        let forward = pair.xi > 0.0;
-        let Some(neighbour) = self.primary.neighbour_of_side(pair.facet, forward) else {
-            return if self.faces_nothing(pair.facet, pair.xi, y) { Next::Leave } else { Next::Stay };
-        };
-        if came_from == Some(neighbour) {
-            return Next::Dent(neighbour, if forward { -1.0 } else { 1.0 });
-        }
-        if let Some(xi) = self.primary.facet(neighbour).closest_point(y, y.at(node), REACH) {
-            let inside = if forward { xi >= -1.0 } else { xi <= 1.0 };
-            if inside {
-                return Next::HandOver(neighbour, xi);
-            }
-        }
-        // Past both ends: in the vertex cone of a convex joint.
-        let bridged = pair.xi.abs() <= REACH && !self.faces_nothing(pair.facet, pair.xi, y);
-        if bridged { Next::Stay } else { Next::Leave }
-    }
-
-    /// Whether ξ lies past a facet's end and no blunt joint with the side follows there.
-    fn faces_nothing(&self, facet: usize, xi: f64, y: Places) -> bool {
-        if xi.abs() < 1.0 - PAST {
-            return false;
-        }
-        let neighbour = self.primary.neighbour(facet, xi > 0.0);
-        if neighbour.is_some_and(|neighbour| self.primary.is_of_sibling(neighbour)) {
-            return !(-1.0 + PAST..=1.0 + PAST).contains(&xi);
-        }
-        if xi.abs() <= 1.0 + PAST_SIDE {
-            return false;
-        }
-        let Some(neighbour) = neighbour.filter(|&neighbour| self.primary.is_of_side(neighbour)) else {
-            return true;
-        };
-        let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
-        self.primary.is_corner(first, second, y)
-    }
-}
-
-/// The closest facet of a node.
-#[derive(Clone, Copy)]
-struct Closest {
-    facet: usize,
-    xi: f64,
-    gap: f64,
-    /// Distance from the facet, with the distance past its end.
-    distance: f64,
-}
-
-/// Where a pair past the end of its facet belongs.
-enum Next {
-    Stay,
-    /// On the neighbour, at ξ.
-    HandOver(usize, f64),
-    /// On the neighbour too, at ξ.
-    Dent(usize, f64),
-    Leave,
 }
 
 impl Kinematics for NodeToFacet {
@@ -343,7 +242,7 @@ impl Kinematics for NodeToFacet {
             // Moves on to neighbours until the closest point lies on the facet, at most as many
             // times as there are facets.
             for _ in 0..=self.primary.facets() {
-                match self.next_facet(pair, left.get(&pair.node).copied(), placed) {
+                match self.primary.next_facet(pair, placed.at(node), left.get(&pair.node).copied(), placed) {
                     Next::Stay => return true,
                     Next::HandOver(facet, _) | Next::Dent(facet, _)
                         if twice.contains(&(pair.node, facet)) =>
@@ -437,7 +336,11 @@ impl Kinematics for NodeToFacet {
             }
             let (from, mut previous) = (pair.facet, None);
             for _ in 0..self.primary.facets() {
-                let Next::HandOver(facet, xi) = self.next_facet(pair, previous, now) else { break };
+                let Next::HandOver(facet, xi) =
+                    self.primary.next_facet(pair, now.at(self.secondary[pair.node]), previous, now)
+                else {
+                    break;
+                };
                 previous = Some(pair.facet);
                 (pair.facet, pair.xi) = (facet, xi);
             }
@@ -464,7 +367,7 @@ impl Kinematics for NodeToFacet {
         if !self.is_frozen() {
             let lost = ContactError::Lost { node, facet: pair.facet, xi: pair.xi };
             pair.xi = self.closest(pair, y).ok_or(lost)?;
-            if !pair.active && self.faces_nothing(pair.facet, pair.xi, y) {
+            if !pair.active && self.primary.faces_nothing(pair.facet, pair.xi, y) {
                 rows.push_open();
                 return Ok(());
             }

@@ -1,0 +1,122 @@
+//! Which facet of the primary side a node faces. With the body on the left:
+//!
+//! ```text
+//! joint, convex          a pair past the end is handed to the neighbour; past the ends of both, it keeps
+//!                        its facet, which is extrapolated up to |ξ| = 1.2
+//! dent                   a node that would be handed back within the step has a pair with either facet,
+//!                        g ≥ 0 for both: it may lie in the joint
+//! corner, end of side    nothing is faced past the end, |ξ| > 1.001; a pair that slides past it keeps its
+//!                        facet to the end of the step and leaves at the start of the next one
+//! ```
+
+use carom_algebra::Vector;
+
+use super::surface::Surface;
+use crate::pair::Pair;
+use crate::places::Places;
+
+/// |ξ| up to which a facet is extrapolated.
+pub(super) const REACH: f64 = 1.2;
+/// |ξ| − 1 above which a closest point is past the end of its facet.
+const PAST: f64 = 1e-9;
+/// The same at a corner or at the end of a side: where sides of equal length are pressed together,
+/// their ends bulge differently.
+pub(super) const PAST_SIDE: f64 = 1e-3;
+
+impl Surface {
+    /// The closest of some facets that a node at `from` faces at positions `y`.
+    pub(super) fn closest_facet(&self, facets: &[usize], from: Vector<2>, y: Places) -> Option<Closest> {
+        let mut closest: Option<Closest> = None;
+        for &facet in facets {
+            let side = self.facet(facet);
+            let Some(xi) = side.closest_point(y, from, REACH) else { continue };
+            let gap = self.gap(facet, xi, from, y);
+            let of_side = self.is_of_side(facet);
+            // A node beside the rest of the boundary may still face the side.
+            if if of_side { self.faces_nothing(facet, xi, y) } else { gap >= 0.0 || xi.abs() > 1.0 } {
+                continue;
+            }
+            let distance = gap.abs() + (xi.abs() - 1.0).max(0.0) * self.length(facet, y);
+            // The facets of the side come first: one that is as near as the rest is preferred.
+            if closest.is_none_or(|c| distance < if of_side { c.distance } else { (1.0 - PAST) * c.distance })
+            {
+                closest = Some(Closest { facet, xi, gap, distance });
+            }
+        }
+        closest
+    }
+
+    /// The next facet of a pair that is past the end of its facet.
+    pub(super) fn next_facet(
+        &self,
+        pair: &Pair,
+        from: Vector<2>,
+        came_from: Option<usize>,
+        y: Places,
+    ) -> Next {
+        if pair.xi.abs() <= 1.0 + PAST {
+            return Next::Stay;
+        }
+        let forward = pair.xi > 0.0;
+        let Some(neighbour) = self.neighbour_of_side(pair.facet, forward) else {
+            return if self.faces_nothing(pair.facet, pair.xi, y) { Next::Leave } else { Next::Stay };
+        };
+        if came_from == Some(neighbour) {
+            return Next::Dent(neighbour, if forward { -1.0 } else { 1.0 });
+        }
+        if let Some(xi) = self.facet(neighbour).closest_point(y, from, REACH) {
+            let inside = if forward { xi >= -1.0 } else { xi <= 1.0 };
+            if inside {
+                return Next::HandOver(neighbour, xi);
+            }
+        }
+        // Past both ends: in the vertex cone of a convex joint.
+        let bridged = pair.xi.abs() <= REACH && !self.faces_nothing(pair.facet, pair.xi, y);
+        if bridged { Next::Stay } else { Next::Leave }
+    }
+
+    /// Distance of a point along the normal of a facet at ξ.
+    pub(super) fn gap(&self, facet: usize, xi: f64, from: Vector<2>, y: Places) -> f64 {
+        let c = self.facet(facet).at(y, xi);
+        (from - c.position).dot(&c.normal)
+    }
+
+    /// Whether ξ lies past a facet's end and no blunt joint with the side follows there.
+    pub(super) fn faces_nothing(&self, facet: usize, xi: f64, y: Places) -> bool {
+        if xi.abs() < 1.0 - PAST {
+            return false;
+        }
+        let neighbour = self.neighbour(facet, xi > 0.0);
+        if neighbour.is_some_and(|neighbour| self.is_of_sibling(neighbour)) {
+            return !(-1.0 + PAST..=1.0 + PAST).contains(&xi);
+        }
+        if xi.abs() <= 1.0 + PAST_SIDE {
+            return false;
+        }
+        let Some(neighbour) = neighbour.filter(|&neighbour| self.is_of_side(neighbour)) else {
+            return true;
+        };
+        let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
+        self.is_corner(first, second, y)
+    }
+}
+
+/// The closest facet of a node.
+#[derive(Clone, Copy)]
+pub(super) struct Closest {
+    pub(super) facet: usize,
+    pub(super) xi: f64,
+    pub(super) gap: f64,
+    /// Distance from the facet, with the distance past its end.
+    distance: f64,
+}
+
+/// Where a pair past the end of its facet belongs.
+pub(super) enum Next {
+    Stay,
+    /// On the neighbour, at ξ.
+    HandOver(usize, f64),
+    /// On the neighbour too, at ξ.
+    Dent(usize, f64),
+    Leave,
+}
