@@ -16,7 +16,7 @@ mod small;
 mod substitution;
 mod threads;
 
-pub use complementarity::complementarity;
+pub use complementarity::{complementarity, proximal};
 pub use condensed::Condensed;
 pub use difference::jacobian_error;
 pub use elimination::Elimination;

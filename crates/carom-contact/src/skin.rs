@@ -27,8 +27,6 @@ pub struct Depth {
     pub facet: usize,
     /// ξ of that point.
     pub xi: f64,
-    /// Distance between its ends.
-    pub length: f64,
 }
 
 impl Skin {
@@ -36,6 +34,11 @@ impl Skin {
     pub fn new(surface: Surface) -> Self {
         let hull = Hull::line(surface.shape().nodes(), 1.0);
         Self { surface, hull, tree: Tree::default() }
+    }
+
+    /// Global numbers of the nodes of a facet.
+    pub fn facet_nodes(&self, facet: usize) -> &[usize] {
+        self.surface.facet(facet).nodes
     }
 
     /// Moves the boundary to positions `y`, flat over all nodes.
@@ -62,7 +65,7 @@ impl Skin {
         let outside =
             if joint { Self::is_outside_joint } else { Self::is_outside }(self, facet, xi, point, y);
         let distance = if outside { distance } else { -distance };
-        Some(Depth { distance, facet, xi, length: self.surface.length(facet, y) })
+        Some(Depth { distance, facet, xi })
     }
 
     /// Distance between a point and the boundary at ξ of a facet, which may lie elsewhere.

@@ -4,10 +4,19 @@
 
 use crate::state::Ledger;
 
+/// Round-off relative to the energies.
+const ROUND_OFF: f64 = 1e-12;
+
 impl Ledger {
     /// Rise of total − external work above its running minimum.
     pub fn rise(&self) -> f64 {
         self.total() - self.external_work - self.created.lowest
+    }
+
+    /// The rise beyond what may be the work of loads, or round-off of the energies.
+    pub(crate) fn created(&self) -> f64 {
+        let energies = self.kinetic + self.strain.abs() + self.potential.abs() + self.total_at_start.abs();
+        self.rise() - self.unknown_work() - ROUND_OFF * energies
     }
 
     /// Energy that a rise is judged against.

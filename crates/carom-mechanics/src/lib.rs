@@ -29,6 +29,7 @@ pub mod stability;
 mod start;
 mod state;
 mod stepper;
+mod substeps;
 mod sums;
 mod system;
 mod tangent_factor;

@@ -22,8 +22,8 @@ pub(crate) struct Penetration {
     y: Vec<f64>,
     /// Bodies whose skins have their positions of this step.
     current: Vec<bool>,
-    /// Depths of the active pairs of a contact, by node.
-    held: Vec<(usize, f64)>,
+    /// Depths of the active pairs of a contact and lengths of their facets, by node.
+    held: Vec<(usize, f64, f64)>,
     rows: Option<Rows>,
     /// The skins of all bodies, once they have been asked for.
     all: Vec<Option<Skin>>,
@@ -246,10 +246,12 @@ impl Penetration {
                 let mut pair = *pair;
                 contact.kinematics.start_step(&mut pair, y);
                 if contact.kinematics.measure(&mut pair, y, rows).is_ok() {
-                    held.push((contact.kinematics.secondary()[pair.node], (-rows.row(0).gap).max(0.0)));
+                    let node = contact.kinematics.secondary()[pair.node];
+                    let facet = contact.kinematics.facet_nodes(&pair);
+                    held.push((node, (-rows.row(0).gap).max(0.0), length(model, facet)));
                 }
             }
-            held.sort_unstable_by_key(|(node, _)| *node);
+            held.sort_unstable_by_key(|(node, ..)| *node);
         }
         let start = *first;
         for i in 0..nodes.len() {
@@ -261,29 +263,31 @@ impl Penetration {
             }
             let node = watched.node;
             let at = [y[2 * node], y[2 * node + 1]];
-            let (depth, length) = if let Ok(p) = held.binary_search_by_key(&node, |(held, _)| *held) {
-                (held[p].1, 0.0)
+            let (depth, entered) = if let Ok(p) = held.binary_search_by_key(&node, |(held, ..)| *held) {
+                (held[p].1, held[p].2)
             } else {
                 if !std::mem::replace(&mut current[*body], true) {
                     skin.update(y);
                 }
                 // No deeper than any point of the boundary is away: neither the deepest nor too deep.
-                let bound = watched.near.map_or(f64::INFINITY, |(facet, xi)| skin.distance(facet, xi, at, y));
                 let known = if watched.constrained { deepest.constrained } else { deepest.all };
-                if bound <= known && bound <= watched.share * watched.length {
-                    continue;
+                if let Some((facet, xi)) = watched.near {
+                    let bound = skin.distance(facet, xi, at, y);
+                    if bound <= known && bound <= watched.limit(length(model, skin.facet_nodes(facet))) {
+                        continue;
+                    }
                 }
                 let Some(found) = skin.depth(at, watched.near.map(|near| near.0), y) else {
                     continue;
                 };
                 (watched.clearance, watched.near) = (found.distance, Some((found.facet, found.xi)));
-                (-found.distance, found.length)
+                (-found.distance, length(model, skin.facet_nodes(found.facet)))
             };
             if depth > deepest.all {
                 *first = k;
             }
             deepest.add(depth, watched.constrained);
-            let limit = watched.share * watched.length.max(length);
+            let limit = watched.limit(entered);
             if depth > limit && worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
                 worst = Some(Inside { node, depth, limit });
             }
@@ -321,7 +325,7 @@ pub fn inside(model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> 
 }
 
 /// Whether every node of a contact has a gap: its primary is rigid, or a point.
-fn has_gaps(model: &Model, contact: &Contact) -> bool {
+pub(crate) fn has_gaps(model: &Model, contact: &Contact) -> bool {
     contact.facets.len() < 2 || model.dimension == 1
 }
 
@@ -341,6 +345,12 @@ impl Watched {
     fn new(node: usize, length: f64, constrained: bool, share: f64) -> Self {
         Self { node, length, constrained, share, clearance: 0.0, near: None }
     }
+
+    /// Allowed depth in a facet of this length: a node that the contact law keeps outside is judged by
+    /// the facet that it enters alone.
+    fn limit(&self, entered: f64) -> f64 {
+        self.share * if self.constrained { entered } else { self.length.max(entered) }
+    }
 }
 
 /// The nodes of a side's facets, with the depths that its contact allows.
@@ -359,14 +369,19 @@ fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -> Vec<Watch
 fn lengths(model: &Model, facets: &[Vec<usize>]) -> impl Iterator<Item = (usize, f64)> {
     let mut nodes = std::collections::BTreeMap::new();
     for facet in facets {
-        let [start, end] = [facet[0], facet[1]].map(|node| &model.reference[2 * node..2 * node + 2]);
-        let length = (end[0] - start[0]).hypot(end[1] - start[1]);
+        let length = length(model, facet);
         for &node in facet {
             let longest: &mut f64 = nodes.entry(node).or_default();
             *longest = longest.max(length);
         }
     }
     nodes.into_iter()
+}
+
+/// Distance between the ends of a facet in the reference configuration.
+pub(crate) fn length(model: &Model, facet: &[usize]) -> f64 {
+    let [start, end] = [facet[0], facet[1]].map(|node| &model.reference[2 * node..2 * node + 2]);
+    (end[0] - start[0]).hypot(end[1] - start[1])
 }
 
 /// Square of the distance between two positions of a node.

@@ -117,6 +117,16 @@ pub enum Rejected {
         /// Allowed depth.
         limit: f64,
     },
+    /// A step created energy.
+    #[error(
+        "the step created energy: {created:.3e}, more than the {allowed:.3e} that the energy guard allows one step"
+    )]
+    Energy {
+        /// Rise of total − external work above its running minimum in this step.
+        created: f64,
+        /// Allowed rise.
+        allowed: f64,
+    },
     /// A number is not finite.
     #[error("{what} is not finite")]
     NotFinite {
@@ -140,6 +150,7 @@ impl Rejected {
             Self::Unconstrained(_) => "unconstrained-body",
             Self::Jump { .. } => "jump",
             Self::Deep { .. } | Self::Penetration { .. } => "penetration",
+            Self::Energy { .. } => "energy-created",
             Self::NotFinite { .. } => "not-finite",
         }
     }

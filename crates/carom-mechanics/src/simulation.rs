@@ -9,12 +9,10 @@ use crate::penetration::Depths;
 use crate::rejected::Rejected;
 use crate::start::{Before, start};
 use crate::state::{OtherModel, State};
-use crate::stepper::Stepper;
+use crate::stepper::{StepReport, Stepper};
+use crate::substeps::{Next, Progress, decide};
 use crate::timings::Timings;
 use crate::workspace::Workspace;
-
-/// Bisections of Δt before the run stops.
-const MAX_BISECTIONS: u32 = 12;
 
 /// Why a simulation stopped before its end; the state of the last grid time is preserved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -125,6 +123,42 @@ pub struct GridReport {
     pub penetration: Depths,
     /// Events in order.
     pub events: Vec<LogEvent>,
+}
+
+impl GridReport {
+    /// Adds an accepted step that ended at a time.
+    fn add(&mut self, time: f64, step: StepReport) {
+        self.newton += step.newton;
+        self.activations += step.activations.len() as u32;
+        self.releases += step.releases.len() as u32;
+        self.penetration = self.penetration.max(step.penetration);
+        for (list, active) in [(step.activations, true), (step.releases, false)] {
+            let event = |(contact, node)| LogEvent::ActiveSet { time, contact, node, active };
+            self.events.extend(list.into_iter().map(event));
+        }
+        let pairs = step.events.into_iter();
+        self.events.extend(pairs.map(|(contact, event)| LogEvent::Pair { time, contact, event }));
+        if step.projection != 0.0 {
+            self.events.push(LogEvent::Projection { time, jump: step.projection });
+        }
+        if step.restitution != 0.0 {
+            self.events.push(LogEvent::Restitution { time, jump: step.restitution });
+        }
+    }
+
+    fn reject(&mut self, time: f64, dt: f64, rejected: Rejected) {
+        self.rejected += 1;
+        self.events.push(LogEvent::Rejected { time, dt, rejected });
+    }
+
+    /// Forgets the steps since an earlier report, but not the work on them.
+    pub(crate) fn return_to(&mut self, earlier: Self) {
+        let (newton, rejected) = (self.newton, self.rejected);
+        let later = self.events.split_off(earlier.events.len());
+        *self = Self { newton, rejected, ..earlier };
+        let rejections = |event: &LogEvent| matches!(event, LogEvent::Rejected { .. });
+        self.events.extend(later.into_iter().filter(rejections));
+    }
 }
 
 /// A model with its state.
@@ -268,70 +302,41 @@ impl Simulation {
         let (start, length) = (self.grid.time(self.state.step), self.grid.length(self.state.step + 1));
         // The state after the substeps so far; none before the first.
         let mut reached: Option<State> = None;
-        // Progress through the grid step in units of Δt/2^level.
-        let rejected = report.rejected;
-        let (mut level, mut done) = (self.state.bisection.level(), 0_u64);
-        while done < 1 << level {
-            let dt = length / f64::from(1_u32 << level);
-            let time = start + done as f64 * dt;
-            let to = start + (done + 1) as f64 * dt;
-            match self.stepper.step(
-                &self.model,
-                reached.as_ref().unwrap_or(&self.state),
-                dt,
-                to,
-                &mut self.work,
-            ) {
-                Ok(accepted) => {
-                    let (mut next, step) = accepted.into_parts();
-                    next.ledger.observe();
-                    if let Some(before) = reached.replace(next) {
-                        self.work.put(before);
+        let mut progress = Progress { level: self.state.bisection.level(), done: 0 };
+        let (mut kept, mut bisected) = (None, false);
+        while progress.done() < 1.0 {
+            let dt = length / f64::from(1_u32 << progress.level);
+            let time = start + progress.done as f64 * dt;
+            let to = start + (progress.done + 1) as f64 * dt;
+            let from = reached.as_ref().unwrap_or(&self.state);
+            let stepped = self.stepper.step(&self.model, from, dt, to, &mut self.work);
+            let (taken, rejected) =
+                match decide(stepped, from, self.grid.guard, &mut kept, &mut progress, report) {
+                    Next::Take(step) => (Some(step), None),
+                    Next::Bisect(rejected) => (None, Some(rejected)),
+                    Next::Return(rejected, step) => (Some(step), Some(rejected)),
+                    Next::Stop(rejected) => {
+                        report.reject(time, dt, rejected.clone());
+                        return Err(Stopped::NoStep { time, dt, halvings: progress.level, rejected });
                     }
-                    done += 1;
-                    let now = to;
-                    report.newton += step.newton;
-                    report.activations += step.activations.len() as u32;
-                    report.releases += step.releases.len() as u32;
-                    report.penetration = report.penetration.max(step.penetration);
-                    for (list, active) in [(step.activations, true), (step.releases, false)] {
-                        report.events.extend(list.into_iter().map(|(contact, node)| LogEvent::ActiveSet {
-                            time: now,
-                            contact,
-                            node,
-                            active,
-                        }));
-                    }
-                    let pairs = step.events.into_iter();
-                    report.events.extend(pairs.map(|(contact, event)| LogEvent::Pair {
-                        time: now,
-                        contact,
-                        event,
-                    }));
-                    if step.projection != 0.0 {
-                        report.events.push(LogEvent::Projection { time: now, jump: step.projection });
-                    }
-                    if step.restitution != 0.0 {
-                        report.events.push(LogEvent::Restitution { time: now, jump: step.restitution });
-                    }
-                    while level > 0 && done % 2 == 0 {
-                        level -= 1;
-                        done /= 2;
-                    }
-                }
-                Err(rejected) => {
-                    report.rejected += 1;
-                    report.events.push(LogEvent::Rejected { time, dt, rejected: rejected.clone() });
-                    if level == MAX_BISECTIONS {
-                        return Err(Stopped::NoStep { time, dt, halvings: level, rejected });
-                    }
-                    level += 1;
-                    done *= 2;
-                }
+                };
+            if let Some(rejected) = rejected {
+                report.reject(time, dt, rejected);
             }
+            let Some(step) = taken else {
+                progress.bisect();
+                bisected = true;
+                continue;
+            };
+            let (next, step) = step.into_parts();
+            report.add(next.time, step);
+            if let Some(before) = reached.replace(next) {
+                self.work.put(before);
+            }
+            progress.advance();
         }
         let Some(mut state) = reached else { return Ok(()) };
-        state.bisection = self.state.bisection.after(report.rejected > rejected);
+        state.bisection = self.state.bisection.after(bisected);
         state.step += 1;
         state.time = self.grid.time(state.step);
         let mut overlapping = self.work.others.overlapping(&self.model, &state.y);
@@ -352,10 +357,7 @@ impl Simulation {
         let Some(share) = self.grid.guard else { return Ok(()) };
         let ledger = &state.ledger;
         let (created, scale) = (ledger.rise(), ledger.scale());
-        // Round-off of the energies themselves does not count.
-        let noise = 1e-12
-            * (ledger.kinetic + ledger.strain.abs() + ledger.potential.abs() + ledger.total_at_start.abs());
-        if created > share * scale + ledger.unknown_work() + noise {
+        if ledger.created() > share * scale {
             return Err(Stopped::EnergyGuard { time: state.time, created, share, scale });
         }
         Ok(())

@@ -161,6 +161,8 @@ pub struct HalfStepVelocity {
     pub velocity: Vec<f64>,
     /// Its Δt; 0 if not yet known. A step of another size starts from v_n.
     pub dt: f64,
+    /// The longest step since a pair went behind its facet; Δt if none is.
+    pub longest: f64,
 }
 
 /// A state that a model cannot be continued from.
@@ -278,7 +280,7 @@ impl State {
         self.ledger = other.ledger.clone();
         self.previous.clone_from(&other.previous);
         self.half_step.velocity.clone_from(&other.half_step.velocity);
-        self.half_step.dt = other.half_step.dt;
+        (self.half_step.dt, self.half_step.longest) = (other.half_step.dt, other.half_step.longest);
         self.frozen = other.frozen.clone();
         self.bisection = other.bisection;
         self.overlaps.clone_from(&other.overlaps);

@@ -149,7 +149,7 @@ fn mass_matrix(sim: &Simulation) -> (Pattern, Vec<f64>, Vec<usize>, Vec<usize>) 
     let groups = (0..sim.model().dofs()).map(|dof| dof / 2).collect();
     let kinematics = &sim.model().contacts[0].kinematics;
     let nodes_of =
-        |pair: &Pair| [&[kinematics.secondary()[pair.node]], kinematics.facet_nodes(pair.facet)].concat();
+        |pair: &Pair| [&[kinematics.secondary()[pair.node]], kinematics.facet_nodes(pair)].concat();
     let contact_nodes: BTreeSet<usize> = sim.state().pairs[0].iter().flat_map(nodes_of).collect();
     let last = contact_nodes.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
     (pattern, values, groups, last)

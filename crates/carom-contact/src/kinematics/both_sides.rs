@@ -96,8 +96,8 @@ impl Kinematics for BothSides {
         direction.allowed(node)
     }
 
-    fn facet_nodes(&self, facet: usize) -> &[usize] {
-        self.forward.facet_nodes(facet)
+    fn facet_nodes(&self, pair: &Pair) -> &[usize] {
+        self.direction(pair.node).0.facet_nodes(pair)
     }
 
     fn stencil(&self) -> usize {

@@ -36,8 +36,8 @@ pub trait Kinematics: Send + Sync {
         0.0
     }
 
-    /// Global numbers of the nodes of a primary facet; empty for a rigid primary.
-    fn facet_nodes(&self, facet: usize) -> &[usize];
+    /// Global numbers of the nodes of a pair's facet; empty for a rigid primary.
+    fn facet_nodes(&self, pair: &Pair) -> &[usize];
 
     /// Largest number of nodes that one gap depends on.
     fn stencil(&self) -> usize;

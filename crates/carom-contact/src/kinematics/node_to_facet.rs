@@ -190,8 +190,8 @@ impl Kinematics for NodeToFacet {
         &self.secondary
     }
 
-    fn facet_nodes(&self, facet: usize) -> &[usize] {
-        self.primary.facet(facet).nodes
+    fn facet_nodes(&self, pair: &Pair) -> &[usize] {
+        self.primary.facet(pair.facet).nodes
     }
 
     fn stencil(&self) -> usize {

@@ -106,7 +106,7 @@ impl Kinematics for NodeToObstacle {
         &self.secondary
     }
 
-    fn facet_nodes(&self, _: usize) -> &[usize] {
+    fn facet_nodes(&self, _: &Pair) -> &[usize] {
         &[]
     }
 

@@ -20,12 +20,17 @@
 //! Δ dissipation = Δy·½(f_int,n + f_int,n+1) − ΔU − Δt²/8 Δ(a·M a)
 //! ```
 //!
+//! The law lets a node go behind its facet within a step, and takes it out in the next one. In shorter
+//! steps Δt < H that follow a step of H it is taken out at the same rate, g(y_{n+1}) ≥ (1 − Δt/H)
+//! g(y_n): within Δt it would be thrown out with g/Δt.
+//!
 //! The first step, and one of another size, starts with v_{n−½} := v_n − Δt/2 M⁻¹f_n; a contact
 //! force at t_n then acts over a whole step.
 
-use carom_algebra::complementarity;
+use carom_algebra::{complementarity, proximal};
 use carom_contact::{Pairing, Rows};
 
+use super::forward::Forward;
 use super::scratch::Scratch;
 use super::watch::{active, approach, carry_into, depth, gap_at, measure_into};
 use super::{Accepted, StepReport, Stepper, difference};
@@ -35,7 +40,7 @@ use crate::ledger::book_contact_forces;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::stability::lumped;
-use crate::state::State;
+use crate::state::{HalfStepVelocity, State};
 use crate::timings::timed;
 use crate::workspace::Workspace;
 
@@ -183,9 +188,11 @@ impl Explicit {
         }
         let mut velocity = std::mem::take(&mut state.half_step.velocity);
         let Workspace { explicit: scratch, timings, .. } = work;
-        timed(&mut timings.contact, || {
+        let is_behind = timed(&mut timings.contact, || {
             self.contact(model, state, before, dt, &mut velocity, scratch, report)
         })?;
+        let HalfStepVelocity { longest, .. } = &mut state.half_step;
+        *longest = if is_behind { longest.max(dt) } else { dt };
 
         state.take_pairs(&scratch.pairings);
         state.f_contact.fill(0.0);
@@ -202,7 +209,7 @@ impl Explicit {
     }
 
     /// Pairs with the forces that make y_n + Δt v_{n+½} admissible, and that velocity; the
-    /// gradients of their rows are those at y_n.
+    /// gradients of their rows are those at y_n. Returns whether a pair is behind its facet at y_n.
     #[allow(clippy::too_many_arguments)]
     fn contact(
         &self,
@@ -213,18 +220,24 @@ impl Explicit {
         velocity: &mut Vec<f64>,
         scratch: &mut Scratch,
         report: &mut StepReport,
-    ) -> Result<(), Rejected> {
+    ) -> Result<bool, Rejected> {
         let tolerance = GAP_TOLERANCE * model.scale;
-        let Scratch { free, at, pairings, rows, impulses, .. } = scratch;
+        let Scratch { free, at, pairings, rows, impulses, places, loaded, .. } = scratch;
         free.clear();
         free.extend(before.iter().zip(&state.a).map(|(v, a)| v + dt * a));
         carry_into(model, state, Pairing::near, pairings);
         let mut row = Rows::new(model.dimension);
         at.resize(free.len(), 0.0);
         velocity.clone_from(free);
+        let mut is_behind = false;
         for round in 0..=ROUNDS {
-            place(state, before, dt, 0.0, velocity, at);
-            let changed = search(model, &state.y, at, pairings, &mut report.events);
+            Forward { state, before, velocity, dt }.place(0.0, at);
+            loaded.clear();
+            loaded.extend(forces(pairings));
+            search(model, &state.y, at, pairings, &mut report.events);
+            // A force handed to another facet acts along another row. Gaps of new pairs are measured
+            // below with all others.
+            let moved_on = !forces(pairings).eq(loaded.iter().copied());
             measure_into(model, &state.y, pairings, rows)?;
             // Gaps at the positions of the law replace those at y_n; a violated pair joins the
             // working set and stays.
@@ -233,29 +246,37 @@ impl Explicit {
                 if pairings[k].pairs.is_empty() {
                     continue;
                 }
-                place(state, before, dt, contact.restitution, velocity, at);
+                let motion = Forward { state, before, velocity, dt };
+                is_behind |= motion.gaps_of_law(
+                    contact,
+                    &mut pairings[k].pairs,
+                    &mut rows[k],
+                    tolerance,
+                    at,
+                    &mut row,
+                );
                 for (p, pair) in pairings[k].pairs.iter_mut().enumerate() {
-                    let gap = rows[k].gap_mut(p);
-                    if gap.is_finite() {
-                        *gap = gap_at(contact, pair, at, &mut row);
-                    }
-                    let wrong = if pair.lambda < 0.0 { gap.abs() } else { -*gap };
+                    let gap = rows[k].row(p).gap;
+                    let wrong = if pair.lambda < 0.0 { gap.abs() } else { -gap };
                     worst = worst.max(wrong);
                     pair.active |= wrong > tolerance;
                 }
             }
-            if worst <= tolerance && !changed {
+            if worst <= tolerance && !moved_on {
                 break;
             }
             if round == ROUNDS {
                 return Err(Rejected::Unsettled { rounds: ROUNDS, gap: worst });
             }
-            if worst <= tolerance {
-                continue;
-            }
             report.newton += 1;
-            let places = independent_rows(model, active(pairings), rows);
-            let (matrix, right) = self.problem(model, pairings, rows, &places, dt);
+            places.clear();
+            places.extend(active(pairings));
+            let (mut matrix, mut right) = self.problem(model, pairings, rows, places, dt);
+            if independent_rows(model, active(pairings), rows).len() < places.len() {
+                impulses.clear();
+                impulses.extend(places.iter().map(|&(k, p)| -pairings[k].pairs[p].lambda));
+                proximal(&mut matrix, &mut right, impulses);
+            }
             complementarity(&matrix, &right, impulses)?;
             pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs).for_each(|pair| pair.lambda = 0.0);
             at.fill(0.0);
@@ -269,14 +290,14 @@ impl Explicit {
         }
         for (contact, pairing) in model.contacts.iter().zip(pairings) {
             for pair in &mut pairing.pairs {
-                pair.active = pair.lambda < 0.0;
+                (pair.active, pair.start) = (pair.lambda < 0.0, None);
                 if pair.active {
                     // The recorded contact point is that of the force: at y_n.
                     gap_at(contact, pair, &state.y, &mut row);
                 }
             }
         }
-        Ok(())
+        Ok(is_behind)
     }
 
     /// G M⁻¹Gᵀ over the rows, and the right-hand side from the linearised gaps: (1 + e) g/Δt² − G
@@ -306,16 +327,19 @@ impl Explicit {
             let force = |&(l, q): &(usize, usize)| pairings[l].pairs[q].lambda;
             let done: f64 =
                 places.iter().enumerate().map(|(j, place)| -matrix[i * count + j] * force(place)).sum();
-            (1.0 + model.contacts[k].restitution) * rows[k].row(p).gap / (dt * dt) - done
+            let leaves = pairings[k].pairs[p].start.is_some();
+            let restitution = if leaves { 0.0 } else { model.contacts[k].restitution };
+            (1.0 + restitution) * rows[k].row(p).gap / (dt * dt) - done
         });
         let right = right.collect();
         (matrix, right)
     }
 }
 
-/// ȳ = (y_{n+1} + e y_{n−1})/(1 + e), where a law with restitution e evaluates gaps.
-fn place(state: &State, before: &[f64], dt: f64, e: f64, velocity: &[f64], at: &mut [f64]) {
-    for i in 0..at.len() {
-        at[i] = state.y[i] + dt * (velocity[i] - e * before[i]) / (1.0 + e);
-    }
+/// Contact, node and facet of the pairs with a force.
+fn forces(pairings: &[Pairing]) -> impl Iterator<Item = (usize, usize, usize)> {
+    pairings.iter().enumerate().flat_map(|(k, pairing)| {
+        let loaded = pairing.pairs.iter().filter(|pair| pair.lambda < 0.0);
+        loaded.map(move |pair| (k, pair.node, pair.facet))
+    })
 }

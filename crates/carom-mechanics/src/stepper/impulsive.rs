@@ -17,11 +17,11 @@
 //! without contact. D is symmetric and positive definite. Velocities are constrained, not
 //! positions: an arriving node penetrates by up to Δt times its speed, which is recorded as it is.
 
-use carom_algebra::complementarity;
-use carom_contact::Pairing;
+use carom_algebra::{complementarity, proximal};
+use carom_contact::{Pairing, Rows};
 use carom_time::{Impulse, ImpulseShares, Memory, Stage};
 
-use super::watch::{active, approach, carry_into, depth, measure_into};
+use super::watch::{active, approach, carry_into, depth, gap_at, measure_into};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::balance::residual_into;
 use crate::constraints::{Constraints, independent_rows};
@@ -29,6 +29,7 @@ use crate::contact_update::search;
 use crate::equations::{Equations, Evaluation, Iterate};
 use crate::ledger::{book_kinetic, open_work, work_of_loads};
 use crate::model::{LoadsAt, Model};
+use crate::penetration::{has_gaps, length};
 use crate::rejected::Rejected;
 use crate::settings::Settings;
 use crate::state::State;
@@ -38,6 +39,8 @@ use crate::workspace::Workspace;
 
 /// A predicted gap above minus this fraction of L is open, so that round-off does not decide ties.
 const TIE: f64 = 1e-10;
+/// Share of the allowed depth by which a node may sink in a step.
+const SINKS: f64 = 0.1;
 /// Bisections of a Newton step that inverts a cell.
 const BISECTIONS: usize = 8;
 
@@ -53,6 +56,8 @@ struct Impulses {
     rows: Constraints,
     /// e of each contact.
     restitution: Vec<f64>,
+    /// Whether rows depend on each other.
+    dependent: bool,
     /// G v_n.
     before: Vec<f64>,
     /// P ≥ 0.
@@ -148,6 +153,7 @@ impl Stepper for Impulsive {
 
         report.activations = difference(model, &next, state);
         report.releases = difference(model, state, &next);
+        sinks_slowly(model, state, &next)?;
         let tie = 2.0 * TIE * model.scale;
         let fastest = approach(model, &state.v, dt).max(approach(model, &next.v, dt));
         let bound = depth(model, state) + fastest + tie;
@@ -236,6 +242,26 @@ impl Impulsive {
     }
 }
 
+/// The law leaves the penetration of the step in which contact begins, and what facets turn: a step in
+/// which a node sinks by too much of the allowed depth is too long.
+///
+/// # Errors
+/// A node in contact sinks by more.
+fn sinks_slowly(model: &Model, before: &State, now: &State) -> Result<(), Rejected> {
+    let mut row = Rows::new(model.dimension);
+    for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| !has_gaps(model, contact)) {
+        for pair in now.pairs[k].iter().filter(|pair| pair.active) {
+            let [start, end] = [before, now].map(|at| -gap_at(contact, &mut pair.clone(), &at.y, &mut row));
+            let depth = end - start.max(0.0);
+            let bound = SINKS * contact.depths[0] * length(model, contact.kinematics.facet_nodes(pair));
+            if depth > bound {
+                return Err(Rejected::Deep { depth, bound });
+            }
+        }
+    }
+    Ok(())
+}
+
 /// P of the linearised step: b and D from the solutions for −r₀ and for each row.
 fn impulses_into(
     equations: &Equations,
@@ -259,6 +285,9 @@ fn impulses_into(
             let direct = impulses.released.get(j).map_or(0.0, |r| shares.velocity * row.along(r));
             matrix[i * count + j] = velocity.slope * shares.force * row.along(&columns[j]) + direct;
         }
+    }
+    if impulses.dependent {
+        proximal(&mut matrix, &mut right, &impulses.values);
     }
     Ok(complementarity(&matrix, &right, values)?)
 }
@@ -290,6 +319,7 @@ impl Impulses {
         Self {
             rows: Constraints::none(dimension),
             restitution: Vec::new(),
+            dependent: false,
             before: Vec::new(),
             values: Vec::new(),
             released: Vec::new(),
@@ -312,7 +342,8 @@ impl Impulses {
                 pair.active = row.gap < -TIE * model.scale;
             }
         }
-        let places = independent_rows(model, active(pairings), &measured);
+        let places: Vec<(usize, usize)> = active(pairings).collect();
+        let dependent = independent_rows(model, active(pairings), &measured).len() < places.len();
         let rows =
             Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), measured[k].row(p))));
         let mut released = Vec::new();
@@ -329,6 +360,7 @@ impl Impulses {
         }
         Ok(Self {
             restitution: places.iter().map(|&(k, _)| model.contacts[k].restitution).collect(),
+            dependent,
             before: rows.rows.iter().map(|row| row.along(&state.v)).collect(),
             values: vec![0.0; rows.len()],
             rows,

@@ -1,6 +1,7 @@
 //! Time steppers: from the state at one time to the state at the next.
 
 mod explicit;
+mod forward;
 mod implicit;
 mod impulsive;
 mod scratch;
@@ -77,6 +78,16 @@ impl Accepted {
             return Err(Rejected::Deep { depth, bound });
         }
         Self::new(model, state, report, work)
+    }
+
+    /// The state at the end of the step.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Takes the energies at its end into the running minimum and maximum.
+    pub(crate) fn observe(&mut self) {
+        self.state.ledger.observe();
     }
 
     /// The state at the end of the step and its events.

@@ -14,5 +14,9 @@ pub(crate) struct Scratch {
     pub pairings: Vec<Pairing>,
     pub rows: Vec<Rows>,
     pub impulses: Vec<f64>,
+    /// Contact and pair of each impulse.
+    pub places: Vec<(usize, usize)>,
+    /// Contact, node and facet of the forces before a search.
+    pub loaded: Vec<(usize, usize, usize)>,
     pub loads: LoadsAt,
 }

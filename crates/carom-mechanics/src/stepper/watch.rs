@@ -5,6 +5,7 @@
 use carom_contact::{Pair, Pairing, Rows};
 
 use crate::model::{Contact, Model};
+use crate::penetration::has_gaps;
 use crate::rejected::Rejected;
 use crate::state::State;
 
@@ -72,11 +73,12 @@ pub(super) fn active(pairings: &[Pairing]) -> impl Iterator<Item = (usize, usize
     })
 }
 
-/// Depth of the deepest tracked node at a state, ≥ 0.
+/// Depth of the deepest tracked node behind a rigid primary or a point at a state, ≥ 0. A node handed
+/// to another facet may be behind its extension; penetration of facets is measured over whole bodies.
 pub(super) fn depth(model: &Model, state: &State) -> f64 {
     let mut row = Rows::new(model.dimension);
-    let pairs =
-        model.contacts.iter().zip(&state.pairs).flat_map(|(c, pairs)| pairs.iter().map(move |p| (c, p)));
+    let contacts = model.contacts.iter().zip(&state.pairs).filter(|(contact, _)| has_gaps(model, contact));
+    let pairs = contacts.flat_map(|(c, pairs)| pairs.iter().map(move |p| (c, p)));
     pairs.map(|(contact, pair)| -gap_at(contact, &mut pair.clone(), &state.y, &mut row)).fold(0.0, f64::max)
 }
 

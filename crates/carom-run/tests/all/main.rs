@@ -19,5 +19,6 @@ mod probe;
 mod restart;
 mod reversal;
 mod statics;
+mod substeps;
 mod tangent;
 mod warnings;

@@ -1,0 +1,140 @@
+//! Substeps of a grid step. A rejected step is bisected. So is a step that creates more than a tenth
+//! of the energy that the guard still allows; it is kept, and taken after all if a shorter step
+//! is rejected, or creates more than half as much: energy that the error of a smooth motion creates
+//! falls with the cube of the step, that of an impact or a change of facet does not.
+
+use crate::rejected::Rejected;
+use crate::simulation::GridReport;
+use crate::state::State;
+use crate::stepper::Accepted;
+
+/// Bisections of Δt before the run stops.
+pub(crate) const MOST: u32 = 12;
+/// Share of the energy that the guard still allows that one step may create.
+const STEP: f64 = 0.1;
+/// Created energy of a shorter step relative to that of the longer one, above which it makes it worse.
+const WORSE: f64 = 4.0;
+
+/// Progress through a grid step in units of Δt/2^level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Progress {
+    pub level: u32,
+    pub done: u64,
+}
+
+impl Progress {
+    /// Part of the grid step that is done.
+    pub(crate) fn done(self) -> f64 {
+        self.done as f64 / (1_u64 << self.level) as f64
+    }
+
+    /// Part of the grid step at the end of the next substep.
+    pub(crate) fn next(self) -> f64 {
+        Self { done: self.done + 1, ..self }.done()
+    }
+
+    pub(crate) fn bisect(&mut self) {
+        *self = Self { level: self.level + 1, done: 2 * self.done };
+    }
+
+    /// Completes a substep, and returns to the longest step that begins there.
+    pub(crate) fn advance(&mut self) {
+        self.done += 1;
+        while self.level > 0 && self.done % 2 == 0 {
+            *self = Self { level: self.level - 1, done: self.done / 2 };
+        }
+    }
+}
+
+/// A step that created energy, with the report before it, while shorter ones are tried.
+pub(crate) struct Kept {
+    step: Accepted,
+    created: f64,
+    /// Whether the guard allows it.
+    is_within: bool,
+    at: Progress,
+    report: GridReport,
+}
+
+/// What follows from a step.
+pub(crate) enum Next {
+    /// It is the next one.
+    Take(Accepted),
+    /// Shorter ones are tried.
+    Bisect(Rejected),
+    /// Shorter ones do not help, for this reason: the one that was kept is the next one.
+    Return(Rejected, Accepted),
+    /// Not even the shortest one is accepted.
+    Stop(Rejected),
+}
+
+/// Decides about a step from `from`, of which `guard` is the share of the energy scale that a run may
+/// create.
+pub(crate) fn decide(
+    stepped: Result<Accepted, Rejected>,
+    from: &State,
+    guard: Option<f64>,
+    kept: &mut Option<Kept>,
+    progress: &mut Progress,
+    report: &mut GridReport,
+) -> Next {
+    if kept.as_ref().is_some_and(|kept| progress.done() >= kept.at.next()) {
+        *kept = None;
+    }
+    let last = progress.level == MOST;
+    let (rejected, returns) = match stepped {
+        Ok(mut step) => {
+            step.observe();
+            let Some((created, allowed)) = guard.and_then(|share| beyond(&step, from, share)) else {
+                return Next::Take(step);
+            };
+            let worse = |kept: &Kept| kept.is_within && (last || created > WORSE * kept.created);
+            let returns = kept.as_ref().is_some_and(worse);
+            if last && !returns {
+                return Next::Take(step);
+            }
+            if kept.is_none() {
+                let is_within = created <= allowed / STEP;
+                *kept = Some(Kept { step, created, is_within, at: *progress, report: report.clone() });
+            }
+            (Rejected::Energy { created, allowed }, returns)
+        }
+        Err(rejected) => (rejected, last && kept.as_ref().is_some_and(|kept| kept.is_within)),
+    };
+    match kept.take_if(|_| returns) {
+        Some(kept) => {
+            *progress = kept.at;
+            report.return_to(kept.report);
+            Next::Return(rejected, kept.step)
+        }
+        None if last => Next::Stop(rejected),
+        None => Next::Bisect(rejected),
+    }
+}
+
+/// The energy that a step created and what it may create, if it is less.
+fn beyond(step: &Accepted, from: &State, share: f64) -> Option<(f64, f64)> {
+    let (before, now) = (&from.ledger, &step.state().ledger);
+    let so_far = before.created().max(0.0);
+    let (created, allowed) = (now.created() - so_far, STEP * (share * now.scale() - so_far).max(0.0));
+    (created > allowed).then_some((created, allowed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Progress;
+
+    #[test]
+    fn progress_returns_to_the_longest_step() {
+        let mut progress = Progress { level: 0, done: 0 };
+        progress.bisect();
+        progress.bisect();
+        assert_eq!((progress.done(), progress.next()), (0.0, 0.25));
+        progress.advance();
+        assert_eq!(progress, Progress { level: 2, done: 1 });
+        progress.advance();
+        assert_eq!(progress, Progress { level: 1, done: 1 });
+        progress.advance();
+        assert_eq!(progress, Progress { level: 0, done: 1 });
+    }
+}

@@ -1,0 +1,98 @@
+//! Steps that create energy are shortened; shortened steps keep the contact laws and resume bitwise.
+
+use carom_run::{GridReport, Rejected, Setup};
+
+use super::common::{case, finish, simulation};
+
+/// A stiff disc that falls on a plane; a step is 30 times as long as a wave takes to cross a cell.
+const DISC: &str = r#"
+dimension = 2
+[[material]]
+name = "steel"
+law = "neo-hookean"
+density = 1.0
+young = 2e4
+poisson = 0.3
+[[body]]
+name = "disc"
+material = "steel"
+element = "T6"
+mesh = { shape = "disc", radius = 0.5, center = [0.0, 0.52], size = 0.2 }
+velocity = [0.3, -3.0]
+[[contact]]
+name = "floor"
+secondary = "disc.arc"
+primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+[time]
+end = 0.4
+step = 0.02
+scheme = { kind = "newmark", beta = 0.25, gamma = 0.5 }
+"#;
+
+#[test]
+fn a_step_that_creates_energy_is_shortened_and_resumes_with_the_same_bits() {
+    // Without a guard nothing is shortened, and far more is created.
+    let free = finish(simulation(DISC, &["time.energy_guard=false"]));
+    let ledger = &free.state().ledger;
+    assert!(ledger.created.most() > 0.04 * ledger.scale(), "{:e}", ledger.created.most() / ledger.scale());
+
+    let case = case(DISC, &[""; 0]);
+    let mut whole = Setup::new(&case).start().unwrap();
+    let (mut report, mut middle) = (GridReport::default(), None);
+    while !whole.finished() {
+        whole.advance(&mut report).unwrap();
+        let shortened = |event: &carom_run::LogEvent| {
+            matches!(event, carom_run::LogEvent::Rejected { rejected: Rejected::Energy { .. }, .. })
+        };
+        if middle.is_none() && report.events.iter().any(shortened) {
+            middle = Some(postcard::to_stdvec(whole.state()).unwrap());
+        }
+    }
+    let ledger = &whole.state().ledger;
+    assert!(ledger.created.most() <= 0.02 * ledger.scale());
+    // The impulse turns the disc round.
+    assert!(whole.state().impulses[0][1] > 3.0 * 0.25 * std::f64::consts::PI);
+    let state = postcard::from_bytes(&middle.expect("a step was shortened")).unwrap();
+    let resumed = finish(Setup::new(&case).threads(2).resume(state).unwrap());
+    assert_eq!(resumed.state(), whole.state());
+}
+
+/// Paoli and Schatzman's law lets a node go behind the wall by a step of its motion and takes it out
+/// in the next one. In steps 64 times shorter it must not be thrown out 64 times as fast.
+#[test]
+fn a_shorter_step_takes_a_node_out_at_the_rate_of_the_longer_one() {
+    let bar = r#"
+dimension = 1
+material = [{ name = "steel", law = "neo-hookean", density = 1.0, young = 900.0, poisson = 0.0 }]
+[[body]]
+name = "bar"
+material = "steel"
+element = "L2"
+mass = "lumped"
+mesh = { shape = "interval", min = 0.0051, max = 1.0051, cells = 4 }
+velocity = [-1.0]
+[[contact]]
+name = "wall"
+secondary = "bar.left"
+primary = { plane = { point = [0.0], normal = [1.0] } }
+restitution = 0.9
+[time]
+end = 0.03
+step = 1e-3
+energy_guard = false
+scheme = { kind = "paoli-schatzman" }
+"#;
+    let mut long = simulation(bar, &[""; 0]);
+    while long.state().y[0] >= 0.0 {
+        long.step().unwrap();
+    }
+    let state = long.state().clone();
+    let mut short = simulation(bar, &["time.step=1.5625e-5"]);
+    short.restore(carom_run::State { step: 64 * state.step, ..state }).unwrap();
+    let mut fastest = 0.0_f64;
+    while short.state().step < 64 * long.state().step + 256 {
+        short.step().unwrap();
+        fastest = fastest.max(short.state().half_step.velocity[0]);
+    }
+    assert!(short.state().y[0] > 0.0 && fastest > 0.5 && fastest < 1.2, "{fastest}");
+}
