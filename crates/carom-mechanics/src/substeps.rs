@@ -40,7 +40,7 @@ impl Progress {
     /// Completes a substep, and returns to the longest step that begins there.
     pub(crate) fn advance(&mut self) {
         self.done += 1;
-        while self.level > 0 && self.done % 2 == 0 {
+        while self.level > 0 && self.done.is_multiple_of(2) {
             *self = Self { level: self.level - 1, done: self.done / 2 };
         }
     }
