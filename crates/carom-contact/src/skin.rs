@@ -112,15 +112,16 @@ impl Skin {
         (Vector(point) - at.position).dot(&at.normal) >= 0.0
     }
 
-    /// The same where the nearest point is an end of the facet.
+    /// The same where the nearest point is an end of the facet: in front of either facet at a convex
+    /// joint, of both at a concave one, which is nearest to a remote point by round-off only.
     fn is_outside_joint(&self, facet: usize, xi: f64, point: [f64; 2], y: Places) -> bool {
         let Some(neighbour) = self.surface.neighbour(facet, xi > 0.0) else {
             return self.is_outside(facet, xi, point, y);
         };
         let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
         let (_, sine) = self.surface.kink(first, second, y);
-        // Where the boundary does not turn, either normal gives the sign.
-        if sine.abs() < 1e-9 { self.is_outside(facet, xi, point, y) } else { sine > 0.0 }
+        let [before, after] = [(first, 1.0), (second, -1.0)].map(|(f, xi)| self.is_outside(f, xi, point, y));
+        if sine > 0.0 { before || after } else { before && after }
     }
 }
 
@@ -165,6 +166,18 @@ mod tests {
             let found = skin.depth(point, None, &y).unwrap();
             assert_eq!(skin.depth(point, Some(4), &y), Some(found));
             assert!((found.distance - distance).abs() < 1e-14, "{point:?} {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_point_far_in_front_of_a_faint_dent_is_outside() {
+        for depth in [1e-12, 1e-9, 1e-6, 1e-3] {
+            let y = vec![0.0, 0.0, 2.0, 0.0, 2.0, 1.0, 1.0, 1.0 - depth, 0.0, 1.0];
+            let facets: Vec<Vec<usize>> = (0..5).map(|k| vec![k, (k + 1) % 5]).collect();
+            let mut skin = Skin::new(Surface::new(FacetShape::L2, &facets, &[1.0; 5]));
+            skin.update(&y);
+            let at = |height: f64| skin.depth([1.0, height], None, &y).unwrap().distance;
+            assert!((at(3.4) - 2.4).abs() < 1e-3 && (at(0.8) + 0.2).abs() < 2e-3, "{depth}: {}", at(3.4));
         }
     }
 
