@@ -11,6 +11,7 @@ use crate::start::{Before, start};
 use crate::state::{OtherModel, State};
 use crate::stepper::Stepper;
 use crate::timings::Timings;
+use crate::trace::Trace;
 use crate::workspace::Workspace;
 
 /// Bisections of Δt before the run stops.
@@ -127,6 +128,17 @@ pub struct GridReport {
     pub events: Vec<LogEvent>,
 }
 
+/// A rejected attempt at a step, for those who watch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attempt {
+    /// Time at its start.
+    pub time: f64,
+    /// Its step size.
+    pub dt: f64,
+    /// Rejected attempts since the last grid time.
+    pub rejected: u32,
+}
+
 /// A model with its state.
 pub struct Simulation {
     model: Model,
@@ -135,6 +147,8 @@ pub struct Simulation {
     grid: Grid,
     stepper: Box<dyn Stepper>,
     work: Workspace,
+    /// Bisections of Δt before the run stops.
+    bisections: u32,
 }
 
 impl Simulation {
@@ -175,7 +189,7 @@ impl Simulation {
     fn at(model: Model, stepper: Box<dyn Stepper>, grid: Grid, state: State, threads: usize) -> Self {
         let model = model.on_threads(threads);
         let work = Workspace::new(&model);
-        Self { model, state, grid, stepper, work }
+        Self { model, state, grid, stepper, work, bisections: MAX_BISECTIONS }
     }
 
     /// The constant data.
@@ -191,6 +205,17 @@ impl Simulation {
     /// The state at the last grid time, kept alone.
     pub fn into_state(self) -> State {
         self.state
+    }
+
+    /// Stops after fewer bisections of a step than usual. What succeeds nevertheless is what would
+    /// have succeeded without.
+    pub fn limit_bisections(&mut self, most: u32) {
+        self.bisections = most.min(MAX_BISECTIONS);
+    }
+
+    /// The last iterations of the last attempt.
+    pub fn trace(&self) -> &Trace {
+        &self.work.trace
     }
 
     /// The grid of times.
@@ -259,22 +284,39 @@ impl Simulation {
     /// Why it cannot; `state` is then still that of the last grid time. The report contains the
     /// attempts.
     pub fn advance(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
-        // On one of the threads, so that parallel calls within a step do not switch threads.
-        let threads = self.model.threads.clone();
-        threads.within(|| self.advance_here(report))
+        self.advance_watched(report, &mut |_| ())
     }
 
-    fn advance_here(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
+    /// As [`Simulation::advance`]; `watch` is called after every rejected attempt.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn advance_watched(
+        &mut self,
+        report: &mut GridReport,
+        watch: &mut (dyn FnMut(&Attempt) + Send),
+    ) -> Result<(), Stopped> {
+        // On one of the threads, so that parallel calls within a step do not switch threads.
+        let threads = self.model.threads.clone();
+        threads.within(|| self.advance_here(report, watch))
+    }
+
+    fn advance_here(
+        &mut self,
+        report: &mut GridReport,
+        watch: &mut (dyn FnMut(&Attempt) + Send),
+    ) -> Result<(), Stopped> {
         let (start, length) = (self.grid.time(self.state.step), self.grid.length(self.state.step + 1));
         // The state after the substeps so far; none before the first.
         let mut reached: Option<State> = None;
         // Progress through the grid step in units of Δt/2^level.
-        let rejected = report.rejected;
+        let before = report.rejected;
         let (mut level, mut done) = (self.state.bisection.level(), 0_u64);
         while done < 1 << level {
             let dt = length / f64::from(1_u32 << level);
             let time = start + done as f64 * dt;
             let to = start + (done + 1) as f64 * dt;
+            self.work.trace.clear();
             match self.stepper.step(
                 &self.model,
                 reached.as_ref().unwrap_or(&self.state),
@@ -285,8 +327,8 @@ impl Simulation {
                 Ok(accepted) => {
                     let (mut next, step) = accepted.into_parts();
                     next.ledger.observe();
-                    if let Some(before) = reached.replace(next) {
-                        self.work.put(before);
+                    if let Some(earlier) = reached.replace(next) {
+                        self.work.put(earlier);
                     }
                     done += 1;
                     let now = to;
@@ -322,7 +364,8 @@ impl Simulation {
                 Err(rejected) => {
                     report.rejected += 1;
                     report.events.push(LogEvent::Rejected { time, dt, rejected: rejected.clone() });
-                    if level == MAX_BISECTIONS {
+                    watch(&Attempt { time, dt, rejected: report.rejected - before });
+                    if level == self.bisections {
                         return Err(Stopped::NoStep { time, dt, halvings: level, rejected });
                     }
                     level += 1;
@@ -331,7 +374,7 @@ impl Simulation {
             }
         }
         let Some(mut state) = reached else { return Ok(()) };
-        state.bisection = self.state.bisection.after(report.rejected > rejected);
+        state.bisection = self.state.bisection.after(report.rejected > before);
         state.step += 1;
         state.time = self.grid.time(state.step);
         let mut overlapping = self.work.others.overlapping(&self.model, &state.y);
@@ -342,7 +385,10 @@ impl Simulation {
                 report.events.push(LogEvent::Overlap { time: state.time, bodies: pair });
             }
         }
-        self.watch(&state)?;
+        if let Err(stopped) = self.watch(&state) {
+            self.work.trace.end(&state.y);
+            return Err(stopped);
+        }
         self.work.put(std::mem::replace(&mut self.state, state));
         Ok(())
     }

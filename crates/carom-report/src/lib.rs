@@ -30,6 +30,7 @@ mod publish;
 mod ranked;
 mod redraw;
 mod setup;
+mod stopped;
 mod study;
 mod study_page;
 mod symbols;

@@ -9,6 +9,7 @@ use serde_json::Value;
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::figures::Figure;
 use crate::labels::number;
+use crate::stopped;
 use crate::text::{Label, Prose};
 use crate::timing::timing;
 
@@ -27,12 +28,15 @@ const RESULTS: &str = "All values are computed from `history.csv` alone: times f
 pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, notes: &[String]) -> String {
     let title = run.manifest.case.get("title").and_then(Value::as_str).unwrap_or("Carom run");
     let figure = |(i, f): (usize, &Figure)| figure(i + 1, f.name, &["svg"], &f.caption, &f.svg);
-    let (setup, others): (Vec<_>, Vec<_>) = figures.iter().enumerate().partition(|(_, f)| f.name == "setup");
+    let named = |name: &'static str| figures.iter().enumerate().filter(move |(_, f)| f.name == name);
+    let place = named("stopped").next().map(|(i, f)| (i + 1, f));
+    let others = figures.iter().enumerate().filter(|(_, f)| f.name != "setup" && f.name != "stopped");
     let body = html! {
         (header(run))
+        (stopped::section(run, place))
         @for warning in &run.manifest.warnings { (warning_line(warning)) }
         @for note in notes { p.small { (note) } }
-        @for f in setup { (figure(f)) }
+        @for f in named("setup") { (figure(f)) }
         @if let Some(animation) = animation { (animation) }
         (results(run))
         (expectations(run))
@@ -74,7 +78,7 @@ fn header(run: &Run) -> Markup {
     html! {
         p {
             span.status.(class) { (word) }
-            @if let Some(reason) = &m.reason { " " (reason) }
+            @if let Some(reason) = m.reason.as_ref().filter(|_| run.stop.is_none()) { " " (reason) }
         }
         table {
             @if !bodies.is_empty() { (row("Bodies", bodies.join(", "))) }

@@ -10,7 +10,7 @@ mod warnings;
 pub use build::overlaps;
 pub use carom_case as case;
 pub use carom_mechanics::{
-    Accepted, Before, Bisection, Explicit, FrozenTangent, Grid, GridReport, HalfStepVelocity, Implicit,
+    Accepted, Attempt, Before, Bisection, Explicit, FrozenTangent, Grid, GridReport, HalfStepVelocity, Implicit,
     Impulsive, Ledger, LogEvent, Means, OtherModel, Point, Previous, Rejected, Settings, Simulation, State,
     StepReport, Stepper, Stopped, Tangent, Timings, Workspace, frequencies, model, stability,
 };

@@ -6,6 +6,7 @@ mod fields;
 mod log;
 mod outcome;
 mod session;
+mod stopped;
 mod units;
 mod verdicts;
 
