@@ -24,6 +24,7 @@ mod place;
 mod rejected;
 mod renewal;
 mod restitution;
+mod restricted;
 mod settings;
 mod simulation;
 pub mod stability;

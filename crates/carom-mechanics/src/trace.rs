@@ -82,8 +82,7 @@ impl Trace {
 
     /// Notes the free dof with the largest residual.
     pub(crate) fn blame(&mut self, residual: &[f64], free: &[usize]) {
-        self.worst =
-            free.iter().copied().max_by(|&a, &b| residual[a].abs().total_cmp(&residual[b].abs()));
+        self.worst = free.iter().copied().max_by(|&a, &b| residual[a].abs().total_cmp(&residual[b].abs()));
     }
 }
 

@@ -32,8 +32,9 @@ pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, no
     let place = named("stopped").next().map(|(i, f)| (i + 1, f));
     let others = figures.iter().enumerate().filter(|(_, f)| f.name != "setup" && f.name != "stopped");
     let body = html! {
-        (header(run))
+        (status(run))
         (stopped::section(run, place))
+        (header(run))
         @for warning in &run.manifest.warnings { (warning_line(warning)) }
         @for note in notes { p.small { (note) } }
         @for f in named("setup") { (figure(f)) }
@@ -59,8 +60,9 @@ fn warning_line(warning: &Warning) -> Markup {
     }
 }
 
-fn header(run: &Run) -> Markup {
-    let (m, machine) = (&run.manifest, &run.manifest.machine);
+/// How the run ended.
+fn status(run: &Run) -> Markup {
+    let m = &run.manifest;
     let missed = m.expectations.iter().filter(|expectation| !expectation.pass).count();
     let (class, word) = match m.status {
         Status::Running => ("running", "running or interrupted; can be resumed".to_owned()),
@@ -71,15 +73,21 @@ fn header(run: &Run) -> Markup {
         Status::Stopped => ("stopped", "stopped; can be resumed".to_owned()),
         Status::Failed => ("failed", "failed".to_owned()),
     };
-    let (rows, last) = (run.times().len(), run.times().last().copied().unwrap_or(0.0));
-    let wall: f64 = m.timings.get("total").copied().unwrap_or_else(|| m.timings.values().sum());
-    let bodies = m.case.get("bodies").and_then(Value::as_array).into_iter().flatten();
-    let bodies: Vec<&str> = bodies.filter_map(|b| b.get("name")?.as_str()).collect();
     html! {
         p {
             span.status.(class) { (word) }
             @if let Some(reason) = m.reason.as_ref().filter(|_| run.stop.is_none()) { " " (reason) }
         }
+    }
+}
+
+fn header(run: &Run) -> Markup {
+    let (m, machine) = (&run.manifest, &run.manifest.machine);
+    let (rows, last) = (run.times().len(), run.times().last().copied().unwrap_or(0.0));
+    let wall: f64 = m.timings.get("total").copied().unwrap_or_else(|| m.timings.values().sum());
+    let bodies = m.case.get("bodies").and_then(Value::as_array).into_iter().flatten();
+    let bodies: Vec<&str> = bodies.filter_map(|b| b.get("name")?.as_str()).collect();
+    html! {
         table {
             @if !bodies.is_empty() { (row("Bodies", bodies.join(", "))) }
             (row("Carom version", &m.version))

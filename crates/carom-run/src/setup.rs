@@ -11,7 +11,7 @@ use carom_solid::Constitutive;
 use carom_time::{Integrator, Kernel, Nonsmooth};
 
 use crate::build::{Materials, build, overlaps};
-use crate::initial::{before, given};
+use crate::initial::{before, given, saved};
 
 /// A case on its way to a simulation: with how many threads, and with laws and a time integrator of
 /// your own in place of the case's.
@@ -103,6 +103,9 @@ impl<'a> Setup<'a> {
     /// As [`Setup::build`]; also where bodies overlap, an explicit step is longer than is stable, or
     /// the start has no forces or accelerations.
     pub fn start(self) -> Result<Simulation, Problems> {
+        if let Some(state) = saved(self.case.initial.as_ref())? {
+            return self.resume(state);
+        }
         let (case, model) = (self.case, self.build()?);
         let placed = case.initial.is_some() || case.manufactured.is_some();
         // A body whose cells are inverted has its outside within.

@@ -84,14 +84,19 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet) -> Option<
         mesh(&mut out, &instant, FILLS[k % FILLS.len()], &to);
     }
     if let Some(cell) = Some(&place.cell_nodes).filter(|nodes| !nodes.is_empty()) {
-        let degree = fields.blocks.iter().find(|b| Some(&b.body) == place.body.as_ref()).map_or(1, |b| b.degree);
+        let degree =
+            fields.blocks.iter().find(|b| Some(&b.body) == place.body.as_ref()).map_or(1, |b| b.degree);
         let mut pen = Pen::default();
         for e in 0..3 {
             let edge: Vec<Point> = edge_nodes(degree, cell, e).map(|k| to(points[k])).collect();
             bezier(&mut pen, &edge, e == 0);
         }
         pen.close();
-        path(&mut out, &pen, &format!("fill=\"{CELL}\" fill-opacity=\"0.45\" stroke=\"{CELL}\" stroke-width=\"40\""));
+        path(
+            &mut out,
+            &pen,
+            &format!("fill=\"{CELL}\" fill-opacity=\"0.45\" stroke=\"{CELL}\" stroke-width=\"40\""),
+        );
     }
     let frame_of = [frame[0], frame[1], frame[2], frame[3]];
     for obstacle in obstacles::all(run, frame_of) {
@@ -99,11 +104,16 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet) -> Option<
             wall(&mut out, &walk.iter().map(|&(p, n)| (to(p), [-n[0], n[1]])).collect::<Vec<_>>(), 0.0);
         }
     }
-    let facet: Vec<Point> = place.facet_nodes.iter().filter_map(|n| points.get(n.number)).map(|&p| to(p)).collect();
+    let facet: Vec<Point> =
+        place.facet_nodes.iter().filter_map(|n| points.get(n.number)).map(|&p| to(p)).collect();
     if facet.len() > 1 {
         let mut pen = Pen::default();
         bezier(&mut pen, &facet, true);
-        path(&mut out, &pen, &format!("fill=\"none\" stroke=\"{FACET}\" stroke-width=\"90\" stroke-linecap=\"round\""));
+        path(
+            &mut out,
+            &pen,
+            &format!("fill=\"none\" stroke=\"{FACET}\" stroke-width=\"90\" stroke-linecap=\"round\""),
+        );
     }
     let visible = |new: &[Point]| {
         drawn.iter().any(|&k| {
@@ -161,7 +171,8 @@ fn rejected(fields: &FieldSet) -> Option<Vec<Point>> {
 fn size(place: &StopPlace, fields: &FieldSet, points: &[Point], node: usize) -> f64 {
     let distance = |a: usize, b: usize| (points[a][0] - points[b][0]).hypot(points[a][1] - points[b][1]);
     let longest = |cell: &[usize]| (0..3).map(|e| distance(cell[e], cell[(e + 1) % 3])).fold(0.0, f64::max);
-    let numbers: Vec<usize> = place.facet_nodes.iter().map(|n| n.number).filter(|&n| n < points.len()).collect();
+    let numbers: Vec<usize> =
+        place.facet_nodes.iter().map(|n| n.number).filter(|&n| n < points.len()).collect();
     let facet = match &numbers[..] {
         [first, .., last] => distance(*first, *last),
         _ => 0.0,
@@ -180,7 +191,11 @@ fn mesh(out: &mut String, instant: &Instant, fill: &str, to: &dyn Fn(Point) -> P
         cells.close();
     }
     // Bodies may overlap at the place: both must show.
-    path(out, &cells, &format!("fill=\"{fill}\" fill-opacity=\"0.8\" stroke=\"#98a2ad\" stroke-width=\"16\""));
+    path(
+        out,
+        &cells,
+        &format!("fill=\"{fill}\" fill-opacity=\"0.8\" stroke=\"#98a2ad\" stroke-width=\"16\""),
+    );
     let mut corners = Pen::default();
     for (_, nodes) in &instant.cells {
         for &k in nodes {

@@ -13,3 +13,4 @@ mod verdicts;
 pub use columns::columns;
 pub use outcome::{End, Options, Outcome, Progress, RunError};
 pub use session::{resume, run};
+pub(crate) use stopped::explain;

@@ -9,7 +9,10 @@ use super::change::{Change, Kind};
 type Remedy = (Option<Kind>, &'static str);
 
 const SHORTER: Remedy = (Some(Kind::Shorter), "a shorter step from the start");
-const LONGER: Remedy = (Some(Kind::Longer), "a longer step: contact creates energy where nodes begin to touch, the less often the longer the step");
+const LONGER: Remedy = (
+    Some(Kind::Longer),
+    "a longer step: contact creates energy where nodes begin to touch, the less often the longer the step",
+);
 const DAMPED: Remedy = (Some(Kind::Damped), "more damping of high frequencies by the same scheme");
 const BATHE: Remedy = (Some(Kind::Bathe), "a scheme that dissipates what the mesh does not resolve");
 const PENALTY: Remedy = (Some(Kind::Penalty), "penalty springs, which have no active set that must settle");
@@ -17,11 +20,14 @@ const MULTIPLIER: Remedy = (Some(Kind::Multiplier), "multipliers, which prevent 
 const STIFFER: Remedy = (Some(Kind::Stiffer), "stiffer springs");
 const SOFTER: Remedy = (Some(Kind::Softer), "softer springs, which a step resolves better");
 const FULL: Remedy = (Some(Kind::Full), "a new tangent in every iteration");
-const FINER: Remedy = (None, "a finer mesh at the place (`refine` of a polygon, or a mesh file), or a smaller load");
+const FINER: Remedy =
+    (None, "a finer mesh at the place (`refine` of a polygon, or a mesh file), or a smaller load");
 const ROUNDED: Remedy = (None, "a rounded corner at the place, or the other side as the primary one");
 const DEGREE: Remedy = (None, "an element of lower degree (T3) at the place: its cells invert later");
-const GUARD_OFF: Remedy =
-    (None, "`time.energy_guard = false`, to inspect what the run does beyond this point; its results are then suspect");
+const GUARD_OFF: Remedy = (
+    None,
+    "`time.energy_guard = false`, to inspect what the run does beyond this point; its results are then suspect",
+);
 
 /// The remedies of each reason.
 const TABLE: &[(&str, &[Remedy])] = &[
@@ -29,11 +35,22 @@ const TABLE: &[(&str, &[Remedy])] = &[
     ("contact-geometry", &[SHORTER, BATHE, PENALTY, FINER, ROUNDED]),
     ("no-convergence", &[SHORTER, FULL, PENALTY, MULTIPLIER, BATHE, FINER]),
     ("active-set-cycle", &[SHORTER, PENALTY, BATHE, FINER, ROUNDED]),
-    ("linear-solver", &[SHORTER, FULL, PENALTY, (None, "supports that leave no rigid motion, and no part of zero stiffness")]),
+    (
+        "linear-solver",
+        &[
+            SHORTER,
+            FULL,
+            PENALTY,
+            (None, "supports that leave no rigid motion, and no part of zero stiffness"),
+        ],
+    ),
     (
         "overconstrained-contact",
         &[
-            (None, "supports that do not hold the nodes of the contact, or a contact without the nodes that are held"),
+            (
+                None,
+                "supports that do not hold the nodes of the contact, or a contact without the nodes that are held",
+            ),
             PENALTY,
         ],
     ),

@@ -1,9 +1,9 @@
 //! Changes of a case that may get a run past the place where it stopped, as the options of the
 //! command that make them.
 
-use std::collections::BTreeMap;
-
-use carom_case::{Case, ContactLaw, ContactPoint, Detection, Enforcement, Persistency, SchemeSpec, TangentRule};
+use carom_case::{
+    Case, ContactLaw, ContactPoint, Detection, Enforcement, Persistency, SchemeSpec, TangentRule,
+};
 use carom_time::ForceRule;
 
 /// A kind of change.
@@ -70,7 +70,9 @@ impl Change {
         let implicit = !scheme.is_static() && scheme.nonsmooth().is_none();
         match kind {
             Kind::Shorter => change.step(0.25),
-            Kind::Longer if implicit && case.time.phase == 0.0 && case.time.steps() % 2 == 0 => change.step(2.0),
+            Kind::Longer if implicit && case.time.phase == 0.0 && case.time.steps() % 2 == 0 => {
+                change.step(2.0)
+            }
             Kind::Damped if implicit => {
                 let rho = *scheme.parameters.get("rho_inf")?;
                 let lower = if rho > 0.5 { 0.5 } else { 0.0 };
@@ -104,9 +106,12 @@ impl Change {
         if self.case.contacts.iter().any(|c| c.restitution != 0.0 || c.xi == ContactPoint::Frozen) {
             return None;
         }
-        self.case.time.scheme =
-            SchemeSpec { kind: "bathe".into(), parameters: BTreeMap::new(), forces: ForceRule::default() };
-        self.sets.push("time.scheme={ kind = \"bathe\" }".into());
+        self.case.time.scheme = SchemeSpec {
+            kind: "bathe".into(),
+            parameters: [("rho_inf".to_owned(), 0.0)].into(),
+            forces: ForceRule::default(),
+        };
+        self.sets.push("time.scheme={ kind = \"bathe\", rho_inf = 0.0 }".into());
         for contact in &mut self.case.contacts {
             if contact.law == Some(ContactLaw::Predictor) {
                 self.sets.push(format!("contact.{}.law=position", contact.name));

@@ -17,7 +17,7 @@ pub(super) use trials::Effort;
 const GUARD: &str = "energy-guard";
 
 /// Explains a stop; `fields`: the last accepted state and the rejected positions.
-pub(super) fn explain(
+pub(crate) fn explain(
     case: &Case,
     simulation: &Simulation,
     stopped: &Stopped,
@@ -42,7 +42,8 @@ pub(super) fn explain(
     if trace.positions().len() == state.y.len() {
         let axes = model.dimension;
         let moved = trace.positions().iter().zip(&model.reference).map(|(y, x)| y - x).collect::<Vec<_>>();
-        let vectors = moved.chunks_exact(axes).flat_map(|u| [0, 1, 2].map(|i| u.get(i).copied().unwrap_or(0.0)));
+        let vectors =
+            moved.chunks_exact(axes).flat_map(|u| [0, 1, 2].map(|i| u.get(i).copied().unwrap_or(0.0)));
         let values = vectors.take(3 * fields.points.len()).collect();
         let unit = case.units.length.clone();
         fields.arrays.push(PointArray { name: "rejected".into(), unit, components: 3, values });

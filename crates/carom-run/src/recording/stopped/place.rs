@@ -1,9 +1,9 @@
 //! The place of a stop: what the reason names, and otherwise what the last attempt shows.
 
+use carom_contact::PairEvent;
 use carom_contact::Rows;
 use carom_mechanics::model::Model;
 use carom_mechanics::{GridReport, LogEvent, Place, State, Stopped, Trace};
-use carom_contact::PairEvent;
 use carom_record::{StopNode, StopPlace};
 
 /// The place; none if nothing points to one.
@@ -57,22 +57,28 @@ fn elsewhere(
         let of = |(_, pairs): &(usize, &Vec<carom_contact::Pair>)| pairs.iter().any(|p| p.active);
         let touched = state.pairs.iter().enumerate().filter(of);
         let mut touched = touched.filter(|(k, _)| model.contacts[*k].surface.contains(&node));
-        return Some((node, "the node with the largest residual", touched.next().and_then(|(k, _)| contact(k))));
+        return Some((
+            node,
+            "the node with the largest residual",
+            touched.next().and_then(|(k, _)| contact(k)),
+        ));
     }
     let changed = report.events.iter().rev().find_map(|event| match event {
         LogEvent::ActiveSet { contact, node, .. } => Some((*contact, *node)),
-        LogEvent::Pair { contact, event: PairEvent::HandOver { node, .. } | PairEvent::SlidOff { node, .. }, .. } => {
-            Some((*contact, *node))
-        }
+        LogEvent::Pair {
+            contact,
+            event: PairEvent::HandOver { node, .. } | PairEvent::SlidOff { node, .. },
+            ..
+        } => Some((*contact, *node)),
         _ => None,
     });
     if let Some((k, node)) = changed {
         return Some((node, "the node whose contact changed last", contact(k)));
     }
-    let active = state.pairs.iter().enumerate().flat_map(|(k, pairs)| pairs.iter().map(move |pair| (k, pair)));
-    let (k, pair) = active
-        .filter(|(_, pair)| pair.active)
-        .min_by(|a, b| a.1.lambda.total_cmp(&b.1.lambda))?;
+    let active =
+        state.pairs.iter().enumerate().flat_map(|(k, pairs)| pairs.iter().map(move |pair| (k, pair)));
+    let (k, pair) =
+        active.filter(|(_, pair)| pair.active).min_by(|a, b| a.1.lambda.total_cmp(&b.1.lambda))?;
     let node = model.contacts[k].kinematics.secondary()[pair.node];
     Some((node, "the node with the largest contact force", contact(k)))
 }

@@ -2,7 +2,7 @@
 //! unknowns, not in seconds: the same run gives the same trials on any machine.
 
 use carom_case::Case;
-use carom_mechanics::{GridReport, HalfStepVelocity, FrozenTangent, Simulation, State};
+use carom_mechanics::{FrozenTangent, GridReport, HalfStepVelocity, Simulation, State};
 use carom_record::Trial;
 
 use super::change::{Change, Kind};

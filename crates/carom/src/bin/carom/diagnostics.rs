@@ -16,7 +16,9 @@ pub(crate) fn print(failure: &Failure, json: bool) -> Exit {
         Failure::Stopped { help, directory, page, .. } => {
             let place = directory.display();
             let note = if *page {
-                format!("why and where: {place}/report.html; a smaller case that stops too: carom reduce {place}")
+                format!(
+                    "why and where: {place}/report.html; a smaller case that stops too: carom reduce {place}"
+                )
             } else {
                 format!("the last valid state is saved in {place}")
             };

@@ -42,7 +42,14 @@ struct Event<'a> {
 
 impl Live {
     pub(crate) fn new(json: bool, directory: &Path) -> Self {
-        Self { json, bar: console::bar(1), last: None, directory: directory.to_owned(), warned: None, heard: None }
+        Self {
+            json,
+            bar: console::bar(1),
+            last: None,
+            directory: directory.to_owned(),
+            warned: None,
+            heard: None,
+        }
     }
 
     /// Shows the warnings of the run that have not been shown yet.
@@ -120,7 +127,10 @@ impl Drop for Live {
 fn line(p: &Progress) -> String {
     if p.bisecting {
         let (step, rejected) = (p.step + 1, p.rejected);
-        return format!("step {step} is being bisected: t {:.6e}  Δt {:.1e}  {rejected} rejected", p.time, p.dt);
+        return format!(
+            "step {step} is being bisected: t {:.6e}  Δt {:.1e}  {rejected} rejected",
+            p.time, p.dt
+        );
     }
     format!(
         "t {:.4e}  Δt {:.3e}  Newton {}  contacts {}  energy created {:.1e}  left {}",
