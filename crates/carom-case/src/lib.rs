@@ -44,6 +44,6 @@ pub use schema::{changes, expectation, schema};
 pub use spec::{
     ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime,
     FormulaSpec, InitialSpec, Law, LoadKind, LoadSpec, MassKind, MaterialSpec, MeshSpec, NewtonSpec,
-    ObstacleMotion, OutputSpec, Persistency, PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec, Quantity,
-    RefineSpec, SchemeSpec, SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
+    ObstacleMotion, OutputSpec, Overlap, Persistency, PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec,
+    Quantity, RefineSpec, SchemeSpec, SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
 };

@@ -18,6 +18,7 @@ mod linear_problem;
 mod mixing;
 pub mod model;
 mod newton;
+mod overlap;
 mod penetration;
 mod persistency;
 mod place;
@@ -45,6 +46,7 @@ mod workspace;
 
 pub use grid::Grid;
 pub use ledger::secondary_force;
+pub use overlap::depths;
 pub use penetration::{Depths, inside, penetration};
 pub use place::Place;
 pub use rejected::Rejected;

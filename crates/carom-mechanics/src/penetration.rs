@@ -51,6 +51,8 @@ struct Watched {
     constrained: bool,
     /// Allowed depth over the length of a facet.
     share: f64,
+    /// Depth that its contact keeps, which is not counted.
+    kept: f64,
     /// Distance that it and the body may still move together before it can be inside.
     clearance: f64,
     /// Its nearest facet and ξ, where the next search begins.
@@ -277,7 +279,7 @@ impl Penetration {
                     continue;
                 };
                 (watched.clearance, watched.near) = (found.distance, Some((found.facet, found.xi)));
-                (-found.distance, found.length)
+                (-found.distance - watched.kept, found.length)
             };
             if depth > deepest.all {
                 *first = k;
@@ -321,7 +323,7 @@ pub fn inside(model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> 
 }
 
 /// Whether every node of a contact has a gap: its primary is rigid, or a point.
-fn has_gaps(model: &Model, contact: &Contact) -> bool {
+pub(crate) fn has_gaps(model: &Model, contact: &Contact) -> bool {
     contact.facets.len() < 2 || model.dimension == 1
 }
 
@@ -339,7 +341,7 @@ impl Way {
 
 impl Watched {
     fn new(node: usize, length: f64, constrained: bool, share: f64) -> Self {
-        Self { node, length, constrained, share, clearance: 0.0, near: None }
+        Self { node, length, constrained, share, kept: 0.0, clearance: 0.0, near: None }
     }
 }
 
@@ -348,9 +350,13 @@ fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -> Vec<Watch
     let nodes = contact.kinematics.secondary().iter().enumerate();
     let strict = nodes.filter(|(k, _)| contact.kinematics.allowed(*k) == 0.0).map(|(_, &node)| node);
     let strict: std::collections::HashSet<usize> = strict.collect();
+    let nodes = contact.kinematics.secondary().iter().enumerate();
+    let kept: std::collections::HashMap<usize, f64> =
+        nodes.map(|(k, &node)| (node, contact.kinematics.kept(k))).collect();
     let watched = |(node, length)| {
         let constrained = strict.contains(&node);
-        Watched::new(node, length, constrained, contact.depths[usize::from(!constrained)])
+        let kept = kept.get(&node).copied().unwrap_or(0.0);
+        Watched { kept, ..Watched::new(node, length, constrained, contact.depths[usize::from(!constrained)]) }
     };
     lengths(model, facets).map(watched).collect()
 }
@@ -374,7 +380,7 @@ fn square(a: &[f64], b: &[f64], node: usize) -> f64 {
     (a[2 * node] - b[2 * node]).powi(2) + (a[2 * node + 1] - b[2 * node + 1]).powi(2)
 }
 
-fn part_of(model: &Model, node: usize) -> Option<usize> {
+pub(crate) fn part_of(model: &Model, node: usize) -> Option<usize> {
     model.parts.iter().position(|part| part.nodes().contains(&node))
 }
 
@@ -383,7 +389,7 @@ fn skin_facets(part: &BodyInstance) -> Vec<Vec<usize>> {
     skin.map(|facet| facet.nodes.iter().map(|node| node + part.first_node).collect()).collect()
 }
 
-fn skin(part: &BodyInstance) -> Option<Skin> {
+pub(crate) fn skin(part: &BodyInstance) -> Option<Skin> {
     let shape = part.body.mesh().element.facet_shape().filter(|shape| *shape != FacetShape::Point)?;
     let facets = skin_facets(part);
     Some(Skin::new(Surface::new(shape, &facets, &vec![1.0; facets.len()])))

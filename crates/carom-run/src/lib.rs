@@ -3,6 +3,7 @@
 
 mod build;
 mod initial;
+mod overlap;
 pub mod recording;
 mod reduce;
 mod saved_state;

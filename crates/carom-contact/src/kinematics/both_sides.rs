@@ -96,6 +96,17 @@ impl Kinematics for BothSides {
         direction.allowed(node)
     }
 
+    fn keep(&mut self, depths: &[f64]) {
+        let (forward, reverse) = depths.split_at(self.forward.secondary().len().min(depths.len()));
+        self.forward.keep(forward);
+        self.reverse.keep(reverse);
+    }
+
+    fn kept(&self, node: usize) -> f64 {
+        let (direction, node) = self.direction(node);
+        direction.kept(node)
+    }
+
     fn facet_nodes(&self, facet: usize) -> &[usize] {
         self.forward.facet_nodes(facet)
     }
