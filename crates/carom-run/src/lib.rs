@@ -18,6 +18,7 @@ pub use carom_mechanics::{
     Simulation, State, StepReport, Stepper, Stopped, Tangent, Timings, Workspace, frequencies, model,
     stability,
 };
+pub use overlap::{OverlapNode, overlapping};
 pub use reduce::{ReduceError, Reduced, reduce};
 pub use setup::{Setup, too_long};
 pub use warnings::{Entry, Found, Rule, WARNINGS, warnings};

@@ -12,7 +12,8 @@ use crate::chart::{open, write_text};
 use crate::figures::Figure;
 use crate::obstacles;
 use crate::palette::LINES;
-use crate::pen::{Pen, Point, open_grid};
+use crate::pen::{Pen, Point};
+use crate::place::{mesh, path};
 use crate::symbols::wall;
 
 const WIDTH: f64 = 720.0;
@@ -179,36 +180,6 @@ fn size(place: &StopPlace, fields: &FieldSet, points: &[Point], node: usize) -> 
     };
     let cells = fields.blocks.iter().flat_map(carom_record::Block::cells).filter(|cell| cell.contains(&node));
     cells.map(longest).fold(facet, f64::max).max(f64::MIN_POSITIVE)
-}
-
-fn mesh(out: &mut String, instant: &Instant, fill: &str, to: &dyn Fn(Point) -> Point) {
-    let mut cells = Pen::default();
-    for (degree, nodes) in &instant.cells {
-        for e in 0..3 {
-            let edge: Vec<Point> = edge_nodes(*degree, nodes, e).map(|n| to(instant.points[n])).collect();
-            bezier(&mut cells, &edge, e == 0);
-        }
-        cells.close();
-    }
-    // Bodies may overlap at the place: both must show.
-    path(
-        out,
-        &cells,
-        &format!("fill=\"{fill}\" fill-opacity=\"0.8\" stroke=\"#98a2ad\" stroke-width=\"16\""),
-    );
-    let mut corners = Pen::default();
-    for (_, nodes) in &instant.cells {
-        for &k in nodes {
-            let [x, y] = to(instant.points[k]);
-            corners.go([x - 1.2, y]);
-            corners.draw(&[[x + 1.2, y]]);
-        }
-    }
-    path(out, &corners, "fill=\"none\" stroke=\"#667\" stroke-width=\"48\"");
-}
-
-fn path(out: &mut String, pen: &Pen, style: &str) {
-    let _ = writeln!(out, "{}<path d=\"{}\" {style}/>\n</g>", open_grid(), pen.data());
 }
 
 fn key(out: &mut String, place: &StopPlace, moved: bool) {

@@ -11,6 +11,7 @@ mod units;
 mod verdicts;
 
 pub use columns::columns;
+pub use fields::initial_fields;
 pub use outcome::{End, Options, Outcome, Progress, RunError};
 pub use session::{resume, run};
 pub(crate) use stopped::explain;
