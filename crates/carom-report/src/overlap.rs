@@ -16,9 +16,9 @@ use crate::place::mesh;
 const WIDTH: f64 = 720.0;
 const TOP: f64 = 30.0;
 const FILLS: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
-/// Radius of the circle of the deepest node, and of a node that touches.
+/// Radius of the circle of the deepest node, where there is room for it, and of a node that touches.
 const LARGE: f64 = 12.0;
-const SMALL: f64 = 2.5;
+const SMALL: f64 = 2.0;
 
 /// The picture of nodes (number, depth) of bodies in the plane; none without any.
 pub fn overlap(fields: &FieldSet, nodes: &[(usize, f64)]) -> Option<String> {
@@ -50,9 +50,10 @@ pub fn overlap(fields: &FieldSet, nodes: &[(usize, f64)]) -> Option<String> {
         let instant = Instant { points: points.clone(), ..Instant::of_block(fields, block) };
         mesh(&mut out, &instant, FILLS[k % FILLS.len()], &to);
     }
+    let large = (0.4 * WIDTH / nodes.len() as f64).clamp(3.5, LARGE);
     for (node, d) in &nodes {
         let [x, y] = to(points[*node]);
-        let radius = SMALL + (LARGE - SMALL) * (d / depth).sqrt();
+        let radius = SMALL + (large - SMALL) * (d / depth).sqrt();
         let color = LINES[2];
         let _ = writeln!(
             out,

@@ -6,7 +6,6 @@ use carom_record::{Advice, Run, Stop, StopIteration, StopNode, StopPlace};
 use maud::{Markup, html};
 
 use crate::document::{figure, file, joined, or_dash};
-use crate::figures::Figure;
 use crate::labels::number;
 use crate::text::{Label, Prose};
 
@@ -14,24 +13,24 @@ const ITERATIONS: &str = "Newton's iterations of the last attempt, each before i
     fraction of the sum of the forces. Gap and correction: as fractions of the length of the model. Part: the \
     fraction of a correction that was taken. Data: `stopped.json`.";
 
-/// The picture of the place.
-pub(crate) fn picture(run: &Run) -> Option<Figure> {
+/// Caption and picture of the place.
+pub(crate) fn picture(run: &Run) -> Option<(String, String)> {
     picture::figure(run, run.stop.as_ref()?)
 }
 
-/// The section; the number of the figure.
-pub(crate) fn section(run: &Run, picture: Option<(usize, &Figure)>) -> Markup {
+/// The section, with number, caption and picture of its figure.
+pub(crate) fn section(run: &Run, picture: Option<(usize, &str, &str)>) -> Markup {
     let Some(stop) = &run.stop else { return html! {} };
     let unit = run.history.unit("time");
     html! {
         h2 { "Why it stopped" }
         p.reason { (stop.reason) "." }
         @if let Some(place) = &stop.place { (where_table(place)) }
-        @if let Some((i, f)) = picture { (figure(i, f.name, &["svg"], &f.caption, &f.svg)) }
+        @if let Some((i, caption, svg)) = picture { (figure(i, "stopped", &["svg"], caption, svg)) }
         (advice(stop, unit))
         (iterations(&stop.iterations))
         p.small {
-            "To reproduce it with less: " code { "carom reduce " (run.directory.display()) } ". Data: "
+            "To reproduce it with less: " code { "carom reduce " (run.directory.file_name().unwrap_or_default().to_string_lossy()) } ". Data: "
             (joined(["stopped.json", "stopped.vtu"].map(file), ", ")) " (the state at t = " (number(stop.last))
             " " (Label(unit)) " with the rejected displacements)."
         }

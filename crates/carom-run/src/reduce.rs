@@ -180,7 +180,9 @@ fn removable(case: &Case, place: Option<&StopPlace>) -> Vec<Removable> {
         needed.extend(place.body.as_deref());
         needed.extend(place.node.iter().chain(&place.facet_nodes).map(|node| node.body.as_str()));
     }
-    needed.extend(case.contacts.iter().filter(|c| Some(c.name.as_str()) == contact).flat_map(|c| c.bodies()));
+    needed.extend(
+        case.contacts.iter().filter(|c| Some(c.name.as_str()) == contact).flat_map(ContactSpec::bodies),
+    );
     let bodies = case.bodies.iter().filter(|body| !needed.contains(body.name.as_str()));
     let contacts = case.contacts.iter().filter(|c| Some(c.name.as_str()) != contact);
     bodies
@@ -277,13 +279,12 @@ fn write(
         put(&name, ("t,value\n".to_owned() + &rows.collect::<String>()).as_bytes())?;
         tables.push(name);
     }
-    let mut comment = format!(
-        "# Reduced by `carom reduce` from a run that stopped:\n# {}.\n# It continues at t = {:?}, step {}.\n",
+    let without =
+        if removed.is_empty() { String::new() } else { format!("# Without {}.\n", removed.join(", ")) };
+    let comment = format!(
+        "# Reduced by `carom reduce` from a run that stopped:\n# {}.\n# It continues at t = {:?}, step {}.\n{without}",
         stop.reason, best.state.time, best.state.step
     );
-    if !removed.is_empty() {
-        comment += &format!("# Without {}.\n", removed.join(", "));
-    }
     let excerpt = Excerpt {
         bodies: best.case.bodies.iter().map(|body| body.name.clone()).collect(),
         contacts: best.case.contacts.iter().map(|contact| contact.name.clone()).collect(),

@@ -9,7 +9,6 @@ use carom_record::{Cell, FieldSet, Run, Stop, StopPlace};
 use crate::axis::round_step;
 use crate::bodies::{Instant, bezier, edge_nodes, edges, places};
 use crate::chart::{open, write_text};
-use crate::figures::Figure;
 use crate::obstacles;
 use crate::palette::LINES;
 use crate::pen::{Pen, Point};
@@ -28,8 +27,8 @@ const CELL: &str = LINES[5];
 const REJECTED: &str = LINES[4];
 const FILLS: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
 
-/// The figure; none in dimension 1 and without fields or a place.
-pub(super) fn figure(run: &Run, stop: &Stop) -> Option<Figure> {
+/// Caption and picture; none in dimension 1 and without fields or a place.
+pub(super) fn figure(run: &Run, stop: &Stop) -> Option<(String, String)> {
     let fields = carom_record::Stop::fields(&run.directory, &run.manifest).ok()??;
     let place = stop.place.as_ref()?;
     if fields.blocks.iter().any(|block| block.cell != Cell::Triangle) {
@@ -42,7 +41,7 @@ pub(super) fn figure(run: &Run, stop: &Stop) -> Option<Figure> {
          where the next step failed.{rejected} Data: `stopped.vtu`, `stopped.json`.",
         stop.last
     );
-    Some(Figure { name: "stopped", caption, svg })
+    Some((caption, svg))
 }
 
 /// The picture, and whether the rejected positions differ visibly.

@@ -6,24 +6,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use carom_case::Case;
-use carom_mechanics::{Attempt, GridReport, Simulation, State, Stopped, penetration};
+use carom_mechanics::{Attempt, GridReport, Simulation, State, penetration};
 use carom_record::{ContactRow, Event, Manifest, Run, RunWriter, Source, Status, Stop};
 use cpu_time::{ProcessTime, ThreadTime};
 use serde::{Deserialize, Serialize};
 
 use super::columns::{Since, center_weights, columns, row};
 use super::fields::{consistent_weights, field_set, gap_of, sides};
-use super::log::{entry, repairs};
+use super::log::{entry, relaxed, repairs};
 use super::outcome::{End, Options, Outcome, Progress, RunError};
-use super::stopped::{Effort, explain, try_out};
+use super::stopped::{Record, write_stop};
 use super::verdicts::judge;
 use crate::setup::Setup;
 use crate::warnings::{warnings, warnings_of_record};
 
 /// Time between signs of life while a step is bisected.
 const HEARTBEAT: Duration = Duration::from_secs(1);
-/// Steps before a stop at which trials may begin.
-const FEW: u64 = 5;
 
 /// What a run has counted, and where its time went, up to a checkpoint.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -179,7 +177,8 @@ impl<'a> Session<'a> {
 
     /// Mesh repairs, warnings, row and fields of the initial state.
     fn write_start(&mut self) -> Result<(), RunError> {
-        for event in repairs(self.case) {
+        let strain = self.simulation.state().ledger.strain;
+        for event in repairs(self.case).into_iter().chain(relaxed(self.case, strain)) {
             self.writer.log(&event)?;
         }
         self.log_warnings(0)?;
@@ -407,7 +406,9 @@ impl<'a> Session<'a> {
     ) -> Result<Outcome, RunError> {
         self.checkpoint()?;
         if let End::Stopped(stopped) = &end {
-            self.explain(stopped, last, options)?;
+            let record = Record { case: self.case, simulation: &self.simulation, earlier: &self.checkpoints };
+            let directory = self.writer.directory();
+            write_stop(&record, stopped, last, options, directory, &mut self.manifest)?;
         }
         // A record that cannot be read does not make a finished run unfinished.
         let asked = match end {
@@ -440,28 +441,6 @@ impl<'a> Session<'a> {
             judge(Run { manifest: self.manifest, ..run }, &self.case.expects)?;
         }
         Ok(outcome)
-    }
-}
-
-impl Session<'_> {
-    /// Writes why the simulation stopped, before and after the trials: a killed process leaves the
-    /// first.
-    fn explain(&mut self, stopped: &Stopped, last: &GridReport, options: Options) -> Result<(), RunError> {
-        let (mut stop, fields) = explain(self.case, &self.simulation, stopped, last);
-        stop.write(self.writer.directory(), &fields, &mut self.manifest)?;
-        if options.trials {
-            let counted = |name: &str| self.manifest.counters.get(name).copied().unwrap_or_default();
-            let effort = Effort {
-                iterations: counted("steps") + counted("newton"),
-                unknowns: self.simulation.model().free.len() as u64,
-            };
-            let step = self.simulation.state().step;
-            let [latest, before] = &self.checkpoints;
-            let earlier = if latest.step + FEW <= step { latest } else { before };
-            try_out(&mut stop, self.case, earlier, effort, options.threads);
-            stop.write(self.writer.directory(), &fields, &mut self.manifest)?;
-        }
-        Ok(())
     }
 }
 

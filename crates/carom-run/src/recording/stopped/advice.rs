@@ -5,6 +5,9 @@ use carom_record::Advice;
 
 use super::change::{Change, Kind};
 
+/// Keyword of the energy guard, beside those of rejected steps.
+pub(super) const GUARD: &str = "energy-guard";
+
 /// A remedy: the change that makes it, if the program can make it, and in words.
 type Remedy = (Option<Kind>, &'static str);
 
@@ -60,7 +63,7 @@ const TABLE: &[(&str, &[Remedy])] = &[
     ("jump", &[(None, "a `move` that begins where its nodes are")]),
     ("penetration", &[SHORTER, STIFFER, MULTIPLIER, PENALTY, BATHE, FINER, ROUNDED]),
     ("not-finite", &[SHORTER, BATHE, FINER]),
-    (super::GUARD, &[LONGER, SHORTER, BATHE, DAMPED, SOFTER, FINER, GUARD_OFF]),
+    (GUARD, &[LONGER, SHORTER, BATHE, DAMPED, SOFTER, FINER, GUARD_OFF]),
 ];
 /// The remedies of any other reason.
 const OTHERWISE: &[Remedy] = &[SHORTER, BATHE, DAMPED, PENALTY, FINER];

@@ -70,8 +70,8 @@ impl Change {
         let implicit = !scheme.is_static() && scheme.nonsmooth().is_none();
         match kind {
             Kind::Shorter => change.step(0.25),
-            Kind::Longer if implicit && case.time.phase == 0.0 && case.time.steps() % 2 == 0 => {
-                change.step(2.0)
+            Kind::Longer if implicit && case.time.phase == 0.0 && case.time.steps().is_multiple_of(2) => {
+                change.step(2.0);
             }
             Kind::Damped if implicit => {
                 let rho = *scheme.parameters.get("rho_inf")?;

@@ -5,16 +5,52 @@ mod change;
 mod place;
 mod trials;
 
+use std::path::Path;
+
 use carom_case::Case;
 use carom_mechanics::{GridReport, Simulation, State, Stopped};
-use carom_record::{Advice, FieldSet, PointArray, Stop, StopIteration};
+use carom_record::{Advice, FieldSet, Manifest, PointArray, RecordError, Stop, StopIteration};
 
 use super::fields::field_set;
+use super::outcome::Options;
 use place::place;
-pub(super) use trials::Effort;
+use trials::Effort;
 
-/// Keyword of the energy guard, beside those of rejected steps.
-const GUARD: &str = "energy-guard";
+/// Steps before a stop at which trials may begin.
+const FEW: u64 = 5;
+
+/// A run that stopped.
+pub(super) struct Record<'a> {
+    pub case: &'a Case,
+    pub simulation: &'a Simulation,
+    /// The states of its last two checkpoints, the latest first.
+    pub earlier: &'a [State; 2],
+}
+
+/// Writes why a simulation stopped, before and after the trials: a killed process leaves the first.
+pub(super) fn write_stop(
+    record: &Record,
+    stopped: &Stopped,
+    last: &GridReport,
+    options: Options,
+    directory: &Path,
+    manifest: &mut Manifest,
+) -> Result<(), RecordError> {
+    let Record { case, simulation, earlier: [latest, before] } = record;
+    let (mut stop, fields) = explain(case, simulation, stopped, last);
+    stop.write(directory, &fields, manifest)?;
+    if options.trials {
+        let counted = |name: &str| manifest.counters.get(name).copied().unwrap_or_default();
+        let effort = Effort {
+            iterations: counted("steps") + counted("newton"),
+            unknowns: simulation.model().free.len() as u64,
+        };
+        let earlier = if latest.step + FEW <= simulation.state().step { latest } else { before };
+        try_out(&mut stop, case, earlier, effort, options.threads);
+        stop.write(directory, &fields, manifest)?;
+    }
+    Ok(())
+}
 
 /// Explains a stop; `fields`: the last accepted state and the rejected positions.
 pub(crate) fn explain(
@@ -26,7 +62,7 @@ pub(crate) fn explain(
     let (model, state, trace) = (simulation.model(), simulation.state(), simulation.trace());
     let (kind, time, dt) = match stopped {
         Stopped::NoStep { time, dt, rejected, .. } => (rejected.kind(), *time, *dt),
-        Stopped::EnergyGuard { time, .. } => (GUARD, *time, simulation.dt()),
+        Stopped::EnergyGuard { time, .. } => (advice::GUARD, *time, simulation.dt()),
     };
     let finite = |x: f64| x.is_finite().then_some(x);
     let iterations = trace.iterations().map(|i| StopIteration {
@@ -65,7 +101,7 @@ pub(crate) fn explain(
 }
 
 /// Tries what to try, from the start or from an earlier state, and puts what got past first.
-pub(super) fn try_out(stop: &mut Stop, case: &Case, earlier: &State, effort: Effort, threads: usize) {
+fn try_out(stop: &mut Stop, case: &Case, earlier: &State, effort: Effort, threads: usize) {
     stop.trials = Some(trials::words(effort));
     let contact = stop.place.as_ref().and_then(|place| place.contact.clone());
     for advice in &mut stop.advice {

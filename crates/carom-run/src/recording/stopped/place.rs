@@ -64,8 +64,8 @@ fn elsewhere(
         ));
     }
     let changed = report.events.iter().rev().find_map(|event| match event {
-        LogEvent::ActiveSet { contact, node, .. } => Some((*contact, *node)),
-        LogEvent::Pair {
+        LogEvent::ActiveSet { contact, node, .. }
+        | LogEvent::Pair {
             contact,
             event: PairEvent::HandOver { node, .. } | PairEvent::SlidOff { node, .. },
             ..

@@ -22,7 +22,7 @@ const REJECTED: u64 = 8;
 
 /// Effort of a run: steps and iterations, and its unknowns.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::recording) struct Effort {
+pub(super) struct Effort {
     pub iterations: u64,
     pub unknowns: u64,
 }
@@ -100,7 +100,7 @@ fn adapted(state: &State, change: &Change) -> Option<State> {
     let mut state = state.clone();
     match change.kind {
         Kind::Shorter if change.case.time.phase == 0.0 => state.step *= 4,
-        Kind::Longer if state.step % 2 == 0 => state.step /= 2,
+        Kind::Longer if state.step.is_multiple_of(2) => state.step /= 2,
         Kind::Shorter | Kind::Longer => return None,
         Kind::Bathe | Kind::Damped => {
             (state.previous, state.half_step) = (None, HalfStepVelocity::default());
