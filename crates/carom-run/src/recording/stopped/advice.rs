@@ -22,6 +22,8 @@ const PENALTY: Remedy = (Some(Kind::Penalty), "penalty springs, which have no ac
 const MULTIPLIER: Remedy = (Some(Kind::Multiplier), "multipliers, which prevent penetration exactly");
 const STIFFER: Remedy = (Some(Kind::Stiffer), "stiffer springs");
 const SOFTER: Remedy = (Some(Kind::Softer), "softer springs, which a step resolves better");
+const PROJECT: Remedy =
+    (Some(Kind::Project), "velocities that are projected where contact begins, so that it creates no energy");
 const FULL: Remedy = (Some(Kind::Full), "a new tangent in every iteration");
 const FINER: Remedy =
     (None, "a finer mesh at the place (`refine` of a polygon, or a mesh file), or a smaller load");
@@ -63,7 +65,7 @@ const TABLE: &[(&str, &[Remedy])] = &[
     ("jump", &[(None, "a `move` that begins where its nodes are")]),
     ("penetration", &[SHORTER, STIFFER, MULTIPLIER, PENALTY, BATHE, FINER, ROUNDED]),
     ("not-finite", &[SHORTER, BATHE, FINER]),
-    (GUARD, &[LONGER, SHORTER, BATHE, DAMPED, SOFTER, FINER, GUARD_OFF]),
+    (GUARD, &[PROJECT, LONGER, SHORTER, BATHE, DAMPED, SOFTER, FINER, GUARD_OFF]),
 ];
 /// The remedies of any other reason.
 const OTHERWISE: &[Remedy] = &[SHORTER, BATHE, DAMPED, PENALTY, FINER];
@@ -74,6 +76,7 @@ pub(super) fn of(kind: &str, case: &Case, contact: Option<&str>) -> Vec<Advice> 
     let advice = |&(change, what): &Remedy| {
         let sets = match change {
             Some(kind) => Change::new(kind, case, contact)?.sets,
+            None if what == DEGREE.1 && case.bodies.iter().all(|b| b.element.degree() == 1) => return None,
             None => Vec::new(),
         };
         Some(Advice { what: what.into(), sets, trial: None })

@@ -26,10 +26,12 @@ pub(super) enum Kind {
     Multiplier,
     /// A new tangent in every iteration.
     Full,
+    /// Velocities that are compatible with contact where it begins.
+    Project,
 }
 
 impl Kind {
-    const ALL: [Self; 9] = [
+    const ALL: [Self; 10] = [
         Self::Shorter,
         Self::Longer,
         Self::Damped,
@@ -39,6 +41,7 @@ impl Kind {
         Self::Softer,
         Self::Multiplier,
         Self::Full,
+        Self::Project,
     ];
 }
 
@@ -91,6 +94,7 @@ impl Change {
                 change.case.newton.tangent = TangentRule::Full;
                 change.sets.push("newton.tangent=full".into());
             }
+            Kind::Project if implicit => change.project(contact),
             _ => {}
         }
         (!change.sets.is_empty()).then_some(change)
@@ -140,6 +144,18 @@ impl Change {
                 "multiplier"
             };
             self.sets.push(format!("contact.{}.enforcement={word}", contact.name));
+        }
+    }
+
+    fn project(&mut self, at: Option<&str>) {
+        for contact in &mut self.case.contacts {
+            let usable = contact.enforcement == Enforcement::Multiplier
+                && contact.law == Some(ContactLaw::Position)
+                && contact.persistency == Persistency::None;
+            if usable && at.is_none_or(|at| at == contact.name) {
+                contact.persistency = Persistency::Project;
+                self.sets.push(format!("contact.{}.persistency=project", contact.name));
+            }
         }
     }
 

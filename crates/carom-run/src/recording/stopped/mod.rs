@@ -40,9 +40,9 @@ pub(super) fn write_stop(
     let (mut stop, fields) = explain(case, simulation, stopped, last);
     stop.write(directory, &fields, manifest)?;
     if options.trials {
-        let counted = |name: &str| manifest.counters.get(name).copied().unwrap_or_default();
+        // Not the counters: those of a run that was resumed count the attempts of the last step twice.
         let effort = Effort {
-            iterations: counted("steps") + counted("newton"),
+            iterations: trials::TYPICAL * simulation.state().step,
             unknowns: simulation.model().free.len() as u64,
         };
         let earlier = if latest.step + FEW <= simulation.state().step { latest } else { before };

@@ -17,10 +17,12 @@ const BISECTIONS: u32 = 4;
 const MULTIPLE: u64 = 8;
 const MOST: u64 = 4_000_000;
 const LEAST: u64 = 100_000;
+/// Iterations that a step of the run counts.
+pub(super) const TYPICAL: u64 = 4;
 /// Iterations that a rejected attempt counts.
 const REJECTED: u64 = 8;
 
-/// Effort of a run: steps and iterations, and its unknowns.
+/// Effort of a run: iterations, and unknowns.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Effort {
     pub iterations: u64,
