@@ -70,7 +70,8 @@ impl BothSides {
         let faced = secondary.facet(corner.facet);
         let normal = faced.at(y, corner.xi).normal;
         self.corners[corner.node].iter().any(|&(facet, xi)| {
-            let near = NEAR_NODE * primary.length(facet, y);
+            // Where an overlap is kept, they meet at that distance.
+            let near = NEAR_NODE * primary.length(facet, y) + self.reverse.kept(corner.node);
             primary.facet(facet).at(y, xi).normal.dot(&normal) < -PARALLEL
                 && faced.nodes.iter().any(|&other| (y.at(other) - at).norm() < near)
         })
