@@ -13,10 +13,10 @@ const BEYOND: f64 = 5.0;
 /// Bisections of a step in a trial. What succeeds with few of them succeeds with more.
 const BISECTIONS: u32 = 4;
 /// Effort of one trial: at most this multiple of that of the run, and at most this many iterations ×
-/// unknowns (about a second).
+/// unknowns (about a second). A short run may take the least, too.
 const MULTIPLE: u64 = 8;
 const MOST: u64 = 4_000_000;
-const LEAST: u64 = 100_000;
+const LEAST: u64 = 1_000_000;
 /// Iterations that a step of the run counts.
 pub(super) const TYPICAL: u64 = 4;
 /// Iterations that a rejected attempt counts.
