@@ -8,6 +8,7 @@ mod conform;
 mod document;
 mod draft;
 mod example;
+mod excerpt;
 mod expect;
 pub mod keys;
 mod load;
@@ -34,6 +35,7 @@ mod view;
 pub use carom_record::{Bound, Expect as ExpectSpec};
 pub use columns::history_columns;
 pub use document::Document;
+pub use excerpt::Excerpt;
 pub use expect::{Asked, read_expects};
 pub use load::load_variables;
 pub use problem::{CaseError, Diagnostic, Problem, Problems};
@@ -42,6 +44,6 @@ pub use schema::{changes, expectation, schema};
 pub use spec::{
     ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime,
     FormulaSpec, InitialSpec, Law, LoadKind, LoadSpec, MassKind, MaterialSpec, MeshSpec, NewtonSpec,
-    ObstacleMotion, OutputSpec, Persistency, PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec, Quantity,
-    RefineSpec, SchemeSpec, SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
+    ObstacleMotion, OutputSpec, Overlap, Persistency, PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec,
+    Quantity, RefineSpec, SchemeSpec, SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
 };

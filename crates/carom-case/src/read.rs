@@ -315,6 +315,7 @@ fn contact(
         detection: v.choice("detection")?,
         xi: v.choice("xi")?,
         law: v.choice("law"),
+        overlap: v.choice("overlap")?,
         restitution: v.number("restitution")?,
     })
 }

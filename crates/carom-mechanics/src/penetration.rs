@@ -51,6 +51,8 @@ struct Watched {
     constrained: bool,
     /// Allowed depth over the length of a facet.
     share: f64,
+    /// Depth that its contact keeps, which is not counted.
+    kept: f64,
     /// Distance that it and the body may still move together before it can be inside.
     clearance: f64,
     /// Its nearest facet and ξ, where the next search begins.
@@ -281,7 +283,7 @@ impl Penetration {
                     continue;
                 };
                 (watched.clearance, watched.near) = (found.distance, Some((found.facet, found.xi)));
-                (-found.distance, length(model, skin.facet_nodes(found.facet)))
+                (-found.distance - watched.kept, length(model, skin.facet_nodes(found.facet)))
             };
             if depth > deepest.all {
                 *first = k;
@@ -343,7 +345,7 @@ impl Way {
 
 impl Watched {
     fn new(node: usize, length: f64, constrained: bool, share: f64) -> Self {
-        Self { node, length, constrained, share, clearance: 0.0, near: None }
+        Self { node, length, constrained, share, kept: 0.0, clearance: 0.0, near: None }
     }
 
     /// Allowed depth in a facet of this length: a node that the contact law keeps outside is judged by
@@ -358,9 +360,13 @@ fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -> Vec<Watch
     let nodes = contact.kinematics.secondary().iter().enumerate();
     let strict = nodes.filter(|(k, _)| contact.kinematics.allowed(*k) == 0.0).map(|(_, &node)| node);
     let strict: std::collections::HashSet<usize> = strict.collect();
+    let nodes = contact.kinematics.secondary().iter().enumerate();
+    let kept: std::collections::HashMap<usize, f64> =
+        nodes.map(|(k, &node)| (node, contact.kinematics.kept(k))).collect();
     let watched = |(node, length)| {
         let constrained = strict.contains(&node);
-        Watched::new(node, length, constrained, contact.depths[usize::from(!constrained)])
+        let kept = kept.get(&node).copied().unwrap_or(0.0);
+        Watched { kept, ..Watched::new(node, length, constrained, contact.depths[usize::from(!constrained)]) }
     };
     lengths(model, facets).map(watched).collect()
 }
@@ -389,7 +395,7 @@ fn square(a: &[f64], b: &[f64], node: usize) -> f64 {
     (a[2 * node] - b[2 * node]).powi(2) + (a[2 * node + 1] - b[2 * node + 1]).powi(2)
 }
 
-fn part_of(model: &Model, node: usize) -> Option<usize> {
+pub(crate) fn part_of(model: &Model, node: usize) -> Option<usize> {
     model.parts.iter().position(|part| part.nodes().contains(&node))
 }
 
@@ -398,7 +404,7 @@ fn skin_facets(part: &BodyInstance) -> Vec<Vec<usize>> {
     skin.map(|facet| facet.nodes.iter().map(|node| node + part.first_node).collect()).collect()
 }
 
-fn skin(part: &BodyInstance) -> Option<Skin> {
+pub(crate) fn skin(part: &BodyInstance) -> Option<Skin> {
     let shape = part.body.mesh().element.facet_shape().filter(|shape| *shape != FacetShape::Point)?;
     let facets = skin_facets(part);
     Some(Skin::new(Surface::new(shape, &facets, &vec![1.0; facets.len()])))

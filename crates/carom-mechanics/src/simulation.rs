@@ -10,8 +10,9 @@ use crate::rejected::Rejected;
 use crate::start::{Before, start};
 use crate::state::{OtherModel, State};
 use crate::stepper::{StepReport, Stepper};
-use crate::substeps::{Next, Progress, decide};
+use crate::substeps::{Limits, MOST, Next, Progress, decide};
 use crate::timings::Timings;
+use crate::trace::Trace;
 use crate::workspace::Workspace;
 
 /// Why a simulation stopped before its end; the state of the last grid time is preserved.
@@ -161,6 +162,17 @@ impl GridReport {
     }
 }
 
+/// A rejected attempt at a step, for those who watch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attempt {
+    /// Time at its start.
+    pub time: f64,
+    /// Its step size.
+    pub dt: f64,
+    /// Rejected attempts since the last grid time.
+    pub rejected: u32,
+}
+
 /// A model with its state.
 pub struct Simulation {
     model: Model,
@@ -169,6 +181,8 @@ pub struct Simulation {
     grid: Grid,
     stepper: Box<dyn Stepper>,
     work: Workspace,
+    /// Bisections of Δt before the run stops.
+    bisections: u32,
 }
 
 impl Simulation {
@@ -209,7 +223,7 @@ impl Simulation {
     fn at(model: Model, stepper: Box<dyn Stepper>, grid: Grid, state: State, threads: usize) -> Self {
         let model = model.on_threads(threads);
         let work = Workspace::new(&model);
-        Self { model, state, grid, stepper, work }
+        Self { model, state, grid, stepper, work, bisections: MOST }
     }
 
     /// The constant data.
@@ -225,6 +239,17 @@ impl Simulation {
     /// The state at the last grid time, kept alone.
     pub fn into_state(self) -> State {
         self.state
+    }
+
+    /// Stops after fewer bisections of a step than usual. What succeeds nevertheless is what would
+    /// have succeeded without.
+    pub fn limit_bisections(&mut self, most: u32) {
+        self.bisections = most.min(MOST);
+    }
+
+    /// The last iterations of the last attempt.
+    pub fn trace(&self) -> &Trace {
+        &self.work.trace
     }
 
     /// The grid of times.
@@ -293,35 +318,53 @@ impl Simulation {
     /// Why it cannot; `state` is then still that of the last grid time. The report contains the
     /// attempts.
     pub fn advance(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
-        // On one of the threads, so that parallel calls within a step do not switch threads.
-        let threads = self.model.threads.clone();
-        threads.within(|| self.advance_here(report))
+        self.advance_watched(report, &mut |_| ())
     }
 
-    fn advance_here(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
+    /// As [`Simulation::advance`]; `watch` is called after every rejected attempt.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn advance_watched(
+        &mut self,
+        report: &mut GridReport,
+        watch: &mut (dyn FnMut(&Attempt) + Send),
+    ) -> Result<(), Stopped> {
+        // On one of the threads, so that parallel calls within a step do not switch threads.
+        let threads = self.model.threads.clone();
+        threads.within(|| self.advance_here(report, watch))
+    }
+
+    fn advance_here(
+        &mut self,
+        report: &mut GridReport,
+        watch: &mut (dyn FnMut(&Attempt) + Send),
+    ) -> Result<(), Stopped> {
         let (start, length) = (self.grid.time(self.state.step), self.grid.length(self.state.step + 1));
         // The state after the substeps so far; none before the first.
         let mut reached: Option<State> = None;
         let mut progress = Progress { level: self.state.bisection.level(), done: 0 };
-        let (mut kept, mut bisected) = (None, false);
+        let (mut kept, mut bisected, before) = (None, false, report.rejected);
+        let limits = Limits { guard: self.grid.guard, bisections: self.bisections };
         while progress.done() < 1.0 {
             let dt = length / f64::from(1_u32 << progress.level);
             let time = start + progress.done as f64 * dt;
             let to = start + (progress.done + 1) as f64 * dt;
             let from = reached.as_ref().unwrap_or(&self.state);
+            self.work.trace.clear();
             let stepped = self.stepper.step(&self.model, from, dt, to, &mut self.work);
-            let (taken, rejected) =
-                match decide(stepped, from, self.grid.guard, &mut kept, &mut progress, report) {
-                    Next::Take(step) => (Some(step), None),
-                    Next::Bisect(rejected) => (None, Some(rejected)),
-                    Next::Return(rejected, step) => (Some(step), Some(rejected)),
-                    Next::Stop(rejected) => {
-                        report.reject(time, dt, rejected.clone());
-                        return Err(Stopped::NoStep { time, dt, halvings: progress.level, rejected });
-                    }
-                };
+            let (taken, rejected) = match decide(stepped, from, limits, &mut kept, &mut progress, report) {
+                Next::Take(step) => (Some(step), None),
+                Next::Bisect(rejected) => (None, Some(rejected)),
+                Next::Return(rejected, step) => (Some(step), Some(rejected)),
+                Next::Stop(rejected) => {
+                    report.reject(time, dt, rejected.clone());
+                    return Err(Stopped::NoStep { time, dt, halvings: progress.level, rejected });
+                }
+            };
             if let Some(rejected) = rejected {
                 report.reject(time, dt, rejected);
+                watch(&Attempt { time, dt, rejected: report.rejected - before });
             }
             let Some(step) = taken else {
                 progress.bisect();
@@ -347,7 +390,10 @@ impl Simulation {
                 report.events.push(LogEvent::Overlap { time: state.time, bodies: pair });
             }
         }
-        self.watch(&state)?;
+        if let Err(stopped) = self.watch(&state) {
+            self.work.trace.end(&state.y);
+            return Err(stopped);
+        }
         self.work.put(std::mem::replace(&mut self.state, state));
         Ok(())
     }

@@ -63,6 +63,13 @@ pub(super) const CONTACT: Table = Table {
         )
         .default("\"closest\""),
         key(
+            "overlap",
+            Choice(&["refuse", "relax", "keep-gap"], &[]),
+            "Overlap of the bodies at the start: an error; closed before the start, which leaves the bodies in equilibrium under the pressure of an \
+             interference fit; or kept, with the gap of every node larger by its depth at the start.",
+        )
+        .default("\"refuse\""),
+        key(
             "restitution",
             Number(RESTITUTION),
             "Coefficient of restitution e: Newton's, for contact laws on velocities; with energy-momentum and multipliers, e² is the fraction of the \
@@ -70,7 +77,7 @@ pub(super) const CONTACT: Table = Table {
         )
         .default("0.0"),
     ],
-    later: &["passes", "normals", "overlap", "between", "friction"],
+    later: &["passes", "normals", "between", "friction"],
 };
 
 const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };

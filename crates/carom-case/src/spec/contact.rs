@@ -34,6 +34,9 @@ pub struct ContactSpec {
     pub xi: ContactPoint,
     /// What contact constrains; once resolved, the default is the law of the scheme.
     pub law: Option<ContactLaw>,
+    /// What happens to an overlap of the bodies at the start.
+    #[serde(default)]
+    pub overlap: Overlap,
     /// Coefficient of restitution e, 0 … 1: Newton's, for laws on velocities; for a constraint that
     /// conserves, e² is the share of the energy taken that is returned.
     pub restitution: f64,
@@ -156,4 +159,17 @@ pub enum ContactPoint {
     Closest,
     /// The crossing of the paths, then the closest point at the start of the step, as in the paper.
     Frozen,
+}
+
+/// What happens to an overlap of the bodies at the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Overlap {
+    /// It is an error.
+    #[default]
+    Refuse,
+    /// It is closed before the start: the bodies begin in equilibrium with the pressure that closes it.
+    Relax,
+    /// The gap of every node is larger by its depth at the start, to the end of the run.
+    KeepGap,
 }

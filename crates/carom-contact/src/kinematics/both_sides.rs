@@ -70,7 +70,8 @@ impl BothSides {
         let faced = secondary.facet(corner.facet);
         let normal = faced.at(y, corner.xi).normal;
         self.corners[corner.node].iter().any(|&(facet, xi)| {
-            let near = NEAR_NODE * primary.length(facet, y);
+            // Where an overlap is kept, they meet at that distance.
+            let near = NEAR_NODE * primary.length(facet, y) + self.reverse.kept(corner.node);
             primary.facet(facet).at(y, xi).normal.dot(&normal) < -PARALLEL
                 && faced.nodes.iter().any(|&other| (y.at(other) - at).norm() < near)
         })
@@ -94,6 +95,17 @@ impl Kinematics for BothSides {
     fn allowed(&self, node: usize) -> f64 {
         let (direction, node) = self.direction(node);
         direction.allowed(node)
+    }
+
+    fn keep(&mut self, depths: &[f64]) {
+        let (forward, reverse) = depths.split_at(self.forward.secondary().len().min(depths.len()));
+        self.forward.keep(forward);
+        self.reverse.keep(reverse);
+    }
+
+    fn kept(&self, node: usize) -> f64 {
+        let (direction, node) = self.direction(node);
+        direction.kept(node)
     }
 
     fn facet_nodes(&self, pair: &Pair) -> &[usize] {

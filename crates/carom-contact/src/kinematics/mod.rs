@@ -36,6 +36,13 @@ pub trait Kinematics: Send + Sync {
         0.0
     }
 
+    /// Adds to the gap of every secondary node, by index, a depth that it has at the start: an overlap
+    /// that is kept, or not yet closed.
+    fn keep(&mut self, depths: &[f64]);
+
+    /// The depth that a secondary node, given by index, keeps.
+    fn kept(&self, node: usize) -> f64;
+
     /// Global numbers of the nodes of a pair's facet; empty for a rigid primary.
     fn facet_nodes(&self, pair: &Pair) -> &[usize];
 
@@ -43,7 +50,7 @@ pub trait Kinematics: Send + Sync {
     fn stencil(&self) -> usize;
 
     /// Signed distance of a secondary node, given by index, to the nearest point of the primary
-    /// side; `None` if no facet faces it.
+    /// side, plus the depth that it keeps; `None` if no facet faces it.
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64>;
 
     /// Updates the pairs between positions `before` (no penetration) and `now`: adds candidates,

@@ -63,6 +63,8 @@ pub struct NodeToFacet {
     point: ContactPoint,
     /// Depth that each node may have without contact; empty if none may have any.
     allowed: Vec<f64>,
+    /// Depth that each node keeps; empty if none does.
+    kept: Vec<f64>,
     tools: Mutex<Tools>,
 }
 
@@ -84,6 +86,7 @@ impl NodeToFacet {
             detection,
             point: ContactPoint::Closest,
             allowed: Vec::new(),
+            kept: Vec::new(),
             tools: Mutex::new(tools),
         }
     }
@@ -105,6 +108,11 @@ impl NodeToFacet {
     /// The primary side.
     pub(super) fn primary(&self) -> &Surface {
         &self.primary
+    }
+
+    /// Depth of a node at which its gap is zero.
+    fn slack(&self, place: usize) -> f64 {
+        self.allowed(place) + self.kept(place)
     }
 
     fn is_frozen(&self) -> bool {
@@ -143,14 +151,14 @@ impl NodeToFacet {
         before: Places,
         now: Places,
     ) -> Option<(usize, f64, bool)> {
-        let (node, allowed) = (self.secondary[place], self.allowed(place));
+        let (node, allowed, slack) = (self.secondary[place], self.allowed(place), self.slack(place));
         let near = tools.search.near(node, before, now);
         let closest = self.primary.closest_facet(near, now.at(node), now);
         if allowed > 0.0 {
             // It may be inside, and is no candidate before it is too deep, or has moved too far to
             // tell from its end alone.
             let moved = (now.at(node) - before.at(node)).norm();
-            if moved < allowed && closest.is_none_or(|c| c.gap + allowed >= 0.0) {
+            if moved < allowed && closest.is_none_or(|c| c.gap + slack >= 0.0) {
                 return None;
             }
         }
@@ -179,7 +187,7 @@ impl NodeToFacet {
         }
         let start = self.primary.facet(facet).closest_point(before, before.at(node), REACH);
         let behind_by = if self.primary.is_whole() { RECAPTURED } else { BEHIND };
-        let depth = |length: f64| allowed + behind_by * length;
+        let depth = |length: f64| slack + behind_by * length;
         let behind = |s| self.gap(node, facet, s, before) < -depth(self.primary.length(facet, before));
         (!start.map_or(entered_elsewhere, behind)).then_some((facet, xi, false))
     }
@@ -199,13 +207,22 @@ impl Kinematics for NodeToFacet {
     }
 
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
-        let (node, y) = (self.secondary[node], self.places(y));
+        let (kept, node, y) = (self.kept(node), self.secondary[node], self.places(y));
         (0..self.primary.facets())
             .filter_map(|f| {
                 let xi = self.primary.facet(f).closest_point(y, y.at(node), 1.0 + 1e-9)?;
                 Some(self.gap(node, f, xi, y))
             })
             .min_by(|a, b| a.abs().total_cmp(&b.abs()))
+            .map(|gap| gap + kept)
+    }
+
+    fn keep(&mut self, depths: &[f64]) {
+        self.kept = depths.to_vec();
+    }
+
+    fn kept(&self, node: usize) -> f64 {
+        self.kept.get(node).copied().unwrap_or(0.0)
     }
 
     fn allowed(&self, node: usize) -> f64 {
@@ -261,7 +278,7 @@ impl Kinematics for NodeToFacet {
                         // At a concave joint an inactive pair may be in front of one facet and
                         // behind the other.
                         changed |=
-                            pair.active || self.gap(node, facet, xi, now) + self.allowed(pair.node) < 0.0;
+                            pair.active || self.gap(node, facet, xi, now) + self.slack(pair.node) < 0.0;
                         left.insert(pair.node, pair.facet);
                         (pair.facet, pair.xi) = (facet, xi);
                     }
@@ -298,7 +315,7 @@ impl Kinematics for NodeToFacet {
                     continue;
                 };
                 let pair = Pair::open(k, facet, xi);
-                let gap = self.gap(node, facet, xi, now) + self.allowed(k);
+                let gap = self.gap(node, facet, xi, now) + self.slack(k);
                 match self.detection {
                     Detection::ClosestPoint if self.allowed(k) > 0.0 && gap >= 0.0 => {}
                     Detection::ClosestPoint => {
@@ -378,7 +395,7 @@ impl Kinematics for NodeToFacet {
         }
         let nodes = std::iter::once(&node).chain(facet.nodes);
         rows.push(
-            gap.distance + self.allowed(pair.node),
+            gap.distance + self.slack(pair.node),
             nodes.zip(gap.gradient(facet.nodes.len())).map(|(&n, slope)| (n, slope.0)),
         );
         Ok(())

@@ -2,8 +2,8 @@
 //! new contact method is one line here.
 
 use carom_case::{
-    ActiveSetRule, Case, ContactLaw, ContactSpec, Enforcement, ForceTime, ObstacleMotion, Persistency,
-    Problem,
+    ActiveSetRule, Case, ContactLaw, ContactSpec, Enforcement, ForceTime, ObstacleMotion, Overlap,
+    Persistency, Problem,
 };
 use carom_contact::{
     BothSides, ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet,
@@ -260,7 +260,7 @@ fn node_stiffness(parts: &[BodyInstance], node: usize) -> f64 {
 /// Initial overlaps deeper than round-off: a problem per contact with the deepest point.
 ///
 /// Closing an overlap within one step would drive the bodies apart, so it is an error.
-pub fn overlaps(model: &Model) -> Vec<Problem> {
+pub fn overlaps(case: &Case, model: &Model) -> Vec<Problem> {
     let x = &model.initial_position;
     let problem = |(k, node, depth): (usize, usize, f64)| {
         let place = coordinates(&x[node * model.dimension..(node + 1) * model.dimension]);
@@ -273,8 +273,19 @@ pub fn overlaps(model: &Model) -> Vec<Problem> {
             format!(
                 "the node of \"{owner}\" at {place} lies inside the other side's body; closing the overlap within one step would drive the bodies apart"
             ),
-            format!("move a body by at least {depth:.6e}"),
+            format!(
+                "move a body by at least {depth:.6e}, or give the contact overlap = \"relax\" or \"keep-gap\""
+            ),
         )
     };
-    carom_mechanics::inside(model, x, 1e-9 * model.scale).into_iter().map(problem).collect()
+    let found = carom_mechanics::inside(model, x, 1e-9 * model.scale).into_iter();
+    let kept = |k: usize| {
+        model.contacts[k]
+            .kinematics
+            .secondary()
+            .iter()
+            .enumerate()
+            .any(|(n, _)| model.contacts[k].kinematics.kept(n) > 0.0)
+    };
+    found.filter(|(k, ..)| case.contacts[*k].overlap != Overlap::Relax || kept(*k)).map(problem).collect()
 }

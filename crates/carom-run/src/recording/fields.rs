@@ -19,15 +19,6 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     let vectors =
         |values: &[f64]| values.chunks_exact(model.dimension).flat_map(spatial).collect::<Vec<f64>>();
     let moved: Vec<f64> = state.y.iter().zip(&model.reference).map(|(y, x)| y - x).collect();
-    let blocks = model.parts.iter().filter(|part| !part.is_rigid()).map(|part| {
-        let mesh = part.body.mesh();
-        Block {
-            body: part.name.clone(),
-            cell: cell(mesh.element),
-            degree: mesh.element.degree(),
-            connectivity: mesh.cells.iter().map(|n| n + part.first_node).collect(),
-        }
-    });
     let array = |name: &str, unit: &str, components: usize, values: Vec<f64>| PointArray {
         name: name.into(),
         unit: unit.into(),
@@ -38,7 +29,7 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     let nodes = model.parts.iter().filter(|part| !part.is_rigid()).map(|p| p.nodes().end).max().unwrap_or(0);
     let mut set = FieldSet {
         points: model.reference.chunks_exact(model.dimension).map(spatial).collect(),
-        blocks: blocks.collect(),
+        blocks: blocks(model),
         arrays: vec![
             array("displacement", &label.length, 3, vectors(&moved)),
             array("velocity", &label.velocity, 3, vectors(&state.v)),
@@ -49,6 +40,33 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     set.points.truncate(nodes);
     set.arrays.iter_mut().for_each(|array| array.values.truncate(nodes * array.components));
     set
+}
+
+/// The initial positions of a model, without other fields.
+pub fn initial_fields(case: &Case, model: &Model) -> FieldSet {
+    let axes = |x: &[f64]| -> [f64; 3] { std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0)) };
+    let moved = model.initial_position.iter().zip(&model.reference).map(|(y, x)| y - x).collect::<Vec<_>>();
+    let values = moved.chunks_exact(model.dimension).flat_map(axes).collect();
+    let unit = Labels::of(case).length;
+    FieldSet {
+        points: model.reference.chunks_exact(model.dimension).map(axes).collect(),
+        blocks: blocks(model),
+        arrays: vec![PointArray { name: "displacement".into(), unit, components: 3, values }],
+    }
+}
+
+/// The cells of the bodies.
+fn blocks(model: &Model) -> Vec<Block> {
+    let blocks = model.parts.iter().filter(|part| !part.is_rigid()).map(|part| {
+        let mesh = part.body.mesh();
+        Block {
+            body: part.name.clone(),
+            cell: cell(mesh.element),
+            degree: mesh.element.degree(),
+            connectivity: mesh.cells.iter().map(|n| n + part.first_node).collect(),
+        }
+    });
+    blocks.collect()
 }
 
 /// The viewer's cell type of an element.

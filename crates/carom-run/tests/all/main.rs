@@ -13,6 +13,7 @@ mod loads;
 mod momentum;
 mod nonsmooth;
 mod obstacles;
+mod overlap;
 mod own;
 mod placed;
 mod probe;
