@@ -43,5 +43,5 @@ pub use spec::{
     ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime,
     FormulaSpec, InitialSpec, Law, LoadKind, LoadSpec, MassKind, MaterialSpec, MeshSpec, NewtonSpec,
     ObstacleMotion, OutputSpec, Persistency, PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec, Quantity,
-    RefineSpec, SchemeSpec, SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
+    RefineSpec, SKIN, SchemeSpec, SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
 };

@@ -1,6 +1,7 @@
 //! Checks of contacts: two different bodies, each pair once, mass where the projection needs it,
 //! laws that are compatible with each other and with the scheme, and what a frozen ξ needs.
 
+use super::super::spec::SKIN;
 use super::super::{
     ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ObstacleMotion, Persistency, PrimarySpec,
 };
@@ -99,6 +100,24 @@ impl Check<'_> {
         add(what, why, hint);
     }
 
+    /// What contact of a side with itself needs: a boundary that can fold, and a detection by the
+    /// closest point.
+    fn itself(&mut self, i: usize, contact: &ContactSpec) {
+        if !contact.is_of_itself() {
+            return;
+        }
+        if self.draft.dimension == Some(1) {
+            let what = format!("the side `{}` cannot be in contact with itself", contact.secondary);
+            let why = "the case has dimension = 1, and the end of a bar is a point";
+            self.add(format!("contact[{i}].primary"), what, why, "give a side of another body");
+        }
+        if contact.detection == Detection::Trajectory {
+            let what = "detection = \"trajectory\" cannot be used for contact of a side with itself";
+            let why = "it checks the nodes of one side only, and here both are the same";
+            self.add(format!("contact[{i}].detection"), what, why, "leave it out");
+        }
+    }
+
     /// What an obstacle that moves needs: inertia if it is free, and a name for its columns.
     fn obstacle(&mut self, i: usize, contact: &ContactSpec) {
         let is_static = self.draft.time.as_ref().is_some_and(|time| time.scheme.is_static());
@@ -137,11 +156,13 @@ impl Check<'_> {
                     let primary = self.side(side, path("primary"));
                     if let (Some(a), Some(b)) = (secondary, primary)
                         && a.name == b.name
+                        && !contact.is_of_itself()
                     {
                         let what =
                             format!("both sides of `{}` belong to the body `{}`", contact.name, a.name);
-                        let why = "self-contact is planned for a later version of Carom";
-                        self.add(path("primary"), what, why, "give a side of another body");
+                        let why = "in contact of a body with itself each place may be secondary or primary, so both sides are the same";
+                        let help = format!("give `{0}.{SKIN}`, its whole boundary, for both", a.name);
+                        self.add(path("primary"), what, why, help);
                         continue;
                     }
                     primary
@@ -161,6 +182,7 @@ impl Check<'_> {
                 }
             };
             self.obstacle(i, contact);
+            self.itself(i, contact);
             let rigid = contact.primary.side().is_none() && !is_free(contact);
             if let Some(body) = secondary
                 && self.massless(body)

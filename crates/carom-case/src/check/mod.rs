@@ -13,6 +13,7 @@ use super::document::Document;
 use super::draft::Draft;
 use super::keys;
 use super::problem::Problem;
+use super::spec::SKIN;
 use super::suggest;
 use super::tree::Node;
 use super::{BodySpec, Quantity};
@@ -154,7 +155,8 @@ impl<'a> Check<'a> {
         }
         let body = self.body(name)?;
         let sides = body.mesh.sides();
-        if !sides.iter().any(|s| s == part) {
+        let is_skin = part == SKIN && self.draft.dimension != Some(1);
+        if !is_skin && !sides.iter().any(|s| s == part) {
             let why = format!("its mesh has the sides: {}", all_sides(body));
             let help = suggest::nearest(part, sides.iter().map(String::as_str)).map_or_else(
                 || "use one of these sides".to_owned(),

@@ -8,8 +8,8 @@ pub(super) const CONTACT: Table = Table {
     doc: "A contact pair: two sides that may come into contact.",
     keys: &[
         key("name", Name, "Name used in records and messages.").example("\"strike\""),
-        key("secondary", Side, "Secondary (slave) side: its nodes may not penetrate the primary.").example("\"cylinder.arc\""),
-        key("primary", SideOr(&RIGID), "Primary (master) side, or a rigid obstacle: a table with one of `plane`, `circle` and `polyline`.").example("\"prism.top\""),
+        key("secondary", Side, "Secondary (slave) side: its nodes may not penetrate the primary. `body.skin` is the whole boundary of a body.").example("\"cylinder.arc\""),
+        key("primary", SideOr(&RIGID), "Primary (master) side, or a rigid obstacle: a table with one of `plane`, `circle` and `polyline`. The secondary side again: contact of this side with itself.").example("\"prism.top\""),
         key("method", Choice(&["node-to-segment"], &["mortar"]), "Discretisation of the contact.")
             .default("\"node-to-segment\""),
         key(

@@ -11,7 +11,7 @@ pub struct ContactSpec {
     pub name: String,
     /// Secondary (slave) side: its nodes may not penetrate the primary.
     pub secondary: String,
-    /// Primary (master) side, or a rigid obstacle.
+    /// Primary (master) side, which may be the secondary one, or a rigid obstacle.
     pub primary: PrimarySpec,
     /// Motion of a rigid obstacle.
     #[serde(default, skip_serializing_if = "ObstacleMotion::is_fixed")]
@@ -40,6 +40,11 @@ pub struct ContactSpec {
 }
 
 impl ContactSpec {
+    /// Whether a side is in contact with itself.
+    pub fn is_of_itself(&self) -> bool {
+        self.primary.side() == Some(&self.secondary)
+    }
+
     /// Names of the bodies of its sides, the secondary one first.
     pub fn bodies(&self) -> impl Iterator<Item = &str> {
         let sides = [Some(self.secondary.as_str()), self.primary.side()];

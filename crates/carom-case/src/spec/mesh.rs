@@ -7,6 +7,10 @@ use std::path::PathBuf;
 use carom_solid::Element;
 use serde::{Deserialize, Serialize};
 
+/// Name of the side that is the whole boundary of a body in the plane, unless its mesh has a side of
+/// this name.
+pub const SKIN: &str = "skin";
+
 /// Source of a mesh: a built-in shape, or a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "shape", rename_all = "kebab-case")]

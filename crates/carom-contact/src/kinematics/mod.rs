@@ -17,8 +17,8 @@ mod swept;
 mod trajectory;
 
 pub use both_sides::BothSides;
-pub(crate) use folds::{Folds, Turns};
 pub use folds::Side;
+pub(crate) use folds::{Folds, Turns};
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
 pub use node_to_obstacle::{Carrier, NodeToObstacle};
 pub use obstacle::{Obstacle, Polyline, PolylineError};

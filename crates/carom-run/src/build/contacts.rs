@@ -62,16 +62,8 @@ pub(super) fn contacts(
             }
             (None, name) => match side(parts, name.unwrap_or(""), &format!("contact[{k}].primary")) {
                 Ok(primary) if primary.part == secondary.part => {
-                    problems.push(Problem::new(
-                        format!("contact[{k}].primary"),
-                        format!(
-                            "both sides of contact \"{}\" belong to body \"{}\"",
-                            spec.name, parts[primary.part].name
-                        ),
-                        "self-contact is planned for a later version of Carom",
-                        "give a side of another body",
-                    ));
-                    continue;
+                    primary_part = Some(primary.part);
+                    Box::new(itself(&secondary, parts, &reference))
                 }
                 Ok(primary) => {
                     primary_part = Some(primary.part);
@@ -146,6 +138,7 @@ pub(super) fn contacts(
             kinematics,
             // A mass that is thrown is a body; a prescribed obstacle is not.
             primary_part: primary_part.or(obstacle.filter(|_| is_thrown).map(|obstacle| obstacle.part)),
+            itself: primary_part == Some(secondary.part),
             facets: std::iter::once((secondary.shape, secondary.facets)).chain(primary_facets).collect(),
             surface,
             // Other schemes evaluate the contact force at the ends of their stages: nothing is
@@ -174,6 +167,14 @@ pub(super) fn contacts(
         contacts.push(contact);
     }
     contacts
+}
+
+/// Contact of a side with itself.
+fn itself(side: &Side, parts: &[BodyInstance], reference: &[f64]) -> BothSides {
+    let surface = surface_of(side, &[], parts);
+    let (nodes, allowed) = others(side, &[], side, &surface, reference);
+    let part = &parts[side.part];
+    BothSides::of_itself(surface, nodes, allowed, &part.body.mesh().pieces(), part.first_node)
 }
 
 /// The nodes of the primary side, each with the depth to which it may enter edges of the secondary

@@ -9,7 +9,9 @@ pub(super) fn unconstrained(parts: &[BodyInstance], free: &[Mode], contacts: &[C
     let mut problems: Vec<Problem> = Vec::new();
     for (place, part) in parts.iter().enumerate() {
         let involves = |c: &Contact| {
-            c.primary_part == Some(place) || c.kinematics.secondary().iter().any(|n| part.nodes().contains(n))
+            // A body cannot hold itself.
+            !c.itself && c.primary_part == Some(place)
+                || !c.itself && c.kinematics.secondary().iter().any(|n| part.nodes().contains(n))
         };
         if let Some(mode) = free.iter().find(|m| m.part == place).filter(|_| !contacts.iter().any(involves)) {
             problems.push(Problem::new(
