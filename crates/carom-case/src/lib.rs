@@ -2,6 +2,7 @@
 //! still as names, and the place of every error. The resolved case is what `manifest.json` records
 //! and `resume` reads back. No mechanics here.
 
+mod between;
 mod check;
 mod columns;
 mod conform;

@@ -84,6 +84,11 @@ impl Skin {
         let mut nearest: Option<(usize, f64, f64)> = None;
         for facet in self.tree.meeting(&Bounds::of(&point.0).grown(reach)).filter(|&facet| meets(facet)) {
             let (xi, distance) = self.nearest(facet, point.0, y);
+            // An end next to what the node cannot meet, such as its own facet, is no place to enter.
+            let beyond = || self.surface.neighbour(facet, xi > 0.0);
+            if xi.abs() >= 1.0 && !beyond().is_some_and(meets) {
+                continue;
+            }
             let least = nearest.map_or(reach, |(.., least)| least);
             // The first of equals, in whatever order the tree finds them.
             if distance < least || distance == least && nearest.is_some_and(|(first, ..)| facet < first) {

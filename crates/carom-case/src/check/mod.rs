@@ -117,6 +117,21 @@ impl<'a> Check<'a> {
         }
     }
 
+    /// Adds a problem with a key of a contact, once for all contacts of its table.
+    fn add_unique(
+        &mut self,
+        path: String,
+        what: impl Into<String>,
+        why: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        let problem = Problem::new(path, what, why, help);
+        let same = |known: &Problem| known.path == problem.path && known.why == problem.why;
+        if !self.problems.iter().any(same) {
+            self.problems.push(problem);
+        }
+    }
+
     /// Adds a problem with a reference, unless an earlier reference had the same one: the mistake
     /// is then probably in the name that both refer to.
     fn add_once(&mut self, path: String, what: String, why: &str, help: String) {

@@ -271,7 +271,7 @@ fn model_facts(case: &Case) -> Result<Facts, carom::case::Problems> {
     let model = carom::Setup::new(case).build()?;
     let d = model.dimension;
     // A start from another run has no overlaps: its contacts prevented them.
-    let overlaps = if case.initial.is_none() { carom::overlaps(&model) } else { Vec::new() };
+    let overlaps = if case.initial.is_none() { carom::overlaps(case, &model) } else { Vec::new() };
     let problems = [overlaps, carom::too_long(case, &model)].concat();
     if !problems.is_empty() {
         return Err(problems.into());
