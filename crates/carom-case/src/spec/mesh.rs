@@ -78,6 +78,9 @@ pub enum MeshSpec {
         file: PathBuf,
         /// Name of the physical group.
         surface: String,
+        /// Whether cells at one place with nodes of their own are a slit, not a mistake.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        slits: bool,
         /// BLAKE3 hash of the file when the case was read.
         hash: String,
         /// Nodes of the mesh.

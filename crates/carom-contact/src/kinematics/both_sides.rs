@@ -67,13 +67,13 @@ impl BothSides {
         Self { forward, reverse, corners, all }
     }
 
-    /// A side against itself: its nodes with the depth that each may have where it comes earlier,
-    /// none at corners; `piece`: the connected piece of its body to which each node belongs, from
+    /// A side against itself: its nodes, and the same with the depth that each may have where it comes
+    /// earlier, none at corners; `piece`: the connected piece of its body to which each node belongs, from
     /// `first_node` on.
     pub fn of_itself(
         side: Surface,
         nodes: Vec<usize>,
-        allowed: Vec<f64>,
+        (earlier, allowed): (Vec<usize>, Vec<f64>),
         piece: &[usize],
         first_node: usize,
     ) -> Self {
@@ -81,7 +81,7 @@ impl BothSides {
         let of = |nodes: Vec<usize>, which: Side| {
             NodeToFacet::new(nodes, side.clone(), Detection::ClosestPoint).folding(folds.clone(), which)
         };
-        Self::new(of(nodes.clone(), Side::Later), of(nodes, Side::Earlier).with_allowed(allowed))
+        Self::new(of(nodes, Side::Later), of(earlier, Side::Earlier).with_allowed(allowed))
     }
 
     /// The direction to which a node belongs, and its number there.
