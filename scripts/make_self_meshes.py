@@ -9,9 +9,8 @@ strips.msh: the strips −10 ≤ x ≤ 0 and 0 ≤ x ≤ 3 of height 1, without 
 slit.msh, solid.msh: a strip 0 ≤ x ≤ 6, 0 ≤ y ≤ 1, with a closed slit at x = 3 from y = 1/4 up, and
 without. Surface `bar`; curves `left` and `right`.
 
-split.msh: a ring of radii 0.4 and 0.5, cut at y = 0, x > 0, its flat ends 0.04 apart, and its upper
-half. The two halves are mirror images. Surfaces `ring` and `half`; curves `tip` (the end of the upper
-half) and `cut` (y = 0, x < 0, of that half).
+pinched.msh: a ring of radii 0.4 and 0.5, of which the halves y > 0 and y < 0 are mirror images.
+Surfaces `ring` and `half` (y > 0); curves `right` and `left`, the ends of the half.
 
 thin.msh: a ring of centre-line radius 1 + 0.001 cos 2φ and thickness 0.02. Surface `ring`; curves
 `inner` and `outer`.
@@ -94,7 +93,7 @@ def bar(name, slit):
     mesh.write(name)
 
 
-def split():
+def pinched():
     mesh, columns = Mesh(), 24
     for sign in (1, -1):
 
@@ -102,18 +101,18 @@ def split():
             angle, radius = pi * i / (2 * columns), 0.5 - 0.05 * j
             if i == 2 * columns:
                 return (-radius, 0.0)
-            return (radius * cos(angle), sign * (radius * sin(angle) + 0.02 * cos(angle / 2) ** 2))
+            return (radius * cos(angle), sign * radius * sin(angle))
 
         # Radii fall along j, so that the upper half is traversed clockwise.
-        key = lambda i, j, c, r: (i, j, sign if i < 2 * columns else 0)
+        key = lambda i, j, c, r: (i, j, sign if 0 < i < 2 * columns else 0)
         grid(mesh, columns, 1, place, key, ("ring", "half") if sign == 1 else ("ring",), sign == 1)
-    edges(mesh, "tip", [mesh.nodes[0, j, 1][0] for j in range(3)])
-    edges(mesh, "cut", [mesh.nodes[2 * columns, j, 0][0] for j in range(3)])
-    mesh.write("split.msh")
+    for group, i in (("right", 0), ("left", 2 * columns)):
+        edges(mesh, group, [mesh.nodes[i, j, 0][0] for j in range(3)])
+    mesh.write("pinched.msh")
 
 
 def thin():
-    mesh, columns = Mesh(), 96
+    mesh, columns = Mesh(), 256
 
     def place(i, j):
         angle = pi * i / columns
@@ -130,5 +129,5 @@ if __name__ == "__main__":
     strips()
     bar("slit.msh", True)
     bar("solid.msh", False)
-    split()
+    pinched()
     thin()

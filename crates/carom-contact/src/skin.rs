@@ -41,10 +41,10 @@ impl Skin {
     }
 
     /// The same, to measure its own nodes too; `piece`: the connected piece of the body to which each
-    /// node belongs, from `first_node` on.
+    /// node belongs, from `first_node` on; `reference`: the reference positions, flat over all nodes.
     #[must_use]
-    pub fn with_pieces(self, piece: &[usize], first_node: usize) -> Self {
-        let folds = Folds::new(&self.surface, piece, first_node);
+    pub fn with_pieces(self, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
+        let folds = Folds::new(&self.surface, piece, first_node, reference);
         Self { folds: Some((folds, Turns::default())), ..self }
     }
 

@@ -129,7 +129,7 @@ impl Penetration {
             })
         };
         let mut ways = Vec::new();
-        let solid = |(_, part): &(usize, &BodyInstance)| model.dimension == 2 && skin(part).is_some();
+        let solid = |(_, part): &(usize, &BodyInstance)| model.dimension == 2 && skin(model, part).is_some();
         for (a, part) in model.parts.iter().enumerate().filter(solid) {
             let facets = skin_facets(part);
             for body in (0..model.parts.len()).filter(|&b| b != a && !declared(a, b)) {
@@ -142,7 +142,8 @@ impl Penetration {
     }
 
     fn new(model: &Model, ways: Vec<Way>) -> Self {
-        let skin = |body: usize| ways.iter().any(|way| way.body == body).then(|| skin(&model.parts[body]))?;
+        let skin =
+            |body: usize| ways.iter().any(|way| way.body == body).then(|| skin(model, &model.parts[body]))?;
         Self { skins: (0..model.parts.len()).map(skin).collect(), ways, ..Self::default() }
     }
 
@@ -204,7 +205,7 @@ impl Penetration {
         let skins = &mut self.all;
         if skins.is_empty() {
             let declared = |part: &BodyInstance| skin_facets(part).iter().map(|f| itself(model, f)).collect();
-            skins.extend(model.parts.iter().map(|part| Some((skin(part)?, declared(part)))));
+            skins.extend(model.parts.iter().map(|part| Some((skin(model, part)?, declared(part)))));
         }
         let crosses = |(k, skin): (usize, &mut Option<(Skin, Vec<Option<usize>>)>)| {
             let (skin, declared) = skin.as_mut()?;
@@ -435,9 +436,9 @@ fn skin_facets(part: &BodyInstance) -> Vec<Vec<usize>> {
     skin.map(|facet| facet.nodes.iter().map(|node| node + part.first_node).collect()).collect()
 }
 
-fn skin(part: &BodyInstance) -> Option<Skin> {
+fn skin(model: &Model, part: &BodyInstance) -> Option<Skin> {
     let shape = part.body.mesh().element.facet_shape().filter(|shape| *shape != FacetShape::Point)?;
     let facets = skin_facets(part);
     let skin = Skin::new(Surface::new(shape, &facets, &vec![1.0; facets.len()]));
-    Some(skin.with_pieces(&part.body.mesh().pieces(), part.first_node))
+    Some(skin.with_pieces(&part.body.mesh().pieces(), part.first_node, &model.reference))
 }

@@ -69,15 +69,16 @@ impl BothSides {
 
     /// A side against itself: its nodes, and the same with the depth that each may have where it comes
     /// earlier, none at corners; `piece`: the connected piece of its body to which each node belongs, from
-    /// `first_node` on.
+    /// `first_node` on; `reference`: the reference positions, flat over all nodes.
     pub fn of_itself(
         side: Surface,
         nodes: Vec<usize>,
         (earlier, allowed): (Vec<usize>, Vec<f64>),
         piece: &[usize],
         first_node: usize,
+        reference: &[f64],
     ) -> Self {
-        let folds = Arc::new(Folds::new(&side, piece, first_node));
+        let folds = Arc::new(Folds::new(&side, piece, first_node, reference));
         let of = |nodes: Vec<usize>, which: Side| {
             NodeToFacet::new(nodes, side.clone(), Detection::ClosestPoint).folding(folds.clone(), which)
         };

@@ -17,9 +17,13 @@
 //! The boundaries of a hole and of its body are separated by material and cannot meet; pieces
 //! without a common cell always can.
 //!
-//! Of two places that meet, one is the secondary: that which comes later along the boundary.
+//! Of two places that meet, one is the secondary: that which comes later along the boundary. Each loop
+//! begins where it is least likely to meet itself: the boundary turns back least to the right after
+//! the beginning, and least to the right before it. At a beginning within a zone of contact the roles
+//! would change there. Any place of a hole may meet another one.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use super::surface::Surface;
 use crate::places::Places;
@@ -68,12 +72,15 @@ pub(crate) struct Turns {
 }
 
 impl Folds {
-    /// Of all facets of a surface; `piece` of a node: the number of its connected piece of the body.
-    pub(crate) fn new(surface: &Surface, piece: &[usize], first_node: usize) -> Self {
+    /// Of all facets of a surface at reference positions; `piece` of a node: the number of its
+    /// connected piece of the body. The order does not depend on that of the facets.
+    pub(crate) fn new(surface: &Surface, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
         let count = surface.all();
         let (mut order, mut starts, mut pieces) = (Vec::with_capacity(count), vec![0], Vec::new());
         let (mut place, mut of) = (vec![usize::MAX; count], vec![0; count]);
-        for begin in 0..count {
+        let mut begins: Vec<usize> = (0..count).collect();
+        begins.sort_unstable_by_key(|&facet| surface.facet(facet).nodes[0]);
+        for begin in begins {
             let mut next = Some(begin);
             while let Some(facet) = next.filter(|&facet| place[facet] == usize::MAX) {
                 (place[facet], of[facet]) = (order.len(), pieces.len());
@@ -85,6 +92,12 @@ impl Folds {
                 starts.push(order.len());
             }
         }
+        let mut turns = Turns::default();
+        turns.update_loops(&order, &starts, surface, Places::new(reference, 2));
+        for (run, ends) in starts.windows(2).enumerate() {
+            order[ends[0]..ends[1]].rotate_left(turns.best_start(run, ends[0]..ends[1]));
+        }
+        order.iter().enumerate().for_each(|(at, &facet)| place[facet] = at);
         let nodes = |facet: usize| surface.facet(facet).nodes;
         let all = || (0..count).flat_map(nodes).copied();
         let (first, end) = (all().min().unwrap_or(0), all().max().map_or(0, |last| last + 1));
@@ -147,11 +160,15 @@ impl Folds {
 impl Turns {
     /// Updates to positions.
     pub(crate) fn update(&mut self, folds: &Folds, surface: &Surface, y: Places) {
+        self.update_loops(&folds.order, &folds.starts, surface, y);
+    }
+
+    fn update_loops(&mut self, order: &[usize], starts: &[usize], surface: &Surface, y: Places) {
         self.start.clear();
         self.within.clear();
         self.total.clear();
-        for run in folds.starts.windows(2) {
-            let facets = &folds.order[run[0]..run[1]];
+        for run in starts.windows(2) {
+            let facets = &order[run[0]..run[1]];
             let mut turn = 0.0;
             for (k, &facet) in facets.iter().enumerate() {
                 let side = surface.facet(facet);
@@ -167,6 +184,31 @@ impl Turns {
             self.total.push(turn);
         }
     }
+
+    /// The facet of a loop, counted from its first one, at which to begin.
+    fn best_start(&self, run: usize, places: Range<usize>) -> usize {
+        let (start, within) = (&self.start[places.clone()], &self.within[places]);
+        let (total, n) = (self.total[run], start.len());
+        let end = |k: usize| start[k] + within[k];
+        // Least and largest angles from each facet on, and those before the current one.
+        let mut on = vec![[f64::INFINITY, f64::NEG_INFINITY]; n + 1];
+        for k in (0..n).rev() {
+            on[k] = [on[k + 1][0].min(start[k]).min(end(k)), on[k + 1][1].max(start[k]).max(end(k))];
+        }
+        let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut best = (0, f64::NEG_INFINITY);
+        for k in 0..n {
+            let arriving = if k == 0 { end(n - 1) - total } else { end(k - 1) };
+            let ahead = on[k][0].min(least + total) - start[k];
+            let behind = arriving - largest.max(on[k][1] - total);
+            // Of equals the first.
+            if ahead.min(behind) > best.1 + 1e-6 {
+                best = (k, ahead.min(behind));
+            }
+            (least, largest) = (least.min(start[k]).min(end(k)), largest.max(start[k]).max(end(k)));
+        }
+        best.0
+    }
 }
 
 #[cfg(test)]
@@ -180,7 +222,7 @@ mod tests {
         let n = corners.len();
         let facets: Vec<Vec<usize>> = (0..n).map(|k| vec![k, (k + 1) % n]).collect();
         let surface = Surface::new(FacetShape::L2, &facets, &vec![1.0; n]);
-        let folds = Folds::new(&surface, &vec![0; n], 0);
+        let folds = Folds::new(&surface, &vec![0; n], 0, corners.as_flattened());
         let mut turns = Turns::default();
         turns.update(&folds, &surface, Places::new(corners.as_flattened(), 2));
         let admitted = [Side::Later, Side::Earlier].map(|side| folds.admits(side, node, facet));

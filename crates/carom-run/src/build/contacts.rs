@@ -174,7 +174,14 @@ fn itself(side: &Side, parts: &[BodyInstance], reference: &[f64]) -> BothSides {
     let surface = surface_of(side, &[], parts);
     let earlier = others(side, &[], side, &surface, reference);
     let part = &parts[side.part];
-    BothSides::of_itself(surface, side.nodes.clone(), earlier, &part.body.mesh().pieces(), part.first_node)
+    BothSides::of_itself(
+        surface,
+        side.nodes.clone(),
+        earlier,
+        &part.body.mesh().pieces(),
+        part.first_node,
+        reference,
+    )
 }
 
 /// The nodes of the primary side, each with the depth to which it may enter edges of the secondary
