@@ -18,6 +18,7 @@ mod placed;
 mod probe;
 mod restart;
 mod reversal;
+mod self_contact;
 mod statics;
 mod tangent;
 mod warnings;
