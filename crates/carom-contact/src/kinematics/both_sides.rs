@@ -71,14 +71,14 @@ impl BothSides {
     /// earlier, none at corners; `piece`: the connected piece of its body to which each node belongs, from
     /// `first_node` on; `reference`: the reference positions, flat over all nodes.
     pub fn of_itself(
-        side: Surface,
+        side: &Surface,
         nodes: Vec<usize>,
         (earlier, allowed): (Vec<usize>, Vec<f64>),
         piece: &[usize],
         first_node: usize,
         reference: &[f64],
     ) -> Self {
-        let folds = Arc::new(Folds::new(&side, piece, first_node, reference));
+        let folds = Arc::new(Folds::new(side, piece, first_node, reference));
         let of = |nodes: Vec<usize>, which: Side| {
             NodeToFacet::new(nodes, side.clone(), Detection::ClosestPoint).folding(folds.clone(), which)
         };

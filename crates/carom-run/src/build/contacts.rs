@@ -175,7 +175,7 @@ fn itself(side: &Side, parts: &[BodyInstance], reference: &[f64]) -> BothSides {
     let earlier = others(side, &[], side, &surface, reference);
     let part = &parts[side.part];
     BothSides::of_itself(
-        surface,
+        &surface,
         side.nodes.clone(),
         earlier,
         &part.body.mesh().pieces(),

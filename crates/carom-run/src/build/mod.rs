@@ -215,7 +215,7 @@ fn with_skin(case: &Case, body: &str, mut mesh: carom_solid::Mesh) -> carom_soli
     let contacts =
         case.contacts.iter().flat_map(|contact| [Some(contact.secondary.as_str()), contact.primary.side()]);
     let supports = case.supports.iter().flat_map(|support| &support.on);
-    let loads = case.loads.iter().flat_map(|load| load.sides());
+    let loads = case.loads.iter().flat_map(carom_case::LoadSpec::sides);
     let mut sides = contacts.flatten().chain(supports.chain(loads).map(String::as_str));
     if mesh.dimension() == 2 && sides.any(|side| side == name) && !mesh.sides.contains_key(SKIN) {
         let skin = mesh.ordered_skin();
