@@ -73,6 +73,12 @@ pub(super) fn read(
     let facts = match gmsh::read(&bytes).and_then(facts) {
         Ok(facts) => facts,
         Err(error) => {
+            // `slits` may be misspelt, which `conform` reports.
+            let unknown =
+                || v.table.0.iter().any(|e| !["file", "surface", "slits"].contains(&e.key.as_str()));
+            if matches!(error.fault, gmsh::Fault::Coincident { .. }) && unknown() {
+                return None;
+            }
             let key = if matches!(error.fault, gmsh::Fault::NoName { .. }) { "surface" } else { "file" };
             return wrong(key, format!("{name}: {error}"), error.why(), error.help());
         }
