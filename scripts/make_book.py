@@ -52,6 +52,7 @@ FIGURES = {
     "impact": ("impact", "bodies"),
     "disc": ("offset", "bodies"),
     "corner": ("skin", "bodies"),
+    "self": ("ring", "bodies"),
     "obstacle": ("paddle", "bodies"),
     "loads": ("", "bodies"),
     "static": ("", "bodies"),

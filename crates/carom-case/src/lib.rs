@@ -2,6 +2,7 @@
 //! still as names, and the place of every error. The resolved case is what `manifest.json` records
 //! and `resume` reads back. No mechanics here.
 
+mod between;
 mod check;
 mod columns;
 mod conform;
@@ -45,5 +46,5 @@ pub use spec::{
     ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime,
     FormulaSpec, InitialSpec, Law, LoadKind, LoadSpec, MassKind, MaterialSpec, MeshSpec, NewtonSpec,
     ObstacleMotion, OutputSpec, Overlap, Persistency, PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec,
-    Quantity, RefineSpec, SchemeSpec, SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
+    Quantity, RefineSpec, SKIN, SchemeSpec, SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
 };

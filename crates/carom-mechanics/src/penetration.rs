@@ -5,7 +5,7 @@
 //! A node outside, at a distance d from a body, cannot be inside before the two have moved by d
 //! together. Until then it is not measured; no result depends on when it was.
 
-use carom_contact::{Rows, Skin, Surface};
+use carom_contact::{Rows, Side, Skin, Surface};
 use carom_solid::FacetShape;
 use serde::{Deserialize, Serialize};
 
@@ -25,8 +25,9 @@ pub(crate) struct Penetration {
     /// Depths of the active pairs of a contact and lengths of their facets, by node.
     held: Vec<(usize, f64, f64)>,
     rows: Option<Rows>,
-    /// The skins of all bodies, once they have been asked for.
-    all: Vec<Option<Skin>>,
+    /// The skins of all bodies, once they have been asked for, with the contact of each facet with
+    /// its own body.
+    all: Vec<Option<(Skin, Vec<Option<usize>>)>>,
 }
 
 /// Nodes of a side against a body.
@@ -37,6 +38,8 @@ struct Way {
     /// The body that must not be entered, and the nodes of its boundary.
     body: usize,
     boundary: Vec<usize>,
+    /// For nodes of the body itself: their side of the places that they may meet.
+    itself: Option<Side>,
     nodes: Vec<Watched>,
     /// The node that was deepest, with which the next search begins.
     first: usize,
@@ -53,6 +56,8 @@ struct Watched {
     share: f64,
     /// Depth that its contact keeps, which is not counted.
     kept: f64,
+    /// Distance up to which its own body is searched.
+    reach: f64,
     /// Distance that it and the body may still move together before it can be inside.
     clearance: f64,
     /// Its nearest facet and ξ, where the next search begins.
@@ -94,6 +99,10 @@ impl Penetration {
     pub(crate) fn of_contacts(model: &Model) -> Self {
         let mut ways = Vec::new();
         for (k, contact) in model.contacts.iter().enumerate() {
+            if contact.itself {
+                ways.extend([Side::Later, Side::Earlier].map(|side| Way::of_itself(model, k, side)));
+                continue;
+            }
             let (Some(primary), [(_, secondary_facets), (_, primary_facets)]) =
                 (contact.primary_part, &contact.facets[..])
             else {
@@ -122,7 +131,7 @@ impl Penetration {
             })
         };
         let mut ways = Vec::new();
-        let solid = |(_, part): &(usize, &BodyInstance)| model.dimension == 2 && skin(part).is_some();
+        let solid = |(_, part): &(usize, &BodyInstance)| model.dimension == 2 && skin(model, part).is_some();
         for (a, part) in model.parts.iter().enumerate().filter(solid) {
             let facets = skin_facets(part);
             for body in (0..model.parts.len()).filter(|&b| b != a && !declared(a, b)) {
@@ -135,7 +144,8 @@ impl Penetration {
     }
 
     fn new(model: &Model, ways: Vec<Way>) -> Self {
-        let skin = |body: usize| ways.iter().any(|way| way.body == body).then(|| skin(&model.parts[body]))?;
+        let skin =
+            |body: usize| ways.iter().any(|way| way.body == body).then(|| skin(model, &model.parts[body]))?;
         Self { skins: (0..model.parts.len()).map(skin).collect(), ways, ..Self::default() }
     }
 
@@ -196,12 +206,14 @@ impl Penetration {
     pub(crate) fn crossing_themselves(&mut self, model: &Model, y: &[f64]) -> Vec<(usize, usize)> {
         let skins = &mut self.all;
         if skins.is_empty() {
-            skins.extend(model.parts.iter().map(skin));
+            let declared = |part: &BodyInstance| skin_facets(part).iter().map(|f| itself(model, f)).collect();
+            skins.extend(model.parts.iter().map(|part| Some((skin(model, part)?, declared(part)))));
         }
-        let crosses = |(k, skin): (usize, &mut Option<Skin>)| {
-            let skin = skin.as_mut()?;
+        let crosses = |(k, skin): (usize, &mut Option<(Skin, Vec<Option<usize>>)>)| {
+            let (skin, declared) = skin.as_mut()?;
             skin.update(y);
-            skin.crosses_itself(y).then_some((k, k))
+            let known = |a: usize, b: usize| declared[a].is_some() && declared[a] == declared[b];
+            skin.crosses_itself(y, known).then_some((k, k))
         };
         skins.iter_mut().enumerate().filter_map(crosses).collect()
     }
@@ -230,7 +242,7 @@ impl Penetration {
     /// Depths of the nodes of a way, and the node that is furthest beyond its limit.
     fn deepest(&mut self, model: &Model, way: usize, state: Option<&State>) -> (Depths, Option<Inside>) {
         let Self { skins, ways, y, current, held, rows, .. } = self;
-        let Way { contact, body, nodes, first, .. } = &mut ways[way];
+        let Way { contact, body, itself, nodes, first, .. } = &mut ways[way];
         let (mut deepest, mut worst) = (Depths::default(), None::<Inside>);
         let Some(skin) = skins[*body].as_mut() else { return (deepest, worst) };
         held.clear();
@@ -240,8 +252,13 @@ impl Penetration {
             // An active pair on its facet is no deeper than its gap.
             let rows = rows.get_or_insert_with(|| Rows::new(model.dimension));
             let contact = &model.contacts[k];
+            let half = contact.kinematics.secondary().len() / 2;
+            let of_way = |node: usize| itself.is_none_or(|side| (side == Side::Later) == (node < half));
             for pair in state.pairs[k].iter().filter(|pair| {
-                pair.active && pair.xi.abs() <= 1.0 && contact.kinematics.allowed(pair.node) == 0.0
+                pair.active
+                    && pair.xi.abs() <= 1.0
+                    && contact.kinematics.allowed(pair.node) == 0.0
+                    && of_way(pair.node)
             }) {
                 rows.clear();
                 // A frozen contact point is not the closest one.
@@ -271,19 +288,26 @@ impl Penetration {
                 if !std::mem::replace(&mut current[*body], true) {
                     skin.update(y);
                 }
-                // No deeper than any point of the boundary is away: neither the deepest nor too deep.
-                let known = if watched.constrained { deepest.constrained } else { deepest.all };
-                if let Some((facet, xi)) = watched.near {
-                    let bound = skin.distance(facet, xi, at, y);
-                    if bound <= known && bound <= watched.limit(length(model, skin.facet_nodes(facet))) {
-                        continue;
+                let entered = |facet: usize| length(model, skin.facet_nodes(facet));
+                if let Some(side) = *itself {
+                    let found = skin.depth_of(node, side, watched.reach, y);
+                    watched.clearance = found.map_or(watched.reach, |found| found.distance);
+                    found.map_or((0.0, 0.0), |found| (-found.distance - watched.kept, entered(found.facet)))
+                } else {
+                    // No deeper than any point of the boundary is away: neither the deepest nor too deep.
+                    let known = if watched.constrained { deepest.constrained } else { deepest.all };
+                    if let Some((facet, xi)) = watched.near {
+                        let bound = skin.distance(facet, xi, at, y);
+                        if bound <= known && bound <= watched.limit(entered(facet)) {
+                            continue;
+                        }
                     }
+                    let Some(found) = skin.depth(at, watched.near.map(|near| near.0), y) else {
+                        continue;
+                    };
+                    (watched.clearance, watched.near) = (found.distance, Some((found.facet, found.xi)));
+                    (-found.distance - watched.kept, entered(found.facet))
                 }
-                let Some(found) = skin.depth(at, watched.near.map(|near| near.0), y) else {
-                    continue;
-                };
-                (watched.clearance, watched.near) = (found.distance, Some((found.facet, found.xi)));
-                (-found.distance - watched.kept, length(model, skin.facet_nodes(found.facet)))
             };
             if depth > deepest.all {
                 *first = k;
@@ -328,7 +352,7 @@ pub fn inside(model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> 
 
 /// Whether every node of a contact has a gap: its primary is rigid, or a point.
 pub(crate) fn has_gaps(model: &Model, contact: &Contact) -> bool {
-    contact.facets.len() < 2 || model.dimension == 1
+    !contact.itself && contact.facets.len() < 2 || model.dimension == 1
 }
 
 /// Allowed depth of bodies without a contact, over the length of a facet.
@@ -339,13 +363,31 @@ impl Way {
         let mut boundary = skin_facets(&model.parts[body]).concat();
         boundary.sort_unstable();
         boundary.dedup();
-        Self { contact, body, boundary, nodes, first: 0 }
+        Self { contact, body, boundary, itself: None, nodes, first: 0 }
+    }
+
+    /// The nodes of a side against the places of their own body that they may meet.
+    fn of_itself(model: &Model, contact: usize, side: Side) -> Self {
+        let Contact { kinematics, facets, depths, primary_part, .. } = &model.contacts[contact];
+        let (nodes, half) = (kinematics.secondary(), kinematics.secondary().len() / 2);
+        let facets = &facets[0].1;
+        let watched = |(node, longest)| {
+            let earlier = || nodes[half..].iter().position(|&n| n == node);
+            let constrained =
+                side == Side::Later || earlier().is_some_and(|k| kinematics.allowed(half + k) == 0.0);
+            // Before a node can enter a facet that it does not meet yet, the boundary folds.
+            let own = facets.iter().filter(|facet| facet.contains(&node));
+            let reach = 0.5 * own.map(|facet| length(model, facet)).fold(f64::INFINITY, f64::min);
+            Watched { reach, ..Watched::new(node, longest, constrained, depths[usize::from(!constrained)]) }
+        };
+        let nodes = lengths(model, facets).map(watched).collect();
+        Self { itself: Some(side), ..Self::new(model, Some(contact), primary_part.unwrap_or(0), nodes) }
     }
 }
 
 impl Watched {
     fn new(node: usize, length: f64, constrained: bool, share: f64) -> Self {
-        Self { node, length, constrained, share, kept: 0.0, clearance: 0.0, near: None }
+        Self { node, length, constrained, share, kept: 0.0, reach: 0.0, clearance: 0.0, near: None }
     }
 
     /// Allowed depth in a facet of this length: a node that the contact law keeps outside is judged by
@@ -390,6 +432,12 @@ pub(crate) fn length(model: &Model, facet: &[usize]) -> f64 {
     (end[0] - start[0]).hypot(end[1] - start[1])
 }
 
+/// The contact of a facet with its own body.
+fn itself(model: &Model, facet: &[usize]) -> Option<usize> {
+    let contains = |contact: &Contact| contact.facets.iter().any(|(_, all)| all.iter().any(|f| f == facet));
+    model.contacts.iter().position(|contact| contact.itself && contains(contact))
+}
+
 /// Square of the distance between two positions of a node.
 fn square(a: &[f64], b: &[f64], node: usize) -> f64 {
     (a[2 * node] - b[2 * node]).powi(2) + (a[2 * node + 1] - b[2 * node + 1]).powi(2)
@@ -404,8 +452,9 @@ fn skin_facets(part: &BodyInstance) -> Vec<Vec<usize>> {
     skin.map(|facet| facet.nodes.iter().map(|node| node + part.first_node).collect()).collect()
 }
 
-pub(crate) fn skin(part: &BodyInstance) -> Option<Skin> {
+pub(crate) fn skin(model: &Model, part: &BodyInstance) -> Option<Skin> {
     let shape = part.body.mesh().element.facet_shape().filter(|shape| *shape != FacetShape::Point)?;
     let facets = skin_facets(part);
-    Some(Skin::new(Surface::new(shape, &facets, &vec![1.0; facets.len()])))
+    let skin = Skin::new(Surface::new(shape, &facets, &vec![1.0; facets.len()]));
+    Some(skin.with_pieces(&part.body.mesh().pieces(), part.first_node, &model.reference))
 }

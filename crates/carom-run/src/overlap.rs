@@ -4,8 +4,7 @@
 //!
 //! `overlap = "relax"` finds the equilibrium in which the gaps are closed: an interference fit. The
 //! depths that the nodes keep are reduced to zero in stages, and each stage is solved by steps of the
-//! proximal point method (R. T. Rockafellar, SIAM J. Control Optim. 14 (1976) 877–898) in the metric
-//! of the mass matrix,
+//! proximal point method in the metric of the mass matrix,
 //!
 //! ```text
 //! y_k+1 = argmin U(y) + |y − y_k|²_M / 2τ²   with   g(y) + (1 − s) depth ≥ 0,

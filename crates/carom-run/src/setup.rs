@@ -166,20 +166,20 @@ fn unfit(kernel: &dyn Kernel, case: &Case) -> Option<Problem> {
             "its contact forces do no work over the velocities of the midpoint rule, and would with others";
         return Some(Problem::new("time.scheme", what, why, another));
     }
-    let first = |wrong: &dyn Fn(&ContactSpec) -> bool| case.contacts.iter().position(wrong);
+    let first = |wrong: &dyn Fn(&ContactSpec) -> bool| case.contacts.iter().find(|contact| wrong(contact));
     if !kernel.has_predictor()
-        && let Some(k) = first(&|contact| contact.law == Some(ContactLaw::Predictor))
+        && let Some(contact) = first(&|contact| contact.law == Some(ContactLaw::Predictor))
     {
         let what = "this kernel has no predictor";
         let why = "law = \"predictor\" replaces y + Δt v in Newmark's formula";
-        return Some(Problem::new(format!("contact[{k}].law"), what, why, "leave `law` out"));
+        return Some(Problem::new(contact.path("law"), what, why, "leave `law` out"));
     }
     if kernel.stages() > 1
-        && let Some(k) = first(&|contact| contact.xi == ContactPoint::Frozen)
+        && let Some(contact) = first(&|contact| contact.xi == ContactPoint::Frozen)
     {
         let what = format!("this kernel has {} stages", kernel.stages());
         let why = "xi = \"frozen\" keeps ξ during the one solve of a step";
-        return Some(Problem::new(format!("contact[{k}].xi"), what, why, "give xi = \"closest\""));
+        return Some(Problem::new(contact.path("xi"), what, why, "give xi = \"closest\""));
     }
     None
 }

@@ -18,7 +18,7 @@ pub use contact::{
 };
 pub use formula::FormulaSpec;
 pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec};
-pub use mesh::{MeshSpec, RefineSpec};
+pub use mesh::{MeshSpec, RefineSpec, SKIN};
 pub use obstacle::ObstacleMotion;
 pub use output::{OutputSpec, ProbeSpec, Quantity};
 pub use time::{NewtonSpec, SchemeSpec, TangentRule, TimeSpec};

@@ -4,7 +4,9 @@
 //! Positions are flat over all nodes, `dimension` components each.
 
 mod both_sides;
+mod candidate;
 mod facing;
+mod folds;
 mod gap;
 mod node_to_facet;
 mod node_to_obstacle;
@@ -15,6 +17,8 @@ mod swept;
 mod trajectory;
 
 pub use both_sides::BothSides;
+pub use folds::Side;
+pub(crate) use folds::{Folds, Turns};
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
 pub use node_to_obstacle::{Carrier, NodeToObstacle};
 pub use obstacle::{Obstacle, Polyline, PolylineError};
@@ -26,7 +30,8 @@ use crate::rows::Rows;
 
 /// A way to measure gaps between two sides.
 pub trait Kinematics: Send + Sync {
-    /// Global numbers of the secondary nodes, without duplicates.
+    /// Global numbers of the secondary nodes. In contact of a side with itself all occur twice: as
+    /// nodes of the later place, then as nodes of the earlier one.
     fn secondary(&self) -> &[usize];
 
     /// Depth that a secondary node, given by index, may have without contact: its gap is larger by

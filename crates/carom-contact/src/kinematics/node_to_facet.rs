@@ -9,15 +9,15 @@
 //! Which facet a node faces, at joints and ends, is in `facing.rs`. A pair is handed to the neighbour
 //! only between solves.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use carom_solid::FacetShape;
 
-use super::facing::{Closest, Next, REACH};
+use super::facing::{Next, PAST, REACH};
+use super::folds::{Folds, Side, Turns};
 use super::gap::Gap;
 use super::surface::{Search, Surface};
 use super::swept::SweptTest;
-use super::trajectory::crossing;
 use super::{Kinematics, watch_every_node};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
@@ -28,13 +28,6 @@ const WANDER: f64 = 3.0;
 /// |ξ| beyond which a pair is handed over, or back, before Newton has converged.
 const HAND_OVER: f64 = 1.02;
 const HAND_BACK: f64 = 1.1;
-
-/// A node this far behind a facet (relative to its length) at the start of a step has not crossed
-/// the facet.
-const BEHIND: f64 = 1e-6;
-/// The same where the whole boundary is known: a node whose nearest facet is of the side has entered
-/// the body there.
-const RECAPTURED: f64 = 0.02;
 
 /// The gap that decides that a node has reached the primary side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,29 +50,34 @@ pub enum ContactPoint {
 /// Secondary nodes against a primary side of facets.
 #[derive(Debug)]
 pub struct NodeToFacet {
-    secondary: Vec<usize>,
-    primary: Surface,
-    detection: Detection,
+    pub(super) secondary: Vec<usize>,
+    pub(super) primary: Surface,
+    pub(super) detection: Detection,
     point: ContactPoint,
     /// Depth that each node may have without contact; empty if none may have any.
     allowed: Vec<f64>,
     /// Depth that each node keeps; empty if none does.
     kept: Vec<f64>,
+    /// Of nodes of the primary side itself: where its boundary folds, and which of two places that
+    /// meet is the node's.
+    pub(super) folds: Option<(Arc<Folds>, Side)>,
     tools: Mutex<Tools>,
 }
 
 /// Reused memory; results do not depend on its content.
 #[derive(Debug)]
-struct Tools {
-    search: Search,
-    swept: SweptTest,
+pub(super) struct Tools {
+    pub(super) search: Search,
+    pub(super) swept: SweptTest,
+    pub(super) turns: Turns,
 }
 
 impl NodeToFacet {
     /// Secondary nodes and primary surface in global node numbers; nodes of the primary are removed
     /// from the secondary.
     pub fn new(secondary: Vec<usize>, primary: Surface, detection: Detection) -> Self {
-        let tools = Tools { search: Search::new(&primary), swept: SweptTest::new(primary.shape()) };
+        let swept = SweptTest::new(primary.shape());
+        let tools = Tools { search: Search::new(&primary), swept, turns: Turns::default() };
         Self {
             secondary,
             primary,
@@ -87,6 +85,7 @@ impl NodeToFacet {
             point: ContactPoint::Closest,
             allowed: Vec::new(),
             kept: Vec::new(),
+            folds: None,
             tools: Mutex::new(tools),
         }
     }
@@ -105,13 +104,30 @@ impl NodeToFacet {
         Self { allowed, ..self }
     }
 
+    /// The same for nodes of the primary side itself.
+    pub(super) fn folding(self, folds: Arc<Folds>, side: Side) -> Self {
+        Self { folds: Some((folds, side)), ..self }
+    }
+
+    /// Whether a node has no business on a facet: one of its own, or one that is the node's in the
+    /// other direction.
+    fn excludes(&self, node: usize, facet: usize) -> bool {
+        self.folds.as_ref().is_some_and(|(folds, side)| !folds.admits(*side, node, facet))
+    }
+
+    /// Whether ξ lies past an end of a facet where an excluded one follows.
+    pub(super) fn ends_at(&self, node: usize, facet: usize, xi: f64) -> bool {
+        let next = || self.primary.neighbour(facet, xi > 0.0);
+        self.folds.is_some() && xi.abs() > 1.0 + PAST && next().is_some_and(|next| self.excludes(node, next))
+    }
+
     /// The primary side.
     pub(super) fn primary(&self) -> &Surface {
         &self.primary
     }
 
     /// Depth of a node at which its gap is zero.
-    fn slack(&self, place: usize) -> f64 {
+    pub(super) fn slack(&self, place: usize) -> f64 {
         self.allowed(place) + self.kept(place)
     }
 
@@ -123,7 +139,7 @@ impl NodeToFacet {
         Places::new(y, self.primary.shape().dimension())
     }
 
-    fn gap(&self, node: usize, facet: usize, xi: f64, y: Places) -> f64 {
+    pub(super) fn gap(&self, node: usize, facet: usize, xi: f64, y: Places) -> f64 {
         self.primary.gap(facet, xi, y.at(node), y)
     }
 
@@ -140,56 +156,6 @@ impl NodeToFacet {
             ContactPoint::Closest => Gap::closest(facet, y, from, pair.xi),
             ContactPoint::Frozen => Gap::fixed(facet, y, from, pair.xi),
         }
-    }
-
-    /// Facet and ξ of possible contact of a node: the first crossing of trajectories, else the
-    /// closest facet at `now` that the node was not behind before.
-    fn candidate(
-        &self,
-        tools: &mut Tools,
-        place: usize,
-        before: Places,
-        now: Places,
-    ) -> Option<(usize, f64, bool)> {
-        let (node, allowed, slack) = (self.secondary[place], self.allowed(place), self.slack(place));
-        let near = tools.search.near(node, before, now);
-        let closest = self.primary.closest_facet(near, now.at(node), now);
-        if allowed > 0.0 {
-            // It may be inside, and is no candidate before it is too deep, or has moved too far to
-            // tell from its end alone.
-            let moved = (now.at(node) - before.at(node)).norm();
-            if moved < allowed && closest.is_none_or(|c| c.gap + slack >= 0.0) {
-                return None;
-            }
-        }
-        let mut first: Option<(f64, usize, f64)> = None;
-        for &facet in near {
-            if let Some(c) = crossing(&mut tools.swept, self.primary.facet(facet), before, now, node)
-                && first.is_none_or(|(theta, ..)| c.theta < theta)
-            {
-                first = Some((c.theta, facet, c.xi));
-            }
-        }
-        let entered_elsewhere = first.is_some_and(|(_, facet, _)| !self.primary.is_of_side(facet));
-        // A node that has entered near the end of a facet may be in front of another one now.
-        let still_faced = |facet: usize| {
-            let xi = self.primary.facet(facet).closest_point(now, now.at(node), REACH);
-            self.detection == Detection::Trajectory
-                || xi.is_some_and(|xi| !self.primary.faces_nothing(facet, xi, now))
-        };
-        let entered = first.filter(|&(_, facet, _)| !entered_elsewhere && still_faced(facet));
-        if let Some((_, facet, xi)) = entered {
-            return Some((facet, xi, true));
-        }
-        let Closest { facet, xi, .. } = closest.filter(|c| self.primary.is_of_side(c.facet))?;
-        if first.is_some() && !entered_elsewhere {
-            return Some((facet, xi, true));
-        }
-        let start = self.primary.facet(facet).closest_point(before, before.at(node), REACH);
-        let behind_by = if self.primary.is_whole() { RECAPTURED } else { BEHIND };
-        let depth = |length: f64| slack + behind_by * length;
-        let behind = |s| self.gap(node, facet, s, before) < -depth(self.primary.length(facet, before));
-        (!start.map_or(entered_elsewhere, behind)).then_some((facet, xi, false))
     }
 }
 
@@ -259,7 +225,13 @@ impl Kinematics for NodeToFacet {
             // Moves on to neighbours until the closest point lies on the facet, at most as many
             // times as there are facets.
             for _ in 0..=self.primary.facets() {
-                match self.primary.next_facet(pair, placed.at(node), left.get(&pair.node).copied(), placed) {
+                let came_from = left.get(&pair.node).copied();
+                let next = if self.ends_at(node, pair.facet, pair.xi) {
+                    Next::Leave
+                } else {
+                    self.primary.next_facet(pair, placed.at(node), came_from, placed)
+                };
+                match next {
                     Next::Stay => return true,
                     Next::HandOver(facet, _) | Next::Dent(facet, _)
                         if twice.contains(&(pair.node, facet)) =>
@@ -301,6 +273,9 @@ impl Kinematics for NodeToFacet {
         }
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         if tools.search.update(&self.primary, &self.secondary, *margin, before, now) {
+            if let Some((folds, _)) = &self.folds {
+                tools.turns.update(folds, &self.primary, before);
+            }
             let known = pairs.len();
             let mut next = 0;
             for (k, &node) in self.secondary.iter().enumerate() {
@@ -353,11 +328,12 @@ impl Kinematics for NodeToFacet {
             }
             let (from, mut previous) = (pair.facet, None);
             for _ in 0..self.primary.facets() {
-                let Next::HandOver(facet, xi) =
-                    self.primary.next_facet(pair, now.at(self.secondary[pair.node]), previous, now)
-                else {
+                let node = self.secondary[pair.node];
+                let next = self.primary.next_facet(pair, now.at(node), previous, now);
+                let Next::HandOver(facet, xi) = next else { break };
+                if self.excludes(node, facet) {
                     break;
-                };
+                }
                 previous = Some(pair.facet);
                 (pair.facet, pair.xi) = (facet, xi);
             }

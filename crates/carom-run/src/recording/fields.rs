@@ -117,8 +117,7 @@ fn pressures(case: &Case, model: &Model, state: &State) -> Vec<f64> {
 /// entry per node of the contact's pairs.
 pub(super) fn consistent_weights(contact: &Contact, state: &State, thickness: f64) -> Vec<f64> {
     let secondary = contact.kinematics.secondary();
-    let place: HashMap<usize, usize> = secondary.iter().enumerate().map(|(k, &n)| (n, k)).collect();
-    let mut weights = vec![0.0; secondary.len()];
+    let mut weights: HashMap<usize, f64> = secondary.iter().map(|&node| (node, 0.0)).collect();
     for (shape, facets) in &contact.facets {
         let d = shape.dimension();
         // Exact for constant |y'| and φ of degree 3.
@@ -133,14 +132,14 @@ pub(super) fn consistent_weights(contact: &Contact, state: &State, thickness: f6
                 let [x, y] = shape.normal(tangent, 1.0);
                 let measure = x.hypot(y);
                 for (n, value) in facet.iter().zip(&functions.values) {
-                    if let Some(&p) = place.get(n) {
-                        weights[p] += w * value * measure * thickness;
+                    if let Some(weight) = weights.get_mut(n) {
+                        *weight += w * value * measure * thickness;
                     }
                 }
             }
         }
     }
-    weights
+    secondary.iter().map(|node| weights[node]).collect()
 }
 
 /// Gap of a pair in a state and the unit normal ∂g/∂y of its secondary node; NaN if undefined.

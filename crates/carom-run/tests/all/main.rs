@@ -19,6 +19,7 @@ mod placed;
 mod probe;
 mod restart;
 mod reversal;
+mod self_contact;
 mod statics;
 mod substeps;
 mod tangent;
