@@ -3,6 +3,7 @@
 
 mod active_set;
 mod discrete_gradient;
+mod inside_itself;
 pub mod interface;
 pub mod kinematics;
 mod pair;

@@ -46,6 +46,10 @@ impl Skin {
         Self { folds: Some((folds, Turns::default())), ..self }
     }
 
+    pub(crate) fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
     /// Global numbers of the nodes of a facet.
     pub fn facet_nodes(&self, facet: usize) -> &[usize] {
         self.surface.facet(facet).nodes
@@ -140,7 +144,7 @@ impl Skin {
     }
 
     /// ξ of a facet's point nearest to a point, and its distance.
-    fn nearest(&self, facet: usize, point: [f64; 2], y: Places) -> (f64, f64) {
+    pub(crate) fn nearest(&self, facet: usize, point: [f64; 2], y: Places) -> (f64, f64) {
         let (side, point) = (self.surface.facet(facet), Vector(point));
         let distance = |xi: f64| (point - side.at(y, xi).position).norm();
         let ends = [-1.0, 1.0].map(|xi| (xi, distance(xi)));
@@ -168,7 +172,7 @@ impl Skin {
 }
 
 /// Chords of a curved facet.
-const CHORDS: usize = 4;
+pub(crate) const CHORDS: usize = 4;
 
 /// Whether two segments cross, their ends not included.
 fn cross(a: [Vector<2>; 2], b: [Vector<2>; 2]) -> bool {

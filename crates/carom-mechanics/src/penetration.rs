@@ -177,6 +177,12 @@ impl Penetration {
             let of_way = inside.zip(self.ways[k].contact);
             beyond = beyond.or(of_way.map(|(inside, contact)| (contact, self.ways[k].body, inside)));
         }
+        for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.itself) {
+            if let Some((body, inside)) = self.folded(model, contact, &state.y) {
+                deepest.add(inside.depth, false);
+                beyond = beyond.or((inside.depth > inside.limit).then_some((k, body, inside)));
+            }
+        }
         for contact in model.contacts.iter().filter(|contact| has_gaps(model, contact)) {
             for node in 0..contact.kinematics.secondary().len() {
                 let gap = contact.kinematics.signed_distance(node, &state.y);
@@ -184,6 +190,21 @@ impl Penetration {
             }
         }
         (deepest, beyond)
+    }
+
+    /// The deepest node of a body in contact with itself where its boundary crosses itself, pair or not.
+    fn folded(&mut self, model: &Model, contact: &Contact, y: &[f64]) -> Option<(usize, Inside)> {
+        let body = contact.primary_part?;
+        let skin = self.skins[body].as_mut()?;
+        if !std::mem::replace(&mut self.current[body], true) {
+            skin.update(y);
+        }
+        if !skin.crosses_itself(y, |_, _| false) {
+            return None;
+        }
+        let (node, facet, depth) = skin.deepest_in_itself(y)?;
+        let limit = contact.depths[1] * length(model, skin.facet_nodes(facet));
+        Some((body, Inside { node, depth, limit }))
     }
 
     /// Bodies without a contact of which one is inside the other: (body, other).
