@@ -6,7 +6,8 @@
 use carom_contact::Skin;
 
 use crate::model::Model;
-use crate::penetration::{has_gaps, part_of, skin};
+use crate::penetration::has_gaps;
+use crate::skins::{part_of, skin};
 
 /// Distance outside of a body, relative to L, at which a node still counts as on its boundary.
 const ON: f64 = 1e-9;

@@ -5,13 +5,14 @@
 //! A node outside, at a distance d from a body, cannot be inside before the two have moved by d
 //! together. Until then it is not measured; no result depends on when it was.
 
-use carom_contact::{Rows, Side, Skin, Surface};
-use carom_solid::FacetShape;
+use carom_contact::{Rows, Side, Skin};
 use serde::{Deserialize, Serialize};
 
 use crate::model::{BodyInstance, Contact, Model};
 use crate::rejected::Rejected;
+use crate::skins::{itself, length, part_of, skin, skin_facets};
 use crate::state::State;
+use crate::watched::{Watched, Way, lengths, watched};
 
 /// Measures penetration. A cache: its content affects no result.
 #[derive(Debug, Default)]
@@ -28,40 +29,6 @@ pub(crate) struct Penetration {
     /// The skins of all bodies, once they have been asked for, with the contact of each facet with
     /// its own body.
     all: Vec<Option<(Skin, Vec<Option<usize>>)>>,
-}
-
-/// Nodes of a side against a body.
-#[derive(Debug)]
-struct Way {
-    /// The contact; none for bodies without one.
-    contact: Option<usize>,
-    /// The body that must not be entered, and the nodes of its boundary.
-    body: usize,
-    boundary: Vec<usize>,
-    /// For nodes of the body itself: their side of the places that they may meet.
-    itself: Option<Side>,
-    nodes: Vec<Watched>,
-    /// The node that was deepest, with which the next search begins.
-    first: usize,
-}
-
-#[derive(Debug)]
-struct Watched {
-    node: usize,
-    /// Length of its facets in the reference configuration.
-    length: f64,
-    /// Whether the contact constrains it.
-    constrained: bool,
-    /// Allowed depth over the length of a facet.
-    share: f64,
-    /// Depth that its contact keeps, which is not counted.
-    kept: f64,
-    /// Distance up to which its own body is searched.
-    reach: f64,
-    /// Distance that it and the body may still move together before it can be inside.
-    clearance: f64,
-    /// Its nearest facet and ξ, where the next search begins.
-    near: Option<(usize, f64)>,
 }
 
 /// Largest depths of nodes of the sides of contacts in the other body, ≥ 0.
@@ -379,103 +346,7 @@ pub(crate) fn has_gaps(model: &Model, contact: &Contact) -> bool {
 /// Allowed depth of bodies without a contact, over the length of a facet.
 const UNDECLARED: f64 = 0.01;
 
-impl Way {
-    fn new(model: &Model, contact: Option<usize>, body: usize, nodes: Vec<Watched>) -> Self {
-        let mut boundary = skin_facets(&model.parts[body]).concat();
-        boundary.sort_unstable();
-        boundary.dedup();
-        Self { contact, body, boundary, itself: None, nodes, first: 0 }
-    }
-
-    /// The nodes of a side against the places of their own body that they may meet.
-    fn of_itself(model: &Model, contact: usize, side: Side) -> Self {
-        let Contact { kinematics, facets, depths, primary_part, .. } = &model.contacts[contact];
-        let (nodes, half) = (kinematics.secondary(), kinematics.secondary().len() / 2);
-        let facets = &facets[0].1;
-        let watched = |(node, longest)| {
-            let earlier = || nodes[half..].iter().position(|&n| n == node);
-            let constrained =
-                side == Side::Later || earlier().is_some_and(|k| kinematics.allowed(half + k) == 0.0);
-            // Before a node can enter a facet that it does not meet yet, the boundary folds.
-            let own = facets.iter().filter(|facet| facet.contains(&node));
-            let reach = 0.5 * own.map(|facet| length(model, facet)).fold(f64::INFINITY, f64::min);
-            Watched { reach, ..Watched::new(node, longest, constrained, depths[usize::from(!constrained)]) }
-        };
-        let nodes = lengths(model, facets).map(watched).collect();
-        Self { itself: Some(side), ..Self::new(model, Some(contact), primary_part.unwrap_or(0), nodes) }
-    }
-}
-
-impl Watched {
-    fn new(node: usize, length: f64, constrained: bool, share: f64) -> Self {
-        Self { node, length, constrained, share, kept: 0.0, reach: 0.0, clearance: 0.0, near: None }
-    }
-
-    /// Allowed depth in a facet of this length: a node that the contact law keeps outside is judged by
-    /// the facet that it enters alone.
-    fn limit(&self, entered: f64) -> f64 {
-        self.share * if self.constrained { entered } else { self.length.max(entered) }
-    }
-}
-
-/// The nodes of a side's facets, with the depths that its contact allows.
-fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -> Vec<Watched> {
-    let nodes = contact.kinematics.secondary().iter().enumerate();
-    let strict = nodes.filter(|(k, _)| contact.kinematics.allowed(*k) == 0.0).map(|(_, &node)| node);
-    let strict: std::collections::HashSet<usize> = strict.collect();
-    let nodes = contact.kinematics.secondary().iter().enumerate();
-    let kept: std::collections::HashMap<usize, f64> =
-        nodes.map(|(k, &node)| (node, contact.kinematics.kept(k))).collect();
-    let watched = |(node, length)| {
-        let constrained = strict.contains(&node);
-        let kept = kept.get(&node).copied().unwrap_or(0.0);
-        Watched { kept, ..Watched::new(node, length, constrained, contact.depths[usize::from(!constrained)]) }
-    };
-    lengths(model, facets).map(watched).collect()
-}
-
-/// The nodes of facets, ascending, each with the longest of its facets in the reference configuration.
-fn lengths(model: &Model, facets: &[Vec<usize>]) -> impl Iterator<Item = (usize, f64)> {
-    let mut nodes = std::collections::BTreeMap::new();
-    for facet in facets {
-        let length = length(model, facet);
-        for &node in facet {
-            let longest: &mut f64 = nodes.entry(node).or_default();
-            *longest = longest.max(length);
-        }
-    }
-    nodes.into_iter()
-}
-
-/// Distance between the ends of a facet in the reference configuration.
-pub(crate) fn length(model: &Model, facet: &[usize]) -> f64 {
-    let [start, end] = [facet[0], facet[1]].map(|node| &model.reference[2 * node..2 * node + 2]);
-    (end[0] - start[0]).hypot(end[1] - start[1])
-}
-
-/// The contact of a facet with its own body.
-fn itself(model: &Model, facet: &[usize]) -> Option<usize> {
-    let contains = |contact: &Contact| contact.facets.iter().any(|(_, all)| all.iter().any(|f| f == facet));
-    model.contacts.iter().position(|contact| contact.itself && contains(contact))
-}
-
 /// Square of the distance between two positions of a node.
 fn square(a: &[f64], b: &[f64], node: usize) -> f64 {
     (a[2 * node] - b[2 * node]).powi(2) + (a[2 * node + 1] - b[2 * node + 1]).powi(2)
-}
-
-pub(crate) fn part_of(model: &Model, node: usize) -> Option<usize> {
-    model.parts.iter().position(|part| part.nodes().contains(&node))
-}
-
-fn skin_facets(part: &BodyInstance) -> Vec<Vec<usize>> {
-    let skin = part.body.mesh().skin().into_iter();
-    skin.map(|facet| facet.nodes.iter().map(|node| node + part.first_node).collect()).collect()
-}
-
-pub(crate) fn skin(model: &Model, part: &BodyInstance) -> Option<Skin> {
-    let shape = part.body.mesh().element.facet_shape().filter(|shape| *shape != FacetShape::Point)?;
-    let facets = skin_facets(part);
-    let skin = Skin::new(Surface::new(shape, &facets, &vec![1.0; facets.len()]));
-    Some(skin.with_pieces(&part.body.mesh().pieces(), part.first_node, &model.reference))
 }

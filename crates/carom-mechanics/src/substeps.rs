@@ -3,8 +3,8 @@
 //! is rejected, or creates more than half as much: energy that the error of a smooth motion creates
 //! falls with the cube of the step, that of an impact or a change of facet does not.
 
+use crate::grid_report::GridReport;
 use crate::rejected::Rejected;
-use crate::simulation::GridReport;
 use crate::state::State;
 use crate::stepper::Accepted;
 
