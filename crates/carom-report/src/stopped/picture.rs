@@ -173,12 +173,11 @@ fn size(place: &StopPlace, fields: &FieldSet, points: &[Point], node: usize) -> 
     let longest = |cell: &[usize]| (0..3).map(|e| distance(cell[e], cell[(e + 1) % 3])).fold(0.0, f64::max);
     let numbers: Vec<usize> =
         place.facet_nodes.iter().map(|n| n.number).filter(|&n| n < points.len()).collect();
-    let facet = match &numbers[..] {
-        [first, .., last] => distance(*first, *last),
-        _ => 0.0,
-    };
+    if let [first, .., last] = &numbers[..] {
+        return distance(*first, *last).max(f64::MIN_POSITIVE);
+    }
     let cells = fields.blocks.iter().flat_map(carom_record::Block::cells).filter(|cell| cell.contains(&node));
-    cells.map(longest).fold(facet, f64::max).max(f64::MIN_POSITIVE)
+    cells.map(longest).fold(f64::MIN_POSITIVE, f64::max)
 }
 
 fn key(out: &mut String, place: &StopPlace, moved: bool) {
