@@ -3,6 +3,7 @@
 //! builds models from cases.
 
 mod active_rows;
+mod audit;
 mod balance;
 mod carried;
 mod cells;
@@ -48,6 +49,7 @@ mod valid_cells;
 mod watched;
 mod workspace;
 
+pub use audit::{Doubt, audit};
 pub use grid::Grid;
 pub use grid_report::{Attempt, GridReport, LogEvent};
 pub use ledger::secondary_force;

@@ -1,6 +1,7 @@
 //! The time loop: steps on the grid of times n·Δt, bisected after a rejection and returned to the
 //! grid, monitored by the energy guard.
 
+use crate::audit::{Doubt, audit};
 use crate::grid::Grid;
 use crate::grid_report::{Attempt, GridReport, LogEvent};
 use crate::model::Model;
@@ -29,6 +30,14 @@ pub enum Stopped {
         halvings: u32,
         /// The reason for its rejection.
         rejected: Rejected,
+    },
+    /// A second method contradicts the contact of a step.
+    #[error("the audit of the step that ends at t = {time:.6} contradicts its contact: {doubt}")]
+    Audit {
+        /// Time.
+        time: f64,
+        /// What it found.
+        doubt: Doubt,
     },
     /// The scheme created energy.
     #[error(
@@ -62,6 +71,7 @@ pub struct Simulation {
     work: Workspace,
     /// Bisections of Δt before the run stops.
     bisections: u32,
+    audited: bool,
 }
 
 impl Simulation {
@@ -102,7 +112,7 @@ impl Simulation {
     fn at(model: Model, stepper: Box<dyn Stepper>, grid: Grid, state: State, threads: usize) -> Self {
         let model = model.on_threads(threads);
         let work = Workspace::new(&model);
-        Self { model, state, grid, stepper, work, bisections: MOST }
+        Self { model, state, grid, stepper, work, bisections: MOST, audited: false }
     }
 
     /// The constant data.
@@ -118,6 +128,12 @@ impl Simulation {
     /// The state at the last grid time, kept alone.
     pub fn into_state(self) -> State {
         self.state
+    }
+
+    /// Checks every step by a second, slow method ([`audit`]) and stops where it contradicts.
+    #[must_use]
+    pub fn audited(self) -> Self {
+        Self { audited: true, ..self }
     }
 
     /// Stops after fewer bisections of a step than usual. What succeeds nevertheless is what would
@@ -251,6 +267,11 @@ impl Simulation {
                 continue;
             };
             let (next, step) = step.into_parts();
+            if self.audited {
+                let from = reached.as_ref().unwrap_or(&self.state);
+                audit(&self.model, &from.y, &next.y, step.penetration)
+                    .map_err(|doubt| Stopped::Audit { time: next.time, doubt })?;
+            }
             report.add(next.time, step);
             if let Some(before) = reached.replace(next) {
                 self.work.put(before);

@@ -63,7 +63,7 @@ fn repeated(
         &case,
         source(),
         &threads,
-        Options { threads: THREADS, trials: false },
+        Options { threads: THREADS, trials: false, audit: false },
         &mut |_| (),
         stop,
     );
@@ -78,10 +78,18 @@ fn repeated(
             (at, active_pairs) = (p.step, p.active);
         }
     };
-    recording::run(&case, source(), &resumed, Options { threads: 1, trials: false }, &mut watch, &halt)
-        .map_err(failed)?;
-    let done = recording::resume(&resumed, Options { threads: 1, trials: false }, &mut |_| (), stop)
-        .map_err(failed)?;
+    recording::run(
+        &case,
+        source(),
+        &resumed,
+        Options { threads: 1, trials: false, audit: false },
+        &mut watch,
+        &halt,
+    )
+    .map_err(failed)?;
+    let done =
+        recording::resume(&resumed, Options { threads: 1, trials: false, audit: false }, &mut |_| (), stop)
+            .map_err(failed)?;
     if done.end == End::Interrupted {
         return Ok(None);
     }

@@ -21,7 +21,7 @@ pub(crate) fn compute(
 ) -> Result<Ended, StudyError> {
     let arm = manifest.run(i);
     let path = directory.join(&arm.directory);
-    let options = Options { threads: 1, trials: false };
+    let options = Options { threads: 1, trials: false, audit: false };
     let done = if begun {
         recording::resume(&path, options, observe, stop)
     } else {

@@ -86,7 +86,7 @@ impl Suite {
                 case,
                 source.clone(),
                 directory,
-                Options { threads: 1, trials: false },
+                Options { threads: 1, trials: false, audit: false },
                 &mut watched,
                 &halt,
             );

@@ -13,6 +13,8 @@ pub struct Options {
     pub threads: usize,
     /// Whether changes that may get past the place where a run stopped are tried.
     pub trials: bool,
+    /// Whether the contact of every step is checked by a second, slow method.
+    pub audit: bool,
 }
 
 /// Progress of a simulation after an accepted step, and every second while a step is bisected.

@@ -68,6 +68,7 @@ pub fn run(
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
     let simulation = Setup::new(case).threads(options.threads).start().map_err(RunError::Case)?;
+    let simulation = if options.audit { simulation.audited() } else { simulation };
     let resolved = serde_json::to_value(case).map_err(|e| RunError::Incompatible { what: e.to_string() })?;
     let version = env!("CARGO_PKG_VERSION");
     let mut manifest =
@@ -128,6 +129,7 @@ pub fn resume(
             ),
         })?;
     let simulation = Setup::new(case).threads(options.threads).resume(state).map_err(RunError::Case)?;
+    let simulation = if options.audit { simulation.audited() } else { simulation };
     let mut manifest = reopened.manifest;
     manifest.status = Status::Running;
     // Those of a killed process are older in the manifest.

@@ -8,6 +8,9 @@ use super::change::{Change, Kind};
 /// Keyword of the energy guard, beside those of rejected steps.
 pub(super) const GUARD: &str = "energy-guard";
 
+/// Keyword of the audit.
+pub(super) const AUDIT: &str = "audit";
+
 /// A remedy: the change that makes it, if the program can make it, and in words.
 type Remedy = (Option<Kind>, &'static str);
 
@@ -65,6 +68,7 @@ const TABLE: &[(&str, &[Remedy])] = &[
     ("jump", &[(None, "a `move` that begins where its nodes are")]),
     ("penetration", &[SHORTER, STIFFER, MULTIPLIER, PENALTY, BATHE, FINER, ROUNDED]),
     ("not-finite", &[SHORTER, BATHE, FINER]),
+    (AUDIT, &[SHORTER, (None, "a report of this run to the authors: one of the two methods is wrong")]),
     (GUARD, &[PROJECT, LONGER, SHORTER, BATHE, DAMPED, SOFTER, FINER, GUARD_OFF]),
 ];
 /// The remedies of any other reason.

@@ -63,6 +63,7 @@ pub(crate) fn explain(
     let (kind, time, dt) = match stopped {
         Stopped::NoStep { time, dt, rejected, .. } => (rejected.kind(), *time, *dt),
         Stopped::EnergyGuard { time, .. } => (advice::GUARD, *time, simulation.dt()),
+        Stopped::Audit { time, .. } => (advice::AUDIT, *time, simulation.dt()),
     };
     let finite = |x: f64| x.is_finite().then_some(x);
     let iterations = trace.iterations().map(|i| StopIteration {

@@ -22,6 +22,8 @@ pub(crate) struct Options {
     pub(crate) profile: bool,
     /// Whether changes are tried that may get a run past the place where it stopped.
     pub(crate) trials: bool,
+    /// Whether the contact of every step is checked by a second, slow method.
+    pub(crate) audit: bool,
 }
 
 /// State of a simulation after an accepted step.
@@ -128,7 +130,8 @@ pub(crate) fn run(
     stop: &AtomicBool,
 ) -> Result<Outcome, Failure> {
     let source = carom_record::Source { text: document.text().to_owned(), sets: document.sets() };
-    let library = recording::Options { threads: options.threads, trials: options.trials };
+    let library =
+        recording::Options { threads: options.threads, trials: options.trials, audit: options.audit };
     let done = recording::run(case, source, out, library, &mut |p| progress(&seen(p)), stop);
     let done = done.map_err(|error| match error {
         RunError::Case(problems) => Failure::Case(document.diagnose_all(&problems)),
@@ -144,7 +147,8 @@ pub(crate) fn resume(
     progress: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, Failure> {
-    let library = recording::Options { threads: options.threads, trials: options.trials };
+    let library =
+        recording::Options { threads: options.threads, trials: options.trials, audit: options.audit };
     let done = recording::resume(directory, library, &mut |p| progress(&seen(p)), stop);
     conclude(done?, options)
 }

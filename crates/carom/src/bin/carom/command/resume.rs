@@ -35,6 +35,10 @@ pub(crate) struct Arguments {
     /// Where a run stops, do not try what may get it past that place
     #[arg(long)]
     no_trials: bool,
+    /// Check the contact of every step by a second method, which holds every node against the whole
+    /// outline of the other body, and stop where it contradicts; slow
+    #[arg(long)]
+    audit: bool,
     /// Print a timing profile of a run
     #[arg(long)]
     profile: bool,
@@ -77,6 +81,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         report: !arguments.no_report,
         profile: arguments.profile,
         trials: !arguments.no_trials,
+        audit: arguments.audit,
     };
     let stop = stop_on_signal()?;
     if arguments.json {

@@ -39,6 +39,10 @@ pub(crate) struct Arguments {
     /// Where a run stops, do not try what may get it past that place
     #[arg(long)]
     no_trials: bool,
+    /// Check the contact of every step by a second method, which holds every node against the whole
+    /// outline of the other body, and stop where it contradicts; slow
+    #[arg(long)]
+    audit: bool,
     /// Print a timing profile
     #[arg(long)]
     profile: bool,
@@ -57,6 +61,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         report: !arguments.no_report,
         profile: arguments.profile,
         trials: !arguments.no_trials,
+        audit: arguments.audit,
     };
     let directory = directory::of_run(&arguments.case, arguments.out.as_deref())?;
     let stop = stop_on_signal()?;

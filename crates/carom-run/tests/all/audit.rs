@@ -1,0 +1,32 @@
+//! The second method that checks contact: it agrees with a run, and contradicts what is wrong.
+
+use carom_run::{Doubt, Simulation, audit};
+
+use super::common::{DISCS, finish, simulation};
+
+/// Positions with the left disc moved to the right.
+fn moved(sim: &Simulation, by: f64) -> Vec<f64> {
+    let mut y = sim.state().y.clone();
+    sim.model().parts[0].nodes().for_each(|node| y[2 * node] += by);
+    y
+}
+
+#[test]
+fn the_audit_agrees_with_a_collision() {
+    let sim = finish(simulation(DISCS, &["time.step=4e-3"]).audited());
+    assert!(sim.state().impulses[0][0] != 0.0);
+}
+
+#[test]
+fn the_audit_finds_what_was_not_measured_and_what_has_passed() {
+    let sim = simulation(DISCS, &[""; 0]);
+    let (model, start) = (sim.model(), &sim.state().y);
+    let nothing = carom_run::Depths::default();
+    assert_eq!(audit(model, start, &moved(&sim, 0.05), nothing), Ok(()));
+    // The centres are 1.1 and 0.2 apart: with 0.8 less, the discs overlap by 1 − |(0.3, 0.2)|.
+    let found = audit(model, start, &moved(&sim, 0.8), nothing);
+    let Err(Doubt::Deeper { depth, .. }) = found else { panic!("{found:?}") };
+    assert!(depth > 0.01 && depth < 1.0 - f64::hypot(0.3, 0.2) + 0.01, "{depth}");
+    let found = audit(model, start, &moved(&sim, 2.5), nothing);
+    assert!(matches!(found, Err(Doubt::Passed { .. })), "{found:?}");
+}
