@@ -109,7 +109,7 @@ def zip_of_hooks():
 def ramp():
     """Its side `top` is y = (1 − x)³ up to x = 1, and y = 0 from there, without a jump of curvature."""
     mesh = Mesh()
-    n, m = 16, 20
+    n, m = 16, 22
 
     def place(a, b):
         x = a / n
