@@ -7,11 +7,74 @@ A mesh is a grid of squares, some of them left out, each split into two triangle
 by a map. Surfaces `lower` and `upper` (comb, zip) or `ramp`; curves as named below.
 """
 
-from math import cos, pi, sin, sqrt
+from math import pi, sin
 from pathlib import Path
 
 LADDER = Path(__file__).resolve().parent.parent / "cases/ladder"
 TRIANGLE, LINE = {1: 2, 2: 9, 3: 21}, {1: 1, 2: 8, 3: 26}  # Gmsh's numbers of cell types
+
+
+HEAD = '''\
+# Twenty discs fall into a box of rigid planes and come to rest on each other. There is no friction: only
+# the scheme takes energy. Written by scripts/make_ladder_cases.py.
+title = "Twenty discs settle"
+dimension = 2
+
+[[material]]
+name = "rubber"
+law = "neo-hookean"
+density = 1.0
+young = 2000.0
+poisson = 0.3
+'''
+
+TAIL = '''
+[time]
+end = 6.0
+step = 0.02
+scheme = {{ kind = "backward-euler" }}
+
+[output]
+fields_every = 10
+
+[[expect]]
+slow = true                         # omitted by `carom verify --fast`
+what = "{floor}"
+value = 157.0796
+relative = 5e-3
+source = "the weight of twenty discs, 20 π r² ρ g"
+
+[[expect]]
+slow = true
+what = "{walls}"
+value = 0.0
+tolerance = 0.5
+source = "at rest the walls press equally"
+
+[[expect]]
+slow = true
+what = "last kinetic / max kinetic"
+at_most = 1e-3
+source = "the discs come to rest"
+
+[[expect]]
+slow = true
+what = "max penetration_secondary"
+at_most = 1e-7
+source = "a secondary node may enter by a millionth of a cell"
+
+[[expect]]
+slow = true
+what = "max penetration"
+at_most = 5.3e-3
+source = "2 % of a facet, 0.26"
+
+[[expect]]
+slow = true
+what = "energy_created"
+at_most = 0.02
+source = "the energy guard"
+'''
 
 
 class Mesh:
@@ -122,27 +185,41 @@ def ramp():
 
 
 def discs():
-    head = '''\
-# Twenty discs fall into a box of rigid planes and come to rest on each other. There is no friction, so
-# that only the scheme takes energy. At rest the floor and the walls carry the weight exactly.
-# Written by scripts/make_ladder_cases.py.
-title = "Twenty discs settle"
-dimension = 2
-
-[[material]]
-name = "rubber"
-law = "neo-hookean"
-density = 1.0
-young = 2000.0
-poisson = 0.3
-'''
-    return head
+    """Twenty discs in rows of four, the upper ones between the lower ones, and all pairs of them."""
+    radius, width, gap = 0.5, 4.5, 0.02
+    text = HEAD
+    names = []
+    for k in range(20):
+        row, column = divmod(k, 4)
+        x = radius + gap + column * (2 * radius + 0.1) + (0.13 if row % 2 else 0.0)
+        y = radius + gap + row * (2 * radius + gap)
+        names.append(f"disc{k + 1}")
+        text += f"""
+[[body]]
+name = "{names[-1]}"
+material = "rubber"
+element = "T6"
+mesh = {{ shape = "disc", radius = {radius}, center = [{x:.3f}, {y:.3f}], size = 0.25 }}
+gravity = [0.0, -10.0]
+"""
+    planes = {"floor": ((0.0, 0.0), (0.0, 1.0)), "left": ((0.0, 0.0), (1.0, 0.0)), "right": ((width, 0.0), (-1.0, 0.0))}
+    for name in names:
+        for plane, (point, normal) in planes.items():
+            rigid = f"{{ plane = {{ point = {list(point)}, normal = {list(normal)} }} }}"
+            text += f'\n[[contact]]\nname = "{name}-{plane}"\nsecondary = "{name}.arc"\nprimary = {rigid}\n'
+    for a, one in enumerate(names):
+        for two in names[a + 1 :]:
+            text += f'\n[[contact]]\nname = "{one}-{two}"\nsecondary = "{one}.arc"\nprimary = "{two}.arc"\n'
+    total = lambda *columns: "last [ " + " + ".join(f"{name}-{c}" for name in names for c in columns) + " ]"
+    text += TAIL.format(floor=total("floor.force_y"), walls=total("left.force_x", "right.force_x"))
+    (LADDER / "discs.toml").write_text(text)
 
 
 def main():
     comb()
     zip_of_hooks()
     ramp()
+    discs()
 
 
 if __name__ == "__main__":

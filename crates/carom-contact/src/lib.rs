@@ -17,7 +17,7 @@ pub use interface::{
 };
 pub use kinematics::{
     BothSides, Carrier, ContactPoint, Crossings, Detection, Kinematics, NodeToFacet, NodeToObstacle,
-    Obstacle, Polyline, PolylineError, Surface, Swept, SweptTest,
+    Obstacle, Passed, Polyline, PolylineError, Surface, Swept, SweptTest,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

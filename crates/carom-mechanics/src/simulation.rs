@@ -1,7 +1,7 @@
 //! The time loop: steps on the grid of times n·Δt, bisected after a rejection and returned to the
 //! grid, monitored by the energy guard.
 
-use carom_contact::PairEvent;
+use carom_contact::{PairEvent, Passed};
 
 use crate::grid::Grid;
 use crate::model::Model;
@@ -11,7 +11,7 @@ use crate::start::{Before, start};
 use crate::state::{OtherModel, State};
 use crate::stepper::{StepReport, Stepper};
 use crate::substeps::{Next, Progress, decide};
-use crate::timings::Timings;
+use crate::timings::{Timings, timed};
 use crate::workspace::Workspace;
 
 /// Why a simulation stopped before its end; the state of the last grid time is preserved.
@@ -310,6 +310,11 @@ impl Simulation {
             let to = start + (progress.done + 1) as f64 * dt;
             let from = reached.as_ref().unwrap_or(&self.state);
             let stepped = self.stepper.step(&self.model, from, dt, to, &mut self.work);
+            let stepped = stepped.and_then(|step| {
+                let check = || nothing_passed(&self.model, &from.y, &step.state().y);
+                timed(&mut self.work.timings.contact, check)?;
+                Ok(step)
+            });
             let (taken, rejected) =
                 match decide(stepped, from, self.grid.guard, &mut kept, &mut progress, report) {
                     Next::Take(step) => (Some(step), None),
@@ -362,6 +367,16 @@ impl Simulation {
         }
         Ok(())
     }
+}
+
+/// That no node was inside a body between these positions.
+fn nothing_passed(model: &Model, before: &[f64], now: &[f64]) -> Result<(), Rejected> {
+    for contact in &model.contacts {
+        if let Some(Passed { node, depth, limit }) = contact.kinematics.passed(before, now) {
+            return Err(Rejected::Passed { contact: contact.name.clone(), node, depth, limit });
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
