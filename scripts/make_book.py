@@ -52,6 +52,7 @@ FIGURES = {
     "impact": ("impact", "bodies"),
     "disc": ("offset", "bodies"),
     "corner": ("skin", "bodies"),
+    "ladder": ("zip", "bodies"),
     "obstacle": ("paddle", "bodies"),
     "loads": ("", "bodies"),
     "static": ("", "bodies"),

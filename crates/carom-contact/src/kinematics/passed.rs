@@ -90,3 +90,44 @@ pub(super) fn passed(
     }
     worst
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::{Detection, Kinematics, NodeToFacet};
+
+    /// A plate −1 ≤ x ≤ 1, −0.1 ≤ y ≤ 0 of two facets along its length, of which those at the top are the
+    /// side; node 6 moves from `start` to `end`, all of it with another motion as well.
+    fn passed_by(start: [f64; 2], end: [f64; 2], with: [f64; 2]) -> Option<Passed> {
+        let plate = [[-1.0, -0.1], [0.0, -0.1], [1.0, -0.1], [1.0, 0.0], [0.0, 0.0], [-1.0, 0.0]];
+        let facet = |k: usize| vec![k, (k + 1) % 6];
+        let surface = Surface::new(FacetShape::L2, &[facet(3), facet(4)], &[1.0; 2]);
+        let surface = surface.bounded_by(&[facet(0), facet(1), facet(2), facet(5)], 0);
+        let contact = NodeToFacet::new(vec![6], surface, Detection::ClosestPoint);
+        let before: Vec<f64> = plate.iter().chain([&start]).flatten().copied().collect();
+        let moved = plate.iter().chain([&end]).map(|p| [p[0] + with[0], p[1] + with[1]]);
+        contact.passed(&before, &moved.flatten().collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn a_node_that_leaves_past_the_end_of_the_side_is_found() {
+        for with in [[0.0, 0.0], [3.0, -7.0]] {
+            // Through the plate from x = 0.5 to x = 0.7, and on to x = 2.5.
+            let found = passed_by([0.1, 0.2], [2.5, -1.0], with).unwrap();
+            assert_eq!(found.node, 6);
+            assert!((found.depth - 0.05).abs() < 1e-6, "{found:?}");
+            assert!((found.limit - 0.01).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_node_that_stays_outside_or_inside_or_cuts_off_a_corner_is_not() {
+        // Beside the end, above, and inside at the end.
+        assert_eq!(passed_by([1.01, 0.2], [1.01, -1.0], [0.0; 2]), None);
+        assert_eq!(passed_by([-3.0, 0.01], [3.0, 0.01], [0.0; 2]), None);
+        assert_eq!(passed_by([0.1, 0.2], [0.1, -0.05], [0.0; 2]), None);
+        // 0.001 of the top and of the end, which is 0.1 long: 0.0005 deep at most.
+        assert_eq!(passed_by([0.899, 0.1], [1.1, -0.101], [0.0; 2]), None);
+        assert!(passed_by([0.8, 0.1], [1.1, -0.2], [0.0; 2]).is_some());
+    }
+}
