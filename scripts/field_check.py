@@ -35,7 +35,7 @@ Limit 0.1 h.
 
 Passing through: from one field to the next, the path of the centre of the smaller body, relative to
 the centre of the larger one, crosses the outline of the larger one, in the shape of either instant, an
-even number > 0 of times; or the smaller centre is inside the larger body.
+even number > 0 of times; or the smaller centre is inside both bodies.
 
 Energy, from history.csv with E = total − external_work:
 
@@ -370,7 +370,8 @@ def check(run):
                     depths[1], time, f"edges of {a} in {b}", limit[1] + one.sag + two.sag
                 )
                 if one.extent < two.extent or one.extent == two.extent and a < b:
-                    if two.inside(one.center[None])[0] and depths[1] > 0:
+                    # The centre of a comb or a ring is not in the body itself.
+                    if two.inside(one.center[None])[0] and depths[1] > 0 and one.inside(one.center[None])[0]:
                         passed.setdefault(f"the centre of {a} is in {b}", time)
                     if before:
                         # Relative to the centre of the larger body, in its shape of both instants.

@@ -53,6 +53,7 @@ FIGURES = {
     "disc": ("offset", "bodies"),
     "corner": ("skin", "bodies"),
     "self": ("ring", "bodies"),
+    "ladder": ("zip", "bodies"),
     "obstacle": ("paddle", "bodies"),
     "loads": ("", "bodies"),
     "static": ("", "bodies"),

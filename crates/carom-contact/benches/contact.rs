@@ -12,6 +12,7 @@ use carom_contact::{
 };
 use carom_solid::FacetShape;
 use divan::Bencher;
+use divan::counter::ItemsCount;
 
 const SHAPES: [FacetShape; 3] = [FacetShape::L2, FacetShape::L3, FacetShape::L4];
 /// Facets of the side and nodes of the arc.
@@ -54,6 +55,30 @@ fn detection_at_first_contact(bencher: Bencher, shape: FacetShape) {
     let (contact, before, now) = scene(shape);
     let mut pairing = found(&contact, &before, &now);
     bencher.bench_local(|| {
+        pairing.pairs.clear();
+        contact.search(&before, black_box(&now), &mut pairing, &mut Vec::new())
+    });
+}
+
+/// A whole search: as many nodes as facets, a quarter of which penetrate in the step while the others
+/// come near. Times per facet grow logarithmically.
+#[divan::bench(args = [1_000, 10_000, 100_000], sample_count = 20)]
+fn search_of_a_long_side(bencher: Bencher, facets: usize) {
+    let points = 2 * facets;
+    let length = 2.0 / facets as f64;
+    let side = (0..=points).map(|k| [2.0 - length * k as f64, 0.0]);
+    let wave = |x: f64| 0.25 * length * (40.0 * std::f64::consts::PI * x).sin();
+    let row = |height: f64| {
+        (0..facets).map(move |k| 2.0 - 2.0 * length * (k as f64 + 0.3)).map(move |x| [x, height + wave(x)])
+    };
+    let at = |height: f64| side.clone().chain(row(height)).flatten().collect::<Vec<_>>();
+    let nodes: Vec<_> = (0..facets).map(|f| vec![2 * f, 2 * f + 2, 2 * f + 1]).collect();
+    let secondary = (points + 1..points + 1 + facets).collect();
+    let surface = Surface::new(FacetShape::L3, &nodes, &vec![1.0; facets]);
+    let contact = NodeToFacet::new(secondary, surface, Detection::ClosestPoint);
+    let (before, now) = (at(length), at(0.177 * length));
+    let mut pairing = found(&contact, &before, &now);
+    bencher.counter(ItemsCount::new(facets)).bench_local(|| {
         pairing.pairs.clear();
         contact.search(&before, black_box(&now), &mut pairing, &mut Vec::new())
     });

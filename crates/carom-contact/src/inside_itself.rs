@@ -15,8 +15,8 @@ use crate::skin::{CHORDS, Skin};
 const SHARPEST: f64 = PI / 6.0;
 
 impl Skin {
-    /// The node that lies deepest inside its own body at positions `y`, the nearest facet apart from its
-    /// own ones and their neighbours, and the distance to it.
+    /// The node that lies deepest inside its own body at positions `y`, the nearest facet that does not
+    /// contain it, and the distance to it: on the flank of a slit, that to the other flank.
     pub fn deepest_in_itself(&self, y: &[f64]) -> Option<(usize, usize, f64)> {
         let at = Places::new(y, 2);
         let surface = self.surface();
@@ -29,7 +29,7 @@ impl Skin {
                     continue;
                 }
                 let nearest = (0..surface.all())
-                    .filter(|&other| !self.is_next_to(node, other))
+                    .filter(|&other| !self.facet_nodes(other).contains(&node))
                     .map(|other| (other, self.nearest(other, at.at(node).0, at).1))
                     .min_by(|a, b| a.1.total_cmp(&b.1));
                 if let Some((other, distance)) = nearest
@@ -57,13 +57,6 @@ impl Skin {
             }
         }
         angle
-    }
-
-    /// Whether a facet contains a node or is next to one that does.
-    fn is_next_to(&self, node: usize, facet: usize) -> bool {
-        let contains = |facet: usize| self.facet_nodes(facet).contains(&node);
-        let beside = |forward| self.surface().neighbour(facet, forward).is_some_and(contains);
-        contains(facet) || beside(false) || beside(true)
     }
 }
 

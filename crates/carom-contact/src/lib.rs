@@ -18,7 +18,7 @@ pub use interface::{
 };
 pub use kinematics::{
     BothSides, Carrier, ContactPoint, Crossings, Detection, Kinematics, NodeToFacet, NodeToObstacle,
-    Obstacle, Polyline, PolylineError, Side, Surface, Swept, SweptTest,
+    Obstacle, Passed, Polyline, PolylineError, Side, Surface, Swept, SweptTest,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

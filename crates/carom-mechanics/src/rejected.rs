@@ -117,6 +117,20 @@ pub enum Rejected {
         /// Allowed depth.
         limit: f64,
     },
+    /// A node enters the other body and leaves it within the step.
+    #[error(
+        "contact \"{contact}\": node {node} passes through the other body within the step, {depth:.3e} deep, more than the allowed {limit:.3e}"
+    )]
+    Passed {
+        /// Contact.
+        contact: String,
+        /// Global number of the node.
+        node: usize,
+        /// Its largest depth on the way.
+        depth: f64,
+        /// Allowed depth.
+        limit: f64,
+    },
     /// A step created energy.
     #[error(
         "the step created energy: {created:.3e}, more than the {allowed:.3e} that the energy guard allows one step"
@@ -149,7 +163,7 @@ impl Rejected {
             Self::NoValue(_) => "no-value",
             Self::Unconstrained(_) => "unconstrained-body",
             Self::Jump { .. } => "jump",
-            Self::Deep { .. } | Self::Penetration { .. } => "penetration",
+            Self::Deep { .. } | Self::Penetration { .. } | Self::Passed { .. } => "penetration",
             Self::Energy { .. } => "energy-created",
             Self::NotFinite { .. } => "not-finite",
         }

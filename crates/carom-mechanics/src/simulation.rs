@@ -1,6 +1,8 @@
 //! The time loop: steps on the grid of times n·Δt, bisected after a rejection and returned to the
 //! grid, monitored by the energy guard.
 
+use carom_contact::Passed;
+
 use crate::audit::{Doubt, audit};
 use crate::grid::Grid;
 use crate::grid_report::{Attempt, GridReport, LogEvent};
@@ -10,7 +12,7 @@ use crate::start::{Before, start};
 use crate::state::{OtherModel, State};
 use crate::stepper::Stepper;
 use crate::substeps::{Limits, MOST, Next, Progress, decide};
-use crate::timings::Timings;
+use crate::timings::{Timings, timed};
 use crate::trace::Trace;
 use crate::workspace::Workspace;
 
@@ -248,6 +250,11 @@ impl Simulation {
             let from = reached.as_ref().unwrap_or(&self.state);
             self.work.trace.clear();
             let stepped = self.stepper.step(&self.model, from, dt, to, &mut self.work);
+            let stepped = stepped.and_then(|step| {
+                let check = || nothing_passed(&self.model, &from.y, &step.state().y);
+                timed(&mut self.work.timings.contact, check)?;
+                Ok(step)
+            });
             let (taken, rejected) = match decide(stepped, from, limits, &mut kept, &mut progress, report) {
                 Next::Take(step) => (Some(step), None),
                 Next::Bisect(rejected) => (None, Some(rejected)),
@@ -308,6 +315,16 @@ impl Simulation {
         }
         Ok(())
     }
+}
+
+/// That no node was inside a body between these positions.
+fn nothing_passed(model: &Model, before: &[f64], now: &[f64]) -> Result<(), Rejected> {
+    for contact in &model.contacts {
+        if let Some(Passed { node, depth, limit }) = contact.kinematics.passed(before, now) {
+            return Err(Rejected::Passed { contact: contact.name.clone(), node, depth, limit });
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -28,6 +28,7 @@ use super::Kinematics;
 use super::facing::PAST_SIDE;
 use super::folds::{Folds, Side};
 use super::node_to_facet::{Detection, NodeToFacet};
+use super::passed::Passed;
 use super::surface::Surface;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
@@ -159,6 +160,10 @@ impl Kinematics for BothSides {
         events: &mut Vec<PairEvent>,
     ) -> bool {
         self.each(pairing, |direction, pairing| direction.search(before, now, pairing, events))
+    }
+
+    fn passed(&self, before: &[f64], now: &[f64]) -> Option<Passed> {
+        self.forward.passed(before, now).or_else(|| self.reverse.passed(before, now))
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {

@@ -11,6 +11,7 @@ mod gap;
 mod node_to_facet;
 mod node_to_obstacle;
 mod obstacle;
+mod passed;
 mod projection;
 mod surface;
 mod swept;
@@ -22,6 +23,7 @@ pub(crate) use folds::{Folds, Turns};
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
 pub use node_to_obstacle::{Carrier, NodeToObstacle};
 pub use obstacle::{Obstacle, Polyline, PolylineError};
+pub use passed::Passed;
 pub use surface::Surface;
 pub use swept::{Crossings, Swept, SweptTest};
 
@@ -63,6 +65,13 @@ pub trait Kinematics: Send + Sync {
     /// but an inactive pair changed.
     fn search(&self, before: &[f64], now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>)
     -> bool;
+
+    /// The node that was deepest inside the primary's body between `before` and `now`, and outside it
+    /// at both: its motion is that of a step without contact.
+    fn passed(&self, before: &[f64], now: &[f64]) -> Option<Passed> {
+        let _ = (before, now);
+        None
+    }
 
     /// Hands over active pairs that have slid well past the end of their facet during the
     /// iteration: a facet's extrapolation is not the surface. Unlike [`search`](Self::search), it

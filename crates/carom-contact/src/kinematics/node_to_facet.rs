@@ -16,6 +16,7 @@ use carom_solid::FacetShape;
 use super::facing::{Next, PAST, REACH};
 use super::folds::{Folds, Side, Turns};
 use super::gap::Gap;
+use super::passed::{Passed, passed};
 use super::surface::{Search, Surface};
 use super::swept::SweptTest;
 use super::{Kinematics, watch_every_node};
@@ -310,6 +311,16 @@ impl Kinematics for NodeToFacet {
             pairs.sort_by_key(|p| p.node);
         }
         changed
+    }
+
+    fn passed(&self, before: &[f64], now: &[f64]) -> Option<Passed> {
+        if self.folds.is_some() {
+            // A node is on the surface of its own body.
+            return None;
+        }
+        let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
+        let Tools { search, swept, .. } = &mut *tools;
+        passed(&self.primary, &self.secondary, search, swept, [before, now])
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
