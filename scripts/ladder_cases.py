@@ -1,7 +1,7 @@
 """Seeded hard contact cases for ladder.py: `case(seed, k)` is the text of case k.
 
 A category draws shapes, meshes, stiffnesses, speeds and roles; a scheme family draws the integrator
-and the enforcement. Bodies do not overlap at the start, and the motion brings them together. Units:
+and the enforcement. Every body has contact with itself. Bodies do not overlap at the start, and the motion brings them together. Units:
 lengths of order 1, density of order 1, the softest body has E = 100, so that its waves travel at
 c = sqrt(E (1 − ν)/(ρ (1 + ν)(1 − 2ν))), about 12.
 
@@ -387,6 +387,8 @@ def case(seed, k):
     for i, (secondary, primary) in enumerate(draft.pairs, 1):
         primary = primary if primary.startswith("{") else f'"{primary}"'
         text.append(f'[[contact]]\nname = "c{i}"\nsecondary = "{secondary}"\nprimary = {primary}\n{law}')
+    # Any body may fold; nothing may pass through itself.
+    text += [f'[[contact]]\nname = "self-{b.name}"\nbetween = ["{b.name}"]\n{law}' for b in draft.bodies]
     text.append(f"[time]\nend = {float(f'{n * step:.12g}')!r}\nstep = {step!r}\nscheme = {{ {scheme(r, family)} }}\n")
     text.append(f"[output]\nfields_every = {max(1, n // 40)}\ncheckpoint_every = 1000000\n")
     elements = "+".join(f"{b.element}" for b in draft.bodies)

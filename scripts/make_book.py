@@ -53,6 +53,7 @@ FIGURES = {
     "disc": ("offset", "bodies"),
     "corner": ("skin", "bodies"),
     "ladder": ("zip", "bodies"),
+    "self": ("ring", "bodies"),
     "obstacle": ("paddle", "bodies"),
     "loads": ("", "bodies"),
     "static": ("", "bodies"),

@@ -79,6 +79,15 @@ impl Check {
         let required = spec.keys.iter().copied().filter(|k| matches!(k.default, Default::Required));
         let missing: Vec<_> =
             required.filter(|k| table.get(k.name).is_none() && !meant.contains(&k.name)).collect();
+        let replaced =
+            |k: &Key| !k.unless.is_empty() && (table.get(k.unless).is_some() || meant.contains(&k.unless));
+        for key in spec.keys.iter().filter(|k| replaced(k) && table.get(k.name).is_some()) {
+            let what = format!("`{}` is given with `{}`", key.name, key.unless);
+            let why = format!("`{}` stands in its place", key.unless);
+            self.problems
+                .push(Problem::new(joined(path, key.name), what, why, "leave one of them out").at_key());
+        }
+        let missing: Vec<_> = missing.into_iter().filter(|k| !replaced(k)).collect();
         if spec.tag.is_some() && missing.len() > 1 {
             self.missing_together(&missing, spec, path);
         } else {
@@ -169,7 +178,8 @@ impl Check {
                     self.formula(node, variables, key, &format!("{path}[{i}]"));
                 }
             }
-            (Kind::Sides, Value::List(list)) if !list.is_empty() => {
+            (Kind::Between, Value::Text(word)) if word == "all" => {}
+            (Kind::Sides | Kind::Between, Value::List(list)) if !list.is_empty() => {
                 for (i, node) in list.iter().enumerate().filter(|(_, n)| n.text().is_none()) {
                     self.wrong(node, key, &format!("{path}[{i}]"));
                 }

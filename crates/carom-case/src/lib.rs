@@ -2,12 +2,14 @@
 //! still as names, and the place of every error. The resolved case is what `manifest.json` records
 //! and `resume` reads back. No mechanics here.
 
+mod between;
 mod check;
 mod columns;
 mod conform;
 mod document;
 mod draft;
 mod example;
+mod excerpt;
 mod expect;
 pub mod keys;
 mod load;
@@ -34,6 +36,7 @@ mod view;
 pub use carom_record::{Bound, Expect as ExpectSpec};
 pub use columns::history_columns;
 pub use document::Document;
+pub use excerpt::Excerpt;
 pub use expect::{Asked, read_expects};
 pub use load::load_variables;
 pub use problem::{CaseError, Diagnostic, Problem, Problems};
@@ -42,6 +45,6 @@ pub use schema::{changes, expectation, schema};
 pub use spec::{
     ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime,
     FormulaSpec, InitialSpec, Law, LoadKind, LoadSpec, MassKind, MaterialSpec, MeshSpec, NewtonSpec,
-    ObstacleMotion, OutputSpec, Persistency, PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec, Quantity,
-    RefineSpec, SchemeSpec, SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
+    ObstacleMotion, OutputSpec, Overlap, Persistency, PlaceSpec, Plane, Preset, PrimarySpec, ProbeSpec,
+    Quantity, RefineSpec, SKIN, SchemeSpec, SupportSpec, TableSpec, TangentRule, TimeSpec, Units, Velocities,
 };

@@ -14,8 +14,8 @@ impl BodySpec {
     /// Why it cannot be made.
     pub fn make_mesh(&self, dimension: usize) -> Result<Mesh, String> {
         let mut mesh = match self.mesh {
-            MeshSpec::File { ref file, ref surface, ref hash, parts, .. } => {
-                let mesh = mesh_file::mesh(file, dimension, surface, hash)?;
+            MeshSpec::File { ref file, ref surface, ref hash, parts, slits, .. } => {
+                let mesh = mesh_file::mesh(file, dimension, surface, slits, hash)?;
                 mesh.subdivided(parts).ok_or("its cells cannot be divided")?
             }
             MeshSpec::Interval { .. } if dimension != 1 => {

@@ -12,7 +12,8 @@ use super::problem::Problem;
 use super::view::View;
 
 /// The named physical group of a file as a mesh: a curve in dimension 1, a surface in dimension 2.
-fn group(file: &gmsh::MshFile, dimension: usize, name: &str) -> Result<Mesh, gmsh::MshError> {
+fn group(file: gmsh::MshFile, dimension: usize, name: &str, slits: bool) -> Result<Mesh, gmsh::MshError> {
+    let file = file.with_slits(slits);
     match dimension {
         1 => file.bar(name),
         _ => file.body(name),
@@ -50,7 +51,7 @@ pub(super) fn read(
     path: &str,
     problems: &mut Vec<Problem>,
 ) -> Option<MeshSpec> {
-    let (name, surface) = (v.text("file")?, v.text("surface")?);
+    let (name, surface, slits) = (v.text("file")?, v.text("surface")?, v.value("slits")?.flag()?);
     let joined = folder.join(&name);
     let file = std::path::absolute(&joined).unwrap_or(joined);
     let mut wrong = |key: &str, what: String, why: String, help: &str| {
@@ -68,10 +69,16 @@ pub(super) fn read(
             );
         }
     };
-    let facts = |file: gmsh::MshFile| group(&file, dimension, &surface).map(Facts::from);
+    let facts = |file: gmsh::MshFile| group(file, dimension, &surface, slits).map(Facts::from);
     let facts = match gmsh::read(&bytes).and_then(facts) {
         Ok(facts) => facts,
         Err(error) => {
+            // `slits` may be misspelt, which `conform` reports.
+            let unknown =
+                || v.table.0.iter().any(|e| !["file", "surface", "slits"].contains(&e.key.as_str()));
+            if matches!(error.fault, gmsh::Fault::Coincident { .. }) && unknown() {
+                return None;
+            }
             let key = if matches!(error.fault, gmsh::Fault::NoName { .. }) { "surface" } else { "file" };
             return wrong(key, format!("{name}: {error}"), error.why(), error.help());
         }
@@ -87,7 +94,7 @@ pub(super) fn read(
     }
     let hash = blake3::hash(&bytes).to_hex().to_string();
     let Facts { nodes, cells, sides, repairs, .. } = facts;
-    Some(MeshSpec::File { file, surface, hash, nodes, cells, sides, repairs, parts: 1 })
+    Some(MeshSpec::File { file, surface, slits, hash, nodes, cells, sides, repairs, parts: 1 })
 }
 
 /// The file's bytes, or why it cannot be read.
@@ -111,10 +118,16 @@ fn bytes(file: &Path) -> Result<Vec<u8>, String> {
 ///
 /// # Errors
 /// A message with the file's name.
-pub(crate) fn mesh(file: &Path, dimension: usize, surface: &str, hash: &str) -> Result<Mesh, String> {
+pub(crate) fn mesh(
+    file: &Path,
+    dimension: usize,
+    surface: &str,
+    slits: bool,
+    hash: &str,
+) -> Result<Mesh, String> {
     let bytes = unchanged(file, hash)?;
     let message = |e: gmsh::MshError| format!("{}: {e}; {}", file.display(), e.why());
-    gmsh::read(&bytes).and_then(|f| group(&f, dimension, surface)).map_err(message)
+    gmsh::read(&bytes).and_then(|f| group(f, dimension, surface, slits)).map_err(message)
 }
 
 fn unchanged(file: &Path, hash: &str) -> Result<Vec<u8>, String> {

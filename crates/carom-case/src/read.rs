@@ -6,6 +6,7 @@ use std::path::Path;
 
 use carom_time::SchemeError;
 
+use super::between::Bodies;
 use super::check;
 use super::conform;
 use super::document::{Document, joined};
@@ -22,8 +23,8 @@ use super::suggest;
 use super::tree::{Entry, Node, Table};
 use super::view::{View, word};
 use super::{
-    BodySpec, Case, ContactSpec, InitialSpec, MaterialSpec, NewtonSpec, OutputSpec, Persistency, Preset,
-    ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
+    BodySpec, Case, ContactSpec, InitialSpec, MaterialSpec, NewtonSpec, ObstacleMotion, OutputSpec,
+    Persistency, Preset, PrimarySpec, ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
 };
 
 impl Case {
@@ -71,7 +72,7 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
         bodies: Vec::new(),
         supports: reader.each("support", |v, _| support(v)),
         loads: Vec::new(),
-        contacts: reader.each("contact", |v, path| contact(v, reader.dimension, path, &mut problems)),
+        contacts: Vec::new(),
         probes: reader.each("probe", |v, _| probe(v)),
         exact: reader.exact(),
         expects: Vec::new(),
@@ -84,6 +85,7 @@ pub fn read(document: &Document) -> Result<Case, Problems> {
     problems.extend(refine::problem(refine, &counts));
     draft.bodies =
         reader.each("body", |v, path| body(v, reader.dimension?, refine, folder, path, &mut problems));
+    draft.contacts = reader.contacts(&draft, &mut problems);
     draft.loads = reader.each("load", |v, path| load::read(v, folder, path, &mut problems));
     draft.expects = reader.each("expect", |v, path| {
         expect::one(v, path, Asked::OfARun, Exact::Of(&draft.exact), &mut problems)
@@ -139,6 +141,32 @@ impl<'a> Reader<'a> {
             Some(View { table: node.table()?, keys: Self::spec(name), preset: self.root.preset })
         };
         list.iter().enumerate().map(|(i, node)| read(view(node)?, &format!("{name}[{i}]"))).collect()
+    }
+
+    /// The contacts of all tables; those of `between` need the bodies.
+    fn contacts(&self, draft: &Draft, problems: &mut Vec<Problem>) -> Vec<Option<ContactSpec>> {
+        let mut entry = 0..;
+        let tables = self.each("contact", |v, path| {
+            let entry = entry.next()?;
+            Some((v, path.to_owned(), contact(v, entry, self.dimension, problems)))
+        });
+        let specs = tables.iter().flatten().filter_map(|(.., contact)| contact.clone());
+        let declared: Vec<ContactSpec> = specs.filter(|contact| !contact.between).collect();
+        let bodies = Bodies { bodies: &draft.bodies, materials: &draft.materials };
+        let mut contacts = Vec::new();
+        for table in tables {
+            match table {
+                Some((v, path, Some(one))) if one.between => {
+                    match bodies.contacts(&v, &one, &declared, &path, problems) {
+                        Some(several) => contacts.extend(several.into_iter().map(Some)),
+                        None => contacts.push(None),
+                    }
+                }
+                Some((.., contact)) => contacts.push(contact),
+                None => contacts.push(None),
+            }
+        }
+        contacts
     }
 
     /// Formulas by column, as written.
@@ -297,14 +325,22 @@ fn initial(v: View, folder: &Path) -> Option<InitialSpec> {
 
 fn contact(
     v: View,
+    entry: usize,
     dimension: Option<usize>,
-    path: &str,
     problems: &mut Vec<Problem>,
 ) -> Option<ContactSpec> {
-    let (primary, motion) = obstacle::read(&v, dimension, path, problems)?;
+    let between = v.has("between");
+    let (secondary, primary, motion) = if between {
+        (String::new(), PrimarySpec::Side(String::new()), ObstacleMotion::Fixed)
+    } else {
+        let (primary, motion) = obstacle::read(&v, dimension, &format!("contact[{entry}]"), problems)?;
+        (v.text("secondary")?, primary, motion)
+    };
     Some(ContactSpec {
         name: v.text("name")?,
-        secondary: v.text("secondary")?,
+        entry,
+        between,
+        secondary,
         primary,
         motion,
         enforcement: v.choice("enforcement")?,
@@ -315,6 +351,7 @@ fn contact(
         detection: v.choice("detection")?,
         xi: v.choice("xi")?,
         law: v.choice("law"),
+        overlap: v.choice("overlap")?,
         restitution: v.number("restitution")?,
     })
 }

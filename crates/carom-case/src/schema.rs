@@ -63,7 +63,7 @@ fn table(spec: &Table, tag: Option<(&str, &str, &str)>) -> Map<String, Value> {
     }
     for key in spec.keys {
         properties.insert(key.name.into(), property(key));
-        if matches!(key.default, Default::Required) {
+        if matches!(key.default, Default::Required) && key.unless.is_empty() {
             required.push(key.name);
         }
     }
@@ -73,6 +73,11 @@ fn table(spec: &Table, tag: Option<(&str, &str, &str)>) -> Map<String, Value> {
     schema.insert("properties".into(), Value::Object(properties));
     schema.insert("required".into(), json!(required));
     schema.insert("additionalProperties".into(), json!(false));
+    let replaced: Vec<&Key> = spec.keys.iter().filter(|key| !key.unless.is_empty()).collect();
+    if let Some(key) = replaced.first() {
+        let names: Vec<&str> = replaced.iter().map(|key| key.name).collect();
+        schema.insert("oneOf".into(), json!([{ "required": [key.unless] }, { "required": names }]));
+    }
     schema
 }
 
@@ -122,6 +127,10 @@ fn values(kind: &Kind) -> Map<String, Value> {
         Kind::FormulasOr(_, spec) => json!({ "oneOf": [formulas(), table(spec, None)] }),
         Kind::Side => side,
         Kind::Sides => json!({ "type": "array", "minItems": 1, "items": side }),
+        Kind::Between => json!({ "oneOf": [
+            { "const": "all" },
+            { "type": "array", "minItems": 1, "items": { "type": "string" } },
+        ] }),
         Kind::SideOr(spec) => json!({ "oneOf": [side, table(spec, None)] }),
         Kind::Table(spec) => Value::Object(table(spec, None)),
         Kind::Tables(spec) => json!({ "type": "array", "minItems": 1, "items": table(spec, None) }),

@@ -3,6 +3,7 @@
 
 mod active_set;
 mod discrete_gradient;
+mod inside_itself;
 pub mod interface;
 pub mod kinematics;
 mod pair;
@@ -17,7 +18,7 @@ pub use interface::{
 };
 pub use kinematics::{
     BothSides, Carrier, ContactPoint, Crossings, Detection, Kinematics, NodeToFacet, NodeToObstacle,
-    Obstacle, Passed, Polyline, PolylineError, Surface, Swept, SweptTest,
+    Obstacle, Passed, Polyline, PolylineError, Side, Surface, Swept, SweptTest,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

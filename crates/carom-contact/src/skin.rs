@@ -5,9 +5,9 @@
 //! Independent of pairs, sides and history, so that it can judge them.
 
 use carom_algebra::Vector;
-use carom_solid::{Hull, Tree};
+use carom_solid::{Bounds, Hull, Tree};
 
-use crate::kinematics::Surface;
+use crate::kinematics::{Folds, Side, Surface, Turns};
 use crate::places::Places;
 
 /// The boundary of a body at given positions.
@@ -16,6 +16,8 @@ pub struct Skin {
     surface: Surface,
     hull: Hull,
     tree: Tree,
+    /// For its own nodes.
+    folds: Option<(Folds, Turns)>,
 }
 
 /// A point relative to a skin.
@@ -33,7 +35,19 @@ impl Skin {
     /// All facets of a body's boundary, in the plane.
     pub fn new(surface: Surface) -> Self {
         let hull = Hull::line(surface.shape().nodes(), 1.0);
-        Self { surface, hull, tree: Tree::default() }
+        Self { surface, hull, tree: Tree::default(), folds: None }
+    }
+
+    /// The same, to measure its own nodes too; `piece`: the connected piece of the body to which each
+    /// node belongs, from `first_node` on; `reference`: the reference positions, flat over all nodes.
+    #[must_use]
+    pub fn with_pieces(self, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
+        let folds = Folds::new(&self.surface, piece, first_node, reference);
+        Self { folds: Some((folds, Turns::default())), ..self }
+    }
+
+    pub(crate) fn surface(&self) -> &Surface {
+        &self.surface
     }
 
     /// Global numbers of the nodes of a facet.
@@ -44,6 +58,9 @@ impl Skin {
     /// Moves the boundary to positions `y`, flat over all nodes.
     pub fn update(&mut self, y: &[f64]) {
         let (surface, hull, y) = (&self.surface, &self.hull, Places::new(y, 2));
+        if let Some((folds, turns)) = &mut self.folds {
+            turns.update(folds, surface, y);
+        }
         let bounds = |facet: usize| {
             let nodes = surface.facet(facet).nodes;
             hull.bounds(|a| y.coordinates(nodes[a]))
@@ -61,11 +78,40 @@ impl Skin {
         let y = Places::new(y, 2);
         let (facet, _) = self.tree.nearest(&point, from, |facet| Some(self.nearest(facet, point, y).1))?;
         let (xi, distance) = self.nearest(facet, point, y);
+        Some(self.signed(facet, xi, distance, point, y))
+    }
+
+    /// Where a node of the boundary lies relative to those parts of it that it may meet and that lie
+    /// on one side of it in the order of the boundary, if one is nearer than `reach`.
+    pub fn depth_of(&self, node: usize, side: Side, reach: f64, y: &[f64]) -> Option<Depth> {
+        let (folds, turns) = self.folds.as_ref()?;
+        let y = Places::new(y, 2);
+        let point = y.at(node);
+        let meets = |facet: usize| folds.admits(side, node, facet) && folds.face(turns, node, facet);
+        let mut nearest: Option<(usize, f64, f64)> = None;
+        for facet in self.tree.meeting(&Bounds::of(&point.0).grown(reach)).filter(|&facet| meets(facet)) {
+            let (xi, distance) = self.nearest(facet, point.0, y);
+            // An end next to what the node cannot meet, such as its own facet, is no place to enter.
+            let beyond = || self.surface.neighbour(facet, xi > 0.0);
+            if xi.abs() >= 1.0 && !beyond().is_some_and(meets) {
+                continue;
+            }
+            let least = nearest.map_or(reach, |(.., least)| least);
+            // The first of equals, in whatever order the tree finds them.
+            if distance < least || distance == least && nearest.is_some_and(|(first, ..)| facet < first) {
+                nearest = Some((facet, xi, distance));
+            }
+        }
+        let (facet, xi, distance) = nearest?;
+        Some(self.signed(facet, xi, distance, point.0, y))
+    }
+
+    fn signed(&self, facet: usize, xi: f64, distance: f64, point: [f64; 2], y: Places) -> Depth {
         let joint = xi.abs() >= 1.0;
         let outside =
             if joint { Self::is_outside_joint } else { Self::is_outside }(self, facet, xi, point, y);
         let distance = if outside { distance } else { -distance };
-        Some(Depth { distance, facet, xi })
+        Depth { distance, facet, xi }
     }
 
     /// Distance between a point and the boundary at ξ of a facet, which may lie elsewhere.
@@ -74,8 +120,8 @@ impl Skin {
     }
 
     /// Whether two facets that do not meet at a joint cross each other at the positions of the last
-    /// update; curved ones as chains of chords.
-    pub fn crosses_itself(&self, y: &[f64]) -> bool {
+    /// update; curved ones as chains of chords. Pairs that are `known` do not count.
+    pub fn crosses_itself(&self, y: &[f64], known: impl Fn(usize, usize) -> bool) -> bool {
         let y = Places::new(y, 2);
         let chords = if self.surface.shape().nodes() == 2 { 1 } else { CHORDS };
         let at = |facet: usize, k: usize| {
@@ -93,12 +139,12 @@ impl Skin {
             let others = self.tree.meeting(&bounds).filter(|&b| b > a);
             others
                 .filter(|&b| !self.surface.facet(b).nodes.iter().any(|node| nodes.contains(node)))
-                .any(|b| crossing(a, b))
+                .any(|b| !known(a, b) && crossing(a, b))
         })
     }
 
     /// ξ of a facet's point nearest to a point, and its distance.
-    fn nearest(&self, facet: usize, point: [f64; 2], y: Places) -> (f64, f64) {
+    pub(crate) fn nearest(&self, facet: usize, point: [f64; 2], y: Places) -> (f64, f64) {
         let (side, point) = (self.surface.facet(facet), Vector(point));
         let distance = |xi: f64| (point - side.at(y, xi).position).norm();
         let ends = [-1.0, 1.0].map(|xi| (xi, distance(xi)));
@@ -112,20 +158,21 @@ impl Skin {
         (Vector(point) - at.position).dot(&at.normal) >= 0.0
     }
 
-    /// The same where the nearest point is an end of the facet.
+    /// The same where the nearest point is an end of the facet: in front of either facet at a convex
+    /// joint, of both at a concave one, which is nearest to a remote point by round-off only.
     fn is_outside_joint(&self, facet: usize, xi: f64, point: [f64; 2], y: Places) -> bool {
         let Some(neighbour) = self.surface.neighbour(facet, xi > 0.0) else {
             return self.is_outside(facet, xi, point, y);
         };
         let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
         let (_, sine) = self.surface.kink(first, second, y);
-        // Where the boundary does not turn, either normal gives the sign.
-        if sine.abs() < 1e-9 { self.is_outside(facet, xi, point, y) } else { sine > 0.0 }
+        let [before, after] = [(first, 1.0), (second, -1.0)].map(|(f, xi)| self.is_outside(f, xi, point, y));
+        if sine > 0.0 { before || after } else { before && after }
     }
 }
 
 /// Chords of a curved facet.
-const CHORDS: usize = 4;
+pub(crate) const CHORDS: usize = 4;
 
 /// Whether two segments cross, their ends not included.
 fn cross(a: [Vector<2>; 2], b: [Vector<2>; 2]) -> bool {
@@ -169,13 +216,25 @@ mod tests {
     }
 
     #[test]
+    fn a_point_far_in_front_of_a_faint_dent_is_outside() {
+        for depth in [1e-12, 1e-9, 1e-6, 1e-3] {
+            let y = vec![0.0, 0.0, 2.0, 0.0, 2.0, 1.0, 1.0, 1.0 - depth, 0.0, 1.0];
+            let facets: Vec<Vec<usize>> = (0..5).map(|k| vec![k, (k + 1) % 5]).collect();
+            let mut skin = Skin::new(Surface::new(FacetShape::L2, &facets, &[1.0; 5]));
+            skin.update(&y);
+            let at = |height: f64| skin.depth([1.0, height], None, &y).unwrap().distance;
+            assert!((at(3.4) - 2.4).abs() < 1e-3 && (at(0.8) + 0.2).abs() < 2e-3, "{depth}: {}", at(3.4));
+        }
+    }
+
+    #[test]
     fn a_boundary_that_crosses_itself_is_found() {
         let (mut skin, mut y) = bracket();
-        assert!(!skin.crosses_itself(&y));
+        assert!(!skin.crosses_itself(&y, |_, _| false));
         // The end of the upright arm is pushed through the lower side.
         (y[9], y[11]) = (-0.5, -0.5);
         skin.update(&y);
-        assert!(skin.crosses_itself(&y));
+        assert!(skin.crosses_itself(&y, |_, _| false));
     }
 
     #[test]

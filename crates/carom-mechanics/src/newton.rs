@@ -18,6 +18,7 @@ use crate::renewal::{FrozenTangent, Renewal};
 use crate::settings::{Settings, Tangent};
 use crate::sums::max_abs;
 use crate::timings::timed;
+use crate::trace::Iteration;
 use crate::workspace::Workspace;
 
 /// Factor below the tolerance to which the residual is reduced if linear problems are solved
@@ -64,6 +65,7 @@ pub(crate) fn solve_stage(
     // round-off of positions: a remaining residual would appear in reactions.
     let (full, is_static) = (settings.tangent == Tangent::Full, equations.stage.is_static());
     work.linear.restart();
+    work.trace.start();
     // Where contact begins, velocities and accelerations jump from node to node. Extrapolated over
     // a step, that motion distorts or inverts cells, and Newton's method starts better without a
     // predictor.
@@ -94,6 +96,7 @@ pub(crate) fn solve_stage(
             && now.measure.residual <= enough
             && now.measure.gap <= GAP_TOLERANCE * model.scale;
         let changed = contact.update(equations, before, &mut now, &mut effort.events, settled, step, work)?;
+        work.trace.push(iterate(equations, &now, iteration, step, changed), &now.y);
         if settled && !changed {
             effort.frozen = renewal.finish();
             return Ok((now, effort));
@@ -104,6 +107,7 @@ pub(crate) fn solve_stage(
             work.linear.restart();
         }
         if iteration >= settings.max_iterations || (!is_static && grown > PATIENCE) {
+            work.trace.blame(&now.residual, &model.free);
             check_satisfiable(equations, &now)?;
             return Err(Rejected::NoConvergence {
                 iterations: effort.iterations,
@@ -151,6 +155,26 @@ pub(crate) fn solve_stage(
         let residual = now.measure.residual;
         now = advance(equations, now, &correction, &rows, !changed, work)?;
         ratio = now.measure.residual / residual.max(f64::MIN_POSITIVE);
+    }
+}
+
+/// An iterate for the trace.
+fn iterate(
+    equations: &Equations,
+    now: &Evaluation,
+    number: usize,
+    correction: f64,
+    changed: bool,
+) -> Iteration {
+    let Measure { residual, forces, gap } = now.measure;
+    Iteration {
+        number: number as u32,
+        residual: residual / forces.max(f64::MIN_POSITIVE),
+        gap: gap / equations.model.scale,
+        correction: correction / equations.model.scale,
+        length: 1.0,
+        active: now.pressing().count() as u32,
+        changed,
     }
 }
 
@@ -212,6 +236,7 @@ fn advance(
         }
         work.linear.restart();
         length *= 0.5;
+        work.trace.shorten(length);
         if let Ok(rejected) = outcome {
             work.spare.put(rejected);
         }
@@ -220,6 +245,7 @@ fn advance(
     if outcome.is_ok() {
         // If shortening does not help, the full step is as good as any: contact forces appear and
         // vanish.
+        work.trace.shorten(1.0);
         outcome = take(1.0, work).or(outcome);
     }
     work.spare.put(now);

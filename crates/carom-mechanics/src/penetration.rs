@@ -5,13 +5,14 @@
 //! A node outside, at a distance d from a body, cannot be inside before the two have moved by d
 //! together. Until then it is not measured; no result depends on when it was.
 
-use carom_contact::{Rows, Skin, Surface};
-use carom_solid::FacetShape;
+use carom_contact::{Rows, Side, Skin};
 use serde::{Deserialize, Serialize};
 
 use crate::model::{BodyInstance, Contact, Model};
 use crate::rejected::Rejected;
+use crate::skins::{itself, length, part_of, skin, skin_facets};
 use crate::state::State;
+use crate::watched::{Watched, Way, lengths, watched};
 
 /// Measures penetration. A cache: its content affects no result.
 #[derive(Debug, Default)]
@@ -25,36 +26,9 @@ pub(crate) struct Penetration {
     /// Depths of the active pairs of a contact and lengths of their facets, by node.
     held: Vec<(usize, f64, f64)>,
     rows: Option<Rows>,
-    /// The skins of all bodies, once they have been asked for.
-    all: Vec<Option<Skin>>,
-}
-
-/// Nodes of a side against a body.
-#[derive(Debug)]
-struct Way {
-    /// The contact; none for bodies without one.
-    contact: Option<usize>,
-    /// The body that must not be entered, and the nodes of its boundary.
-    body: usize,
-    boundary: Vec<usize>,
-    nodes: Vec<Watched>,
-    /// The node that was deepest, with which the next search begins.
-    first: usize,
-}
-
-#[derive(Debug)]
-struct Watched {
-    node: usize,
-    /// Length of its facets in the reference configuration.
-    length: f64,
-    /// Whether the contact constrains it.
-    constrained: bool,
-    /// Allowed depth over the length of a facet.
-    share: f64,
-    /// Distance that it and the body may still move together before it can be inside.
-    clearance: f64,
-    /// Its nearest facet and ξ, where the next search begins.
-    near: Option<(usize, f64)>,
+    /// The skins of all bodies, once they have been asked for, with the contact of each facet with
+    /// its own body.
+    all: Vec<Option<(Skin, Vec<Option<usize>>)>>,
 }
 
 /// Largest depths of nodes of the sides of contacts in the other body, ≥ 0.
@@ -92,6 +66,10 @@ impl Penetration {
     pub(crate) fn of_contacts(model: &Model) -> Self {
         let mut ways = Vec::new();
         for (k, contact) in model.contacts.iter().enumerate() {
+            if contact.itself {
+                ways.extend([Side::Later, Side::Earlier].map(|side| Way::of_itself(model, k, side)));
+                continue;
+            }
             let (Some(primary), [(_, secondary_facets), (_, primary_facets)]) =
                 (contact.primary_part, &contact.facets[..])
             else {
@@ -120,7 +98,7 @@ impl Penetration {
             })
         };
         let mut ways = Vec::new();
-        let solid = |(_, part): &(usize, &BodyInstance)| model.dimension == 2 && skin(part).is_some();
+        let solid = |(_, part): &(usize, &BodyInstance)| model.dimension == 2 && skin(model, part).is_some();
         for (a, part) in model.parts.iter().enumerate().filter(solid) {
             let facets = skin_facets(part);
             for body in (0..model.parts.len()).filter(|&b| b != a && !declared(a, b)) {
@@ -133,7 +111,8 @@ impl Penetration {
     }
 
     fn new(model: &Model, ways: Vec<Way>) -> Self {
-        let skin = |body: usize| ways.iter().any(|way| way.body == body).then(|| skin(&model.parts[body]))?;
+        let skin =
+            |body: usize| ways.iter().any(|way| way.body == body).then(|| skin(model, &model.parts[body]))?;
         Self { skins: (0..model.parts.len()).map(skin).collect(), ways, ..Self::default() }
     }
 
@@ -165,6 +144,12 @@ impl Penetration {
             let of_way = inside.zip(self.ways[k].contact);
             beyond = beyond.or(of_way.map(|(inside, contact)| (contact, self.ways[k].body, inside)));
         }
+        for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.itself) {
+            if let Some((body, inside)) = self.folded(model, contact, &state.y) {
+                deepest.add(inside.depth, false);
+                beyond = beyond.or((inside.depth > inside.limit).then_some((k, body, inside)));
+            }
+        }
         for contact in model.contacts.iter().filter(|contact| has_gaps(model, contact)) {
             for node in 0..contact.kinematics.secondary().len() {
                 let gap = contact.kinematics.signed_distance(node, &state.y);
@@ -172,6 +157,21 @@ impl Penetration {
             }
         }
         (deepest, beyond)
+    }
+
+    /// The deepest node of a body in contact with itself where its boundary crosses itself, pair or not.
+    fn folded(&mut self, model: &Model, contact: &Contact, y: &[f64]) -> Option<(usize, Inside)> {
+        let body = contact.primary_part?;
+        let skin = self.skins[body].as_mut()?;
+        if !std::mem::replace(&mut self.current[body], true) {
+            skin.update(y);
+        }
+        if !skin.crosses_itself(y, |_, _| false) {
+            return None;
+        }
+        let (node, facet, depth) = skin.deepest_in_itself(y)?;
+        let limit = contact.depths[1] * length(model, skin.facet_nodes(facet));
+        Some((body, Inside { node, depth, limit }))
     }
 
     /// Bodies without a contact of which one is inside the other: (body, other).
@@ -194,12 +194,14 @@ impl Penetration {
     pub(crate) fn crossing_themselves(&mut self, model: &Model, y: &[f64]) -> Vec<(usize, usize)> {
         let skins = &mut self.all;
         if skins.is_empty() {
-            skins.extend(model.parts.iter().map(skin));
+            let declared = |part: &BodyInstance| skin_facets(part).iter().map(|f| itself(model, f)).collect();
+            skins.extend(model.parts.iter().map(|part| Some((skin(model, part)?, declared(part)))));
         }
-        let crosses = |(k, skin): (usize, &mut Option<Skin>)| {
-            let skin = skin.as_mut()?;
+        let crosses = |(k, skin): (usize, &mut Option<(Skin, Vec<Option<usize>>)>)| {
+            let (skin, declared) = skin.as_mut()?;
             skin.update(y);
-            skin.crosses_itself(y).then_some((k, k))
+            let known = |a: usize, b: usize| declared[a].is_some() && declared[a] == declared[b];
+            skin.crosses_itself(y, known).then_some((k, k))
         };
         skins.iter_mut().enumerate().filter_map(crosses).collect()
     }
@@ -228,7 +230,7 @@ impl Penetration {
     /// Depths of the nodes of a way, and the node that is furthest beyond its limit.
     fn deepest(&mut self, model: &Model, way: usize, state: Option<&State>) -> (Depths, Option<Inside>) {
         let Self { skins, ways, y, current, held, rows, .. } = self;
-        let Way { contact, body, nodes, first, .. } = &mut ways[way];
+        let Way { contact, body, itself, nodes, first, .. } = &mut ways[way];
         let (mut deepest, mut worst) = (Depths::default(), None::<Inside>);
         let Some(skin) = skins[*body].as_mut() else { return (deepest, worst) };
         held.clear();
@@ -238,8 +240,13 @@ impl Penetration {
             // An active pair on its facet is no deeper than its gap.
             let rows = rows.get_or_insert_with(|| Rows::new(model.dimension));
             let contact = &model.contacts[k];
+            let half = contact.kinematics.secondary().len() / 2;
+            let of_way = |node: usize| itself.is_none_or(|side| (side == Side::Later) == (node < half));
             for pair in state.pairs[k].iter().filter(|pair| {
-                pair.active && pair.xi.abs() <= 1.0 && contact.kinematics.allowed(pair.node) == 0.0
+                pair.active
+                    && pair.xi.abs() <= 1.0
+                    && contact.kinematics.allowed(pair.node) == 0.0
+                    && of_way(pair.node)
             }) {
                 rows.clear();
                 // A frozen contact point is not the closest one.
@@ -269,19 +276,26 @@ impl Penetration {
                 if !std::mem::replace(&mut current[*body], true) {
                     skin.update(y);
                 }
-                // No deeper than any point of the boundary is away: neither the deepest nor too deep.
-                let known = if watched.constrained { deepest.constrained } else { deepest.all };
-                if let Some((facet, xi)) = watched.near {
-                    let bound = skin.distance(facet, xi, at, y);
-                    if bound <= known && bound <= watched.limit(length(model, skin.facet_nodes(facet))) {
-                        continue;
+                let entered = |facet: usize| length(model, skin.facet_nodes(facet));
+                if let Some(side) = *itself {
+                    let found = skin.depth_of(node, side, watched.reach, y);
+                    watched.clearance = found.map_or(watched.reach, |found| found.distance);
+                    found.map_or((0.0, 0.0), |found| (-found.distance - watched.kept, entered(found.facet)))
+                } else {
+                    // No deeper than any point of the boundary is away: neither the deepest nor too deep.
+                    let known = if watched.constrained { deepest.constrained } else { deepest.all };
+                    if let Some((facet, xi)) = watched.near {
+                        let bound = skin.distance(facet, xi, at, y);
+                        if bound <= known && bound <= watched.limit(entered(facet)) {
+                            continue;
+                        }
                     }
+                    let Some(found) = skin.depth(at, watched.near.map(|near| near.0), y) else {
+                        continue;
+                    };
+                    (watched.clearance, watched.near) = (found.distance, Some((found.facet, found.xi)));
+                    (-found.distance - watched.kept, entered(found.facet))
                 }
-                let Some(found) = skin.depth(at, watched.near.map(|near| near.0), y) else {
-                    continue;
-                };
-                (watched.clearance, watched.near) = (found.distance, Some((found.facet, found.xi)));
-                (-found.distance, length(model, skin.facet_nodes(found.facet)))
             };
             if depth > deepest.all {
                 *first = k;
@@ -326,80 +340,13 @@ pub fn inside(model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> 
 
 /// Whether every node of a contact has a gap: its primary is rigid, or a point.
 pub(crate) fn has_gaps(model: &Model, contact: &Contact) -> bool {
-    contact.facets.len() < 2 || model.dimension == 1
+    !contact.itself && contact.facets.len() < 2 || model.dimension == 1
 }
 
 /// Allowed depth of bodies without a contact, over the length of a facet.
 const UNDECLARED: f64 = 0.01;
 
-impl Way {
-    fn new(model: &Model, contact: Option<usize>, body: usize, nodes: Vec<Watched>) -> Self {
-        let mut boundary = skin_facets(&model.parts[body]).concat();
-        boundary.sort_unstable();
-        boundary.dedup();
-        Self { contact, body, boundary, nodes, first: 0 }
-    }
-}
-
-impl Watched {
-    fn new(node: usize, length: f64, constrained: bool, share: f64) -> Self {
-        Self { node, length, constrained, share, clearance: 0.0, near: None }
-    }
-
-    /// Allowed depth in a facet of this length: a node that the contact law keeps outside is judged by
-    /// the facet that it enters alone.
-    fn limit(&self, entered: f64) -> f64 {
-        self.share * if self.constrained { entered } else { self.length.max(entered) }
-    }
-}
-
-/// The nodes of a side's facets, with the depths that its contact allows.
-fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -> Vec<Watched> {
-    let nodes = contact.kinematics.secondary().iter().enumerate();
-    let strict = nodes.filter(|(k, _)| contact.kinematics.allowed(*k) == 0.0).map(|(_, &node)| node);
-    let strict: std::collections::HashSet<usize> = strict.collect();
-    let watched = |(node, length)| {
-        let constrained = strict.contains(&node);
-        Watched::new(node, length, constrained, contact.depths[usize::from(!constrained)])
-    };
-    lengths(model, facets).map(watched).collect()
-}
-
-/// The nodes of facets, ascending, each with the longest of its facets in the reference configuration.
-fn lengths(model: &Model, facets: &[Vec<usize>]) -> impl Iterator<Item = (usize, f64)> {
-    let mut nodes = std::collections::BTreeMap::new();
-    for facet in facets {
-        let length = length(model, facet);
-        for &node in facet {
-            let longest: &mut f64 = nodes.entry(node).or_default();
-            *longest = longest.max(length);
-        }
-    }
-    nodes.into_iter()
-}
-
-/// Distance between the ends of a facet in the reference configuration.
-pub(crate) fn length(model: &Model, facet: &[usize]) -> f64 {
-    let [start, end] = [facet[0], facet[1]].map(|node| &model.reference[2 * node..2 * node + 2]);
-    (end[0] - start[0]).hypot(end[1] - start[1])
-}
-
 /// Square of the distance between two positions of a node.
 fn square(a: &[f64], b: &[f64], node: usize) -> f64 {
     (a[2 * node] - b[2 * node]).powi(2) + (a[2 * node + 1] - b[2 * node + 1]).powi(2)
-}
-
-fn part_of(model: &Model, node: usize) -> Option<usize> {
-    model.parts.iter().position(|part| part.nodes().contains(&node))
-}
-
-fn skin_facets(part: &BodyInstance) -> Vec<Vec<usize>> {
-    let skin = part.body.mesh().skin().into_iter();
-    skin.map(|facet| facet.nodes.iter().map(|node| node + part.first_node).collect()).collect()
-}
-
-fn skin(part: &BodyInstance) -> Option<Skin> {
-    let shape = part.body.mesh().element.facet_shape().filter(|shape| *shape != FacetShape::Point)?;
-    let facets = skin_facets(part);
-    Some(Skin::new(Surface::new(shape, &facets, &vec![1.0; facets.len()])))
 }

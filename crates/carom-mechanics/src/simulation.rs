@@ -1,17 +1,18 @@
 //! The time loop: steps on the grid of times n·Δt, bisected after a rejection and returned to the
 //! grid, monitored by the energy guard.
 
-use carom_contact::{PairEvent, Passed};
+use carom_contact::Passed;
 
 use crate::grid::Grid;
+use crate::grid_report::{Attempt, GridReport, LogEvent};
 use crate::model::Model;
-use crate::penetration::Depths;
 use crate::rejected::Rejected;
 use crate::start::{Before, start};
 use crate::state::{OtherModel, State};
-use crate::stepper::{StepReport, Stepper};
-use crate::substeps::{Next, Progress, decide};
+use crate::stepper::Stepper;
+use crate::substeps::{Limits, MOST, Next, Progress, decide};
 use crate::timings::{Timings, timed};
+use crate::trace::Trace;
 use crate::workspace::Workspace;
 
 /// Why a simulation stopped before its end; the state of the last grid time is preserved.
@@ -53,114 +54,6 @@ fn percent(fraction: f64) -> f64 {
     format!("{percent:.2e}").parse().unwrap_or(percent)
 }
 
-/// An event for the log.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LogEvent {
-    /// A step was rejected and will be bisected.
-    Rejected {
-        /// Time at its start.
-        time: f64,
-        /// Step size.
-        dt: f64,
-        /// Reason.
-        rejected: Rejected,
-    },
-    /// A secondary node came into contact or left it.
-    ActiveSet {
-        /// Time at the end of the (sub)step.
-        time: f64,
-        /// Index of the contact.
-        contact: usize,
-        /// Global node.
-        node: usize,
-        /// Whether it came (true) or left.
-        active: bool,
-    },
-    /// A pair changed its facet or slid off the end.
-    Pair {
-        /// Time at the end of the (sub)step.
-        time: f64,
-        /// Index of the contact.
-        contact: usize,
-        /// The event.
-        event: PairEvent,
-    },
-    /// Two bodies without a contact overlap, or one crosses itself, for the first time.
-    Overlap {
-        /// Time.
-        time: f64,
-        /// Indices of the bodies.
-        bodies: (usize, usize),
-    },
-    /// Velocities were projected at activation.
-    Projection {
-        /// Time.
-        time: f64,
-        /// Jump of kinetic energy.
-        jump: f64,
-    },
-    /// Velocities of nodes that left contact were changed by its restitution.
-    Restitution {
-        /// Time.
-        time: f64,
-        /// Jump of kinetic energy.
-        jump: f64,
-    },
-}
-
-/// Events between two grid times.
-#[derive(Clone, Debug, Default)]
-pub struct GridReport {
-    /// Newton iterations of the accepted steps.
-    pub newton: u32,
-    /// Rejected steps.
-    pub rejected: u32,
-    /// Nodes that came into contact.
-    pub activations: u32,
-    /// Nodes that left contact.
-    pub releases: u32,
-    /// Largest penetration at the ends of its steps.
-    pub penetration: Depths,
-    /// Events in order.
-    pub events: Vec<LogEvent>,
-}
-
-impl GridReport {
-    /// Adds an accepted step that ended at a time.
-    fn add(&mut self, time: f64, step: StepReport) {
-        self.newton += step.newton;
-        self.activations += step.activations.len() as u32;
-        self.releases += step.releases.len() as u32;
-        self.penetration = self.penetration.max(step.penetration);
-        for (list, active) in [(step.activations, true), (step.releases, false)] {
-            let event = |(contact, node)| LogEvent::ActiveSet { time, contact, node, active };
-            self.events.extend(list.into_iter().map(event));
-        }
-        let pairs = step.events.into_iter();
-        self.events.extend(pairs.map(|(contact, event)| LogEvent::Pair { time, contact, event }));
-        if step.projection != 0.0 {
-            self.events.push(LogEvent::Projection { time, jump: step.projection });
-        }
-        if step.restitution != 0.0 {
-            self.events.push(LogEvent::Restitution { time, jump: step.restitution });
-        }
-    }
-
-    fn reject(&mut self, time: f64, dt: f64, rejected: Rejected) {
-        self.rejected += 1;
-        self.events.push(LogEvent::Rejected { time, dt, rejected });
-    }
-
-    /// Forgets the steps since an earlier report, but not the work on them.
-    pub(crate) fn return_to(&mut self, earlier: Self) {
-        let (newton, rejected) = (self.newton, self.rejected);
-        let later = self.events.split_off(earlier.events.len());
-        *self = Self { newton, rejected, ..earlier };
-        let rejections = |event: &LogEvent| matches!(event, LogEvent::Rejected { .. });
-        self.events.extend(later.into_iter().filter(rejections));
-    }
-}
-
 /// A model with its state.
 pub struct Simulation {
     model: Model,
@@ -169,6 +62,8 @@ pub struct Simulation {
     grid: Grid,
     stepper: Box<dyn Stepper>,
     work: Workspace,
+    /// Bisections of Δt before the run stops.
+    bisections: u32,
 }
 
 impl Simulation {
@@ -209,7 +104,7 @@ impl Simulation {
     fn at(model: Model, stepper: Box<dyn Stepper>, grid: Grid, state: State, threads: usize) -> Self {
         let model = model.on_threads(threads);
         let work = Workspace::new(&model);
-        Self { model, state, grid, stepper, work }
+        Self { model, state, grid, stepper, work, bisections: MOST }
     }
 
     /// The constant data.
@@ -225,6 +120,17 @@ impl Simulation {
     /// The state at the last grid time, kept alone.
     pub fn into_state(self) -> State {
         self.state
+    }
+
+    /// Stops after fewer bisections of a step than usual. What succeeds nevertheless is what would
+    /// have succeeded without.
+    pub fn limit_bisections(&mut self, most: u32) {
+        self.bisections = most.min(MOST);
+    }
+
+    /// The last iterations of the last attempt.
+    pub fn trace(&self) -> &Trace {
+        &self.work.trace
     }
 
     /// The grid of times.
@@ -293,40 +199,58 @@ impl Simulation {
     /// Why it cannot; `state` is then still that of the last grid time. The report contains the
     /// attempts.
     pub fn advance(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
-        // On one of the threads, so that parallel calls within a step do not switch threads.
-        let threads = self.model.threads.clone();
-        threads.within(|| self.advance_here(report))
+        self.advance_watched(report, &mut |_| ())
     }
 
-    fn advance_here(&mut self, report: &mut GridReport) -> Result<(), Stopped> {
+    /// As [`Simulation::advance`]; `watch` is called after every rejected attempt.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn advance_watched(
+        &mut self,
+        report: &mut GridReport,
+        watch: &mut (dyn FnMut(&Attempt) + Send),
+    ) -> Result<(), Stopped> {
+        // On one of the threads, so that parallel calls within a step do not switch threads.
+        let threads = self.model.threads.clone();
+        threads.within(|| self.advance_here(report, watch))
+    }
+
+    fn advance_here(
+        &mut self,
+        report: &mut GridReport,
+        watch: &mut (dyn FnMut(&Attempt) + Send),
+    ) -> Result<(), Stopped> {
         let (start, length) = (self.grid.time(self.state.step), self.grid.length(self.state.step + 1));
         // The state after the substeps so far; none before the first.
         let mut reached: Option<State> = None;
         let mut progress = Progress { level: self.state.bisection.level(), done: 0 };
-        let (mut kept, mut bisected) = (None, false);
+        let (mut kept, mut bisected, before) = (None, false, report.rejected);
+        let limits = Limits { guard: self.grid.guard, bisections: self.bisections };
         while progress.done() < 1.0 {
             let dt = length / f64::from(1_u32 << progress.level);
             let time = start + progress.done as f64 * dt;
             let to = start + (progress.done + 1) as f64 * dt;
             let from = reached.as_ref().unwrap_or(&self.state);
+            self.work.trace.clear();
             let stepped = self.stepper.step(&self.model, from, dt, to, &mut self.work);
             let stepped = stepped.and_then(|step| {
                 let check = || nothing_passed(&self.model, &from.y, &step.state().y);
                 timed(&mut self.work.timings.contact, check)?;
                 Ok(step)
             });
-            let (taken, rejected) =
-                match decide(stepped, from, self.grid.guard, &mut kept, &mut progress, report) {
-                    Next::Take(step) => (Some(step), None),
-                    Next::Bisect(rejected) => (None, Some(rejected)),
-                    Next::Return(rejected, step) => (Some(step), Some(rejected)),
-                    Next::Stop(rejected) => {
-                        report.reject(time, dt, rejected.clone());
-                        return Err(Stopped::NoStep { time, dt, halvings: progress.level, rejected });
-                    }
-                };
+            let (taken, rejected) = match decide(stepped, from, limits, &mut kept, &mut progress, report) {
+                Next::Take(step) => (Some(step), None),
+                Next::Bisect(rejected) => (None, Some(rejected)),
+                Next::Return(rejected, step) => (Some(step), Some(rejected)),
+                Next::Stop(rejected) => {
+                    report.reject(time, dt, rejected.clone());
+                    return Err(Stopped::NoStep { time, dt, halvings: progress.level, rejected });
+                }
+            };
             if let Some(rejected) = rejected {
                 report.reject(time, dt, rejected);
+                watch(&Attempt { time, dt, rejected: report.rejected - before });
             }
             let Some(step) = taken else {
                 progress.bisect();
@@ -352,7 +276,10 @@ impl Simulation {
                 report.events.push(LogEvent::Overlap { time: state.time, bodies: pair });
             }
         }
-        self.watch(&state)?;
+        if let Err(stopped) = self.watch(&state) {
+            self.work.trace.end(&state.y);
+            return Err(stopped);
+        }
         self.work.put(std::mem::replace(&mut self.state, state));
         Ok(())
     }

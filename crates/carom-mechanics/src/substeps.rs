@@ -3,8 +3,8 @@
 //! is rejected, or creates more than half as much: energy that the error of a smooth motion creates
 //! falls with the cube of the step, that of an impact or a change of facet does not.
 
+use crate::grid_report::GridReport;
 use crate::rejected::Rejected;
-use crate::simulation::GridReport;
 use crate::state::State;
 use crate::stepper::Accepted;
 
@@ -68,12 +68,20 @@ pub(crate) enum Next {
     Stop(Rejected),
 }
 
-/// Decides about a step from `from`, of which `guard` is the share of the energy scale that a run may
-/// create.
+/// Limits of a grid step.
+#[derive(Clone, Copy)]
+pub(crate) struct Limits {
+    /// Share of the energy scale that the run may create.
+    pub guard: Option<f64>,
+    /// Bisections before the run stops.
+    pub bisections: u32,
+}
+
+/// Decides about a step from `from`.
 pub(crate) fn decide(
     stepped: Result<Accepted, Rejected>,
     from: &State,
-    guard: Option<f64>,
+    limits: Limits,
     kept: &mut Option<Kept>,
     progress: &mut Progress,
     report: &mut GridReport,
@@ -81,11 +89,11 @@ pub(crate) fn decide(
     if kept.as_ref().is_some_and(|kept| progress.done() >= kept.at.next()) {
         *kept = None;
     }
-    let last = progress.level == MOST;
+    let last = progress.level == limits.bisections;
     let (rejected, returns) = match stepped {
         Ok(mut step) => {
             step.observe();
-            let Some((created, allowed)) = guard.and_then(|share| beyond(&step, from, share)) else {
+            let Some((created, allowed)) = limits.guard.and_then(|share| beyond(&step, from, share)) else {
                 return Next::Take(step);
             };
             let worse = |kept: &Kept| kept.is_within && (last || created > WORSE * kept.created);

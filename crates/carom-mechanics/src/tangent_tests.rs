@@ -8,9 +8,9 @@ use carom_time::{ForceRule, Kernel, Memory, Scheme, Stage};
 
 use crate::constraints::Constraints;
 use crate::equations::{Equations, Iterate};
+use crate::grid_report::GridReport;
 use crate::linear_problem::LinearProblem;
 use crate::model::{Load, Loads, Model, Motions};
-use crate::simulation::GridReport;
 use crate::state::State;
 use crate::sums::dot;
 use crate::testing::{contact, loaded, model, nodes, parts, simulation};

@@ -50,6 +50,7 @@ pub(crate) fn contact(parts: &[BodyInstance], secondary: (usize, &str), primary:
         kinematics: Box::new(NodeToFacet::new(secondary_nodes, target, Detection::ClosestPoint)),
         interface: Box::new(Unilateral),
         primary_part: Some(primary.0),
+        itself: false,
         facets: vec![(shape(secondary.0), facets(secondary))],
         depths: [0.01, 0.1],
         predictor: false,

@@ -8,6 +8,7 @@ use crate::state::State;
 use crate::stepper::Scratch;
 use crate::system::System;
 use crate::timings::Timings;
+use crate::trace::Trace;
 use crate::valid_cells::ValidCells;
 
 /// Buffers that may be discarded: no result depends on them.
@@ -30,6 +31,8 @@ pub struct Workspace {
     pub(crate) others: Penetration,
     /// The linear problem of an iteration, and its history.
     pub(crate) linear: LinearProblem,
+    /// The last iterations, to explain a rejection.
+    pub(crate) trace: Trace,
 }
 
 impl Workspace {
@@ -45,6 +48,7 @@ impl Workspace {
             penetration: Penetration::of_contacts(model),
             others: Penetration::of_others(model),
             linear: LinearProblem::default(),
+            trace: Trace::default(),
         }
     }
 

@@ -24,6 +24,7 @@ mod pvd;
 pub mod question;
 mod rows;
 mod run;
+mod stop;
 mod stream;
 pub mod study;
 pub mod verification;
@@ -41,6 +42,7 @@ pub use manifest::{Column, Expectation, Machine, Manifest, PHASES, Source, Statu
 pub use pvd::{FieldEntry, FieldFormat};
 pub use rows::{ContactRow, Event};
 pub use run::{History, Run};
+pub use stop::{Advice, Stop, StopIteration, StopNode, StopPlace, Trial};
 pub use vtu::{Block, Cell, FieldSet, PointArray};
 pub use warning::Warning;
-pub use writer::{Reopened, RunWriter, last_checkpoint};
+pub use writer::{Reopened, RunWriter, checkpoints, last_checkpoint};

@@ -138,6 +138,9 @@ pub struct Manifest {
     pub timings: BTreeMap<String, f64>,
     /// Counts: steps, newton, factorisations, rejected, …
     pub counters: BTreeMap<String, u64>,
+    /// BLAKE3 hashes of the files that a stop wrote, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub hashes: BTreeMap<String, String>,
     /// Outcomes of the expectations, once the run has finished.
     pub expectations: Vec<Expectation>,
     /// The case as resolved.
@@ -179,6 +182,7 @@ impl Manifest {
             warnings: Vec::new(),
             timings: BTreeMap::new(),
             counters: BTreeMap::new(),
+            hashes: BTreeMap::new(),
             expectations: Vec::new(),
             case,
             source,

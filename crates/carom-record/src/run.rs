@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::rows::{contact_axes, contact_columns};
 use crate::{
-    Column, ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, pvd, vtkhdf,
+    Column, ContactRow, Event, FieldEntry, FieldFormat, FieldSet, Manifest, RecordError, Stop, pvd, vtkhdf,
 };
 
 const HINT: &str = "resume from the last checkpoint with `carom resume`, or run the case again";
@@ -57,6 +57,8 @@ pub struct Run {
     pub contact: Vec<ContactRow<'static>>,
     /// Events.
     pub log: Vec<Event>,
+    /// Why it stopped, if it did.
+    pub stop: Option<Stop>,
     /// Instants with recorded fields, in the order of time.
     pub fields: Vec<FieldEntry>,
     /// Format of the fields.
@@ -77,6 +79,7 @@ impl Run {
             history,
             contact: contact(&directory.join("contact.csv"), contact_axes(&manifest.case))?,
             log: log(&directory.join("log.jsonl"))?,
+            stop: Stop::read(directory, &manifest)?,
             fields,
             field_format,
             manifest,

@@ -304,6 +304,17 @@ pub fn last_checkpoint(directory: &Path) -> Result<Vec<u8>, RecordError> {
     Err(damage.unwrap_or_else(|| no_checkpoint(directory)))
 }
 
+/// Steps and payloads of the intact checkpoints, the newest first; nothing is changed, and the record
+/// beside them is not read.
+///
+/// # Errors
+/// There is no intact checkpoint.
+pub fn checkpoints(directory: &Path) -> Result<Vec<(u64, Vec<u8>)>, RecordError> {
+    let found = newest_first(directory).into_iter().filter_map(|(_, found)| found.ok());
+    let found: Vec<_> = found.map(|(header, payload)| (header.step, payload)).collect();
+    if found.is_empty() { Err(no_checkpoint(directory)) } else { Ok(found) }
+}
+
 type Checkpoint = (Header, Vec<u8>);
 
 /// Both generations, the newest first; a damaged or missing one, whose age is unknown, comes before

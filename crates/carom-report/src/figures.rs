@@ -9,7 +9,7 @@ use crate::chart::{Chart, Options, Panel, Series};
 use crate::labels::{symbol, with_unit, words};
 use crate::obstacles;
 use crate::palette::{LINES, sequence};
-use crate::{animation, setup};
+use crate::{animation, setup, stopped};
 
 /// A figure of a report.
 #[derive(Clone, Debug)]
@@ -39,6 +39,8 @@ pub(crate) fn all(run: &Run) -> Shown {
         shown.notes.push("The history has no rows yet; there is nothing to draw.".to_string());
         return shown;
     }
+    let place = stopped::picture(run);
+    shown.figures.extend(place.map(|(caption, svg)| Figure { name: "stopped", caption, svg }));
     shown.figures.extend(setup(run));
     let place = shown.figures.len() + 1;
     if let Some((bodies, bands)) = instants(run, &mut shown.notes) {

@@ -9,6 +9,7 @@ use serde_json::Value;
 use crate::document::{document, figure, file, joined, minus, or_dash};
 use crate::figures::Figure;
 use crate::labels::number;
+use crate::stopped;
 use crate::text::{Label, Prose};
 use crate::timing::timing;
 
@@ -27,12 +28,16 @@ const RESULTS: &str = "All values are computed from `history.csv` alone: times f
 pub(crate) fn page(run: &Run, figures: &[Figure], animation: Option<&Markup>, notes: &[String]) -> String {
     let title = run.manifest.case.get("title").and_then(Value::as_str).unwrap_or("Carom run");
     let figure = |(i, f): (usize, &Figure)| figure(i + 1, f.name, &["svg"], &f.caption, &f.svg);
-    let (setup, others): (Vec<_>, Vec<_>) = figures.iter().enumerate().partition(|(_, f)| f.name == "setup");
+    let named = |name: &'static str| figures.iter().enumerate().filter(move |(_, f)| f.name == name);
+    let place = named("stopped").next().map(|(i, f)| (i + 1, f.caption.as_str(), f.svg.as_str()));
+    let others = figures.iter().enumerate().filter(|(_, f)| f.name != "setup" && f.name != "stopped");
     let body = html! {
+        (status(run))
+        (stopped::section(run, place))
         (header(run))
         @for warning in &run.manifest.warnings { (warning_line(warning)) }
         @for note in notes { p.small { (note) } }
-        @for f in setup { (figure(f)) }
+        @for f in named("setup") { (figure(f)) }
         @if let Some(animation) = animation { (animation) }
         (results(run))
         (expectations(run))
@@ -55,8 +60,9 @@ fn warning_line(warning: &Warning) -> Markup {
     }
 }
 
-fn header(run: &Run) -> Markup {
-    let (m, machine) = (&run.manifest, &run.manifest.machine);
+/// How the run ended.
+fn status(run: &Run) -> Markup {
+    let m = &run.manifest;
     let missed = m.expectations.iter().filter(|expectation| !expectation.pass).count();
     let (class, word) = match m.status {
         Status::Running => ("running", "running or interrupted; can be resumed".to_owned()),
@@ -67,15 +73,21 @@ fn header(run: &Run) -> Markup {
         Status::Stopped => ("stopped", "stopped; can be resumed".to_owned()),
         Status::Failed => ("failed", "failed".to_owned()),
     };
+    html! {
+        p {
+            span.status.(class) { (word) }
+            @if let Some(reason) = m.reason.as_ref().filter(|_| run.stop.is_none()) { " " (reason) }
+        }
+    }
+}
+
+fn header(run: &Run) -> Markup {
+    let (m, machine) = (&run.manifest, &run.manifest.machine);
     let (rows, last) = (run.times().len(), run.times().last().copied().unwrap_or(0.0));
     let wall: f64 = m.timings.get("total").copied().unwrap_or_else(|| m.timings.values().sum());
     let bodies = m.case.get("bodies").and_then(Value::as_array).into_iter().flatten();
     let bodies: Vec<&str> = bodies.filter_map(|b| b.get("name")?.as_str()).collect();
     html! {
-        p {
-            span.status.(class) { (word) }
-            @if let Some(reason) = &m.reason { " " (reason) }
-        }
         table {
             @if !bodies.is_empty() { (row("Bodies", bodies.join(", "))) }
             (row("Carom version", &m.version))

@@ -9,6 +9,8 @@ use carom_mechanics::model::{Manufactured, Model};
 use carom_mechanics::{Before, State};
 use carom_record::{Manifest, Status, last_checkpoint};
 
+use crate::saved_state;
+
 /// The initial state of a manufactured motion.
 ///
 /// # Errors
@@ -132,4 +134,36 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<B
         before.pairs.push(same.and_then(|k| state.pairs.get(k).cloned()).unwrap_or_default());
     }
     Ok(before)
+}
+
+/// The state from which a case continues, if its `[initial]` names a file and not a run.
+///
+/// # Errors
+/// The file is not a state.
+pub(crate) fn saved(initial: Option<&InitialSpec>) -> Result<Option<State>, Vec<Problem>> {
+    let Some(InitialSpec { from, velocities }) = initial.filter(|initial| initial.from.is_file()) else {
+        return Ok(None);
+    };
+    let problem = |key: &str, what: String, why: String, help: &str| {
+        Err(vec![Problem::new(format!("initial.{key}"), what, why, help)])
+    };
+    if *velocities == Velocities::Zero {
+        let what = "the velocities of a saved state cannot be set to zero".to_owned();
+        let why = "the case continues from it with everything that the next step depends on".to_owned();
+        return problem(
+            "velocities",
+            what,
+            why,
+            "leave `velocities` out, or start from the directory of a run",
+        );
+    }
+    match saved_state::read(from) {
+        Ok(state) => Ok(Some(state)),
+        Err(why) => problem(
+            "from",
+            format!("the state {} cannot be used", from.display()),
+            why,
+            "give a state.bin that `carom reduce` wrote, or the directory of a finished run",
+        ),
+    }
 }

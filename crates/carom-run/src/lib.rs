@@ -3,16 +3,22 @@
 
 mod build;
 mod initial;
+mod overlap;
 pub mod recording;
+mod reduce;
+mod saved_state;
 mod setup;
 mod warnings;
 
 pub use build::overlaps;
 pub use carom_case as case;
 pub use carom_mechanics::{
-    Accepted, Before, Bisection, Explicit, FrozenTangent, Grid, GridReport, HalfStepVelocity, Implicit,
-    Impulsive, Ledger, LogEvent, Means, OtherModel, Point, Previous, Rejected, Settings, Simulation, State,
-    StepReport, Stepper, Stopped, Tangent, Timings, Workspace, frequencies, model, stability,
+    Accepted, Attempt, Before, Bisection, Explicit, FrozenTangent, Grid, GridReport, HalfStepVelocity,
+    Implicit, Impulsive, Ledger, LogEvent, Means, OtherModel, Point, Previous, Rejected, Settings,
+    Simulation, State, StepReport, Stepper, Stopped, Tangent, Timings, Workspace, frequencies, model,
+    stability,
 };
+pub use overlap::{OverlapNode, overlapping};
+pub use reduce::{ReduceError, Reduced, reduce};
 pub use setup::{Setup, too_long};
 pub use warnings::{Entry, Found, Rule, WARNINGS, warnings};

@@ -11,7 +11,8 @@ use carom_solid::Constitutive;
 use carom_time::{Integrator, Kernel, Nonsmooth};
 
 use crate::build::{Materials, build, overlaps};
-use crate::initial::{before, given};
+use crate::initial::{before, given, saved};
+use crate::overlap;
 
 /// A case on its way to a simulation: with how many threads, and with laws and a time integrator of
 /// your own in place of the case's.
@@ -94,7 +95,9 @@ impl<'a> Setup<'a> {
         if let Some(problem) = self.kernel.as_deref().and_then(|kernel| unfit(kernel, self.case)) {
             return Err(vec![problem].into());
         }
-        Ok(build(self.case, &self.materials)?)
+        let mut model = build(self.case, &self.materials)?;
+        overlap::keep(self.case, &mut model);
+        Ok(model)
     }
 
     /// Builds the model and its state at t = 0.
@@ -103,13 +106,16 @@ impl<'a> Setup<'a> {
     /// As [`Setup::build`]; also where bodies overlap, an explicit step is longer than is stable, or
     /// the start has no forces or accelerations.
     pub fn start(self) -> Result<Simulation, Problems> {
+        if let Some(state) = saved(self.case.initial.as_ref())? {
+            return self.resume(state);
+        }
         let (case, model) = (self.case, self.build()?);
         let placed = case.initial.is_some() || case.manufactured.is_some();
         // A body whose cells are inverted has its outside within.
         if let Some(rejected) = inverted(case, &model).filter(|_| !placed) {
             return Err(vec![no_start(case, placed, &rejected)].into());
         }
-        let overlaps = if placed { Vec::new() } else { overlaps(&model) };
+        let overlaps = if placed { Vec::new() } else { overlaps(case, &model) };
         let problems = [overlaps, too_long(case, &model)].concat();
         if !problems.is_empty() {
             return Err(problems.into());
@@ -117,7 +123,7 @@ impl<'a> Setup<'a> {
         let before: Option<Before> = match (&case.initial, &model.loads.manufactured) {
             (Some(initial), _) => Some(before(initial, case, &model)?),
             (None, Some(motion)) => Some(given(motion, &model)?),
-            (None, None) => None,
+            (None, None) => overlap::relaxed(case, &model, &self.materials, self.threads)?,
         };
         let stepper = stepper(case, &model, self.kernel)?;
         let inertia = !case.time.scheme.is_static();
@@ -160,20 +166,20 @@ fn unfit(kernel: &dyn Kernel, case: &Case) -> Option<Problem> {
             "its contact forces do no work over the velocities of the midpoint rule, and would with others";
         return Some(Problem::new("time.scheme", what, why, another));
     }
-    let first = |wrong: &dyn Fn(&ContactSpec) -> bool| case.contacts.iter().position(wrong);
+    let first = |wrong: &dyn Fn(&ContactSpec) -> bool| case.contacts.iter().find(|contact| wrong(contact));
     if !kernel.has_predictor()
-        && let Some(k) = first(&|contact| contact.law == Some(ContactLaw::Predictor))
+        && let Some(contact) = first(&|contact| contact.law == Some(ContactLaw::Predictor))
     {
         let what = "this kernel has no predictor";
         let why = "law = \"predictor\" replaces y + Δt v in Newmark's formula";
-        return Some(Problem::new(format!("contact[{k}].law"), what, why, "leave `law` out"));
+        return Some(Problem::new(contact.path("law"), what, why, "leave `law` out"));
     }
     if kernel.stages() > 1
-        && let Some(k) = first(&|contact| contact.xi == ContactPoint::Frozen)
+        && let Some(contact) = first(&|contact| contact.xi == ContactPoint::Frozen)
     {
         let what = format!("this kernel has {} stages", kernel.stages());
         let why = "xi = \"frozen\" keeps ξ during the one solve of a step";
-        return Some(Problem::new(format!("contact[{k}].xi"), what, why, "give xi = \"closest\""));
+        return Some(Problem::new(contact.path("xi"), what, why, "give xi = \"closest\""));
     }
     None
 }

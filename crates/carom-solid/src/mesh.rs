@@ -174,6 +174,44 @@ impl Mesh {
         alone.into_values().flatten().collect()
     }
 
+    /// The whole boundary in the plane in the order of traversal, loop by loop.
+    pub fn ordered_skin(&self) -> Vec<Facet> {
+        let skin = self.skin();
+        let starts: BTreeMap<usize, usize> = skin.iter().enumerate().map(|(k, f)| (f.nodes[0], k)).collect();
+        let (mut order, mut taken) = (Vec::with_capacity(skin.len()), vec![false; skin.len()]);
+        for first in 0..skin.len() {
+            let mut next = Some(first);
+            while let Some(k) = next.filter(|&k| !std::mem::replace(&mut taken[k], true)) {
+                next = skin[k].nodes.get(1).and_then(|end| starts.get(end)).copied();
+                order.push(skin[k].clone());
+            }
+        }
+        order
+    }
+
+    /// The connected piece to which each node belongs, named by one of its nodes: nodes of a cell are
+    /// connected.
+    pub fn pieces(&self) -> Vec<usize> {
+        let mut of: Vec<usize> = (0..self.nodes.len()).collect();
+        let root = |of: &[usize], mut node: usize| {
+            while of[node] != node {
+                node = of[node];
+            }
+            node
+        };
+        for cell in 0..self.cell_count() {
+            let nodes = self.cell(cell);
+            for pair in nodes.windows(2) {
+                let [a, b] = [pair[0], pair[1]].map(|node| root(&of, node));
+                let (low, high) = (a.min(b), a.max(b));
+                of[high] = low;
+                // Short chains: nodes point to the smallest node known.
+                pair.iter().for_each(|&node| of[node] = low);
+            }
+        }
+        (0..of.len()).map(|node| root(&of, node)).collect()
+    }
+
     /// Area in the plane, of triangles with straight sides between their corners.
     pub fn area(&self) -> f64 {
         let of_cell = |cell: usize| {

@@ -162,6 +162,8 @@ pub(crate) fn members(ensemble: &Ensemble, draft: &Draft, case: &Case) -> Vec<(M
     let swaps: Vec<String> = case
         .contacts
         .iter()
+        // Contacts of `between` have no keys of their own, and a side is not swapped with itself.
+        .filter(|contact| !contact.between && !contact.is_of_itself())
         .filter_map(|contact| {
             let side = contact.primary.side()?;
             Some([

@@ -59,7 +59,14 @@ fn repeated(
     fs::create_dir_all(folder).map_err(|e| io("create", e))?;
     let (threads, resumed) = (folder.join("threads"), folder.join("resumed"));
     let source = || manifest.source_of(arm);
-    let done = recording::run(&case, source(), &threads, Options { threads: THREADS }, &mut |_| (), stop);
+    let done = recording::run(
+        &case,
+        source(),
+        &threads,
+        Options { threads: THREADS, trials: false },
+        &mut |_| (),
+        stop,
+    );
     if done.map_err(failed)?.end == End::Interrupted {
         return Ok(None);
     }
@@ -71,8 +78,10 @@ fn repeated(
             (at, active_pairs) = (p.step, p.active);
         }
     };
-    recording::run(&case, source(), &resumed, Options { threads: 1 }, &mut watch, &halt).map_err(failed)?;
-    let done = recording::resume(&resumed, Options { threads: 1 }, &mut |_| (), stop).map_err(failed)?;
+    recording::run(&case, source(), &resumed, Options { threads: 1, trials: false }, &mut watch, &halt)
+        .map_err(failed)?;
+    let done = recording::resume(&resumed, Options { threads: 1, trials: false }, &mut |_| (), stop)
+        .map_err(failed)?;
     if done.end == End::Interrupted {
         return Ok(None);
     }

@@ -16,12 +16,12 @@ pub(crate) fn compute(
     directory: &Path,
     i: usize,
     begun: bool,
-    observe: &mut dyn FnMut(&Progress),
+    observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Ended, StudyError> {
     let arm = manifest.run(i);
     let path = directory.join(&arm.directory);
-    let options = Options { threads: 1 };
+    let options = Options { threads: 1, trials: false };
     let done = if begun {
         recording::resume(&path, options, observe, stop)
     } else {

@@ -47,7 +47,7 @@ impl Ended {
 pub(crate) fn side_by_side<E: Send>(
     order: VecDeque<usize>,
     jobs: usize,
-    one: &(dyn Fn(usize, &mut dyn FnMut(&Progress)) -> Result<Ended, E> + Sync),
+    one: &(dyn Fn(usize, &mut (dyn FnMut(&Progress) + Send)) -> Result<Ended, E> + Sync),
     observe: &mut dyn FnMut(&Event),
     stop: &AtomicBool,
 ) -> Result<(), E> {

@@ -190,7 +190,7 @@ pub(crate) fn settle(
         !matches!(status, Ok(Some(Status::Finished | Status::Failed)))
     };
     let waiting = anchors.iter().copied().filter(not_ended).collect();
-    let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
+    let one = |i: usize, progress: &mut (dyn FnMut(&Progress) + Send)| {
         let begun = directory.join(&manifest.arms[i].directory).join("manifest.json").is_file();
         compute(manifest, directory, i, begun, progress, stop)
     };
@@ -208,7 +208,7 @@ pub(crate) fn settle(
     let levels = design.steps.len().max(1);
     let budgets = (0..levels).map(budget).collect::<Result<Vec<_>, _>>()?;
     let settled: Mutex<Vec<(usize, u64, Option<f64>)>> = Mutex::default();
-    let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
+    let one = |i: usize, progress: &mut (dyn FnMut(&Progress) + Send)| {
         let budget = budgets.get(manifest.arms[i].role.level).copied().flatten();
         let (ended, steps, share) = pilot(manifest, directory, i, budget, progress, stop)?;
         if ended.status != Status::Stopped {
@@ -267,7 +267,7 @@ fn pilot(
     directory: &Path,
     i: usize,
     budget: Option<f64>,
-    progress: &mut dyn FnMut(&Progress),
+    progress: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<(Ended, u64, Option<f64>), StudyError> {
     let arm = &manifest.arms[i];
@@ -328,10 +328,10 @@ fn trial(
     i: usize,
     steps: u64,
     path: &Path,
-    progress: &mut dyn FnMut(&Progress),
+    progress: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Option<Ended>, StudyError> {
-    let options = Options { threads: 1 };
+    let options = Options { threads: 1, trials: false };
     let done = if path.join("manifest.json").is_file() {
         recording::resume(path, options, progress, stop)
     } else {

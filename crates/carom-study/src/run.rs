@@ -81,7 +81,7 @@ pub fn resume(
     let mut order: Vec<(usize, f64)> = begun.keys().map(|&i| (i, work(i))).collect();
     order.sort_by(|a, b| b.1.total_cmp(&a.1));
     let order = order.into_iter().map(|(i, _)| i).collect();
-    let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
+    let one = |i: usize, progress: &mut (dyn FnMut(&Progress) + Send)| {
         compute(&manifest, directory, i, begun.get(&i) == Some(&true), progress, stop)
     };
     side_by_side(order, jobs, &one, observe, stop)?;

@@ -76,14 +76,20 @@ impl Suite {
         let order = order(&units, self.items.len(), options.fail_fast);
         // Set by Ctrl-C, and with `fail_fast` by the first miss.
         let halt = AtomicBool::new(false);
-        let one = |i: usize, progress: &mut dyn FnMut(&Progress)| {
+        let one = |i: usize, progress: &mut (dyn FnMut(&Progress) + Send)| {
             let Unit { name, directory, case, source, .. } = &units[i];
             let mut watched = |p: &Progress| {
                 halt.fetch_or(stop.load(Ordering::Relaxed), Ordering::Relaxed);
                 progress(p);
             };
-            let done =
-                recording::run(case, source.clone(), directory, Options { threads: 1 }, &mut watched, &halt);
+            let done = recording::run(
+                case,
+                source.clone(),
+                directory,
+                Options { threads: 1, trials: false },
+                &mut watched,
+                &halt,
+            );
             done.map(Ended::of).map_err(|source| StudyError::Arm { arm: name.clone(), source })
         };
         let mut judged: Vec<Option<Result<SetUp, StudyError>>> = self.items.iter().map(|_| None).collect();

@@ -1,6 +1,7 @@
 //! Checks of contacts: two different bodies, each pair once, mass where the projection needs it,
 //! laws that are compatible with each other and with the scheme, and what a frozen ξ needs.
 
+use super::super::spec::SKIN;
 use super::super::{
     ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ObstacleMotion, Persistency, PrimarySpec,
 };
@@ -8,19 +9,19 @@ use super::Check;
 
 impl Check<'_> {
     /// Laws and enforcements that cannot be combined with each other or with the scheme.
-    fn law(&mut self, i: usize, contact: &ContactSpec) {
-        let path = |key: &str| format!("contact[{i}].{key}");
+    fn law(&mut self, contact: &ContactSpec) {
+        let path = |key: &str| contact.path(key);
         let (predictor, penalty) =
             (contact.law == Some(ContactLaw::Predictor), contact.enforcement == Enforcement::Penalty);
         let tables = self.tables("contact");
-        let given = |key: &str| tables.get(i).and_then(|n| n.table()?.get(key)).is_some();
+        let given = |key: &str| tables.get(contact.entry).and_then(|n| n.table()?.get(key)).is_some();
         if contact.persistency == Persistency::Project && given("persistency") && (predictor || penalty) {
             let by = if penalty { "enforcement = \"penalty\"" } else { "law = \"predictor\"" };
             let why = format!("with {by} there is nothing to project where contact begins");
             let what = "persistency = \"project\" cannot be used here";
             self.add(path("persistency"), what, why, "leave persistency out");
         }
-        if !penalty && given("stiffness") && !self.is_misspelt("contact", i, "enforcement") {
+        if !penalty && given("stiffness") && !self.is_misspelt("contact", contact.entry, "enforcement") {
             let why = "a multiplier enforces the constraint exactly; only enforcement = \"penalty\" has a stiffness";
             self.add(
                 path("stiffness"),
@@ -63,13 +64,13 @@ impl Check<'_> {
 
     /// What a frozen contact point needs: a curve on which it can be, a detection that finds one, a
     /// constraint whose gap may be that of the tangent line, and one stage per step.
-    fn frozen_point(&mut self, i: usize, contact: &ContactSpec) {
+    fn frozen_point(&mut self, contact: &ContactSpec) {
         if contact.xi != ContactPoint::Frozen {
             return;
         }
         let draft = self.draft;
         let mut add = |what: &str, why: &str, hint: &str| {
-            self.add(format!("contact[{i}].xi"), format!("xi = \"frozen\" cannot be used {what}"), why, hint);
+            self.add(contact.path("xi"), format!("xi = \"frozen\" cannot be used {what}"), why, hint);
         };
         if contact.primary.side().is_none() {
             let why = "ξ is a place on a facet of a deformable body, and an obstacle has none";
@@ -99,13 +100,31 @@ impl Check<'_> {
         add(what, why, hint);
     }
 
+    /// What contact of a side with itself needs: a boundary that can fold, and a detection by the
+    /// closest point.
+    fn itself(&mut self, contact: &ContactSpec) {
+        if !contact.is_of_itself() {
+            return;
+        }
+        if self.draft.dimension == Some(1) {
+            let what = format!("the side `{}` cannot be in contact with itself", contact.secondary);
+            let why = "the case has dimension = 1, and the end of a bar is a point";
+            self.add(contact.path("primary"), what, why, "give a side of another body");
+        }
+        if contact.detection == Detection::Trajectory {
+            let what = "detection = \"trajectory\" cannot be used for contact of a side with itself";
+            let why = "it checks the nodes of one side only, and here both are the same";
+            self.add_unique(contact.path("detection"), what, why, "leave it out");
+        }
+    }
+
     /// What an obstacle that moves needs: inertia if it is free, and a name for its columns.
-    fn obstacle(&mut self, i: usize, contact: &ContactSpec) {
+    fn obstacle(&mut self, contact: &ContactSpec) {
         let is_static = self.draft.time.as_ref().is_some_and(|time| time.scheme.is_static());
         if is_free(contact) && is_static {
             let why = "the scheme \"static\" has no inertia, and nothing else holds a free obstacle";
             let help = "give it a `motion`, or use a scheme with inertia";
-            self.add(format!("contact[{i}].primary.mass"), "the obstacle has no equilibrium", why, help);
+            self.add(contact.path("primary.mass"), "the obstacle has no equilibrium", why, help);
         }
         let draft = self.draft;
         let other = |kind: &'static str, mut names: Box<dyn Iterator<Item = &String> + '_>| {
@@ -120,7 +139,7 @@ impl Check<'_> {
             let what =
                 format!("a {kind} and a contact with a moving obstacle are both named `{}`", contact.name);
             let why = "the columns of a moving obstacle have the name of its contact";
-            self.add(format!("contact[{i}].name"), what, why, "rename one of them");
+            self.add(contact.path("name"), what, why, "rename one of them");
         }
     }
 
@@ -128,20 +147,42 @@ impl Check<'_> {
         let contacts = &self.draft.contacts;
         for (i, contact) in contacts.iter().enumerate() {
             let Some(contact) = contact else { continue };
-            self.law(i, contact);
-            self.frozen_point(i, contact);
-            let path = |key: &str| format!("contact[{i}].{key}");
+            let path = |key: &str| contact.path(key);
+            let earlier = || contacts[..i].iter().flatten();
+            if contact.between && self.draft.dimension == Some(1) {
+                let why = "a body of dimension 1 has no boundary but its two ends";
+                let help = "give `secondary` and `primary`";
+                self.add_unique(path("between"), "`between` needs dimension = 2", why, help);
+                continue;
+            }
+            if contact.between
+                && earlier().any(|other| other.name == contact.name && other.entry != contact.entry)
+            {
+                let what = format!("two contacts are named `{}`", contact.name);
+                let why = "contacts of `between` are named NAME-BODY-BODY, and names must be unique";
+                self.add_unique(path("name"), what, why, "rename one of the tables");
+            }
+            // What follows from other keys is the same for all contacts of a table.
+            if !earlier().any(|other| other.entry == contact.entry) {
+                self.law(contact);
+                self.frozen_point(contact);
+            }
             let secondary = self.side(&contact.secondary, path("secondary"));
             let primary = match &contact.primary {
                 PrimarySpec::Side(side) => {
                     let primary = self.side(side, path("primary"));
                     if let (Some(a), Some(b)) = (secondary, primary)
                         && a.name == b.name
+                        && !contact.is_of_itself()
                     {
                         let what =
                             format!("both sides of `{}` belong to the body `{}`", contact.name, a.name);
-                        let why = "self-contact is planned for a later version of Carom";
-                        self.add(path("primary"), what, why, "give a side of another body");
+                        let why = "in contact of a body with itself each place may be secondary or primary, so both sides are the same";
+                        let help = format!(
+                            "give `{0}.{SKIN}`, its whole boundary, for both, or between = [\"{0}\"]",
+                            a.name
+                        );
+                        self.add(path("primary"), what, why, help);
                         continue;
                     }
                     primary
@@ -160,7 +201,8 @@ impl Check<'_> {
                     None
                 }
             };
-            self.obstacle(i, contact);
+            self.obstacle(contact);
+            self.itself(contact);
             let rigid = contact.primary.side().is_none() && !is_free(contact);
             if let Some(body) = secondary
                 && self.massless(body)

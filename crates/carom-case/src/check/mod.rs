@@ -13,6 +13,7 @@ use super::document::Document;
 use super::draft::Draft;
 use super::keys;
 use super::problem::Problem;
+use super::spec::SKIN;
 use super::suggest;
 use super::tree::Node;
 use super::{BodySpec, Quantity};
@@ -116,6 +117,21 @@ impl<'a> Check<'a> {
         }
     }
 
+    /// Adds a problem with a key of a contact, once for all contacts of its table.
+    fn add_unique(
+        &mut self,
+        path: String,
+        what: impl Into<String>,
+        why: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        let problem = Problem::new(path, what, why, help);
+        let same = |known: &Problem| known.path == problem.path && known.why == problem.why;
+        if !self.problems.iter().any(same) {
+            self.problems.push(problem);
+        }
+    }
+
     /// Adds a problem with a reference, unless an earlier reference had the same one: the mistake
     /// is then probably in the name that both refer to.
     fn add_once(&mut self, path: String, what: String, why: &str, help: String) {
@@ -154,7 +170,8 @@ impl<'a> Check<'a> {
         }
         let body = self.body(name)?;
         let sides = body.mesh.sides();
-        if !sides.iter().any(|s| s == part) {
+        let is_skin = part == SKIN && self.draft.dimension != Some(1);
+        if !is_skin && !sides.iter().any(|s| s == part) {
             let why = format!("its mesh has the sides: {}", all_sides(body));
             let help = suggest::nearest(part, sides.iter().map(String::as_str)).map_or_else(
                 || "use one of these sides".to_owned(),

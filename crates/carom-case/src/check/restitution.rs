@@ -9,12 +9,11 @@ impl Check<'_> {
         let contacts = &self.draft.contacts;
         let multiplier = |contact: &&ContactSpec| contact.enforcement == Enforcement::Multiplier;
         let first = contacts.iter().flatten().find(multiplier).map_or(0.0, |contact| contact.restitution);
-        for (i, contact) in contacts.iter().enumerate() {
-            let Some(contact) = contact else { continue };
+        for contact in contacts.iter().flatten() {
             let Some((why, help)) = self.restitution_is_unusable(contact, first) else { continue };
             let e = contact.restitution;
             let what = format!("contact `{}` cannot have restitution = {e} with {}", contact.name, spec.kind);
-            self.add(format!("contact[{i}].restitution"), what, why, help);
+            self.add_unique(contact.path("restitution"), what, why, help);
         }
     }
 

@@ -19,11 +19,8 @@ impl Check<'_> {
         } else if spec.integrator().is_ok() {
             self.no_restitution(spec, "its contact law constrains positions at the end of a step");
         }
-        for (i, contact) in draft.contacts.iter().enumerate() {
-            let Some(law) = contact.as_ref().and_then(|c| c.law).filter(|law| *law != spec.contact_law())
-            else {
-                continue;
-            };
+        for contact in draft.contacts.iter().flatten() {
+            let Some(law) = contact.law.filter(|law| *law != spec.contact_law()) else { continue };
             if law == ContactLaw::Predictor && spec.nonsmooth().is_none() {
                 // Whether an implicit scheme has a predictor is checked with the contacts.
                 continue;
@@ -45,7 +42,7 @@ impl Check<'_> {
                     "leave law out, or use another scheme (carom explain lists them)",
                 ),
             };
-            self.add(format!("contact[{i}].law"), what, why, help);
+            self.add_unique(contact.path("law"), what, why, help);
         }
     }
 
@@ -138,11 +135,12 @@ impl Check<'_> {
     }
 
     fn no_restitution(&mut self, spec: &SchemeSpec, why: &str) {
-        for (i, contact) in self.draft.contacts.iter().enumerate() {
-            if let Some(e) = contact.as_ref().map(|c| c.restitution).filter(|e| *e != 0.0) {
+        for contact in self.draft.contacts.iter().flatten() {
+            let e = contact.restitution;
+            if e != 0.0 {
                 let what = format!("{} has no restitution, but e = {e} is given", spec.kind);
                 let help = "leave restitution out, or use scheme energy-momentum, moreau-jean, nonsmooth-generalized-alpha or paoli-schatzman";
-                self.add(format!("contact[{i}].restitution"), what, why, help);
+                self.add_unique(contact.path("restitution"), what, why, help);
             }
         }
     }

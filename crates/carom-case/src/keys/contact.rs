@@ -8,8 +8,18 @@ pub(super) const CONTACT: Table = Table {
     doc: "A contact pair: two sides that may come into contact.",
     keys: &[
         key("name", Name, "Name used in records and messages.").example("\"strike\""),
-        key("secondary", Side, "Secondary (slave) side: its nodes may not penetrate the primary.").example("\"cylinder.arc\""),
-        key("primary", SideOr(&RIGID), "Primary (master) side, or a rigid obstacle: a table with one of `plane`, `circle` and `polyline`.").example("\"prism.top\""),
+        key("secondary", Side, "Secondary (slave) side: its nodes may not penetrate the primary. `body.skin` is the whole boundary of a body.").example("\"cylinder.arc\"").unless("between"),
+        key("primary", SideOr(&RIGID), "Primary (master) side, or a rigid obstacle: a table with one of `plane`, `circle` and `polyline`. The secondary side again: contact of this side with itself.").example("\"prism.top\"").unless("between"),
+        key(
+            "between",
+            Kind::Between,
+            "In place of `secondary` and `primary`: contact of each of several bodies with each other and with itself, of \"all\" bodies, or of those \
+             listed; of their whole boundaries, or of a side `body.side`. Of two bodies the softer one (smaller λ + 2μ) is secondary, of equals the first. A pair of bodies \
+             with a [[contact]] of its own is left out. Contacts are named NAME-BODY-BODY and NAME-BODY, or NAME if there is one.",
+        )
+        .optional()
+        .example("\"all\""),
+        key("self", Truth, "With `between`: whether bodies are in contact with themselves, where their boundary folds.").default("true"),
         key("method", Choice(&["node-to-segment"], &["mortar"]), "Discretisation of the contact.")
             .default("\"node-to-segment\""),
         key(
@@ -63,6 +73,13 @@ pub(super) const CONTACT: Table = Table {
         )
         .default("\"closest\""),
         key(
+            "overlap",
+            Choice(&["refuse", "relax", "keep-gap"], &[]),
+            "Overlap of the bodies at the start: an error; closed before the start, which leaves the bodies in equilibrium under the pressure of an \
+             interference fit; or kept, with the gap of every node larger by its depth at the start.",
+        )
+        .default("\"refuse\""),
+        key(
             "restitution",
             Number(RESTITUTION),
             "Coefficient of restitution e: Newton's, for contact laws on velocities; with energy-momentum and multipliers, e² is the fraction of the \
@@ -70,7 +87,7 @@ pub(super) const CONTACT: Table = Table {
         )
         .default("0.0"),
     ],
-    later: &["passes", "normals", "overlap", "between", "friction"],
+    later: &["passes", "normals", "friction"],
 };
 
 const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };

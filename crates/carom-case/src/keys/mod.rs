@@ -44,6 +44,8 @@ pub struct Key {
     pub example: &'static str,
     /// Other kinds of value planned for a later version: a table, a string.
     pub later: &'static str,
+    /// A key in whose presence it is not required, and may not be given; empty if none.
+    pub unless: &'static str,
 }
 
 /// What happens when a key is omitted.
@@ -97,6 +99,8 @@ pub enum Kind {
     Side,
     /// A list of sides, at least one.
     Sides,
+    /// `"all"`, or a list of bodies and sides, at least one.
+    Between,
     /// A side, or this table.
     SideOr(&'static Table),
     /// A table.
@@ -224,6 +228,7 @@ impl Kind {
             Self::ByColumn => "a table of formulas by column".into(),
             Self::Choices(choices) => format!("a list of values from {}", words(choices)),
             Self::Side => "a side \"body.side\"".into(),
+            Self::Between => "\"all\", or a list of bodies and sides [\"body\", \"body.side\"]".into(),
             Self::Sides => "a list of sides [\"body.side\"]".into(),
             Self::SideOr(_) => {
                 "a side \"body.side\" or a rigid obstacle { plane = …, circle = … or polyline = … }".into()
@@ -236,7 +241,17 @@ impl Kind {
 }
 
 const fn key(name: &'static str, kind: Kind, doc: &'static str) -> Key {
-    Key { name, kind, unit: "", default: Default::Required, paper: None, doc, example: "", later: "" }
+    Key {
+        name,
+        kind,
+        unit: "",
+        default: Default::Required,
+        paper: None,
+        doc,
+        example: "",
+        later: "",
+        unless: "",
+    }
 }
 
 impl Key {
@@ -258,6 +273,10 @@ impl Key {
 
     const fn example(self, toml: &'static str) -> Self {
         Self { example: toml, ..self }
+    }
+
+    const fn unless(self, key: &'static str) -> Self {
+        Self { unless: key, ..self }
     }
 
     const fn later(self, what: &'static str) -> Self {

@@ -1,6 +1,6 @@
 //! Keys of meshes: built-in shapes and files.
 
-use super::Kind::{Count, Counts, Number, Points, Tables, Text, Vector};
+use super::Kind::{Count, Counts, Number, Points, Tables, Text, Truth, Vector};
 use super::{ANY, Key, NOT_NEGATIVE, POSITIVE, Table, Variants, key};
 
 /// Built-in shapes.
@@ -121,6 +121,8 @@ const MESH_FILE: Table = Table {
             .example("\"impact.msh\""),
         key("surface", Text, "Name of the physical surface (dimension 1: curve) that is the body.")
             .example("\"cylinder\""),
+        key("slits", Truth, "Whether neighbouring cells may have nodes of their own at one place: a closed slit, or pieces that touch. Otherwise this is reported as a mistake.")
+            .default("false"),
     ],
     later: &[],
 };

@@ -84,10 +84,14 @@ const UNITS: Table = Table {
 
 const INITIAL: Table = Table {
     name: "[initial]",
-    doc: "Start from the final state of another run with the same meshes; time starts at 0 again.",
+    doc: "Start from the final state of another run with the same meshes; time starts at 0 again. Or continue from a state that `carom reduce` saved, at its time.",
     keys: &[
-        key("from", Text, "Directory of the finished run, relative to the folder of the case.")
-            .example("\"runs/preload\""),
+        key(
+            "from",
+            Text,
+            "Directory of the finished run, or file of a saved state, relative to the folder of the case.",
+        )
+        .example("\"runs/preload\""),
         key(
             "velocities",
             Choice(&["keep", "zero"], &[]),

@@ -9,9 +9,15 @@ use super::obstacle::ObstacleMotion;
 pub struct ContactSpec {
     /// Name used in records and messages.
     pub name: String,
+    /// Number of its table in the case.
+    #[serde(default)]
+    pub entry: usize,
+    /// Whether it is one of the contacts that the key `between` of its table stands for.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub between: bool,
     /// Secondary (slave) side: its nodes may not penetrate the primary.
     pub secondary: String,
-    /// Primary (master) side, or a rigid obstacle.
+    /// Primary (master) side, which may be the secondary one, or a rigid obstacle.
     pub primary: PrimarySpec,
     /// Motion of a rigid obstacle.
     #[serde(default, skip_serializing_if = "ObstacleMotion::is_fixed")]
@@ -34,12 +40,26 @@ pub struct ContactSpec {
     pub xi: ContactPoint,
     /// What contact constrains; once resolved, the default is the law of the scheme.
     pub law: Option<ContactLaw>,
+    /// What happens to an overlap of the bodies at the start.
+    #[serde(default)]
+    pub overlap: Overlap,
     /// Coefficient of restitution e, 0 … 1: Newton's, for laws on velocities; for a constraint that
     /// conserves, e² is the share of the energy taken that is returned.
     pub restitution: f64,
 }
 
 impl ContactSpec {
+    /// Path of a key of its table, of `between` for the sides that this stands for.
+    pub fn path(&self, key: &str) -> String {
+        let of_side = key == "secondary" || key == "primary";
+        format!("contact[{}].{}", self.entry, if self.between && of_side { "between" } else { key })
+    }
+
+    /// Whether a side is in contact with itself.
+    pub fn is_of_itself(&self) -> bool {
+        self.primary.side() == Some(&self.secondary)
+    }
+
     /// Names of the bodies of its sides, the secondary one first.
     pub fn bodies(&self) -> impl Iterator<Item = &str> {
         let sides = [Some(self.secondary.as_str()), self.primary.side()];
@@ -156,4 +176,17 @@ pub enum ContactPoint {
     Closest,
     /// The crossing of the paths, then the closest point at the start of the step, as in the paper.
     Frozen,
+}
+
+/// What happens to an overlap of the bodies at the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Overlap {
+    /// It is an error.
+    #[default]
+    Refuse,
+    /// It is closed before the start: the bodies begin in equilibrium with the pressure that closes it.
+    Relax,
+    /// The gap of every node is larger by its depth at the start, to the end of the run.
+    KeepGap,
 }

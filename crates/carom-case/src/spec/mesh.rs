@@ -7,6 +7,10 @@ use std::path::PathBuf;
 use carom_solid::Element;
 use serde::{Deserialize, Serialize};
 
+/// Name of the side that is the whole boundary of a body in the plane, unless its mesh has a side of
+/// this name.
+pub const SKIN: &str = "skin";
+
 /// Source of a mesh: a built-in shape, or a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "shape", rename_all = "kebab-case")]
@@ -74,6 +78,9 @@ pub enum MeshSpec {
         file: PathBuf,
         /// Name of the physical group.
         surface: String,
+        /// Whether cells at one place with nodes of their own are a slit, not a mistake.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        slits: bool,
         /// BLAKE3 hash of the file when the case was read.
         hash: String,
         /// Nodes of the mesh.

@@ -13,12 +13,12 @@ mod time;
 pub use body::{BodySpec, Law, MassKind, MaterialSpec, PlaceSpec, Plane};
 pub use case::{Case, InitialSpec, Preset, Units, Velocities};
 pub use contact::{
-    ActiveSetRule, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime, Persistency,
-    PrimarySpec,
+    ActiveSetRule, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime, Overlap,
+    Persistency, PrimarySpec,
 };
 pub use formula::FormulaSpec;
 pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec};
-pub use mesh::{MeshSpec, RefineSpec};
+pub use mesh::{MeshSpec, RefineSpec, SKIN};
 pub use obstacle::ObstacleMotion;
 pub use output::{OutputSpec, ProbeSpec, Quantity};
 pub use time::{NewtonSpec, SchemeSpec, TangentRule, TimeSpec};

@@ -10,14 +10,26 @@
 //! secondary between two of its nodes. The other nodes follow the secondary side's edges to within
 //! d: with d = 0 the sides would be constrained twice, and meshes that do not match would lock.
 //!
+//! In contact of a side with itself, each of two places that meet is secondary and primary. The one
+//! that comes later along the boundary is the secondary (`folds.rs`): all nodes are in either
+//! direction, in the first with the facets before them, in the second with those after them. The
+//! nodes of a zone of contact are then secondary on one of its flanks and follow on the other one,
+//! as between two bodies. Constraining both flanks would lock them; neither, or the mean of both
+//! gaps, would let nodes through. Either choice of the flank gives the same answer where nodes
+//! meet nodes.
+//!
 //! The nodes of the primary follow those of the secondary side. Where a corner meets a secondary
 //! node and a facet at the corner is parallel to the secondary one, either row would prevent
 //! penetration, and both would be nearly dependent: the corner is then left to the node.
 
+use std::sync::Arc;
+
 use super::Kinematics;
 use super::facing::PAST_SIDE;
-use super::node_to_facet::NodeToFacet;
+use super::folds::{Folds, Side};
+use super::node_to_facet::{Detection, NodeToFacet};
 use super::passed::Passed;
+use super::surface::Surface;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
 use crate::rows::Rows;
@@ -56,6 +68,24 @@ impl BothSides {
         Self { forward, reverse, corners, all }
     }
 
+    /// A side against itself: its nodes, and the same with the depth that each may have where it comes
+    /// earlier, none at corners; `piece`: the connected piece of its body to which each node belongs, from
+    /// `first_node` on; `reference`: the reference positions, flat over all nodes.
+    pub fn of_itself(
+        side: &Surface,
+        nodes: Vec<usize>,
+        (earlier, allowed): (Vec<usize>, Vec<f64>),
+        piece: &[usize],
+        first_node: usize,
+        reference: &[f64],
+    ) -> Self {
+        let folds = Arc::new(Folds::new(side, piece, first_node, reference));
+        let of = |nodes: Vec<usize>, which: Side| {
+            NodeToFacet::new(nodes, side.clone(), Detection::ClosestPoint).folding(folds.clone(), which)
+        };
+        Self::new(of(nodes, Side::Later), of(earlier, Side::Earlier).with_allowed(allowed))
+    }
+
     /// The direction to which a node belongs, and its number there.
     fn direction(&self, node: usize) -> (&NodeToFacet, usize) {
         let count = self.forward.secondary().len();
@@ -71,7 +101,8 @@ impl BothSides {
         let faced = secondary.facet(corner.facet);
         let normal = faced.at(y, corner.xi).normal;
         self.corners[corner.node].iter().any(|&(facet, xi)| {
-            let near = NEAR_NODE * primary.length(facet, y);
+            // Where an overlap is kept, they meet at that distance.
+            let near = NEAR_NODE * primary.length(facet, y) + self.reverse.kept(corner.node);
             primary.facet(facet).at(y, xi).normal.dot(&normal) < -PARALLEL
                 && faced.nodes.iter().any(|&other| (y.at(other) - at).norm() < near)
         })
@@ -95,6 +126,17 @@ impl Kinematics for BothSides {
     fn allowed(&self, node: usize) -> f64 {
         let (direction, node) = self.direction(node);
         direction.allowed(node)
+    }
+
+    fn keep(&mut self, depths: &[f64]) {
+        let (forward, reverse) = depths.split_at(self.forward.secondary().len().min(depths.len()));
+        self.forward.keep(forward);
+        self.reverse.keep(reverse);
+    }
+
+    fn kept(&self, node: usize) -> f64 {
+        let (direction, node) = self.direction(node);
+        direction.kept(node)
     }
 
     fn facet_nodes(&self, pair: &Pair) -> &[usize] {

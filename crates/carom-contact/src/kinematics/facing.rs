@@ -18,7 +18,7 @@ use crate::places::Places;
 /// |ξ| up to which a facet is extrapolated.
 pub(super) const REACH: f64 = 1.2;
 /// |ξ| − 1 above which a closest point is past the end of its facet.
-const PAST: f64 = 1e-9;
+pub(super) const PAST: f64 = 1e-9;
 /// The same at a corner or at the end of a side: where sides of equal length are pressed together,
 /// their ends bulge differently.
 pub(super) const PAST_SIDE: f64 = 1e-3;

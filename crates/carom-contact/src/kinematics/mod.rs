@@ -4,7 +4,9 @@
 //! Positions are flat over all nodes, `dimension` components each.
 
 mod both_sides;
+mod candidate;
 mod facing;
+mod folds;
 mod gap;
 mod node_to_facet;
 mod node_to_obstacle;
@@ -16,6 +18,8 @@ mod swept;
 mod trajectory;
 
 pub use both_sides::BothSides;
+pub use folds::Side;
+pub(crate) use folds::{Folds, Turns};
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
 pub use node_to_obstacle::{Carrier, NodeToObstacle};
 pub use obstacle::{Obstacle, Polyline, PolylineError};
@@ -28,7 +32,8 @@ use crate::rows::Rows;
 
 /// A way to measure gaps between two sides.
 pub trait Kinematics: Send + Sync {
-    /// Global numbers of the secondary nodes, without duplicates.
+    /// Global numbers of the secondary nodes. In contact of a side with itself all occur twice: as
+    /// nodes of the later place, then as nodes of the earlier one.
     fn secondary(&self) -> &[usize];
 
     /// Depth that a secondary node, given by index, may have without contact: its gap is larger by
@@ -38,6 +43,13 @@ pub trait Kinematics: Send + Sync {
         0.0
     }
 
+    /// Adds to the gap of every secondary node, by index, a depth that it has at the start: an overlap
+    /// that is kept, or not yet closed.
+    fn keep(&mut self, depths: &[f64]);
+
+    /// The depth that a secondary node, given by index, keeps.
+    fn kept(&self, node: usize) -> f64;
+
     /// Global numbers of the nodes of a pair's facet; empty for a rigid primary.
     fn facet_nodes(&self, pair: &Pair) -> &[usize];
 
@@ -45,7 +57,7 @@ pub trait Kinematics: Send + Sync {
     fn stencil(&self) -> usize;
 
     /// Signed distance of a secondary node, given by index, to the nearest point of the primary
-    /// side; `None` if no facet faces it.
+    /// side, plus the depth that it keeps; `None` if no facet faces it.
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64>;
 
     /// Updates the pairs between positions `before` (no penetration) and `now`: adds candidates,

@@ -9,16 +9,16 @@
 //! Which facet a node faces, at joints and ends, is in `facing.rs`. A pair is handed to the neighbour
 //! only between solves.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use carom_solid::FacetShape;
 
-use super::facing::{Closest, Next, REACH};
+use super::facing::{Next, PAST, REACH};
+use super::folds::{Folds, Side, Turns};
 use super::gap::Gap;
 use super::passed::{Passed, passed};
 use super::surface::{Search, Surface};
 use super::swept::SweptTest;
-use super::trajectory::crossing;
 use super::{Kinematics, watch_every_node};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
@@ -29,13 +29,6 @@ const WANDER: f64 = 3.0;
 /// |ξ| beyond which a pair is handed over, or back, before Newton has converged.
 const HAND_OVER: f64 = 1.02;
 const HAND_BACK: f64 = 1.1;
-
-/// A node this far behind a facet (relative to its length) at the start of a step has not crossed
-/// the facet.
-const BEHIND: f64 = 1e-6;
-/// The same where the whole boundary is known: a node whose nearest facet is of the side has entered
-/// the body there.
-const RECAPTURED: f64 = 0.02;
 
 /// The gap that decides that a node has reached the primary side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,33 +51,42 @@ pub enum ContactPoint {
 /// Secondary nodes against a primary side of facets.
 #[derive(Debug)]
 pub struct NodeToFacet {
-    secondary: Vec<usize>,
-    primary: Surface,
-    detection: Detection,
+    pub(super) secondary: Vec<usize>,
+    pub(super) primary: Surface,
+    pub(super) detection: Detection,
     point: ContactPoint,
     /// Depth that each node may have without contact; empty if none may have any.
     allowed: Vec<f64>,
+    /// Depth that each node keeps; empty if none does.
+    kept: Vec<f64>,
+    /// Of nodes of the primary side itself: where its boundary folds, and which of two places that
+    /// meet is the node's.
+    pub(super) folds: Option<(Arc<Folds>, Side)>,
     tools: Mutex<Tools>,
 }
 
 /// Reused memory; results do not depend on its content.
 #[derive(Debug)]
-struct Tools {
-    search: Search,
-    swept: SweptTest,
+pub(super) struct Tools {
+    pub(super) search: Search,
+    pub(super) swept: SweptTest,
+    pub(super) turns: Turns,
 }
 
 impl NodeToFacet {
     /// Secondary nodes and primary surface in global node numbers; nodes of the primary are removed
     /// from the secondary.
     pub fn new(secondary: Vec<usize>, primary: Surface, detection: Detection) -> Self {
-        let tools = Tools { search: Search::new(&primary), swept: SweptTest::new(primary.shape()) };
+        let swept = SweptTest::new(primary.shape());
+        let tools = Tools { search: Search::new(&primary), swept, turns: Turns::default() };
         Self {
             secondary,
             primary,
             detection,
             point: ContactPoint::Closest,
             allowed: Vec::new(),
+            kept: Vec::new(),
+            folds: None,
             tools: Mutex::new(tools),
         }
     }
@@ -103,9 +105,31 @@ impl NodeToFacet {
         Self { allowed, ..self }
     }
 
+    /// The same for nodes of the primary side itself.
+    pub(super) fn folding(self, folds: Arc<Folds>, side: Side) -> Self {
+        Self { folds: Some((folds, side)), ..self }
+    }
+
+    /// Whether a node has no business on a facet: one of its own, or one that is the node's in the
+    /// other direction.
+    fn excludes(&self, node: usize, facet: usize) -> bool {
+        self.folds.as_ref().is_some_and(|(folds, side)| !folds.admits(*side, node, facet))
+    }
+
+    /// Whether ξ lies past an end of a facet where an excluded one follows.
+    pub(super) fn ends_at(&self, node: usize, facet: usize, xi: f64) -> bool {
+        let next = || self.primary.neighbour(facet, xi > 0.0);
+        self.folds.is_some() && xi.abs() > 1.0 + PAST && next().is_some_and(|next| self.excludes(node, next))
+    }
+
     /// The primary side.
     pub(super) fn primary(&self) -> &Surface {
         &self.primary
+    }
+
+    /// Depth of a node at which its gap is zero.
+    pub(super) fn slack(&self, place: usize) -> f64 {
+        self.allowed(place) + self.kept(place)
     }
 
     fn is_frozen(&self) -> bool {
@@ -116,7 +140,7 @@ impl NodeToFacet {
         Places::new(y, self.primary.shape().dimension())
     }
 
-    fn gap(&self, node: usize, facet: usize, xi: f64, y: Places) -> f64 {
+    pub(super) fn gap(&self, node: usize, facet: usize, xi: f64, y: Places) -> f64 {
         self.primary.gap(facet, xi, y.at(node), y)
     }
 
@@ -134,56 +158,6 @@ impl NodeToFacet {
             ContactPoint::Frozen => Gap::fixed(facet, y, from, pair.xi),
         }
     }
-
-    /// Facet and ξ of possible contact of a node: the first crossing of trajectories, else the
-    /// closest facet at `now` that the node was not behind before.
-    fn candidate(
-        &self,
-        tools: &mut Tools,
-        place: usize,
-        before: Places,
-        now: Places,
-    ) -> Option<(usize, f64, bool)> {
-        let (node, allowed) = (self.secondary[place], self.allowed(place));
-        let near = tools.search.near(node, before, now);
-        let closest = self.primary.closest_facet(near, now.at(node), now);
-        if allowed > 0.0 {
-            // It may be inside, and is no candidate before it is too deep, or has moved too far to
-            // tell from its end alone.
-            let moved = (now.at(node) - before.at(node)).norm();
-            if moved < allowed && closest.is_none_or(|c| c.gap + allowed >= 0.0) {
-                return None;
-            }
-        }
-        let mut first: Option<(f64, usize, f64)> = None;
-        for &facet in near {
-            if let Some(c) = crossing(&mut tools.swept, self.primary.facet(facet), before, now, node)
-                && first.is_none_or(|(theta, ..)| c.theta < theta)
-            {
-                first = Some((c.theta, facet, c.xi));
-            }
-        }
-        let entered_elsewhere = first.is_some_and(|(_, facet, _)| !self.primary.is_of_side(facet));
-        // A node that has entered near the end of a facet may be in front of another one now.
-        let still_faced = |facet: usize| {
-            let xi = self.primary.facet(facet).closest_point(now, now.at(node), REACH);
-            self.detection == Detection::Trajectory
-                || xi.is_some_and(|xi| !self.primary.faces_nothing(facet, xi, now))
-        };
-        let entered = first.filter(|&(_, facet, _)| !entered_elsewhere && still_faced(facet));
-        if let Some((_, facet, xi)) = entered {
-            return Some((facet, xi, true));
-        }
-        let Closest { facet, xi, .. } = closest.filter(|c| self.primary.is_of_side(c.facet))?;
-        if first.is_some() && !entered_elsewhere {
-            return Some((facet, xi, true));
-        }
-        let start = self.primary.facet(facet).closest_point(before, before.at(node), REACH);
-        let behind_by = if self.primary.is_whole() { RECAPTURED } else { BEHIND };
-        let depth = |length: f64| allowed + behind_by * length;
-        let behind = |s| self.gap(node, facet, s, before) < -depth(self.primary.length(facet, before));
-        (!start.map_or(entered_elsewhere, behind)).then_some((facet, xi, false))
-    }
 }
 
 impl Kinematics for NodeToFacet {
@@ -200,13 +174,22 @@ impl Kinematics for NodeToFacet {
     }
 
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
-        let (node, y) = (self.secondary[node], self.places(y));
+        let (kept, node, y) = (self.kept(node), self.secondary[node], self.places(y));
         (0..self.primary.facets())
             .filter_map(|f| {
                 let xi = self.primary.facet(f).closest_point(y, y.at(node), 1.0 + 1e-9)?;
                 Some(self.gap(node, f, xi, y))
             })
             .min_by(|a, b| a.abs().total_cmp(&b.abs()))
+            .map(|gap| gap + kept)
+    }
+
+    fn keep(&mut self, depths: &[f64]) {
+        self.kept = depths.to_vec();
+    }
+
+    fn kept(&self, node: usize) -> f64 {
+        self.kept.get(node).copied().unwrap_or(0.0)
     }
 
     fn allowed(&self, node: usize) -> f64 {
@@ -243,7 +226,13 @@ impl Kinematics for NodeToFacet {
             // Moves on to neighbours until the closest point lies on the facet, at most as many
             // times as there are facets.
             for _ in 0..=self.primary.facets() {
-                match self.primary.next_facet(pair, placed.at(node), left.get(&pair.node).copied(), placed) {
+                let came_from = left.get(&pair.node).copied();
+                let next = if self.ends_at(node, pair.facet, pair.xi) {
+                    Next::Leave
+                } else {
+                    self.primary.next_facet(pair, placed.at(node), came_from, placed)
+                };
+                match next {
                     Next::Stay => return true,
                     Next::HandOver(facet, _) | Next::Dent(facet, _)
                         if twice.contains(&(pair.node, facet)) =>
@@ -262,7 +251,7 @@ impl Kinematics for NodeToFacet {
                         // At a concave joint an inactive pair may be in front of one facet and
                         // behind the other.
                         changed |=
-                            pair.active || self.gap(node, facet, xi, now) + self.allowed(pair.node) < 0.0;
+                            pair.active || self.gap(node, facet, xi, now) + self.slack(pair.node) < 0.0;
                         left.insert(pair.node, pair.facet);
                         (pair.facet, pair.xi) = (facet, xi);
                     }
@@ -285,6 +274,9 @@ impl Kinematics for NodeToFacet {
         }
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         if tools.search.update(&self.primary, &self.secondary, *margin, before, now) {
+            if let Some((folds, _)) = &self.folds {
+                tools.turns.update(folds, &self.primary, before);
+            }
             let known = pairs.len();
             let mut next = 0;
             for (k, &node) in self.secondary.iter().enumerate() {
@@ -299,7 +291,7 @@ impl Kinematics for NodeToFacet {
                     continue;
                 };
                 let pair = Pair::open(k, facet, xi);
-                let gap = self.gap(node, facet, xi, now) + self.allowed(k);
+                let gap = self.gap(node, facet, xi, now) + self.slack(k);
                 match self.detection {
                     Detection::ClosestPoint if self.allowed(k) > 0.0 && gap >= 0.0 => {}
                     Detection::ClosestPoint => {
@@ -322,9 +314,14 @@ impl Kinematics for NodeToFacet {
     }
 
     fn passed(&self, before: &[f64], now: &[f64]) -> Option<Passed> {
+        // Within one body, a path may begin and end on either side of its own boundary.
+        if self.folds.is_some() {
+            return None;
+        }
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
-        let Tools { search, swept } = &mut *tools;
-        passed(&self.primary, &self.secondary, search, swept, [before, now])
+        let Tools { search, swept, .. } = &mut *tools;
+        let allowed = |place| self.slack(place);
+        passed(&self.primary, &self.secondary, allowed, search, swept, [before, now])
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
@@ -343,11 +340,12 @@ impl Kinematics for NodeToFacet {
             }
             let (from, mut previous) = (pair.facet, None);
             for _ in 0..self.primary.facets() {
-                let Next::HandOver(facet, xi) =
-                    self.primary.next_facet(pair, now.at(self.secondary[pair.node]), previous, now)
-                else {
+                let node = self.secondary[pair.node];
+                let next = self.primary.next_facet(pair, now.at(node), previous, now);
+                let Next::HandOver(facet, xi) = next else { break };
+                if self.excludes(node, facet) {
                     break;
-                };
+                }
                 previous = Some(pair.facet);
                 (pair.facet, pair.xi) = (facet, xi);
             }
@@ -385,7 +383,7 @@ impl Kinematics for NodeToFacet {
         }
         let nodes = std::iter::once(&node).chain(facet.nodes);
         rows.push(
-            gap.distance + self.allowed(pair.node),
+            gap.distance + self.slack(pair.node),
             nodes.zip(gap.gradient(facet.nodes.len())).map(|(&n, slope)| (n, slope.0)),
         );
         Ok(())

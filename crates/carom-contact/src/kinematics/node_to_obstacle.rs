@@ -35,6 +35,8 @@ pub struct NodeToObstacle {
     dimension: usize,
     shape: Obstacle,
     carrier: Option<Carrier>,
+    /// Depth that each node keeps; empty if none does.
+    kept: Vec<f64>,
 }
 
 /// A point in the coordinates of the shape, with sin θ and cos θ.
@@ -48,7 +50,7 @@ struct Local {
 impl NodeToObstacle {
     /// Keeps the secondary nodes out of a fixed obstacle.
     pub fn new(secondary: Vec<usize>, dimension: usize, shape: Obstacle) -> Self {
-        Self { secondary, dimension, shape, carrier: None }
+        Self { secondary, dimension, shape, carrier: None, kept: Vec::new() }
     }
 
     /// The same for an obstacle that moves with nodes.
@@ -116,7 +118,15 @@ impl Kinematics for NodeToObstacle {
 
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
         let at = self.local(self.secondary[node], y).at;
-        self.shape.near(self.shape.nearest(at), at).map(|near| near.gap)
+        self.shape.near(self.shape.nearest(at), at).map(|near| near.gap + self.kept(node))
+    }
+
+    fn keep(&mut self, depths: &[f64]) {
+        self.kept = depths.to_vec();
+    }
+
+    fn kept(&self, node: usize) -> f64 {
+        self.kept.get(node).copied().unwrap_or(0.0)
     }
 
     fn search(
@@ -162,7 +172,8 @@ impl Kinematics for NodeToObstacle {
         let node = self.secondary[pair.node];
         let Local { at, arm, turn } = self.local(node, y);
         pair.facet = self.measured(pair, at);
-        let near = self.near(pair.facet, at, node)?;
+        let mut near = self.near(pair.facet, at, node)?;
+        near.gap += self.kept(pair.node);
         let n = rotated(near.normal, turn);
         match &self.carrier {
             None => rows.push(near.gap, [(node, n)]),

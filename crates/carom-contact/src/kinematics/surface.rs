@@ -194,14 +194,23 @@ impl Search {
         self.tree.as_ref().is_some_and(|tree| tree.bounds().meets(&all.grown(PATH_MARGIN * all.size())))
     }
 
-    /// Facets whose path is near a node's path, ascending.
-    pub(crate) fn near(&mut self, node: usize, before: Places, now: Places) -> &[usize] {
+    /// Finds the facets whose path is near a node's path, ascending.
+    pub(crate) fn find(&mut self, node: usize, before: Places, now: Places) {
         let mut path = Bounds::EMPTY;
         path.add(before.coordinates(node));
         path.add(now.coordinates(node));
         if let Some(tree) = &self.tree {
             tree.find_into(&path.grown(PATH_MARGIN * path.size()), &mut self.found);
         }
+    }
+
+    /// Forgets found facets that are not possible.
+    pub(crate) fn retain(&mut self, mut possible: impl FnMut(usize) -> bool) {
+        self.found.retain(|&facet| possible(facet));
+    }
+
+    /// The facets that were found.
+    pub(crate) fn found(&self) -> &[usize] {
         &self.found
     }
 }

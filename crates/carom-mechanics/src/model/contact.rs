@@ -1,4 +1,4 @@
-//! A contact of two sides, or of a side and a rigid obstacle.
+//! A contact of two sides, of a side and a rigid obstacle, or of a side with itself.
 
 use carom_contact::{Direction, Interface, Kinematics};
 use carom_solid::FacetShape;
@@ -14,8 +14,10 @@ pub struct Contact {
     pub interface: Box<dyn Interface>,
     /// Body of the primary side; `None` for a rigid primary, unless it has a mass.
     pub primary_part: Option<usize>,
+    /// Whether the primary side is the secondary one.
+    pub itself: bool,
     /// Facets of either side in global nodes with their shape, for consistent weights; the secondary
-    /// side first.
+    /// side first; once if the side is in contact with itself.
     pub facets: Vec<(FacetShape, Vec<Vec<usize>>)>,
     /// Allowed depth, over the length of a facet, of nodes that the contact constrains, and of other
     /// nodes of its sides: a step in which a node is deeper is rejected.

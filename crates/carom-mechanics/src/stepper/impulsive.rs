@@ -29,12 +29,14 @@ use crate::contact_update::search;
 use crate::equations::{Equations, Evaluation, Iterate};
 use crate::ledger::{book_kinetic, open_work, work_of_loads};
 use crate::model::{LoadsAt, Model};
-use crate::penetration::{has_gaps, length};
+use crate::penetration::has_gaps;
 use crate::rejected::Rejected;
 use crate::settings::Settings;
+use crate::skins::length;
 use crate::state::State;
 use crate::sums::max_abs;
 use crate::timings::timed;
+use crate::trace::Iteration;
 use crate::workspace::Workspace;
 
 /// A predicted gap above minus this fraction of L is open, so that round-off does not decide ties.
@@ -181,15 +183,25 @@ impl Impulsive {
         let mut columns = vec![vec![0.0; dofs]; impulses.rows.len()];
         let mut target = impulses.values.clone();
         let mut step = f64::INFINITY;
+        work.trace.start();
         let mut now = evaluate(equations, shares, increment, impulses, work)?;
         for iteration in 0.. {
             let (size, forces) = (now.measure.residual, now.measure.forces);
+            let iterate = Iteration {
+                number: iteration as u32,
+                residual: size / forces.max(f64::MIN_POSITIVE),
+                correction: step / model.scale,
+                active: impulses.values.iter().filter(|impulse| **impulse > 0.0).count() as u32,
+                ..Iteration::default()
+            };
+            work.trace.push(iterate, &now.y);
             if step <= self.settings.tolerance * model.scale
                 && size <= self.settings.tolerance * forces + work.system.round_off(equations)
             {
                 return Ok(now);
             }
             if iteration >= self.settings.max_iterations {
+                work.trace.blame(&now.residual, &model.free);
                 let (step, residual) = (step / model.scale, size / forces.max(f64::MIN_POSITIVE));
                 return Err(Rejected::NoConvergence { iterations: iteration as u32, step, residual });
             }
@@ -234,7 +246,10 @@ impl Impulsive {
                         break;
                     }
                     Err(rejected) if bisection == BISECTIONS => return Err(rejected),
-                    Err(_) => length *= 0.5,
+                    Err(_) => {
+                        length *= 0.5;
+                        work.trace.shorten(length);
+                    }
                 }
             }
         }

@@ -60,10 +60,16 @@ impl Accepted {
         if !(state.ledger.total().is_finite() && state.ledger.dissipation().is_finite()) {
             return Err(Rejected::NotFinite { what: "the energy" });
         }
-        let Workspace { timings, valid_cells, penetration, .. } = work;
-        timed(&mut timings.assembly, || valid_cells.check(model, &state.y))?;
-        let penetration = timed(&mut timings.contact, || penetration.check(model, &state))?;
-        Ok(Self { state, report: StepReport { penetration, ..report } })
+        let Workspace { timings, valid_cells, penetration, trace, .. } = work;
+        let checked = timed(&mut timings.assembly, || valid_cells.check(model, &state.y))
+            .and_then(|()| timed(&mut timings.contact, || penetration.check(model, &state)));
+        match checked {
+            Ok(penetration) => Ok(Self { state, report: StepReport { penetration, ..report } }),
+            Err(rejected) => {
+                trace.end(&state.y);
+                Err(rejected)
+            }
+        }
     }
 
     /// As [`Self::new`], for laws that allow penetration by up to `bound`.

@@ -2,8 +2,8 @@
 //! new contact method is one line here.
 
 use carom_case::{
-    ActiveSetRule, Case, ContactLaw, ContactSpec, Enforcement, ForceTime, ObstacleMotion, Persistency,
-    Problem,
+    ActiveSetRule, Case, ContactLaw, ContactSpec, Enforcement, ForceTime, ObstacleMotion, Overlap,
+    Persistency, Problem,
 };
 use carom_contact::{
     BothSides, ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet,
@@ -30,7 +30,7 @@ pub(super) fn contacts(
     let reference: Vec<f64> = parts.iter().flat_map(|part| part.body.mesh().nodes.flat()).copied().collect();
     let mut contacts = Vec::new();
     for (k, spec) in case.contacts.iter().enumerate() {
-        let secondary = match side(parts, &spec.secondary, &format!("contact[{k}].secondary")) {
+        let secondary = match side(parts, &spec.secondary, &spec.path("secondary")) {
             Ok(side) => side,
             Err(problem) => {
                 problems.push(problem);
@@ -43,7 +43,7 @@ pub(super) fn contacts(
         let mut primary_part = None;
         let mut primary_facets = None;
         let mut surface = secondary.nodes.clone();
-        let shape = match obstacles::shape(&spec.primary, k) {
+        let shape = match obstacles::shape(&spec.primary, spec.entry) {
             Ok(shape) => shape,
             Err(problem) => {
                 problems.push(problem);
@@ -60,18 +60,10 @@ pub(super) fn contacts(
                 }
                 Box::new(contact)
             }
-            (None, name) => match side(parts, name.unwrap_or(""), &format!("contact[{k}].primary")) {
+            (None, name) => match side(parts, name.unwrap_or(""), &spec.path("primary")) {
                 Ok(primary) if primary.part == secondary.part => {
-                    problems.push(Problem::new(
-                        format!("contact[{k}].primary"),
-                        format!(
-                            "both sides of contact \"{}\" belong to body \"{}\"",
-                            spec.name, parts[primary.part].name
-                        ),
-                        "self-contact is planned for a later version of Carom",
-                        "give a side of another body",
-                    ));
-                    continue;
+                    primary_part = Some(primary.part);
+                    Box::new(itself(&secondary, parts, &reference))
                 }
                 Ok(primary) => {
                     primary_part = Some(primary.part);
@@ -146,6 +138,7 @@ pub(super) fn contacts(
             kinematics,
             // A mass that is thrown is a body; a prescribed obstacle is not.
             primary_part: primary_part.or(obstacle.filter(|_| is_thrown).map(|obstacle| obstacle.part)),
+            itself: primary_part == Some(secondary.part),
             facets: std::iter::once((secondary.shape, secondary.facets)).chain(primary_facets).collect(),
             surface,
             // Other schemes evaluate the contact force at the ends of their stages: nothing is
@@ -165,7 +158,7 @@ pub(super) fn contacts(
                 .is_some_and(|name| side(parts, name, "").is_ok_and(|s| has_mass(&s.nodes)));
         if contact.projects && !has_mass(&secondary.nodes) && !primary_has_mass {
             problems.push(Problem::new(
-                format!("contact[{k}]"),
+                format!("contact[{}]", spec.entry),
                 format!("no node of contact \"{}\" has mass", spec.name),
                 "persistency = \"project\" projects velocities with the mass matrix, which is zero for these nodes",
                 "give this contact persistency = \"none\"",
@@ -174,6 +167,21 @@ pub(super) fn contacts(
         contacts.push(contact);
     }
     contacts
+}
+
+/// Contact of a side with itself.
+fn itself(side: &Side, parts: &[BodyInstance], reference: &[f64]) -> BothSides {
+    let surface = surface_of(side, &[], parts);
+    let earlier = others(side, &[], side, &surface, reference);
+    let part = &parts[side.part];
+    BothSides::of_itself(
+        &surface,
+        side.nodes.clone(),
+        earlier,
+        &part.body.mesh().pieces(),
+        part.first_node,
+        reference,
+    )
 }
 
 /// The nodes of the primary side, each with the depth to which it may enter edges of the secondary
@@ -257,10 +265,10 @@ fn node_stiffness(parts: &[BodyInstance], node: usize) -> f64 {
     sum
 }
 
-/// Initial overlaps deeper than round-off: a problem per contact with the deepest point.
+/// Initial overlaps of the bodies of a case deeper than round-off: a problem per contact with the deepest point.
 ///
 /// Closing an overlap within one step would drive the bodies apart, so it is an error.
-pub fn overlaps(model: &Model) -> Vec<Problem> {
+pub fn overlaps(case: &Case, model: &Model) -> Vec<Problem> {
     let x = &model.initial_position;
     let problem = |(k, node, depth): (usize, usize, f64)| {
         let place = coordinates(&x[node * model.dimension..(node + 1) * model.dimension]);
@@ -268,13 +276,24 @@ pub fn overlaps(model: &Model) -> Vec<Problem> {
         let owner = model.parts.iter().find(|part| part.nodes().contains(&node));
         let owner = owner.map_or("", |part| part.name.as_str());
         Problem::new(
-            format!("contact[{k}]"),
+            format!("contact[{}]", case.contacts[k].entry),
             format!("the bodies of contact \"{name}\" overlap at the start by {depth:.6e}"),
             format!(
                 "the node of \"{owner}\" at {place} lies inside the other side's body; closing the overlap within one step would drive the bodies apart"
             ),
-            format!("move a body by at least {depth:.6e}"),
+            format!(
+                "move a body by at least {depth:.6e}, or give the contact overlap = \"relax\" or \"keep-gap\""
+            ),
         )
     };
-    carom_mechanics::inside(model, x, 1e-9 * model.scale).into_iter().map(problem).collect()
+    let found = carom_mechanics::inside(model, x, 1e-9 * model.scale).into_iter();
+    let kept = |k: usize| {
+        model.contacts[k]
+            .kinematics
+            .secondary()
+            .iter()
+            .enumerate()
+            .any(|(n, _)| model.contacts[k].kinematics.kept(n) > 0.0)
+    };
+    found.filter(|(k, ..)| case.contacts[*k].overlap != Overlap::Relax || kept(*k)).map(problem).collect()
 }

@@ -11,7 +11,7 @@ mod unsolvable;
 use std::collections::BTreeMap;
 
 use carom_algebra::Threads;
-use carom_case::{Case, FormulaSpec, MassKind, Problem};
+use carom_case::{Case, FormulaSpec, MassKind, Problem, SKIN};
 use carom_mechanics::model::{
     BodyInstance, Mass, Model, Probe, Quantity, Support, free_motions, redistribute, value,
 };
@@ -189,8 +189,9 @@ fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Pr
             (2, carom_case::Plane::Stress) => law.plane_stress_body(mesh, material.density, case.thickness),
             _ => law.body(mesh, material.density, case.thickness),
         };
-        let made =
-            spec.make_mesh(case.dimension).and_then(|mesh| body(mesh).map_err(|e: SolidError| e.to_string()));
+        let made = spec
+            .make_mesh(case.dimension)
+            .and_then(|mesh| body(with_skin(case, &spec.name, mesh)).map_err(|e: SolidError| e.to_string()));
         match made {
             Ok(body) => {
                 let nodes = body.mesh().nodes.len();
@@ -206,6 +207,21 @@ fn parts(case: &Case, materials: &Materials) -> Result<Vec<BodyInstance>, Vec<Pr
         }
     }
     if problems.is_empty() { Ok(parts) } else { Err(problems) }
+}
+
+/// The mesh of a body, with its whole boundary as a side if the case refers to that.
+fn with_skin(case: &Case, body: &str, mut mesh: carom_solid::Mesh) -> carom_solid::Mesh {
+    let name = format!("{body}.{SKIN}");
+    let contacts =
+        case.contacts.iter().flat_map(|contact| [Some(contact.secondary.as_str()), contact.primary.side()]);
+    let supports = case.supports.iter().flat_map(|support| &support.on);
+    let loads = case.loads.iter().flat_map(carom_case::LoadSpec::sides);
+    let mut sides = contacts.flatten().chain(supports.chain(loads).map(String::as_str));
+    if mesh.dimension() == 2 && sides.any(|side| side == name) && !mesh.sides.contains_key(SKIN) {
+        let skin = mesh.ordered_skin();
+        mesh.sides.insert(SKIN.to_owned(), skin);
+    }
+    mesh
 }
 
 /// Gravity as nodal forces M g with the mass matrix of the case: lumped or not, a free body falls

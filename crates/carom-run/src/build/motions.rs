@@ -64,7 +64,7 @@ pub(super) fn motions(
                     moves.formulas.push((obstacle.label(), read));
                 }
                 Err(error) => {
-                    let path = format!("contact[{}].primary.motion", obstacle.contact);
+                    let path = format!("{}.motion", case.contacts[obstacle.contact].path("primary"));
                     problems.push(Problem::new(path, error.to_string(), "", ""));
                 }
             }

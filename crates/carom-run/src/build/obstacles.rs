@@ -67,7 +67,7 @@ pub(super) fn carriers<'a>(
         let law = Law::LinearElastic { lambda: 0.0, mu: 1.0 }.constitutive();
         let body = law.body(mesh, 0.0, 1.0).map_err(|error| {
             let what = format!("the obstacle of contact \"{}\" cannot be used", spec.name);
-            vec![Problem::new(format!("contact[{contact}].primary"), what, error.to_string(), "")]
+            vec![Problem::new(spec.path("primary"), what, error.to_string(), "")]
         })?;
         parts.push(BodyInstance::rigid(spec.name.clone(), node, body, mass));
         let carrier = Carrier { node, origin: padded, turn };

@@ -9,7 +9,10 @@ pub(super) fn unconstrained(parts: &[BodyInstance], free: &[Mode], contacts: &[C
     let mut problems: Vec<Problem> = Vec::new();
     for (place, part) in parts.iter().enumerate() {
         let involves = |c: &Contact| {
-            c.primary_part == Some(place) || c.kinematics.secondary().iter().any(|n| part.nodes().contains(n))
+            // A body cannot hold itself.
+            let secondary =
+                |place: usize| c.kinematics.secondary().iter().any(|n| parts[place].nodes().contains(n));
+            !c.itself && (c.primary_part == Some(place) || secondary(place))
         };
         if let Some(mode) = free.iter().find(|m| m.part == place).filter(|_| !contacts.iter().any(involves)) {
             problems.push(Problem::new(
@@ -44,17 +47,17 @@ pub(super) fn massless(case: &Case, parts: &[BodyInstance], massless: &[bool]) -
         problems.push(Problem::new("time.scheme.kind", what("kind = \"energy-momentum\""), why, help));
     }
     let is_light = |body: &str| parts.iter().any(|p| light(p) && p.name == body);
-    for (k, contact) in case.contacts.iter().enumerate() {
+    for contact in &case.contacts {
         if contact.law == Some(ContactLaw::Predictor) {
             let why = "the predictor is projected with the mass matrix";
             let help = "use law = \"position\", which suffices where contact nodes have no mass";
-            problems.push(Problem::new(format!("contact[{k}].law"), what("law = \"predictor\""), why, help));
+            problems.push(Problem::new(contact.path("law"), what("law = \"predictor\""), why, help));
         }
         if contact.force == ForceTime::End && contact.bodies().any(is_light) {
             let why =
                 "on a massless side, contact and internal forces must act at the same instant of the step";
             let help = "use force = \"alpha_f\", or give a small density";
-            problems.push(Problem::new(format!("contact[{k}].force"), what("force = \"end\""), why, help));
+            problems.push(Problem::new(contact.path("force"), what("force = \"end\""), why, help));
         }
     }
     problems

@@ -19,15 +19,6 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     let vectors =
         |values: &[f64]| values.chunks_exact(model.dimension).flat_map(spatial).collect::<Vec<f64>>();
     let moved: Vec<f64> = state.y.iter().zip(&model.reference).map(|(y, x)| y - x).collect();
-    let blocks = model.parts.iter().filter(|part| !part.is_rigid()).map(|part| {
-        let mesh = part.body.mesh();
-        Block {
-            body: part.name.clone(),
-            cell: cell(mesh.element),
-            degree: mesh.element.degree(),
-            connectivity: mesh.cells.iter().map(|n| n + part.first_node).collect(),
-        }
-    });
     let array = |name: &str, unit: &str, components: usize, values: Vec<f64>| PointArray {
         name: name.into(),
         unit: unit.into(),
@@ -38,7 +29,7 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     let nodes = model.parts.iter().filter(|part| !part.is_rigid()).map(|p| p.nodes().end).max().unwrap_or(0);
     let mut set = FieldSet {
         points: model.reference.chunks_exact(model.dimension).map(spatial).collect(),
-        blocks: blocks.collect(),
+        blocks: blocks(model),
         arrays: vec![
             array("displacement", &label.length, 3, vectors(&moved)),
             array("velocity", &label.velocity, 3, vectors(&state.v)),
@@ -49,6 +40,33 @@ pub(super) fn field_set(case: &Case, model: &Model, state: &State) -> FieldSet {
     set.points.truncate(nodes);
     set.arrays.iter_mut().for_each(|array| array.values.truncate(nodes * array.components));
     set
+}
+
+/// The initial positions of a model, without other fields.
+pub fn initial_fields(case: &Case, model: &Model) -> FieldSet {
+    let axes = |x: &[f64]| -> [f64; 3] { std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0)) };
+    let moved = model.initial_position.iter().zip(&model.reference).map(|(y, x)| y - x).collect::<Vec<_>>();
+    let values = moved.chunks_exact(model.dimension).flat_map(axes).collect();
+    let unit = Labels::of(case).length;
+    FieldSet {
+        points: model.reference.chunks_exact(model.dimension).map(axes).collect(),
+        blocks: blocks(model),
+        arrays: vec![PointArray { name: "displacement".into(), unit, components: 3, values }],
+    }
+}
+
+/// The cells of the bodies.
+fn blocks(model: &Model) -> Vec<Block> {
+    let blocks = model.parts.iter().filter(|part| !part.is_rigid()).map(|part| {
+        let mesh = part.body.mesh();
+        Block {
+            body: part.name.clone(),
+            cell: cell(mesh.element),
+            degree: mesh.element.degree(),
+            connectivity: mesh.cells.iter().map(|n| n + part.first_node).collect(),
+        }
+    });
+    blocks.collect()
 }
 
 /// The viewer's cell type of an element.
@@ -99,8 +117,7 @@ fn pressures(case: &Case, model: &Model, state: &State) -> Vec<f64> {
 /// entry per node of the contact's pairs.
 pub(super) fn consistent_weights(contact: &Contact, state: &State, thickness: f64) -> Vec<f64> {
     let secondary = contact.kinematics.secondary();
-    let place: HashMap<usize, usize> = secondary.iter().enumerate().map(|(k, &n)| (n, k)).collect();
-    let mut weights = vec![0.0; secondary.len()];
+    let mut weights: HashMap<usize, f64> = secondary.iter().map(|&node| (node, 0.0)).collect();
     for (shape, facets) in &contact.facets {
         let d = shape.dimension();
         // Exact for constant |y'| and φ of degree 3.
@@ -115,14 +132,14 @@ pub(super) fn consistent_weights(contact: &Contact, state: &State, thickness: f6
                 let [x, y] = shape.normal(tangent, 1.0);
                 let measure = x.hypot(y);
                 for (n, value) in facet.iter().zip(&functions.values) {
-                    if let Some(&p) = place.get(n) {
-                        weights[p] += w * value * measure * thickness;
+                    if let Some(weight) = weights.get_mut(n) {
+                        *weight += w * value * measure * thickness;
                     }
                 }
             }
         }
     }
-    weights
+    secondary.iter().map(|node| weights[node]).collect()
 }
 
 /// Gap of a pair in a state and the unit normal ∂g/∂y of its secondary node; NaN if undefined.

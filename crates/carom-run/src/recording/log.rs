@@ -1,6 +1,6 @@
 //! Events of a step as lines of `log.jsonl`, with the names of the case.
 
-use carom_case::{BodySpec, Case, MeshSpec};
+use carom_case::{BodySpec, Case, ContactSpec, MeshSpec, Overlap};
 use carom_contact::PairEvent;
 use carom_mechanics::LogEvent;
 use carom_mechanics::model::Model;
@@ -16,6 +16,19 @@ pub(super) fn repairs(case: &Case) -> Vec<Event> {
         Event::new(0, 0.0, "repair", format!("mesh of \"{name}\": {repair}")).with("body", name)
     };
     case.bodies.iter().flat_map(|b| of_body(b).into_iter().map(move |r| event(&b.name, &r))).collect()
+}
+
+/// The relaxation of an initial overlap; `strain`: the energy that the bodies store after it.
+pub(super) fn relaxed(case: &Case, strain: f64) -> Vec<Event> {
+    let relaxes = |contact: &&ContactSpec| contact.overlap == Overlap::Relax && case.initial.is_none();
+    let event = |contact: &ContactSpec| {
+        let message = format!(
+            "contact \"{}\": its overlap was closed before the start; the bodies then store {strain:.6e}",
+            contact.name
+        );
+        Event::new(0, 0.0, "relaxed", message).with("contact", contact.name.as_str()).with("strain", strain)
+    };
+    case.contacts.iter().filter(relaxes).map(event).collect()
 }
 
 /// An event of the step being computed.

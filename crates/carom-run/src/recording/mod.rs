@@ -6,9 +6,12 @@ mod fields;
 mod log;
 mod outcome;
 mod session;
+mod stopped;
 mod units;
 mod verdicts;
 
 pub use columns::columns;
+pub use fields::initial_fields;
 pub use outcome::{End, Options, Outcome, Progress, RunError};
 pub use session::{resume, run};
+pub(crate) use stopped::explain;

@@ -11,9 +11,11 @@ use carom_record::RecordError;
 pub struct Options {
     /// Threads; results do not depend on them.
     pub threads: usize,
+    /// Whether changes that may get past the place where a run stopped are tried.
+    pub trials: bool,
 }
 
-/// Progress of a simulation after an accepted step.
+/// Progress of a simulation after an accepted step, and every second while a step is bisected.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
     /// Step just finished.
@@ -30,6 +32,8 @@ pub struct Progress {
     pub active: usize,
     /// Attempts at it that were rejected and repeated with a smaller step.
     pub rejected: u32,
+    /// Whether the step is still being bisected; time and Δt are then those of the last attempt.
+    pub bisecting: bool,
     /// Pairs that came into contact in it.
     pub activations: u32,
     /// Pairs that left contact in it.

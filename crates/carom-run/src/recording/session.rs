@@ -3,21 +3,25 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use carom_case::Case;
-use carom_mechanics::{GridReport, Simulation, State, penetration};
-use carom_record::{ContactRow, Event, Manifest, Run, RunWriter, Source, Status};
+use carom_mechanics::{Attempt, GridReport, Simulation, State, penetration};
+use carom_record::{ContactRow, Event, Manifest, Run, RunWriter, Source, Status, Stop};
 use cpu_time::{ProcessTime, ThreadTime};
 use serde::{Deserialize, Serialize};
 
 use super::columns::{Since, center_weights, columns, row};
 use super::fields::{consistent_weights, field_set, gap_of, sides};
-use super::log::{entry, repairs};
+use super::log::{entry, relaxed, repairs};
 use super::outcome::{End, Options, Outcome, Progress, RunError};
+use super::stopped::{Record, write_stop};
 use super::verdicts::judge;
 use crate::setup::Setup;
 use crate::warnings::{warnings, warnings_of_record};
+
+/// Time between signs of life while a step is bisected.
+const HEARTBEAT: Duration = Duration::from_secs(1);
 
 /// What a run has counted, and where its time went, up to a checkpoint.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -47,6 +51,8 @@ struct Session<'a> {
     /// Processor seconds in steps.
     cpu: f64,
     values: Vec<f64>,
+    /// The states of the last two checkpoints, for trials.
+    checkpoints: [State; 2],
 }
 
 /// Runs a case into a directory that must not exist yet.
@@ -58,7 +64,7 @@ pub fn run(
     source: Source,
     directory: &Path,
     options: Options,
-    observe: &mut dyn FnMut(&Progress),
+    observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
     let simulation = Setup::new(case).threads(options.threads).start().map_err(RunError::Case)?;
@@ -75,7 +81,7 @@ pub fn run(
     )?;
     let mut session = Session::new(case, simulation, writer, manifest);
     session.write_start()?;
-    session.go(observe, stop, Vec::new())
+    session.go(options, observe, stop, Vec::new())
 }
 
 /// Resumes a run that was stopped or killed; a finished one is returned as it is.
@@ -85,7 +91,7 @@ pub fn run(
 pub fn resume(
     directory: &Path,
     options: Options,
-    observe: &mut dyn FnMut(&Progress),
+    observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
     let manifest = Manifest::read(directory)?;
@@ -127,6 +133,7 @@ pub fn resume(
     // Those of a killed process are older in the manifest.
     (manifest.counters, manifest.timings) = (tally.counters.clone(), tally.timings.clone());
     manifest.reason = None;
+    Stop::forget(directory, &mut manifest);
     manifest.started = carom_record::now();
     manifest.threads = options.threads;
     let remarks = reopened.fallback.iter().map(ToString::to_string).collect();
@@ -136,7 +143,7 @@ pub fn resume(
     if reopened.rows == 0 {
         session.write_start()?;
     }
-    session.go(observe, stop, remarks)
+    session.go(options, observe, stop, remarks)
 }
 
 impl<'a> Session<'a> {
@@ -148,6 +155,7 @@ impl<'a> Session<'a> {
         let first_step = simulation.state().step;
         let stressed = stressed(&simulation);
         let began = Instant::now();
+        let checkpoints = [simulation.state().clone(), simulation.state().clone()];
         Self {
             case,
             simulation,
@@ -163,12 +171,14 @@ impl<'a> Session<'a> {
             output: 0.0,
             cpu: 0.0,
             values: Vec::new(),
+            checkpoints,
         }
     }
 
     /// Mesh repairs, warnings, row and fields of the initial state.
     fn write_start(&mut self) -> Result<(), RunError> {
-        for event in repairs(self.case) {
+        let strain = self.simulation.state().ledger.strain;
+        for event in repairs(self.case).into_iter().chain(relaxed(self.case, strain)) {
             self.writer.log(&event)?;
         }
         self.log_warnings(0)?;
@@ -197,11 +207,12 @@ impl<'a> Session<'a> {
 
     fn go(
         mut self,
-        observe: &mut dyn FnMut(&Progress),
+        options: Options,
+        observe: &mut (dyn FnMut(&Progress) + Send),
         stop: &AtomicBool,
         remarks: Vec<String>,
     ) -> Result<Outcome, RunError> {
-        let mut end = End::Finished;
+        let (mut end, mut last) = (End::Finished, GridReport::default());
         while !self.simulation.finished() {
             if stop.load(Ordering::Relaxed) {
                 end = End::Interrupted;
@@ -209,7 +220,15 @@ impl<'a> Session<'a> {
             }
             let mut report = GridReport::default();
             let busy = Busy::now(self.manifest.threads);
-            let advanced = self.simulation.advance(&mut report);
+            let mut heard = Instant::now();
+            let before = self.progress(&report);
+            let advanced = self.simulation.advance_watched(&mut report, &mut |attempt| {
+                if heard.elapsed() >= HEARTBEAT {
+                    heard = Instant::now();
+                    let Attempt { time, dt, rejected } = *attempt;
+                    observe(&Progress { time, dt, rejected, bisecting: true, ..before });
+                }
+            });
             self.cpu += busy.seconds();
             let step = self.simulation.state().step + u64::from(advanced.is_err());
             for event in &report.events {
@@ -219,7 +238,7 @@ impl<'a> Session<'a> {
             if let Err(stopped) = advanced {
                 let event = Event::new(step, self.simulation.state().time, "stopped", stopped.to_string());
                 self.writer.log(&event)?;
-                end = End::Stopped(stopped);
+                (end, last) = (End::Stopped(stopped), report);
                 break;
             }
             self.log_lost_stress()?;
@@ -228,7 +247,7 @@ impl<'a> Session<'a> {
             self.output += began.elapsed().as_secs_f64();
             observe(&self.progress(&report));
         }
-        self.close(end, remarks)
+        self.close(end, &last, options, remarks)
     }
 
     /// Logs where a probe's stress ceases to exist. This depends on the states before and after the
@@ -263,6 +282,8 @@ impl<'a> Session<'a> {
         }
         if step % output.checkpoint_every as u64 == 0 && !last {
             self.checkpoint()?;
+            self.checkpoints.rotate_right(1);
+            self.checkpoints[0].clone_from(self.simulation.state());
         }
         Ok(())
     }
@@ -334,6 +355,7 @@ impl<'a> Session<'a> {
             newton: report.newton,
             active: state.pairs.iter().flatten().filter(|p| p.active).count(),
             rejected: report.rejected,
+            bisecting: false,
             activations: report.activations,
             releases: report.releases,
             created: if ledger.scale() > 0.0 { ledger.created.most() / ledger.scale() } else { 0.0 },
@@ -375,8 +397,19 @@ impl<'a> Session<'a> {
     }
 
     /// Writes the last checkpoint and manifest, with the warnings and verdicts on the record.
-    fn close(mut self, end: End, remarks: Vec<String>) -> Result<Outcome, RunError> {
+    fn close(
+        mut self,
+        end: End,
+        last: &GridReport,
+        options: Options,
+        remarks: Vec<String>,
+    ) -> Result<Outcome, RunError> {
         self.checkpoint()?;
+        if let End::Stopped(stopped) = &end {
+            let record = Record { case: self.case, simulation: &self.simulation, earlier: &self.checkpoints };
+            let directory = self.writer.directory();
+            write_stop(&record, stopped, last, options, directory, &mut self.manifest)?;
+        }
         // A record that cannot be read does not make a finished run unfinished.
         let asked = match end {
             End::Finished => true,

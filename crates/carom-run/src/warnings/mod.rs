@@ -86,8 +86,8 @@ pub const WARNINGS: [Entry; 9] = [
     },
     Entry {
         id: "undeclared-contact",
-        why: "nothing keeps them apart: contact acts only between the two sides of a [[contact]], and Carom has no contact of a body with itself",
-        advice: "a [[contact]] between these bodies, or ending the run before they meet",
+        why: "nothing keeps them apart: contact acts only where a [[contact]] declares it",
+        advice: "a [[contact]] with between = \"all\", or ending the run before they meet",
         rule: Rule::Record(record::undeclared_contact),
     },
     Entry {

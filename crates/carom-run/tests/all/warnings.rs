@@ -84,7 +84,7 @@ fn recorded(text: &str, sets: &[&str]) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     let directory = folder.path().join("run");
     let source = Source { text: text.to_owned(), sets: Vec::new() };
-    let options = Options { threads: 1 };
+    let options = Options { threads: 1, trials: false };
     run(&case(text, sets), source, &directory, options, &mut |_| {}, &AtomicBool::new(false)).unwrap();
     let warnings = Manifest::read(&directory).unwrap().warnings;
     let log = std::fs::read_to_string(directory.join("log.jsonl")).unwrap();

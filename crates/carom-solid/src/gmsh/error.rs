@@ -152,7 +152,9 @@ impl MshError {
             Fault::Folded { .. } => {
                 "optimise high-order cells in Gmsh (Mesh.HighOrderOptimize = 2), or mesh finer"
             }
-            Fault::Coincident { .. } => "merge them in Gmsh: Coherence; in the geometry, or Coherence Mesh;",
+            Fault::Coincident { .. } => {
+                "merge them in Gmsh: Coherence; in the geometry, or Coherence Mesh; or, if the body is to have a slit there, give slits = true"
+            }
             Fault::Overlap { .. } => "look for surfaces that overlap or are in the group twice",
             Fault::EdgeNodes { .. } => "set the order after all surfaces are meshed",
             Fault::Branching { .. } => "a bar is one line of cells",

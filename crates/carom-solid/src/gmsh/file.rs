@@ -9,6 +9,8 @@ use super::error::{Fault, MshError, Place};
 pub struct MshFile {
     pub(super) text: bool,
     pub(super) groups: Vec<Group>,
+    /// Whether nodes of one body may be at one place.
+    pub(super) slits: bool,
     pub(super) nodes: Vec<(Row, [f64; 3])>,
     pub(super) blocks: Vec<Block>,
 }
@@ -54,6 +56,12 @@ impl Block {
 }
 
 impl MshFile {
+    /// The same file, in whose bodies nodes at one place may be a slit instead of a mistake.
+    #[must_use]
+    pub fn with_slits(self, slits: bool) -> Self {
+        Self { slits, ..self }
+    }
+
     /// Names of the physical groups of a dimension: 2 surfaces, 1 curves, 0 points; no duplicates.
     pub fn names(&self, dimension: usize) -> Vec<&str> {
         let mut names = Vec::new();

@@ -62,7 +62,9 @@ impl<'a, const D: usize> Group<'a, D> {
         let mut group =
             Self { file, name, element, used, positions: Vec::new(), rows, cells, repairs: Vec::new() };
         group.flatten()?;
-        group.apart()?;
+        if !file.slits {
+            group.apart()?;
+        }
         Ok(group)
     }
 

@@ -165,5 +165,5 @@ fn resolved(sections: Sections, text: bool) -> Result<MshFile, MshError> {
         }
         blocks.push(Block { kind: raw.kind, groups, rows: raw.rows, nodes });
     }
-    Ok(MshFile { text, groups, nodes: raw_nodes, blocks })
+    Ok(MshFile { text, groups, slits: false, nodes: raw_nodes, blocks })
 }

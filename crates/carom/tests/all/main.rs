@@ -13,4 +13,5 @@ mod new;
 #[cfg(unix)]
 mod resume;
 mod schemes;
+mod stopped;
 mod verify;

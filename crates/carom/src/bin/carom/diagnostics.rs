@@ -13,8 +13,15 @@ pub(crate) fn print(failure: &Failure, json: bool) -> Exit {
     let text = match failure {
         Failure::Case(CaseError::Wrong(found)) => found.iter().map(rendered).collect::<Vec<_>>().join("\n\n"),
         Failure::Argument { help, .. } => plain(&failure.to_string(), &[("try", help)]),
-        Failure::Stopped { help, directory, .. } => {
-            let note = format!("the last valid state is saved in {}", directory.display());
+        Failure::Stopped { help, directory, page, .. } => {
+            let place = directory.display();
+            let note = if *page {
+                format!(
+                    "why and where: {place}/report.html; a smaller case that stops too: carom reduce {place}"
+                )
+            } else {
+                format!("the last valid state is saved in {place}")
+            };
             plain(&failure.to_string(), &[("note", &note), ("try", help)])
         }
         Failure::Case(CaseError::Refused { .. }) | Failure::System { .. } => plain(&failure.to_string(), &[]),

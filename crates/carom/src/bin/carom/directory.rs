@@ -50,6 +50,17 @@ pub(crate) fn of_run(case: &Path, out: Option<&Path>) -> Result<NewDirectory, Fa
     reserved(Path::new("runs"), &name)
 }
 
+/// A new directory `RUN-WORD` beside a run, or `--out`.
+pub(crate) fn beside(run: &Path, word: &str, out: Option<&Path>) -> Result<NewDirectory, Failure> {
+    if out.is_some() {
+        return of_run(run, out);
+    }
+    let whole = std::path::absolute(run).unwrap_or_else(|_| run.to_owned());
+    let name = whole.file_name().map_or_else(|| "run".to_owned(), |name| name.to_string_lossy().into_owned());
+    let parent = run.parent().filter(|parent| !parent.as_os_str().is_empty() && run.file_name().is_some());
+    reserved(parent.unwrap_or(Path::new(".")), &format!("{name}-{word}"))
+}
+
 /// Creates the first of `NAME`, `NAME-2`, … that does not exist. Creating a directory fails if
 /// another process has just done so, unlike a look whether it exists.
 fn reserved(parent: &Path, name: &str) -> Result<NewDirectory, Failure> {

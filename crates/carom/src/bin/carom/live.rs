@@ -17,6 +17,9 @@ use crate::{console, out};
 /// At most ten events per second.
 const PAUSE: Duration = Duration::from_millis(100);
 
+/// Time between lines about a step that is being bisected, if standard error is not a terminal.
+const LOGGED: Duration = Duration::from_secs(10);
+
 /// Shows progress. Dropping it erases the bar.
 pub(crate) struct Live {
     json: bool,
@@ -26,6 +29,8 @@ pub(crate) struct Live {
     directory: PathBuf,
     /// Number of warnings already shown; none before the first step.
     warned: Option<usize>,
+    /// When a bisected step was last reported on other outputs than a terminal.
+    heard: Option<Instant>,
 }
 
 #[derive(Serialize)]
@@ -37,7 +42,14 @@ struct Event<'a> {
 
 impl Live {
     pub(crate) fn new(json: bool, directory: &Path) -> Self {
-        Self { json, bar: console::bar(1), last: None, directory: directory.to_owned(), warned: None }
+        Self {
+            json,
+            bar: console::bar(1),
+            last: None,
+            directory: directory.to_owned(),
+            warned: None,
+            heard: None,
+        }
     }
 
     /// Shows the warnings of the run that have not been shown yet.
@@ -72,6 +84,9 @@ impl Live {
         if !self.bar.is_hidden() {
             self.bar.set_message(line(progress));
         }
+        if progress.bisecting {
+            return self.bisecting(progress);
+        }
         if console::is_verbose()
             && let Some(changes) = changes(progress)
         {
@@ -87,6 +102,21 @@ impl Live {
     }
 }
 
+impl Live {
+    /// Shows that a step is still being bisected: in a log once in a while, on a terminal in the bar.
+    fn bisecting(&mut self, progress: &Progress) {
+        if self.json {
+            let _ = out::event(&Event { event: "bisecting", progress });
+        } else if self.bar.is_hidden() && !console::is_quiet() {
+            let since = self.heard.get_or_insert_with(Instant::now);
+            if since.elapsed() >= LOGGED {
+                *since = Instant::now();
+                console::say(line(progress));
+            }
+        }
+    }
+}
+
 impl Drop for Live {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
@@ -95,6 +125,13 @@ impl Drop for Live {
 
 /// `t 0.3375  Δt 1.88e-3  Newton 4  contacts 7  energy created 1.2e-6  left 3 s`
 fn line(p: &Progress) -> String {
+    if p.bisecting {
+        let (step, rejected) = (p.step + 1, p.rejected);
+        return format!(
+            "step {step} is being bisected: t {:.6e}  Δt {:.1e}  {rejected} rejected",
+            p.time, p.dt
+        );
+    }
     format!(
         "t {:.4e}  Δt {:.3e}  Newton {}  contacts {}  energy created {:.1e}  left {}",
         p.time,
@@ -156,6 +193,7 @@ mod tests {
             newton: 4,
             active: 7,
             rejected: 1,
+            bisecting: false,
             activations: 0,
             releases: 2,
             created: 1.2e-6,
@@ -167,6 +205,8 @@ mod tests {
         assert_eq!(line(&p), expected);
         let expected = "step 180  t 3.375000e-1  Newton 4  1 rejected, 2 released";
         assert_eq!(changes(&p).as_deref(), Some(expected));
+        let expected = "step 181 is being bisected: t 3.375000e-1  Δt 1.9e-3  1 rejected";
+        assert_eq!(line(&Progress { bisecting: true, ..p }), expected);
         assert_eq!([0.26, 61.0, 7300.0, f64::NAN].map(duration), ["0.3 s", "61 s", "2 h 1 min", "?"]);
     }
 }

@@ -12,7 +12,9 @@ mod simulation;
 mod summary;
 
 use clap::{Parser, Subcommand};
-use command::{check, completions, explain, man, mesh, new, report, resume, run, schema, study, verify};
+use command::{
+    check, completions, explain, man, mesh, new, reduce, report, resume, run, schema, study, verify,
+};
 
 /// Simulate impact and contact of deformable solids, and compare time integrators.
 #[derive(Parser)]
@@ -51,6 +53,7 @@ enum Command {
     Mesh(mesh::Arguments),
     New(new::Arguments),
     Report(report::Arguments),
+    Reduce(reduce::Arguments),
     Schema(schema::Arguments),
     Completions(completions::Arguments),
     Man(man::Arguments),
@@ -84,6 +87,7 @@ fn main() -> std::process::ExitCode {
         Command::Mesh(arguments) => mesh::run(arguments),
         Command::New(arguments) => new::run(arguments),
         Command::Report(arguments) => report::run(arguments),
+        Command::Reduce(arguments) => reduce::run(arguments),
         Command::Schema(arguments) => schema::run(arguments),
         Command::Completions(arguments) => completions::run(arguments),
         Command::Man(arguments) => man::run(arguments),

@@ -9,6 +9,7 @@ use carom_record::Warning;
 use serde::Serialize;
 
 use crate::exit::Failure;
+use crate::summary::short;
 
 /// How to run.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +20,8 @@ pub(crate) struct Options {
     pub(crate) report: bool,
     /// Whether a timing profile is printed.
     pub(crate) profile: bool,
+    /// Whether changes are tried that may get a run past the place where it stopped.
+    pub(crate) trials: bool,
 }
 
 /// State of a simulation after an accepted step.
@@ -34,6 +37,8 @@ pub(crate) struct Progress {
     pub(crate) active: usize,
     /// Rejected attempts at the step.
     pub(crate) rejected: usize,
+    /// Whether the step is still being bisected; time and Δt are those of the last attempt.
+    pub(crate) bisecting: bool,
     /// Contact nodes that were activated and released in it.
     pub(crate) activations: usize,
     pub(crate) releases: usize,
@@ -119,11 +124,11 @@ pub(crate) fn run(
     document: &Document,
     out: &Path,
     options: Options,
-    progress: &mut dyn FnMut(&Progress),
+    progress: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, Failure> {
     let source = carom_record::Source { text: document.text().to_owned(), sets: document.sets() };
-    let library = recording::Options { threads: options.threads };
+    let library = recording::Options { threads: options.threads, trials: options.trials };
     let done = recording::run(case, source, out, library, &mut |p| progress(&seen(p)), stop);
     let done = done.map_err(|error| match error {
         RunError::Case(problems) => Failure::Case(document.diagnose_all(&problems)),
@@ -136,10 +141,10 @@ pub(crate) fn run(
 pub(crate) fn resume(
     directory: &Path,
     options: Options,
-    progress: &mut dyn FnMut(&Progress),
+    progress: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, Failure> {
-    let library = recording::Options { threads: options.threads };
+    let library = recording::Options { threads: options.threads, trials: options.trials };
     let done = recording::resume(directory, library, &mut |p| progress(&seen(p)), stop);
     conclude(done?, options)
 }
@@ -163,6 +168,7 @@ fn seen(progress: &recording::Progress) -> Progress {
         newton: progress.newton as usize,
         active: progress.active,
         rejected: progress.rejected as usize,
+        bisecting: progress.bisecting,
         activations: progress.activations as usize,
         releases: progress.releases as usize,
         created: progress.created,
@@ -177,7 +183,8 @@ fn conclude(done: recording::Outcome, options: Options) -> Result<Outcome, Failu
     if let recording::End::Stopped(reason) = &done.end {
         return Err(Failure::Stopped {
             reason: reason.to_string(),
-            help: stopped_help(reason),
+            help: help_after(&done.directory)?,
+            page: page.is_some(),
             directory: done.directory,
         });
     }
@@ -227,18 +234,32 @@ fn page(done: &recording::Outcome, options: Options) -> Result<Option<PathBuf>, 
     if options.report && !current { report(&done.directory).map(Some) } else { Ok(current.then_some(made)) }
 }
 
-fn stopped_help(reason: &carom::Stopped) -> String {
-    match reason {
-        carom::Stopped::EnergyGuard { .. } => {
-            "keep persistency = \"project\"; use a scheme that dissipates (carom explain); change the step (contact creates energy where nodes begin to touch, so that a \
-             longer step may succeed where a shorter one does not); or switch the guard off to inspect the run (time.energy_guard = false)"
+/// What to try after a stop: what was tried with success, or else the first advice.
+fn help_after(directory: &Path) -> Result<String, Failure> {
+    let manifest = carom_record::Manifest::read(directory)?;
+    let Some(stop) = carom_record::Stop::read(directory, &manifest)? else { return Ok(String::new()) };
+    let option = |advice: &carom_record::Advice| {
+        advice.sets.iter().map(|set| format!("--set '{set}'")).collect::<Vec<_>>().join(" ")
+    };
+    let passed = |advice: &&carom_record::Advice| advice.trial.as_ref().is_some_and(|trial| trial.passed);
+    let mut lines: Vec<String> = stop
+        .advice
+        .iter()
+        .filter(passed)
+        .map(|advice| format!("{} gets past t = {} (tried)", option(advice), short(stop.time)))
+        .collect();
+    if lines.is_empty() {
+        let tried = stop.advice.iter().filter(|advice| advice.trial.is_some()).count();
+        if tried > 0 {
+            lines.push(format!("{tried} changes were tried, and none gets past t = {}", short(stop.time)));
         }
-        carom::Stopped::NoStep { .. } => {
-            "smaller steps from this state were tried (log.jsonl), so the state itself is at fault: use a scheme with more damping (carom explain), \
-             persistency = \"project\" for contacts, a finer mesh, or another step from the start; a longer one may succeed where a shorter one does not"
-        }
+        let untried = stop.advice.iter().filter(|advice| advice.trial.is_none());
+        lines.extend(untried.take(3).map(|advice| match option(advice) {
+            sets if sets.is_empty() => advice.what.clone(),
+            sets => format!("{sets}: {}", advice.what),
+        }));
     }
-    .to_owned()
+    Ok(lines.join("\n"))
 }
 
 /// Smallest and largest value of every probe's column.
@@ -271,7 +292,7 @@ fn model_facts(case: &Case) -> Result<Facts, carom::case::Problems> {
     let model = carom::Setup::new(case).build()?;
     let d = model.dimension;
     // A start from another run has no overlaps: its contacts prevented them.
-    let overlaps = if case.initial.is_none() { carom::overlaps(&model) } else { Vec::new() };
+    let overlaps = if case.initial.is_none() { carom::overlaps(case, &model) } else { Vec::new() };
     let problems = [overlaps, carom::too_long(case, &model)].concat();
     if !problems.is_empty() {
         return Err(problems.into());

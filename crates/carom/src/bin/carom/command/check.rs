@@ -1,7 +1,7 @@
 //! `carom check`: reads and resolves a case or a study and reports errors with their place; it runs
-//! nothing and writes nothing.
+//! nothing, and writes nothing but a picture of bodies that overlap at the start.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use carom::case::{
     Case, Document, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec,
@@ -16,7 +16,10 @@ use crate::simulation::{self, BodyFacts, Facts};
 use crate::summary::short;
 use crate::{console, out};
 
-/// Read and resolve a case or a study and report its errors, without running it
+/// Nodes listed without `--verbose`.
+const LISTED: usize = 10;
+
+/// Read and resolve a case or a study and report its errors, without running it; draw overlapping bodies
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  carom check impact.toml --set time.scheme.rho_inf=0.5\n  carom check laboratory.toml"
@@ -39,15 +42,68 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let document = Document::parse(document.name(), document.text(), &arguments.sets)?;
     let case = super::resolved(&document)?;
+    let overlap = Overlap::of(&case, &arguments.case)?;
+    if !arguments.json && !console::is_quiet() && !overlap.nodes.is_empty() {
+        out::line(&overlap.lines())?;
+    }
     let facts = simulation::facts(&case, &document)?;
     if arguments.json {
-        let event =
-            serde_json::json!({ "event": "check", "case": case, "model": facts, "warnings": facts.warnings });
+        let event = serde_json::json!({ "event": "check", "case": case, "model": facts, "warnings": facts.warnings, "overlap": overlap.nodes });
         out::event(&event)?;
     } else if !console::is_quiet() {
         out::line(&table(&case, &facts))?;
     }
     Ok(Exit::Done)
+}
+
+/// The overlap of the bodies at the start.
+struct Overlap {
+    nodes: Vec<carom::OverlapNode>,
+    picture: Option<PathBuf>,
+}
+
+impl Overlap {
+    /// Finds it, and draws it beside the other files of the working directory. A case whose model cannot
+    /// be built has none; what is wrong with it is told later.
+    fn of(case: &Case, path: &Path) -> Result<Self, Failure> {
+        let placed = case.initial.is_some() || case.manufactured.is_some();
+        let Some(model) = carom::Setup::new(case).build().ok().filter(|_| !placed) else {
+            return Ok(Self { nodes: Vec::new(), picture: None });
+        };
+        let nodes = carom::overlapping(case, &model);
+        let depths: Vec<(usize, f64)> = nodes.iter().map(|node| (node.node, node.depth)).collect();
+        let mut picture = None;
+        if let Some(svg) = carom_report::overlap(&carom::recording::initial_fields(case, &model), &depths) {
+            let stem = if path == Path::new(super::STDIN) { Path::new("stdin") } else { path };
+            let stem = stem.file_stem().unwrap_or_default().to_string_lossy();
+            let file = PathBuf::from(format!("{stem}-overlap.svg"));
+            let failed = |e| Failure::System { what: format!("cannot write {}: {e}", file.display()) };
+            std::fs::write(&file, svg).map_err(failed)?;
+            picture = Some(file);
+        }
+        Ok(Self { nodes, picture })
+    }
+
+    fn lines(&self) -> String {
+        let shown = if console::is_verbose() { usize::MAX } else { LISTED };
+        let mut lines = vec!["overlap at the start".to_owned()];
+        for node in self.nodes.iter().take(shown) {
+            let at: Vec<String> = node.at.iter().map(|x| short(*x)).collect();
+            lines.push(format!(
+                "  contact  {:12} node {} of {} at [{}]: {} deep",
+                node.contact,
+                node.node,
+                node.body,
+                at.join(", "),
+                short(node.depth)
+            ));
+        }
+        if self.nodes.len() > shown {
+            lines.push(format!("           and {} more (--verbose lists them)", self.nodes.len() - shown));
+        }
+        lines.extend(self.picture.iter().map(|file| format!("  picture  {}", file.display())));
+        lines.join("\n")
+    }
 }
 
 /// The arms of a study, every one resolved.

@@ -6,6 +6,7 @@ pub(crate) mod explain;
 pub(crate) mod man;
 pub(crate) mod mesh;
 pub(crate) mod new;
+pub(crate) mod reduce;
 pub(crate) mod report;
 pub(crate) mod resume;
 pub(crate) mod run;

@@ -32,6 +32,9 @@ pub(crate) struct Arguments {
     /// Do not write figures and report page
     #[arg(long)]
     no_report: bool,
+    /// Where a run stops, do not try what may get it past that place
+    #[arg(long)]
+    no_trials: bool,
     /// Print a timing profile of a run
     #[arg(long)]
     profile: bool,
@@ -73,6 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         threads: super::parallel("--threads", arguments.threads)?,
         report: !arguments.no_report,
         profile: arguments.profile,
+        trials: !arguments.no_trials,
     };
     let stop = stop_on_signal()?;
     if arguments.json {

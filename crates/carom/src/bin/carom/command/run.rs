@@ -36,6 +36,9 @@ pub(crate) struct Arguments {
     /// Do not write figures and report page
     #[arg(long)]
     no_report: bool,
+    /// Where a run stops, do not try what may get it past that place
+    #[arg(long)]
+    no_trials: bool,
     /// Print a timing profile
     #[arg(long)]
     profile: bool,
@@ -53,6 +56,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         threads: super::parallel("--threads", arguments.threads)?,
         report: !arguments.no_report,
         profile: arguments.profile,
+        trials: !arguments.no_trials,
     };
     let directory = directory::of_run(&arguments.case, arguments.out.as_deref())?;
     let stop = stop_on_signal()?;

@@ -1,0 +1,103 @@
+//! Contacts among bodies, `between = "all"` or a list: one contact for each pair and one for each
+//! side with itself.
+
+use super::problem::Problem;
+use super::spec::SKIN;
+use super::tree::{Node, Value};
+use super::view::View;
+use super::{BodySpec, ContactSpec, MaterialSpec, PrimarySpec};
+
+/// The bodies and materials of the case, as far as they could be read.
+pub(super) struct Bodies<'a> {
+    pub(super) bodies: &'a [Option<BodySpec>],
+    pub(super) materials: &'a [Option<MaterialSpec>],
+}
+
+impl Bodies<'_> {
+    /// λ + 2μ of a body.
+    fn modulus(&self, body: &str) -> f64 {
+        let body = self.bodies.iter().flatten().find(|spec| spec.name == body);
+        let material = body
+            .and_then(|body| self.materials.iter().flatten().find(|material| material.name == body.material));
+        material.map_or(0.0, |material| material.lambda + 2.0 * material.mu)
+    }
+
+    /// The contacts of the table `v` with the key `between`; `one`: its other keys, `declared`: the
+    /// contacts that have tables of their own.
+    pub(super) fn contacts(
+        &self,
+        v: &View,
+        one: &ContactSpec,
+        declared: &[ContactSpec],
+        path: &str,
+        problems: &mut Vec<Problem>,
+    ) -> Option<Vec<ContactSpec>> {
+        let of_itself = v.value("self")?.flag()?;
+        let sides = self.sides(v.table.get("between")?, path, problems)?;
+        let body = |side: &str| side.split_once('.').map_or("", |side| side.0).to_owned();
+        let known = |a: &str, b: &str| {
+            let both = |contact: &&ContactSpec| {
+                let bodies: Vec<&str> = contact.bodies().collect();
+                bodies == [a, b] || bodies == [b, a]
+            };
+            declared.iter().any(|contact| both(&contact))
+        };
+        let mut contacts = Vec::new();
+        let mut add = |name: String, secondary: &str, primary: &str| {
+            let primary = PrimarySpec::Side(primary.to_owned());
+            contacts.push(ContactSpec { name, secondary: secondary.to_owned(), primary, ..one.clone() });
+        };
+        for (i, first) in sides.iter().enumerate() {
+            let a = body(first);
+            if of_itself && !known(&a, &a) {
+                add(format!("{}-{a}", one.name), first, first);
+            }
+            for second in &sides[i + 1..] {
+                let b = body(second);
+                if known(&a, &b) {
+                    continue;
+                }
+                let name = format!("{}-{a}-{b}", one.name);
+                // The softer one is the secondary, of equals the first.
+                if self.modulus(&b) < self.modulus(&a) {
+                    add(name, second, first);
+                } else {
+                    add(name, first, second);
+                }
+            }
+        }
+        match &mut contacts[..] {
+            [] => {
+                let what = format!("contact `{}` has no pair of sides", one.name);
+                let why = "it is between bodies that have no other body to meet, or whose contacts are all declared in tables of their own";
+                let help = if of_itself { "leave it out" } else { "leave out `self = false`" };
+                problems.push(Problem::new(format!("{path}.between"), what, why, help));
+                return None;
+            }
+            [only] => only.name.clone_from(&one.name),
+            _ => {}
+        }
+        Some(contacts)
+    }
+
+    /// The sides that `between` names; `None` if a body could not be read or is named wrongly.
+    fn sides(&self, between: &Node, path: &str, problems: &mut Vec<Problem>) -> Option<Vec<String>> {
+        if between.text() == Some("all") {
+            return self.bodies.iter().map(|body| Some(format!("{}.{SKIN}", body.as_ref()?.name))).collect();
+        }
+        let Value::List(list) = &between.value else { return None };
+        let whole = |name: &str| if name.contains('.') { name.to_owned() } else { format!("{name}.{SKIN}") };
+        let sides: Vec<String> = list.iter().map(|node| node.text().map(whole)).collect::<Option<_>>()?;
+        let body = |side: &str| side.split('.').next().unwrap_or_default().to_owned();
+        for (j, side) in sides.iter().enumerate() {
+            if sides[..j].iter().any(|other| body(other) == body(side)) {
+                let what = format!("`between` has two sides of the body `{}`", body(side));
+                let why = "a body meets each other body, and itself, in one contact";
+                let help = format!("write \"{}\", which is its whole boundary", body(side));
+                problems.push(Problem::new(format!("{path}.between[{j}]"), what, why, help));
+                return None;
+            }
+        }
+        Some(sides)
+    }
+}

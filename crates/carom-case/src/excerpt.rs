@@ -1,0 +1,248 @@
+//! A case file reduced to some of its bodies and contacts, that continues from a saved state.
+
+use std::collections::BTreeMap;
+
+use toml_edit::{DocumentMut, Item, TableLike, Value, value};
+
+use super::problem::{CaseError, Diagnostic};
+
+/// What remains of a case.
+#[derive(Clone, Debug, Default)]
+pub struct Excerpt {
+    /// Names of the bodies and contacts that remain.
+    pub bodies: Vec<String>,
+    /// Contacts.
+    pub contacts: Vec<String>,
+    /// End time.
+    pub end: f64,
+    /// File of the state from which it continues, beside the case.
+    pub state: String,
+    /// Mesh files of bodies beside the case.
+    pub meshes: BTreeMap<String, String>,
+    /// Tables of loads beside the case, in the order of the loads; empty where there is none.
+    pub tables: Vec<String>,
+    /// Lines at the top.
+    pub comment: String,
+}
+
+/// Tables that say what is watched, not what is computed.
+const WATCHED: [&str; 4] = ["probe", "expect", "exact", "initial"];
+
+impl Excerpt {
+    /// The text of the reduced case, from that of the whole one with its overrides.
+    ///
+    /// # Errors
+    /// If the text or an override is not valid TOML.
+    pub fn of(&self, text: &str, sets: &[String]) -> Result<String, CaseError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let wrong = |name: &str, text: &str, e: &toml_edit::TomlError| {
+            CaseError::Wrong(vec![Diagnostic::of_syntax(name, text, e)])
+        };
+        let mut case: DocumentMut = text.parse().map_err(|e| wrong("case", text, &e))?;
+        for set in sets {
+            apply(&mut case, set).ok_or_else(|| {
+                let (what, why) = ("an override of the run cannot be applied", set.as_str());
+                CaseError::Wrong(vec![Diagnostic::of_file("--set", what, why, "")])
+            })?;
+        }
+        WATCHED.iter().for_each(|key| {
+            case.remove(key);
+        });
+        let mut load = 0;
+        each(&mut case, "load", &mut |table| {
+            if let Some(name) = self.tables.get(load).filter(|name| !name.is_empty()) {
+                table.insert("table", value(name.as_str()));
+            }
+            load += 1;
+        });
+        let named = |table: &dyn TableLike, names: &[String]| {
+            table.get("name").and_then(Item::as_str).is_some_and(|name| names.iter().any(|n| n == name))
+        };
+        retain(&mut case, "body", &|body| named(body, &self.bodies));
+        retain(&mut case, "contact", &|contact| named(contact, &self.contacts));
+        each(&mut case, "body", &mut |body| {
+            // The state has them.
+            body.remove("velocity");
+            body.remove("position");
+            let name = body.get("name").and_then(Item::as_str).unwrap_or_default().to_owned();
+            if let (Some(file), Some(mesh)) =
+                (self.meshes.get(&name), body.get_mut("mesh").and_then(Item::as_table_like_mut))
+            {
+                mesh.insert("file", value(file.as_str()));
+            }
+        });
+        let kept = |side: &str| self.bodies.iter().any(|body| side.split('.').next() == Some(body));
+        for list in ["support", "load"] {
+            each(&mut case, list, &mut |table| {
+                if let Some(on) = table.get_mut("on").and_then(Item::as_array_mut) {
+                    on.retain(|side| side.as_str().is_some_and(kept));
+                }
+            });
+            retain(&mut case, list, &|table| {
+                let on = table.get("on").and_then(Item::as_array);
+                on.is_none_or(|on| !on.is_empty())
+                    && table.get("body").and_then(Item::as_str).is_none_or(kept)
+            });
+        }
+        let mut used = Vec::new();
+        each(&mut case, "body", &mut |body| {
+            used.extend(body.get("material").and_then(Item::as_str).map(ToOwned::to_owned));
+        });
+        retain(&mut case, "material", &|material| named(material, &used));
+        case["time"]["end"] = value(self.end);
+        case["output"]["fields_every"] = value(1);
+        case["output"]["history_every"] = value(1);
+        if let Some(output) = case["output"].as_table_like_mut() {
+            output.remove("at_times");
+        }
+        let mut initial = toml_edit::Table::new();
+        initial.insert("from", value(self.state.as_str()));
+        case.insert("initial", Item::Table(initial));
+        let text = case.to_string();
+        Ok(format!("{}\n{}", self.comment, text.trim_start()))
+    }
+}
+
+/// Calls `of` for every table of a list.
+fn each(case: &mut DocumentMut, list: &str, of: &mut dyn FnMut(&mut dyn TableLike)) {
+    match case.get_mut(list) {
+        Some(Item::ArrayOfTables(tables)) => tables.iter_mut().for_each(|table| of(table)),
+        Some(Item::Value(Value::Array(tables))) => {
+            tables.iter_mut().filter_map(Value::as_inline_table_mut).for_each(|table| of(table));
+        }
+        _ => {}
+    }
+}
+
+/// Keeps some tables of a list.
+fn retain(case: &mut DocumentMut, list: &str, keep: &dyn Fn(&dyn TableLike) -> bool) {
+    let empty = match case.get_mut(list) {
+        Some(Item::ArrayOfTables(tables)) => {
+            tables.retain(|table| keep(table));
+            tables.is_empty()
+        }
+        Some(Item::Value(Value::Array(tables))) => {
+            tables.retain(|table| table.as_inline_table().is_some_and(|table| keep(table)));
+            tables.is_empty()
+        }
+        _ => false,
+    };
+    if empty {
+        case.remove(list);
+    }
+}
+
+/// Applies an override `key=value`, as [`Document`](crate::Document) does.
+fn apply(case: &mut DocumentMut, set: &str) -> Option<()> {
+    let (key, text) = set.split_once('=')?;
+    let keys = toml_edit::Key::parse(key).ok()?;
+    let parsed = format!("v={text}\n").parse::<DocumentMut>();
+    let new = parsed.ok().and_then(|mut v| v.remove("v")).unwrap_or_else(|| value(text.trim()));
+    let mut item = case.as_item_mut();
+    for key in &keys {
+        let key = key.get();
+        item = match item {
+            Item::ArrayOfTables(tables) => {
+                let is = |table: &toml_edit::Table| table.get("name").and_then(Item::as_str) == Some(key);
+                let place = tables.iter().position(is)?;
+                // A table of an array is no item: its last key is set here.
+                return table_in(tables.get_mut(place)?, &keys, key, new);
+            }
+            Item::Value(Value::Array(values)) => {
+                let is = |v: &Value| {
+                    v.as_inline_table().and_then(|t| t.get("name")).and_then(Value::as_str) == Some(key)
+                };
+                let place = values.iter().position(is)?;
+                return table_in(values.get_mut(place)?.as_inline_table_mut()?, &keys, key, new);
+            }
+            item => item.as_table_like_mut()?.entry(key).or_insert(Item::Table(toml_edit::Table::new())),
+        };
+    }
+    *item = new;
+    Some(())
+}
+
+/// Sets what remains of a key path after `from` in a table.
+fn table_in(table: &mut dyn TableLike, keys: &[toml_edit::Key], from: &str, new: Item) -> Option<()> {
+    let start = keys.iter().position(|key| key.get() == from)? + 1;
+    let (last, path) = keys[start..].split_last()?;
+    let mut table = table;
+    for key in path {
+        table = table
+            .entry(key.get())
+            .or_insert(Item::Value(Value::InlineTable(toml_edit::InlineTable::new())))
+            .as_table_like_mut()?;
+    }
+    table.insert(last.get(), new);
+    Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CASE: &str = r#"
+title = "three"
+material = [{ name = "m", density = 1 }, { name = "unused", density = 2 }]
+
+[[body]]
+name = "a"
+material = "m"
+velocity = [1.0, 0.0]
+mesh = { file = "far/a.msh", surface = "a" }
+
+[[body]] # goes
+name = "b"
+material = "unused"
+
+[[support]]
+on = ["a.left", "b.right"]
+fix = ["x"]
+
+[[support]]
+on = ["b.left"]
+fix = ["x"]
+
+[[contact]]
+name = "c"
+secondary = "a.top"
+primary = "b.top"
+
+[time]
+end = 9.0
+step = 0.5 # kept
+
+[[expect]]
+what = "max a.uy"
+"#;
+
+    #[test]
+    fn what_remains_is_complete() {
+        let excerpt = Excerpt {
+            bodies: vec!["a".into()],
+            end: 1.5,
+            state: "state.bin".into(),
+            meshes: [("a".to_owned(), "a.msh".to_owned())].into(),
+            comment: "# reduced".into(),
+            ..Excerpt::default()
+        };
+        let sets = ["body.a.element=T6".to_owned(), "time.scheme={ kind = \"hu\" }".to_owned()];
+        let text = excerpt.of(CASE, &sets).unwrap();
+        let case: DocumentMut = text.parse().unwrap();
+        let body = &case["body"][0];
+        assert_eq!(body["element"].as_str(), Some("T6"));
+        assert_eq!((body["mesh"]["file"].as_str(), body.get("velocity").is_none()), (Some("a.msh"), true));
+        assert_eq!(case["support"].as_array_of_tables().map(toml_edit::ArrayOfTables::len), Some(1));
+        assert_eq!(case["support"][0]["on"].as_array().map(toml_edit::Array::len), Some(1));
+        assert_eq!(case["material"].as_array().map(toml_edit::Array::len), Some(1));
+        assert!(case.get("contact").is_none() && case.get("expect").is_none());
+        assert_eq!(
+            (case["time"]["end"].as_float(), case["initial"]["from"].as_str()),
+            (Some(1.5), Some("state.bin"))
+        );
+        assert!(
+            text.starts_with("# reduced\n") && text.contains("# kept") && text.contains("\"hu\""),
+            "{text}"
+        );
+    }
+}

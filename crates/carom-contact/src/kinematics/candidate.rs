@@ -1,0 +1,74 @@
+//! The facet that a node without a pair may have reached in a step: the first one that its path
+//! crosses, else the closest one that it was not behind before.
+
+use super::facing::{Closest, REACH};
+use super::node_to_facet::{Detection, NodeToFacet, Tools};
+use super::trajectory::crossing;
+use crate::kinematics::Kinematics;
+use crate::places::Places;
+
+/// A node this far behind a facet (relative to its length) at the start of a step has not crossed
+/// the facet.
+const BEHIND: f64 = 1e-6;
+/// The same where the whole boundary is known: a node whose nearest facet is of the side has entered
+/// the body there.
+const RECAPTURED: f64 = 0.02;
+
+impl NodeToFacet {
+    /// Facet and ξ of possible contact of a node: the first crossing of trajectories, else the
+    /// closest facet at `now` that the node was not behind before.
+    pub(super) fn candidate(
+        &self,
+        tools: &mut Tools,
+        place: usize,
+        before: Places,
+        now: Places,
+    ) -> Option<(usize, f64, bool)> {
+        let (node, allowed, slack) = (self.secondary[place], self.allowed(place), self.slack(place));
+        tools.search.find(node, before, now);
+        let Tools { search, swept, turns } = tools;
+        if let Some((folds, side)) = &self.folds {
+            let meets = |facet| folds.admits(*side, node, facet) && folds.face(turns, node, facet);
+            search.retain(meets);
+        }
+        let near = search.found();
+        let ends = |c: &Closest| self.ends_at(node, c.facet, c.xi);
+        let closest = self.primary.closest_facet(near, now.at(node), now).filter(|c| !ends(c));
+        if allowed > 0.0 {
+            // It may be inside, and is no candidate before it is too deep, or has moved too far to
+            // tell from its end alone.
+            let moved = (now.at(node) - before.at(node)).norm();
+            if moved < allowed && closest.is_none_or(|c| c.gap + slack >= 0.0) {
+                return None;
+            }
+        }
+        let mut first: Option<(f64, usize, f64)> = None;
+        for &facet in near {
+            if let Some(c) = crossing(swept, self.primary.facet(facet), before, now, node)
+                && first.is_none_or(|(theta, ..)| c.theta < theta)
+            {
+                first = Some((c.theta, facet, c.xi));
+            }
+        }
+        let entered_elsewhere = first.is_some_and(|(_, facet, _)| !self.primary.is_of_side(facet));
+        // A node that has entered near the end of a facet may be in front of another one now.
+        let still_faced = |facet: usize| {
+            let xi = self.primary.facet(facet).closest_point(now, now.at(node), REACH);
+            self.detection == Detection::Trajectory
+                || xi.is_some_and(|xi| !self.primary.faces_nothing(facet, xi, now))
+        };
+        let entered = first.filter(|&(_, facet, _)| !entered_elsewhere && still_faced(facet));
+        if let Some((_, facet, xi)) = entered {
+            return Some((facet, xi, true));
+        }
+        let Closest { facet, xi, .. } = closest.filter(|c| self.primary.is_of_side(c.facet))?;
+        if first.is_some() && !entered_elsewhere {
+            return Some((facet, xi, true));
+        }
+        let start = self.primary.facet(facet).closest_point(before, before.at(node), REACH);
+        let behind_by = if self.primary.is_whole() { RECAPTURED } else { BEHIND };
+        let depth = |length: f64| slack + behind_by * length;
+        let behind = |s| self.gap(node, facet, s, before) < -depth(self.primary.length(facet, before));
+        (!start.map_or(entered_elsewhere, behind)).then_some((facet, xi, false))
+    }
+}

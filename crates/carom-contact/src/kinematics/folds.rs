@@ -1,0 +1,291 @@
+//! Which parts of a body's boundary can meet each other. With the body on the left, and T the turn
+//! of the boundary's tangent from one of two points to the other, left turns positive:
+//!
+//! ```text
+//! the points meet across a pocket of free space      T = −180° along the arc around the pocket
+//! they lie side by side on a smooth part             T = 0
+//! they are the two faces of a thin part              T = +180°
+//! ```
+//!
+//! The first line follows from the theorem of turning tangents (Hopf, Compos. Math. 2 (1935)): the
+//! arc and the point where it closes turn by −360° together, the point alone by −180°. A node is
+//! compared with a facet only if T along one of the two arcs is within 80° of −180°; at a corner, the
+//! normal may be any of its normals. A smooth part is never compared with itself, however short the
+//! arc; the flanks of a notch are, up to its tip, however sharp. Facets that contain the node, or have
+//! a node in common with one that does on the same smooth part, are excluded by this or as its own.
+//!
+//! The boundaries of a hole and of its body are separated by material and cannot meet; pieces
+//! without a common cell always can.
+//!
+//! Of two places that meet, one is the secondary: that which comes later along the boundary. Each loop
+//! begins where it is least likely to meet itself: the boundary turns back least to the right after
+//! the beginning, and least to the right before it. At a beginning within a zone of contact the roles
+//! would change there. Any place of a hole may meet another one.
+
+use std::f64::consts::PI;
+use std::ops::Range;
+
+use super::surface::Surface;
+use crate::places::Places;
+
+/// |T + 180°| up to which two places may meet.
+const WINDOW: f64 = 80.0 * PI / 180.0;
+/// A joint that turns left by more is a closed slit: a body has no corner as sharp as 10°.
+const SHARPEST: f64 = 170.0 * PI / 180.0;
+
+/// The order of a body's facets along its boundary.
+#[derive(Clone, Debug)]
+pub(crate) struct Folds {
+    /// Facets in the order of traversal, loop by loop.
+    order: Vec<usize>,
+    /// Place of each facet in `order`.
+    place: Vec<usize>,
+    /// First place of each loop, and the end of the last one.
+    starts: Vec<usize>,
+    /// Loop of each facet.
+    of: Vec<usize>,
+    /// Connected piece of each loop.
+    pieces: Vec<usize>,
+    /// Smallest node, and the places of the facets before and after each node from that on.
+    first: usize,
+    around: Vec<[usize; 2]>,
+}
+
+/// Which of the two places is the node's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The node comes later than the facet.
+    Later,
+    /// The node comes earlier than the facet.
+    Earlier,
+}
+
+/// Turns of a boundary at given positions.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Turns {
+    /// Turn from the start of the loop to the start of each facet, by place.
+    start: Vec<f64>,
+    /// Turn from the start of each facet to its end.
+    within: Vec<f64>,
+    /// Turn of each whole loop.
+    total: Vec<f64>,
+}
+
+impl Folds {
+    /// Of all facets of a surface at reference positions; `piece` of a node: the number of its
+    /// connected piece of the body. The order does not depend on that of the facets.
+    pub(crate) fn new(surface: &Surface, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
+        let count = surface.all();
+        let (mut order, mut starts, mut pieces) = (Vec::with_capacity(count), vec![0], Vec::new());
+        let (mut place, mut of) = (vec![usize::MAX; count], vec![0; count]);
+        let mut begins: Vec<usize> = (0..count).collect();
+        begins.sort_unstable_by_key(|&facet| surface.facet(facet).nodes[0]);
+        for begin in begins {
+            let mut next = Some(begin);
+            while let Some(facet) = next.filter(|&facet| place[facet] == usize::MAX) {
+                (place[facet], of[facet]) = (order.len(), pieces.len());
+                order.push(facet);
+                next = surface.neighbour(facet, true);
+            }
+            if order.len() > starts[pieces.len()] {
+                pieces.push(piece[surface.facet(begin).nodes[0] - first_node]);
+                starts.push(order.len());
+            }
+        }
+        let mut turns = Turns::default();
+        turns.update_loops(&order, &starts, surface, Places::new(reference, 2));
+        for (run, ends) in starts.windows(2).enumerate() {
+            order[ends[0]..ends[1]].rotate_left(turns.best_start(run, ends[0]..ends[1]));
+        }
+        order.iter().enumerate().for_each(|(at, &facet)| place[facet] = at);
+        let nodes = |facet: usize| surface.facet(facet).nodes;
+        let all = || (0..count).flat_map(nodes).copied();
+        let (first, end) = (all().min().unwrap_or(0), all().max().map_or(0, |last| last + 1));
+        let mut around = vec![[usize::MAX; 2]; end - first];
+        for (at, &facet) in order.iter().enumerate() {
+            for (k, &node) in nodes(facet).iter().enumerate() {
+                let around = &mut around[node - first];
+                match k {
+                    0 => around[1] = at,
+                    1 => around[0] = at,
+                    _ => *around = [at; 2],
+                }
+            }
+        }
+        Self { order, place, starts, of, pieces, first, around }
+    }
+
+    /// Places of the facets before and after a node; the same where it is inside a facet.
+    fn around(&self, node: usize) -> Option<[usize; 2]> {
+        let around = *node.checked_sub(self.first).and_then(|k| self.around.get(k))?;
+        (!around.contains(&usize::MAX)).then_some(around)
+    }
+
+    /// Whether a pair of a node and a facet is possible and has the node on that side.
+    pub(crate) fn admits(&self, side: Side, node: usize, facet: usize) -> bool {
+        let Some(around) = self.around(node) else { return false };
+        let at = self.place[facet];
+        // At the joint that closes a loop, a node belongs to the end.
+        let later = around[0] >= at;
+        let [own, other] = [self.of[self.order[around[0]]], self.of[facet]];
+        !around.contains(&at)
+            && later == (side == Side::Later)
+            && (own == other || self.pieces[own] != self.pieces[other])
+    }
+
+    /// Whether a node and a facet meet where the boundary folds: an admissible pair is compared only
+    /// then.
+    pub(crate) fn face(&self, turns: &Turns, node: usize, facet: usize) -> bool {
+        let Some([before, after]) = self.around(node) else { return false };
+        let (run, at) = (self.of[facet], self.place[facet]);
+        if self.of[self.order[before]] != run {
+            return true;
+        }
+        let (total, middle) = (turns.total[run], turns.start[at] + 0.5 * turns.within[at]);
+        let (arriving, leaving) = if before == after {
+            let own = turns.start[before] + 0.5 * turns.within[before];
+            (own, own)
+        } else {
+            (turns.start[before] + turns.within[before], turns.start[after])
+        };
+        // From the node on to the facet, and from the facet on to the node.
+        let on = middle - leaving + if at < after { total } else { 0.0 };
+        let back = arriving - middle + if at > before { total } else { 0.0 };
+        let kink = total - on - back;
+        let meets = |turn: f64| (turn + 0.5 * kink + PI).abs() < WINDOW + 0.5 * kink.max(0.0);
+        meets(on) || meets(back)
+    }
+}
+
+impl Turns {
+    /// Updates to positions.
+    pub(crate) fn update(&mut self, folds: &Folds, surface: &Surface, y: Places) {
+        self.update_loops(&folds.order, &folds.starts, surface, y);
+    }
+
+    fn update_loops(&mut self, order: &[usize], starts: &[usize], surface: &Surface, y: Places) {
+        self.start.clear();
+        self.within.clear();
+        self.total.clear();
+        for run in starts.windows(2) {
+            let facets = &order[run[0]..run[1]];
+            let mut turn = 0.0;
+            for (k, &facet) in facets.iter().enumerate() {
+                let side = surface.facet(facet);
+                let [from, to] = [-1.0, 1.0].map(|xi| side.at(y, xi).tangent);
+                let within = (from[0] * to[1] - from[1] * to[0]).atan2(from.dot(&to));
+                self.start.push(turn);
+                self.within.push(within);
+                turn += within;
+                let (cosine, sine) = surface.kink(facet, facets[(k + 1) % facets.len()], y);
+                let joint = sine.atan2(cosine);
+                turn += if joint > SHARPEST { joint - 2.0 * PI } else { joint };
+            }
+            self.total.push(turn);
+        }
+    }
+
+    /// The facet of a loop, counted from its first one, at which to begin.
+    fn best_start(&self, run: usize, places: Range<usize>) -> usize {
+        let (start, within) = (&self.start[places.clone()], &self.within[places]);
+        let (total, n) = (self.total[run], start.len());
+        let end = |k: usize| start[k] + within[k];
+        // Least and largest angles from each facet on, and those before the current one.
+        let mut on = vec![[f64::INFINITY, f64::NEG_INFINITY]; n + 1];
+        for k in (0..n).rev() {
+            on[k] = [on[k + 1][0].min(start[k]).min(end(k)), on[k + 1][1].max(start[k]).max(end(k))];
+        }
+        let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut best = (0, f64::NEG_INFINITY);
+        for k in 0..n {
+            let arriving = if k == 0 { end(n - 1) - total } else { end(k - 1) };
+            let ahead = on[k][0].min(least + total) - start[k];
+            let behind = arriving - largest.max(on[k][1] - total);
+            // Of equals the first.
+            if ahead.min(behind) > best.1 + 1e-6 {
+                best = (k, ahead.min(behind));
+            }
+            (least, largest) = (least.min(start[k]).min(end(k)), largest.max(start[k]).max(end(k)));
+        }
+        best.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use carom_solid::FacetShape;
+
+    use super::*;
+
+    /// A closed polygon, and whether a node faces a facet. The midside nodes are left out.
+    fn face(corners: &[[f64; 2]], node: usize, facet: usize) -> bool {
+        let n = corners.len();
+        let facets: Vec<Vec<usize>> = (0..n).map(|k| vec![k, (k + 1) % n]).collect();
+        let surface = Surface::new(FacetShape::L2, &facets, &vec![1.0; n]);
+        let folds = Folds::new(&surface, &vec![0; n], 0, corners.as_flattened());
+        let mut turns = Turns::default();
+        turns.update(&folds, &surface, Places::new(corners.as_flattened(), 2));
+        let admitted = [Side::Later, Side::Earlier].map(|side| folds.admits(side, node, facet));
+        assert!(admitted != [true, true]);
+        admitted.contains(&true) && folds.face(&turns, node, facet)
+    }
+
+    /// A block with a slot from the top: nodes 3, 4 on its right flank, 5 at the tip, 6, 7 on the left.
+    fn slotted(half: f64) -> Vec<[f64; 2]> {
+        vec![
+            [-2.0, 0.0],
+            [2.0, 0.0],
+            [2.0, 2.0],
+            [half, 2.0],
+            [0.5 * half, 1.5],
+            [0.0, 1.0],
+            [-0.5 * half, 1.5],
+            [-half, 2.0],
+            [-2.0, 2.0],
+        ]
+    }
+
+    #[test]
+    fn the_flanks_of_a_slot_meet_up_to_its_tip_even_if_it_is_closed() {
+        for half in [0.3, 1e-3, 0.0, -1e-3] {
+            let block = slotted(half);
+            // Facet k begins at node k.
+            for (node, facet) in [(4, 5), (4, 6), (3, 6), (6, 4), (6, 3), (7, 3)] {
+                assert!(face(&block, node, facet), "{half}: node {node}, facet {facet}");
+            }
+            // Along one flank, over its mouth, and through the body.
+            for (node, facet) in [(4, 3), (4, 4), (3, 4), (1, 7), (0, 3), (2, 3), (3, 1), (5, 0)] {
+                assert!(!face(&block, node, facet), "{half}: node {node}, facet {facet}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_convex_body_meets_itself_nowhere() {
+        let disc: Vec<[f64; 2]> =
+            (0..12).map(|k| f64::from(k) * PI / 6.0).map(|a| [a.cos(), a.sin()]).collect();
+        assert!((0..12).all(|node| (0..12).all(|facet| !face(&disc, node, facet))));
+        // Seen from inside, it is a hole whose opposite sides may meet, but not its neighbours.
+        let hole: Vec<[f64; 2]> = disc.into_iter().rev().collect();
+        assert!(face(&hole, 0, 5) && face(&hole, 0, 6) && !face(&hole, 0, 1) && !face(&hole, 0, 10));
+    }
+
+    #[test]
+    fn a_tongue_in_a_hole_does_not_meet_itself_through_its_material() {
+        // A square hole, traversed with the body on the left, with a thin tongue from below.
+        let hole = [
+            [-2.0, 0.0],
+            [-2.0, 3.0],
+            [2.0, 3.0],
+            [2.0, 0.0],
+            [0.1, 0.0],
+            [0.1, 1.0],
+            [0.1, 2.0],
+            [-0.1, 2.0],
+            [-0.1, 1.0],
+            [-0.1, 0.0],
+        ];
+        assert!(!face(&hole, 5, 8) && !face(&hole, 5, 7) && !face(&hole, 8, 5));
+        assert!(face(&hole, 5, 2) && face(&hole, 8, 0) && face(&hole, 6, 1));
+    }
+}

@@ -1,0 +1,126 @@
+//! What happened between two grid times, for the log.
+
+use carom_contact::PairEvent;
+
+use crate::penetration::Depths;
+use crate::rejected::Rejected;
+use crate::stepper::StepReport;
+
+/// An event for the log.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LogEvent {
+    /// A step was rejected and will be bisected.
+    Rejected {
+        /// Time at its start.
+        time: f64,
+        /// Step size.
+        dt: f64,
+        /// Reason.
+        rejected: Rejected,
+    },
+    /// A secondary node came into contact or left it.
+    ActiveSet {
+        /// Time at the end of the (sub)step.
+        time: f64,
+        /// Index of the contact.
+        contact: usize,
+        /// Global node.
+        node: usize,
+        /// Whether it came (true) or left.
+        active: bool,
+    },
+    /// A pair changed its facet or slid off the end.
+    Pair {
+        /// Time at the end of the (sub)step.
+        time: f64,
+        /// Index of the contact.
+        contact: usize,
+        /// The event.
+        event: PairEvent,
+    },
+    /// Two bodies without a contact overlap, or one crosses itself, for the first time.
+    Overlap {
+        /// Time.
+        time: f64,
+        /// Indices of the bodies.
+        bodies: (usize, usize),
+    },
+    /// Velocities were projected at activation.
+    Projection {
+        /// Time.
+        time: f64,
+        /// Jump of kinetic energy.
+        jump: f64,
+    },
+    /// Velocities of nodes that left contact were changed by its restitution.
+    Restitution {
+        /// Time.
+        time: f64,
+        /// Jump of kinetic energy.
+        jump: f64,
+    },
+}
+
+/// Events between two grid times.
+#[derive(Clone, Debug, Default)]
+pub struct GridReport {
+    /// Newton iterations of the accepted steps.
+    pub newton: u32,
+    /// Rejected steps.
+    pub rejected: u32,
+    /// Nodes that came into contact.
+    pub activations: u32,
+    /// Nodes that left contact.
+    pub releases: u32,
+    /// Largest penetration at the ends of its steps.
+    pub penetration: Depths,
+    /// Events in order.
+    pub events: Vec<LogEvent>,
+}
+
+impl GridReport {
+    /// Adds an accepted step that ended at a time.
+    pub(crate) fn add(&mut self, time: f64, step: StepReport) {
+        self.newton += step.newton;
+        self.activations += step.activations.len() as u32;
+        self.releases += step.releases.len() as u32;
+        self.penetration = self.penetration.max(step.penetration);
+        for (list, active) in [(step.activations, true), (step.releases, false)] {
+            let event = |(contact, node)| LogEvent::ActiveSet { time, contact, node, active };
+            self.events.extend(list.into_iter().map(event));
+        }
+        let pairs = step.events.into_iter();
+        self.events.extend(pairs.map(|(contact, event)| LogEvent::Pair { time, contact, event }));
+        if step.projection != 0.0 {
+            self.events.push(LogEvent::Projection { time, jump: step.projection });
+        }
+        if step.restitution != 0.0 {
+            self.events.push(LogEvent::Restitution { time, jump: step.restitution });
+        }
+    }
+
+    pub(crate) fn reject(&mut self, time: f64, dt: f64, rejected: Rejected) {
+        self.rejected += 1;
+        self.events.push(LogEvent::Rejected { time, dt, rejected });
+    }
+
+    /// Forgets the steps since an earlier report, but not the work on them.
+    pub(crate) fn return_to(&mut self, earlier: Self) {
+        let (newton, rejected) = (self.newton, self.rejected);
+        let later = self.events.split_off(earlier.events.len());
+        *self = Self { newton, rejected, ..earlier };
+        let rejections = |event: &LogEvent| matches!(event, LogEvent::Rejected { .. });
+        self.events.extend(later.into_iter().filter(rejections));
+    }
+}
+
+/// A rejected attempt at a step, for those who watch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attempt {
+    /// Time at its start.
+    pub time: f64,
+    /// Its step size.
+    pub dt: f64,
+    /// Rejected attempts since the last grid time.
+    pub rejected: u32,
+}

@@ -1,0 +1,108 @@
+//! The nodes whose penetration is measured, with the bodies that they must not enter.
+
+use carom_contact::Side;
+
+use crate::model::{Contact, Model};
+use crate::skins::{length, skin_facets};
+
+/// Nodes of a side against a body.
+#[derive(Debug)]
+pub(crate) struct Way {
+    /// The contact; none for bodies without one.
+    pub contact: Option<usize>,
+    /// The body that must not be entered, and the nodes of its boundary.
+    pub body: usize,
+    pub boundary: Vec<usize>,
+    /// For nodes of the body itself: their side of the places that they may meet.
+    pub itself: Option<Side>,
+    pub nodes: Vec<Watched>,
+    /// The node that was deepest, with which the next search begins.
+    pub first: usize,
+}
+
+#[derive(Debug)]
+pub(crate) struct Watched {
+    pub node: usize,
+    /// Length of its facets in the reference configuration.
+    pub length: f64,
+    /// Whether the contact constrains it.
+    pub constrained: bool,
+    /// Allowed depth over the length of a facet.
+    pub share: f64,
+    /// Depth that its contact keeps, which is not counted.
+    pub kept: f64,
+    /// Distance up to which its own body is searched.
+    pub reach: f64,
+    /// Distance that it and the body may still move together before it can be inside.
+    pub clearance: f64,
+    /// Its nearest facet and ξ, where the next search begins.
+    pub near: Option<(usize, f64)>,
+}
+
+impl Way {
+    pub(crate) fn new(model: &Model, contact: Option<usize>, body: usize, nodes: Vec<Watched>) -> Self {
+        let mut boundary = skin_facets(&model.parts[body]).concat();
+        boundary.sort_unstable();
+        boundary.dedup();
+        Self { contact, body, boundary, itself: None, nodes, first: 0 }
+    }
+
+    /// The nodes of a side against the places of their own body that they may meet.
+    pub(crate) fn of_itself(model: &Model, contact: usize, side: Side) -> Self {
+        let Contact { kinematics, facets, depths, primary_part, .. } = &model.contacts[contact];
+        let (nodes, half) = (kinematics.secondary(), kinematics.secondary().len() / 2);
+        let facets = &facets[0].1;
+        let watched = |(node, longest)| {
+            let earlier = || nodes[half..].iter().position(|&n| n == node);
+            let constrained =
+                side == Side::Later || earlier().is_some_and(|k| kinematics.allowed(half + k) == 0.0);
+            // Before a node can enter a facet that it does not meet yet, the boundary folds.
+            let own = facets.iter().filter(|facet| facet.contains(&node));
+            let reach = 0.5 * own.map(|facet| length(model, facet)).fold(f64::INFINITY, f64::min);
+            Watched { reach, ..Watched::new(node, longest, constrained, depths[usize::from(!constrained)]) }
+        };
+        let nodes = lengths(model, facets).map(watched).collect();
+        Self { itself: Some(side), ..Self::new(model, Some(contact), primary_part.unwrap_or(0), nodes) }
+    }
+}
+
+impl Watched {
+    pub(crate) fn new(node: usize, length: f64, constrained: bool, share: f64) -> Self {
+        Self { node, length, constrained, share, kept: 0.0, reach: 0.0, clearance: 0.0, near: None }
+    }
+
+    /// Allowed depth in a facet of this length: a node that the contact law keeps outside is judged by
+    /// the facet that it enters alone.
+    pub(crate) fn limit(&self, entered: f64) -> f64 {
+        self.share * if self.constrained { entered } else { self.length.max(entered) }
+    }
+}
+
+/// The nodes of a side's facets, with the depths that its contact allows.
+pub(crate) fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -> Vec<Watched> {
+    let nodes = contact.kinematics.secondary().iter().enumerate();
+    let strict = nodes.filter(|(k, _)| contact.kinematics.allowed(*k) == 0.0).map(|(_, &node)| node);
+    let strict: std::collections::HashSet<usize> = strict.collect();
+    let nodes = contact.kinematics.secondary().iter().enumerate();
+    let kept: std::collections::HashMap<usize, f64> =
+        nodes.map(|(k, &node)| (node, contact.kinematics.kept(k))).collect();
+    let watched = |(node, length)| {
+        let constrained = strict.contains(&node);
+        let kept = kept.get(&node).copied().unwrap_or(0.0);
+        Watched { kept, ..Watched::new(node, length, constrained, contact.depths[usize::from(!constrained)]) }
+    };
+    lengths(model, facets).map(watched).collect()
+}
+
+/// The nodes of facets, ascending, each with the longest of its facets in the reference configuration.
+pub(crate) fn lengths(model: &Model, facets: &[Vec<usize>]) -> impl Iterator<Item = (usize, f64)> {
+    let mut nodes = std::collections::BTreeMap::new();
+    for facet in facets {
+        let length = length(model, facet);
+        for &node in facet {
+            let longest: &mut f64 = nodes.entry(node).or_default();
+            *longest = longest.max(length);
+        }
+    }
+    nodes.into_iter()
+}

@@ -1,0 +1,194 @@
+//! `stopped.json` and `stopped.vtu`: why and where a simulation stopped. The manifest has their
+//! BLAKE3 hashes.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{FieldSet, Manifest, RecordError, files};
+
+/// Names of the two files.
+pub(crate) const FILES: [&str; 2] = ["stopped.json", "stopped.vtu"];
+
+/// Why a simulation stopped, and what was tried.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Stop {
+    /// Keyword of the reason: `penetration`, `energy`, …
+    pub kind: String,
+    /// The reason in words.
+    pub reason: String,
+    /// Grid step that could not be computed.
+    pub step: u64,
+    /// Time at the start of the last attempt; of the energy guard, at the end of the step.
+    pub time: f64,
+    /// Step size of the last attempt.
+    pub dt: f64,
+    /// Time of the last accepted state, which `stopped.vtu` contains.
+    pub last: f64,
+    /// Where, if it is known.
+    pub place: Option<StopPlace>,
+    /// The last iterations of Newton's method in the last attempt.
+    #[serde(default)]
+    pub iterations: Vec<StopIteration>,
+    /// What to try, the most promising first.
+    #[serde(default)]
+    pub advice: Vec<Advice>,
+    /// How the trials were made; none if there were none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trials: Option<String>,
+}
+
+/// The place of a stop. Positions are those of the last accepted state.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StopPlace {
+    /// How it was found, if the reason does not name it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub found: Option<String>,
+    /// The node, or the first one of the cell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub node: Option<StopNode>,
+    /// Contact.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<String>,
+    /// Number of the facet that the node faces.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub facet: Option<usize>,
+    /// Nodes of that facet, from end to end; none of a rigid obstacle.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub facet_nodes: Vec<StopNode>,
+    /// Body of the cell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<String>,
+    /// Number of the cell in its body.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cell: Option<usize>,
+    /// Point numbers of the cell.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cell_nodes: Vec<usize>,
+}
+
+/// A node of the place.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StopNode {
+    /// Number of its point in `stopped.vtu`.
+    pub number: usize,
+    /// Its body.
+    pub body: String,
+    /// Reference position.
+    pub reference: Vec<f64>,
+    /// Position in the last accepted state.
+    pub at: Vec<f64>,
+}
+
+/// An iterate of Newton's method, as multiples of the sum of the forces and of the length of the model;
+/// what is not finite is none.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct StopIteration {
+    pub number: u32,
+    pub residual: Option<f64>,
+    pub gap: Option<f64>,
+    /// None before the first correction.
+    pub correction: Option<f64>,
+    /// Fraction of the correction that was taken.
+    pub length: f64,
+    pub active: u32,
+    /// Whether the active set or a facet changed.
+    pub changed: bool,
+}
+
+/// Something to try.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Advice {
+    /// In words.
+    pub what: String,
+    /// The option that makes this change, as `key=value`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sets: Vec<String>,
+    /// What happened when it was tried.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trial: Option<Trial>,
+}
+
+/// A trial of an advice.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// Time at which it began.
+    pub from: f64,
+    /// Time that it reached.
+    pub reached: f64,
+    /// Whether that is past the place.
+    pub passed: bool,
+    /// Why it ended if it did not get past.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
+}
+
+impl Stop {
+    /// Writes both files; the manifest takes their hashes.
+    ///
+    /// # Errors
+    /// An input/output error, or fields that are not consistent.
+    pub fn write(
+        &self,
+        directory: &Path,
+        fields: &FieldSet,
+        manifest: &mut Manifest,
+    ) -> Result<(), RecordError> {
+        let path = directory.join(FILES[0]);
+        let mut text =
+            serde_json::to_vec_pretty(self).map_err(|e| RecordError::io("write", &path)(e.into()))?;
+        text.push(b'\n');
+        let fields = fields.to_vtu(self.last)?;
+        for (name, bytes) in FILES.into_iter().zip([text, fields]) {
+            files::write_atomically(&directory.join(name), &[&bytes])?;
+            manifest.hashes.insert(name.into(), blake3::hash(&bytes).to_hex().to_string());
+        }
+        Ok(())
+    }
+
+    /// Reads `stopped.json`; none if the run did not stop, or was made by an earlier version.
+    ///
+    /// # Errors
+    /// The file is missing or has changed.
+    pub fn read(directory: &Path, manifest: &Manifest) -> Result<Option<Self>, RecordError> {
+        let Some(bytes) = bytes(directory, FILES[0], manifest)? else { return Ok(None) };
+        let path = directory.join(FILES[0]);
+        let read = serde_json::from_slice(&bytes);
+        read.map(Some).map_err(|e| RecordError::corrupt(&path, Some(e.line() as u64), e.to_string(), HINT))
+    }
+
+    /// Reads `stopped.vtu`.
+    ///
+    /// # Errors
+    /// The file is missing or has changed.
+    pub fn fields(directory: &Path, manifest: &Manifest) -> Result<Option<FieldSet>, RecordError> {
+        let Some(bytes) = bytes(directory, FILES[1], manifest)? else { return Ok(None) };
+        let path = directory.join(FILES[1]);
+        FieldSet::from_vtu(&bytes).map(Some).map_err(|what| RecordError::corrupt(&path, None, what, HINT))
+    }
+
+    /// Removes both files, of a run that is resumed.
+    pub fn forget(directory: &Path, manifest: &mut Manifest) {
+        for name in FILES {
+            if manifest.hashes.remove(name).is_some() {
+                // What is left behind is not in the manifest, and is not read.
+                let _ = std::fs::remove_file(directory.join(name));
+            }
+        }
+    }
+}
+
+const HINT: &str = "run the case again, or resume the run with `carom resume`";
+
+/// A file whose hash the manifest has.
+fn bytes(directory: &Path, name: &str, manifest: &Manifest) -> Result<Option<Vec<u8>>, RecordError> {
+    let Some(hash) = manifest.hashes.get(name) else { return Ok(None) };
+    let path = directory.join(name);
+    let bytes = std::fs::read(&path).map_err(RecordError::io("read", &path))?;
+    if blake3::hash(&bytes).to_hex().as_str() == hash {
+        Ok(Some(bytes))
+    } else {
+        Err(RecordError::corrupt(&path, None, "it has changed since it was written".to_owned(), HINT))
+    }
+}

@@ -1,0 +1,245 @@
+//! Initial overlap of the bodies of a contact: kept, or closed before the start.
+//!
+//! `overlap = "keep-gap"` adds its initial depth to the gap of each node, to the end of the run.
+//!
+//! `overlap = "relax"` finds the equilibrium in which the gaps are closed: an interference fit. The
+//! depths that the nodes keep are reduced to zero in stages, and each stage is solved by steps of the
+//! proximal point method in the metric of the mass matrix,
+//!
+//! ```text
+//! y_k+1 = argmin U(y) + |y − y_k|²_M / 2τ²   with   g(y) + (1 − s) depth ≥ 0,
+//! ```
+//!
+//! which are steps of backward Euler from rest. With τ much longer than the longest period of the
+//! bodies a step is nearly static; bodies that supports leave free keep their centre of mass, and
+//! need no other regularisation. Loads and gravity do not act. The run starts from the positions found,
+//! with the velocities of the case, and the energy that the bodies then store is in its first row.
+
+use carom_case::{
+    Case, ContactLaw, FormulaSpec, MassKind, ObstacleMotion, Overlap, Persistency, Problem, SchemeSpec,
+};
+use carom_contact::{Pairing, Rows};
+use carom_mechanics::model::Model;
+use carom_mechanics::{Before, Grid, Implicit, Settings, Simulation, Stepper, Tangent, depths};
+use carom_time::{ForceRule, Integrator};
+
+use crate::build::{Materials, build, overlaps};
+
+/// Stages in which the depths are reduced.
+const STAGES: u32 = 8;
+/// τ as a multiple of the time in which a wave crosses the largest body.
+const LONG: f64 = 100.0;
+/// Relative change of the strain energy in a step with which the equilibrium is reached, and most steps
+/// to it. Positions would not do: bodies that may turn freely turn a little in every step, since the
+/// energy hardly depends on how facets of different lengths lie on each other.
+const SETTLED: f64 = 1e-10;
+const MOST: u32 = 200;
+/// Gap, relative to L, at which a pair is closed.
+const CLOSED: f64 = 1e-9;
+
+/// A node of a contact inside the body of the other side.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct OverlapNode {
+    /// Contact.
+    pub contact: String,
+    /// Global number.
+    pub node: usize,
+    /// Its body.
+    pub body: String,
+    /// Initial position.
+    pub at: Vec<f64>,
+    /// Depth below the other side.
+    pub depth: f64,
+    /// What the case does about it.
+    pub overlap: Overlap,
+}
+
+/// The nodes that overlap at the start, by contact, the deepest first.
+pub fn overlapping(case: &Case, model: &Model) -> Vec<OverlapNode> {
+    let (y, d) = (&model.initial_position, model.dimension);
+    let mut nodes = Vec::new();
+    for (k, depths) in depths(model, y).iter().enumerate() {
+        let contact = &model.contacts[k];
+        let first = nodes.len();
+        for (&node, &depth) in contact.kinematics.secondary().iter().zip(depths) {
+            if depth > CLOSED * model.scale {
+                let body = model.parts.iter().find(|part| part.nodes().contains(&node));
+                nodes.push(OverlapNode {
+                    contact: contact.name.clone(),
+                    node,
+                    body: body.map_or_else(String::new, |part| part.name.clone()),
+                    at: y[node * d..(node + 1) * d].to_vec(),
+                    depth,
+                    overlap: case.contacts[k].overlap,
+                });
+            }
+        }
+        nodes[first..].sort_by(|a, b| b.depth.total_cmp(&a.depth));
+    }
+    nodes
+}
+
+/// Gives the contacts of a model the initial depths that they keep.
+pub(crate) fn keep(case: &Case, model: &mut Model) {
+    if case.contacts.iter().any(|contact| contact.overlap == Overlap::KeepGap) {
+        apply(case, model, |overlap| f64::from(u8::from(overlap == Overlap::KeepGap)));
+    }
+}
+
+/// Gives every contact a share of its initial depths.
+fn apply(case: &Case, model: &mut Model, share: impl Fn(Overlap) -> f64) {
+    let initial = depths(model, &model.initial_position);
+    for ((contact, spec), depths) in model.contacts.iter_mut().zip(&case.contacts).zip(&initial) {
+        let share = share(spec.overlap);
+        if share > 0.0 {
+            let kept: Vec<f64> = depths.iter().map(|depth| share * depth).collect();
+            contact.kinematics.keep(&kept);
+        }
+    }
+}
+
+/// The start of a case whose contacts relax their overlap, for its own model; none if there is nothing
+/// to relax.
+///
+/// # Errors
+/// If there is no equilibrium, under the key of the contact.
+pub(crate) fn relaxed(
+    case: &Case,
+    model: &Model,
+    materials: &Materials,
+    threads: usize,
+) -> Result<Option<Before>, Vec<Problem>> {
+    let Some(first) = case.contacts.iter().position(|contact| contact.overlap == Overlap::Relax) else {
+        return Ok(None);
+    };
+    let fails = |why: String| {
+        let what = format!("the overlap of contact \"{}\" cannot be relaxed", case.contacts[first].name);
+        let help = "move a body so that the overlap is smaller than a cell, or use a finer mesh there";
+        vec![Problem::new(format!("contact[{first}].overlap"), what, why, help)]
+    };
+    let quasi = quasi_static(case);
+    let at = |share: f64| -> Result<Model, Vec<Problem>> {
+        let mut model = build(&quasi, materials)?;
+        apply(&quasi, &mut model, |overlap| match overlap {
+            Overlap::Relax => share,
+            Overlap::KeepGap => 1.0,
+            Overlap::Refuse => 0.0,
+        });
+        Ok(model)
+    };
+    let start = at(1.0)?;
+    let inside = overlaps(&quasi, &start);
+    if let Some(problem) = inside.first() {
+        return Err(fails(format!("{}; {}", problem.what, problem.why)));
+    }
+    let speeds = case.materials.iter().map(|material| material.wave_speed(case.plane));
+    let slowest = speeds.filter(|speed| speed.is_finite()).fold(f64::INFINITY, f64::min);
+    if !slowest.is_finite() {
+        return Err(fails("no body has a mass".to_owned()));
+    }
+    let step = LONG * start.scale / slowest;
+    let rest = vec![0.0; start.dofs()];
+    let mut before = Before { y: start.initial_position.clone(), v: rest.clone(), pairs: closed(&start) };
+    for stage in 1..=STAGES {
+        let model = at(1.0 - f64::from(stage) / f64::from(STAGES))?;
+        let most = if stage == STAGES { MOST } else { 1 };
+        before = settle(model, before, step, most, case.newton.tolerance, threads).map_err(&fails)?;
+    }
+    // The carriers of moving obstacles come last.
+    let (mut y, from) = (model.initial_position.clone(), &before.y);
+    y[..from.len()].copy_from_slice(from);
+    Ok(Some(Before { y, v: model.initial_velocity.clone(), pairs: before.pairs }))
+}
+
+/// Steps from rest until nothing moves, or after so many steps, if more than one is allowed.
+fn settle(
+    model: Model,
+    mut before: Before,
+    step: f64,
+    most: u32,
+    tolerance: f64,
+    threads: usize,
+) -> Result<Before, String> {
+    let rest = before.v.clone();
+    let grid = Grid { dt: step, steps: u64::from(most), phase: 0.0, guard: None };
+    let mut simulation = Simulation::new(model, stepper(tolerance)?, grid, true, Some(before), threads)
+        .map_err(|rejected| rejected.to_string())?;
+    loop {
+        let old = simulation.state().ledger.strain;
+        simulation.step().map_err(|stopped| stopped.to_string())?;
+        let mut state = simulation.state().clone();
+        let strain = state.ledger.strain;
+        if most == 1 || (strain - old).abs() <= SETTLED * strain.abs() {
+            before = Before { y: state.y, v: rest, pairs: state.pairs };
+            return Ok(before);
+        }
+        if simulation.finished() {
+            return Err(format!(
+                "the strain energy still changes from {old:.6e} to {strain:.6e} after {most} steps"
+            ));
+        }
+        (state.v, state.a) = (rest.clone(), rest.clone());
+        simulation.restore(state).map_err(|other| other.to_string())?;
+    }
+}
+
+fn stepper(tolerance: f64) -> Result<Box<dyn Stepper>, String> {
+    let settings = Settings { tolerance, max_iterations: 60, tangent: Tangent::Frozen, mixing: 0 };
+    match scheme().integrator().map_err(|e| e.to_string())? {
+        Integrator::Alpha(scheme, _) => Ok(Box::new(Implicit::new(Box::new(scheme), settings))),
+        Integrator::Stages(kernel, _) => Ok(Box::new(Implicit::new(kernel, settings))),
+        Integrator::Nonsmooth(..) => Err("backward Euler has no stages".to_owned()),
+    }
+}
+
+fn scheme() -> SchemeSpec {
+    SchemeSpec {
+        kind: "backward-euler".into(),
+        parameters: std::collections::BTreeMap::new(),
+        forces: ForceRule::default(),
+    }
+}
+
+/// The case without loads and motion.
+fn quasi_static(case: &Case) -> Case {
+    let mut quasi = case.clone();
+    quasi.time.scheme = scheme();
+    quasi.loads.clear();
+    quasi.probes.clear();
+    for body in &mut quasi.bodies {
+        body.gravity.fill(0.0);
+        body.velocity = vec![FormulaSpec::Number(0.0); case.dimension];
+        body.mass = MassKind::Consistent;
+    }
+    for support in &mut quasi.supports {
+        // A motion begins where its nodes are.
+        support.fix.extend(support.moves.drain(..).map(|(axis, _)| axis));
+    }
+    for contact in &mut quasi.contacts {
+        contact.motion = ObstacleMotion::Fixed;
+        contact.law = Some(ContactLaw::Position);
+        contact.persistency = Persistency::None;
+        contact.restitution = 0.0;
+    }
+    quasi
+}
+
+/// Pairs of the nodes that overlap, whose gap is closed while they keep their whole depth.
+fn closed(model: &Model) -> Vec<Vec<carom_contact::Pair>> {
+    let y = &model.initial_position;
+    let mut rows = Rows::new(model.dimension);
+    let mut all = Vec::new();
+    for contact in &model.contacts {
+        let mut pairing = Pairing::default();
+        contact.kinematics.search(y, y, &mut pairing, &mut Vec::new());
+        for pair in &mut pairing.pairs {
+            rows.clear();
+            let strict =
+                contact.kinematics.kept(pair.node) > 0.0 && contact.kinematics.allowed(pair.node) == 0.0;
+            let found = contact.kinematics.measure(pair, y, &mut rows).is_ok();
+            pair.active = strict && found && rows.row(0).gap.abs() <= CLOSED * model.scale;
+        }
+        all.push(pairing.pairs);
+    }
+    all
+}

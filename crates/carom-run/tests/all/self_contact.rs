@@ -1,0 +1,103 @@
+//! Contact of a body with itself against the same contact of two bodies, and against half of the body
+//! on a plane; continued from a state, bit for bit.
+
+use carom_run::case::Case;
+use carom_run::{Setup, Simulation};
+
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/self/");
+
+fn simulation(case: &Case) -> Simulation {
+    Setup::new(case).start().unwrap()
+}
+
+fn advanced(case: &Case, steps: usize) -> Simulation {
+    let mut simulation = simulation(case);
+    for _ in 0..steps {
+        simulation.step().unwrap();
+    }
+    simulation
+}
+
+/// Strips of which the left one moves to the right.
+fn strips(bodies: &str, between: &str) -> Case {
+    let text = format!(
+        r#"
+        dimension = 2
+        material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 1.0, poisson = 0.0 }}]
+        contact = [{{ name = "joint", {between} }}]
+        time = {{ end = 8.0, step = 0.05, scheme = {{ kind = "chung-hulbert", rho_inf = 0.5 }} }}
+        {bodies}
+        # Tolerances are relative to the largest body: it is the same with one body and with two.
+        [[body]]
+        name = "other"
+        material = "m"
+        element = "T6"
+        mesh = {{ shape = "rectangle", min = [-10.0, 5.0], max = [10.0, 6.0], cells = [20, 1] }}
+        "#
+    );
+    Case::from_text(&text, &[]).unwrap()
+}
+
+fn body(name: &str, surface: &str) -> String {
+    format!(
+        r#"
+        [[body]]
+        name = "{name}"
+        material = "m"
+        element = "T6"
+        mesh = {{ file = "{ROOT}strips.msh", surface = "{surface}", slits = true }}
+        velocity = ["if(X < 0, 0.1, 0)", "0"]
+        "#
+    )
+}
+
+#[test]
+fn pieces_of_one_body_move_like_bodies() {
+    let one = strips(&body("both", "both"), r#"between = ["both"]"#);
+    let two = strips(
+        &(body("first", "first") + &body("second", "second")),
+        r#"secondary = "second.skin", primary = "first.skin""#,
+    );
+    let [one, two] = [one, two].map(|case| advanced(&case, 160));
+    let active = |simulation: &Simulation| simulation.state().pairs[0].iter().filter(|p| p.active).count();
+    assert!(active(&one) > 0 && active(&one) == active(&two));
+    let (a, b) = (&one.state().y, &two.state().y);
+    assert_eq!(a.len(), b.len());
+    let difference = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(difference < 1e-12, "{difference:e}");
+}
+
+/// Before the ring touches itself, and after.
+#[test]
+fn a_pinched_ring_moves_like_half_of_it_on_a_plane() {
+    let case = |name: &str| Case::from_file(format!("{ROOT}{name}.toml"), &[]).unwrap();
+    let [ring, half] = ["pinched", "halved"].map(|name| advanced(&case(name), 390));
+    assert!(ring.state().pairs[0].iter().any(|pair| pair.active));
+    let place = |simulation: &Simulation, at: [f64; 2]| {
+        let model = simulation.model();
+        let x = &model.reference;
+        let node =
+            (0..x.len() / 2).find(|&n| (x[2 * n] - at[0]).hypot(x[2 * n + 1] - at[1]) < 1e-12).unwrap();
+        [simulation.state().y[2 * node], simulation.state().y[2 * node + 1]]
+    };
+    for (at, tolerance) in [([0.45, 0.0], 1e-9), ([0.0, 0.5], 5e-6), ([0.0, 0.4], 5e-6)] {
+        let [a, b] = [&ring, &half].map(|simulation| place(simulation, at));
+        assert!((a[0] - b[0]).hypot(a[1] - b[1]) < tolerance, "{at:?}: {a:?} {b:?}");
+    }
+}
+
+#[test]
+fn a_run_that_is_continued_from_its_state_is_the_same() {
+    let case = Case::from_file(format!("{ROOT}ring.toml"), &[]).unwrap();
+    let mut whole = advanced(&case, 225);
+    let mut resumed = Setup::new(&case).threads(2).resume(whole.state().clone()).unwrap();
+    let mut touched = false;
+    for _ in 0..20 {
+        whole.step().unwrap();
+        resumed.step().unwrap();
+        touched |= whole.state().pairs[0].iter().any(|pair| pair.active);
+    }
+    assert!(touched);
+    assert_eq!(whole.state().y, resumed.state().y);
+    assert_eq!(whole.state().pairs, resumed.state().pairs);
+}

@@ -1,0 +1,155 @@
+//! Runs that stop: why, where, what gets past, and a smaller case that stops too.
+
+use carom_record::{Manifest, Stop};
+
+use crate::common::{Place, text};
+
+/// A press that moves through a block: a cell is inverted, whatever the step. A ball beside it matters
+/// to nothing.
+const CRUSHED: &str = r#"
+title = "Crushed"
+dimension = 2
+[[material]]
+name = "rubber"
+law = "neo-hookean"
+density = 1.0
+young = 100.0
+poisson = 0.3
+[[body]]
+name = "block"
+material = "rubber"
+element = "T3"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [2, 2] }
+[[body]]
+name = "ball"
+material = "rubber"
+element = "T6"
+mesh = { shape = "disc", radius = 0.4, center = [3.0, 1.0], size = 0.2 }
+velocity = [0.0, -1.0]
+[[support]]
+on = ["block.bottom"]
+fix = ["x", "y"]
+[[support]]
+on = ["block.top"]
+fix = ["x"]
+move = { y = "-t*t" }
+[[contact]]
+name = "floor"
+secondary = "ball.arc"
+primary = { plane = { point = [0.0, 0.5], normal = [0.0, 1.0] } }
+[time]
+end = 2.0
+step = 0.02
+scheme = { kind = "bathe", rho_inf = 0.0 }
+energy_guard = false
+[output]
+checkpoint_every = 20
+"#;
+
+/// A bar whose scheme creates energy: γ < 1/2.
+const GROWS: &str = r#"
+title = "Grows"
+dimension = 1
+material = [{ name = "steel", law = "linear-elastic", density = 1, young = 100, poisson = 0 }]
+[[body]]
+name = "bar"
+material = "steel"
+element = "L2"
+mesh = { shape = "interval", min = 0, max = 1, cells = 4 }
+velocity = ["X - 0.5"]
+[time]
+end = 2.0
+step = 0.02
+scheme = { kind = "newmark", beta = 0.25, gamma = 0.45 }
+"#;
+
+fn stop(place: &Place, run: &str) -> Stop {
+    let directory = place.0.join(run);
+    Stop::read(&directory, &Manifest::read(&directory).unwrap()).unwrap().unwrap()
+}
+
+#[test]
+fn a_stop_is_explained_and_reduced() {
+    let place = Place::new("crushed");
+    place.file("case.toml", CRUSHED);
+    let done = place.carom(&["run", "case.toml", "--out", "run"]);
+    assert_eq!(done.status.code(), Some(3));
+    let said = text(&done.stderr);
+    assert!(said.contains("run/report.html") && said.contains("carom reduce run"), "{said}");
+    let first = stop(&place, "run");
+    let at = first.place.clone().unwrap();
+    assert_eq!((first.kind.as_str(), at.body.as_deref()), ("inverted-cell", Some("block")));
+    assert_eq!(at.cell_nodes.len(), 3);
+    // No step gets a block past zero height at t = 1.
+    assert!(first.time < 1.01 && first.last <= first.time && !first.iterations.is_empty());
+    assert!(first.advice.iter().filter_map(|a| a.trial.as_ref()).all(|trial| !trial.passed));
+    assert!(first.advice.iter().any(|a| a.trial.is_some()));
+    let page = std::fs::read_to_string(place.0.join("run/report.html")).unwrap();
+    let section = page.find("Why it stopped").unwrap();
+    assert!(section < page.find("Input hash").unwrap() && page.contains("figures/stopped.svg"));
+
+    let reduced = place.carom(&["reduce", "run"]);
+    assert_eq!(reduced.status.code(), Some(0), "{}", text(&reduced.stderr));
+    assert!(text(&reduced.stdout).contains("body \"ball\""), "{}", text(&reduced.stdout));
+    let case = std::fs::read_to_string(place.0.join("run-reduced/case.toml")).unwrap();
+    assert!(!case.contains("ball.arc"), "{case}");
+    let again = place.carom(&["run", "run-reduced/case.toml", "--out", "again", "--no-trials"]);
+    assert_eq!(again.status.code(), Some(3));
+    let second = stop(&place, "again");
+    assert_eq!((second.step, &second.place), (first.step, &first.place));
+    assert!(second.trials.is_none() && second.advice.iter().all(|a| a.trial.is_none()));
+
+    // Resumed, it stops again, and says the same.
+    assert_eq!(place.carom(&["resume", "run"]).status.code(), Some(3));
+    assert_eq!(stop(&place, "run"), first);
+    place.file("run/stopped.json", "{}");
+    let damaged = place.carom(&["report", "run"]);
+    assert_eq!(damaged.status.code(), Some(2));
+    assert!(text(&damaged.stderr).contains("changed"), "{}", text(&damaged.stderr));
+}
+
+/// What a trial promises is what a run does.
+#[test]
+fn what_gets_past_in_a_trial_gets_past_in_a_run() {
+    let place = Place::new("grows");
+    place.file("case.toml", GROWS);
+    assert_eq!(place.carom(&["run", "case.toml", "--out", "run"]).status.code(), Some(3));
+    let stop = stop(&place, "run");
+    assert_eq!((stop.kind.as_str(), stop.place), ("energy-guard", None));
+    let passed: Vec<_> = stop.advice.iter().take_while(|a| a.trial.as_ref().unwrap().passed).collect();
+    assert!(passed.iter().any(|advice| advice.sets[0].contains("bathe")), "{:?}", stop.advice);
+    for (i, advice) in passed.iter().enumerate() {
+        let out = format!("run{i}");
+        let mut arguments = vec!["run", "case.toml", "--out", &out];
+        advice.sets.iter().for_each(|set| arguments.extend(["--set", set]));
+        place.carom(&arguments);
+        let rows = std::fs::read_to_string(place.0.join(&out).join("history.csv")).unwrap();
+        let time: f64 = rows.lines().last().unwrap().split(',').nth(1).unwrap().parse().unwrap();
+        assert!(time >= advice.trial.as_ref().unwrap().reached, "{advice:?}: {time}");
+    }
+}
+
+#[test]
+fn a_run_that_did_not_stop_is_not_reduced() {
+    let place = Place::new("finished");
+    place.file("case.toml", GROWS);
+    let arguments = ["run", "case.toml", "--out", "run", "--set", "time.energy_guard=false"];
+    assert_eq!(place.carom(&arguments).status.code(), Some(0));
+    let done = place.carom(&["reduce", "run"]);
+    assert_eq!(done.status.code(), Some(2));
+    assert!(text(&done.stderr).contains("exit code 3") && !place.0.join("run-reduced").exists());
+}
+
+#[test]
+fn an_overlap_is_listed_and_drawn() {
+    let place = Place::new("overlap");
+    place.file("fit.toml", include_str!("../../../../cases/overlap/strips.toml"));
+    let done = place.carom(&["check", "fit.toml"]);
+    let said = text(&done.stdout);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    assert!(said.contains("of lower at [0.25, 1]: 0.01 deep") && said.contains("fit-overlap.svg"), "{said}");
+    assert!(std::fs::read_to_string(place.0.join("fit-overlap.svg")).unwrap().contains("16 nodes inside"));
+    let refused = place.carom(&["check", "fit.toml", "--set", "contact.fit.overlap=refuse"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("keep-gap") && text(&refused.stdout).contains("0.01 deep"));
+}
