@@ -170,8 +170,9 @@ impl Penetration {
             return None;
         }
         let (node, facet, depth) = skin.deepest_in_itself(y)?;
-        let limit = contact.depths[1] * length(model, skin.facet_nodes(facet));
-        Some((body, Inside { node, depth, limit }))
+        let length = length(model, skin.facet_nodes(facet));
+        // Chords do not tell smaller depths from none.
+        (depth > CHORDS * length).then_some((body, Inside { node, depth, limit: contact.depths[1] * length }))
     }
 
     /// Bodies without a contact of which one is inside the other: (body, other).
@@ -343,6 +344,8 @@ pub(crate) fn has_gaps(model: &Model, contact: &Contact) -> bool {
     !contact.itself && contact.facets.len() < 2 || model.dimension == 1
 }
 
+/// Depth over the length of a facet that a chord of it may feign.
+const CHORDS: f64 = 0.01;
 /// Allowed depth of bodies without a contact, over the length of a facet.
 const UNDECLARED: f64 = 0.01;
 

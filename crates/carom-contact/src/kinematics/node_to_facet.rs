@@ -314,13 +314,14 @@ impl Kinematics for NodeToFacet {
     }
 
     fn passed(&self, before: &[f64], now: &[f64]) -> Option<Passed> {
+        // Within one body, a path may begin and end on either side of its own boundary.
         if self.folds.is_some() {
-            // A node is on the surface of its own body.
             return None;
         }
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         let Tools { search, swept, .. } = &mut *tools;
-        passed(&self.primary, &self.secondary, search, swept, [before, now])
+        let allowed = |place| self.slack(place);
+        passed(&self.primary, &self.secondary, allowed, search, swept, [before, now])
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {

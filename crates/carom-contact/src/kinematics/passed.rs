@@ -28,10 +28,12 @@ pub struct Passed {
     pub limit: f64,
 }
 
-/// The node of these that was deepest beyond its limit, if any. Needs the whole boundary of the body.
+/// The node of these that was deepest beyond its limit, if any; `allowed` is the depth that a node may
+/// have in any case. Needs the whole boundary of the body.
 pub(super) fn passed(
     surface: &Surface,
     nodes: &[usize],
+    allowed: impl Fn(usize) -> f64,
     search: &mut Search,
     swept: &mut SweptTest,
     [before, now]: [&[f64]; 2],
@@ -54,7 +56,7 @@ pub(super) fn passed(
     }
     let (mut skin, mut between) = (None, Vec::new());
     let mut worst: Option<Passed> = None;
-    for &node in nodes {
+    for (place, &node) in nodes.iter().enumerate() {
         search.find(node, start, end);
         let near = search.found();
         let relative = |&other: &usize| (path(node) - path(other)).norm();
@@ -83,7 +85,8 @@ pub(super) fn passed(
             skin.update(&between);
             let point = [between[2 * node], between[2 * node + 1]];
             let Some(found) = skin.depth(point, None, &between) else { continue };
-            let (depth, limit) = (-found.distance, SHARE * surface.length(found.facet, start));
+            let (depth, limit) =
+                (-found.distance, allowed(place) + SHARE * surface.length(found.facet, start));
             if depth > limit && worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
                 worst = Some(Passed { node, depth, limit });
             }
