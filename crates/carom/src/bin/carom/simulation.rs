@@ -13,6 +13,7 @@ use crate::summary::short;
 
 /// How to run.
 #[derive(Clone, Copy, Debug)]
+#[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Options {
     /// Number of threads; results do not depend on it.
     pub(crate) threads: usize,
