@@ -185,7 +185,8 @@ fn every_case_of_the_repository() {
         // Studies are other runs of the cases beside them.
         let Ok(case) = Case::from_file(&path, &[TIGHT]) else { continue };
         let dofs_too_many = path.to_string_lossy().contains("perf");
-        if case.contacts.is_empty() || dofs_too_many {
+        let is_slow = case.expects.iter().any(|expect| expect.slow);
+        if case.contacts.is_empty() || dofs_too_many || is_slow {
             continue;
         }
         // These are long; what they have of contact they have early.
