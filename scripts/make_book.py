@@ -55,6 +55,7 @@ FIGURES = {
     "self": ("ring", "bodies"),
     "ladder": ("zip", "bodies"),
     "obstacle": ("paddle", "bodies"),
+    "friction": ("bar-on-bed", "energy"),
     "loads": ("", "bodies"),
     "static": ("", "bodies"),
     "manufactured": ("moving-block-orders", "energy"),

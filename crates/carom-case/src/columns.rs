@@ -2,7 +2,7 @@
 
 use super::{BodySpec, Case, ContactSpec, ObstacleMotion, ProbeSpec, Quantity, SupportSpec};
 
-const SCALARS: [&str; 12] = [
+const SCALARS: [&str; 13] = [
     "step",
     "time",
     "dt",
@@ -12,6 +12,7 @@ const SCALARS: [&str; 12] = [
     "total",
     "external_work",
     "contact_work",
+    "friction_work",
     "dissipation",
     "energy_created",
     "energy_scale",

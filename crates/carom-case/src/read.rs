@@ -352,6 +352,7 @@ fn contact(
         xi: v.choice("xi")?,
         law: v.choice("law"),
         overlap: v.choice("overlap")?,
+        mu: v.number("mu")?,
         restitution: v.number("restitution")?,
     })
 }

@@ -3,6 +3,7 @@
 
 mod active_set;
 mod discrete_gradient;
+mod friction;
 mod inside_itself;
 pub mod interface;
 pub mod kinematics;
@@ -13,6 +14,7 @@ mod skin;
 
 pub use active_set::{ActiveSet, Contender, Cycle};
 pub use discrete_gradient::DiscreteGradient;
+pub use friction::{Hold, Rub, StickSlip, Tangential};
 pub use interface::{
     Answer, ConservingPenalty, ConservingUnilateral, Direction, Interface, Penalty, Point, Unilateral,
 };

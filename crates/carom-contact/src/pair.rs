@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::friction::Tangential;
+
 /// One secondary node against one facet of the primary side: contact point and history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
@@ -21,12 +23,14 @@ pub struct Pair {
     /// Gap at the step's start for an energy-conserving penalty. It is stored, since Δg = ∇g·Δy at
     /// the midpoint holds to second order only.
     pub start: Option<f64>,
+    /// State of friction.
+    pub tangential: Tangential,
 }
 
 impl Pair {
     /// An inactive pair at a point of a facet.
     pub fn open(node: usize, facet: usize, xi: f64) -> Self {
-        Self { node, facet, xi, active: false, lambda: 0.0, start: None }
+        Self { node, facet, xi, active: false, lambda: 0.0, start: None, tangential: Tangential::default() }
     }
 }
 

@@ -31,6 +31,8 @@ pub(crate) struct Forces {
     pub loads: Vec<f64>,
     /// Σ w.contact Gᵀλ, weighted per contact.
     pub contact: Vec<f64>,
+    /// The part of friction in them; empty without friction.
+    pub friction: Vec<f64>,
 }
 
 /// Weights of a contact's force at the end and the start: averaged as in eq. (15), or end only.

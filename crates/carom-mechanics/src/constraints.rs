@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_contact::{Direction, DiscreteGradient, Row, Rows};
+use carom_contact::{Direction, DiscreteGradient, Hold, Pair, Row, Rows};
 
 use crate::balance::contact_weights;
 use crate::equations::{Equations, Evaluation};
@@ -23,6 +23,8 @@ const DEPENDENT: f64 = 1e-8;
 pub(crate) struct Constraints {
     /// Contact and pair of each row.
     pub places: Vec<(usize, usize)>,
+    /// Whether each row is a slip that is prevented; otherwise it is a gap.
+    pub slips: Vec<bool>,
     /// Gradients of the gaps.
     pub rows: Rows,
     /// Directions of the forces.
@@ -43,6 +45,7 @@ impl Constraints {
     pub(crate) fn none(dimension: usize) -> Self {
         Self {
             places: Vec::new(),
+            slips: Vec::new(),
             rows: Rows::new(dimension),
             directions: Rows::new(dimension),
             weights: Vec::new(),
@@ -61,6 +64,7 @@ impl Constraints {
         let mut plain = Self::none(dimension);
         for (place, row) in rows {
             plain.places.push(place);
+            plain.slips.push(false);
             plain.rows.push_row(row);
             plain.directions.push_row(row);
             plain.weights.push(1.0);
@@ -78,17 +82,31 @@ impl Constraints {
         // Springs may depend on each other: each adds its stiffness.
         let is_spring = |&(k, _): &(usize, usize)| !model.contacts[k].interface.is_constraint();
         let held = evaluation.pressing().filter(|place| !is_spring(place));
-        let mut places = independent_rows(model, held, &evaluation.rows);
-        places.extend(evaluation.pressing().filter(is_spring));
+        let gaps = held.map(|(k, p)| ((k, p, false), evaluation.rows[k].row(p)));
+        // The slip of a pair after all gaps: what depends on both keeps its gap.
+        let slips = evaluation.sticking().map(|(k, p)| ((k, p, true), evaluation.slips[k].row(p)));
+        let mut places = independent(model, gaps.chain(slips));
+        places.extend(evaluation.pressing().filter(is_spring).map(|(k, p)| (k, p, false)));
         places.sort_unstable();
-        for place in places {
-            let (k, p) = place;
+        for (k, p, is_slip) in places {
+            let place = (k, p);
+            if is_slip {
+                constraints.push_slip(equations, evaluation, place, &mut rows);
+                continue;
+            }
             let contact = &model.contacts[k];
             let answer = &evaluation.answers[k][p];
             let mut curvature =
                 derivative_of_direction(equations, evaluation, place, &mut rows, &mut gradient);
+            let hold = evaluation.at.pairings[k].pairs[p].tangential.hold;
+            if let Some(coefficient) = contact.friction.filter(|_| hold != Hold::Stick) {
+                let (turned, _) = equations.slip_derivatives(evaluation, place, &mut rows);
+                let factor = hold.sign() * coefficient;
+                curvature.iter_mut().zip(turned).for_each(|(c, turned)| *c -= factor * turned);
+            }
             curvature.iter_mut().for_each(|c| *c *= answer.lambda);
             constraints.places.push(place);
+            constraints.slips.push(false);
             constraints.rows.push_row(evaluation.rows[k].row(p));
             constraints.directions.push_row(evaluation.directions(k).row(p));
             constraints.weights.push(contact_weights(&equations.stage, contact.at_the_end).0);
@@ -97,6 +115,30 @@ impl Constraints {
             constraints.curvatures.push(curvature);
         }
         constraints
+    }
+
+    /// Adds the row S = 0 of a pair that sticks.
+    fn push_slip(
+        &mut self,
+        equations: &Equations,
+        evaluation: &Evaluation,
+        (k, p): (usize, usize),
+        rows: &mut Rows,
+    ) {
+        let contact = &equations.model.contacts[k];
+        let (slip, traction) =
+            (evaluation.slips[k].row(p), evaluation.at.pairings[k].pairs[p].tangential.traction);
+        let (mut curvature, gradient) = equations.slip_derivatives(evaluation, (k, p), rows);
+        curvature.iter_mut().for_each(|c| *c *= traction);
+        self.places.push((k, p));
+        self.slips.push(true);
+        self.rows.push_row(slip);
+        self.rows.gradient_mut(self.rows.len() - 1).copy_from_slice(&gradient);
+        self.directions.push_row(slip);
+        self.weights.push(contact_weights(&equations.stage, contact.at_the_end).0);
+        self.compliances.push(0.0);
+        self.open.push(slip.gap);
+        self.curvatures.push(curvature);
     }
 
     /// Number of rows.
@@ -205,6 +247,13 @@ impl Evaluation {
             active.map(move |(p, _)| (k, p))
         })
     }
+
+    /// Contact and pair of those that stick.
+    pub(crate) fn sticking(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let sticks = |pair: &Pair| pair.tangential.hold == Hold::Stick;
+        self.pressing()
+            .filter(move |&(k, p)| !self.slips[k].is_empty() && sticks(&self.at.pairings[k].pairs[p]))
+    }
 }
 
 /// The places whose rows are linearly independent on the free dofs.
@@ -213,12 +262,16 @@ pub(crate) fn independent_rows(
     places: impl Iterator<Item = (usize, usize)>,
     rows: &[Rows],
 ) -> Vec<(usize, usize)> {
+    independent(model, places.map(|(k, p)| ((k, p), rows[k].row(p))))
+}
+
+/// The names of those rows that are linearly independent of the earlier ones on the free dofs.
+fn independent<'a, T>(model: &Model, rows: impl Iterator<Item = (T, Row<'a>)>) -> Vec<T> {
     let mut accepted: Vec<Vec<(usize, f64)>> = Vec::new();
     // The accepted row whose pivot is this dof.
     let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
-    let independent = |&(k, p): &(usize, usize)| {
-        let mut row: Vec<(usize, f64)> =
-            rows[k].row(p).entries().filter(|(dof, _)| !model.fixed[*dof]).collect();
+    let mut independent = |row: Row| {
+        let mut row: Vec<(usize, f64)> = row.entries().filter(|(dof, _)| !model.fixed[*dof]).collect();
         let mut from = 0;
         // An accepted row contains pivots of later ones only: in ascending order each occurs once.
         while let Some((r, factor)) = row
@@ -246,5 +299,5 @@ pub(crate) fn independent_rows(
         accepted.push(row);
         true
     };
-    places.filter(independent).collect()
+    rows.filter_map(|(name, row)| independent(row).then_some(name)).collect()
 }

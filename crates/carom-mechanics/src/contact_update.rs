@@ -1,7 +1,7 @@
 //! Contact status of an iterate: search and hand-over of pairs, active sets, and constraints that
 //! cannot be satisfied.
 
-use carom_contact::{ActiveSet, Contender, Pair, PairEvent, Pairing, Row};
+use carom_contact::{ActiveSet, Contender, Hold, Pair, PairEvent, Pairing, Row, Rub, StickSlip, Tangential};
 
 use crate::constraints::Constraints;
 use crate::equations::{Equations, Evaluation, Iterate};
@@ -71,6 +71,8 @@ pub(crate) fn activate_initial(model: &Model, evaluation: &mut Evaluation) -> bo
 /// Contact changes during the solve of a stage.
 pub(crate) struct ContactUpdate {
     sets: Vec<ActiveSet>,
+    /// Stick and slip of each contact; of no use without friction.
+    holds: Vec<StickSlip>,
     /// Remaining early facet updates.
     facet_updates: u32,
 }
@@ -79,12 +81,18 @@ impl ContactUpdate {
     /// The initial state for a stage.
     pub(crate) fn new(model: &Model) -> Self {
         let set = |contact: &Contact| ActiveSet::new(GAP_TOLERANCE * model.scale, contact.within);
-        Self { sets: model.contacts.iter().map(set).collect(), facet_updates: FACET_UPDATES }
+        let hold = |contact: &Contact| StickSlip::new(GAP_TOLERANCE * model.scale, contact.within);
+        Self {
+            sets: model.contacts.iter().map(set).collect(),
+            holds: model.contacts.iter().map(hold).collect(),
+            facet_updates: FACET_UPDATES,
+        }
     }
 
     /// Clears the visited sets: the pairs themselves have changed.
     pub(crate) fn restart(&mut self) {
         self.sets.iter_mut().for_each(ActiveSet::restart);
+        self.holds.iter_mut().for_each(StickSlip::restart);
     }
 
     /// Updates active sets and pairs for an iterate; returns whether one changed. `settled`: the
@@ -105,6 +113,7 @@ impl ContactUpdate {
     ) -> Result<bool, Rejected> {
         let model = equations.model;
         let mut changed = self.change_sets(equations, now, &work.system, settled)?;
+        changed |= self.change_holds(model, now, settled)?;
         let mut handed_over = false;
         if !settled && self.facet_updates > 0 && update_facets(model, now, events) {
             self.facet_updates -= 1;
@@ -138,7 +147,8 @@ impl ContactUpdate {
             model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.is_constraint());
         for (k, contact) in constraints {
             let stiffness = system.mean_stiffness(equations);
-            let pairs = &mut evaluation.at.pairings[k].pairs;
+            let Iterate { pairings, increment } = &mut evaluation.at;
+            let pairs = &mut pairings[k].pairs;
             let contender = |(pair, row): (&Pair, Row)| {
                 // Few nodes that may be inside reach their depth: they wait for the others.
                 let waits = !settled && !pair.active && contact.kinematics.allowed(pair.node) > 0.0;
@@ -153,6 +163,45 @@ impl ContactUpdate {
             })?;
             for p in changes {
                 (pairs[p].active, pairs[p].lambda, changed) = (!pairs[p].active, 0.0, true);
+                if contact.friction.is_some() {
+                    let slip = equations.slip(k, &pairs[p], &evaluation.middle, increment);
+                    pairs[p].tangential.hold = Hold::of(slip, GAP_TOLERANCE * model.scale);
+                    pairs[p].tangential.traction = 0.0;
+                }
+            }
+        }
+        Ok(changed)
+    }
+
+    /// Updates stick and slip of the closed pairs with friction; returns whether one changed.
+    fn change_holds(
+        &mut self,
+        model: &Model,
+        evaluation: &mut Evaluation,
+        settled: bool,
+    ) -> Result<bool, Rejected> {
+        let mut changed = false;
+        for (k, contact) in model.contacts.iter().enumerate() {
+            let Some(coefficient) = contact.friction else { continue };
+            let pairs = &mut evaluation.at.pairings[k].pairs;
+            let rub = |(pair, row): (&Pair, Row)| {
+                let Tangential { hold, traction, .. } = pair.tangential;
+                // One that has just closed has no pressure yet.
+                let cone = coefficient * (-pair.lambda).max(0.0);
+                (pair.active && pair.lambda != 0.0).then_some(Rub { hold, traction, slip: row.gap, cone })
+            };
+            let rubs: Vec<Option<Rub>> = pairs.iter().zip(evaluation.slips[k].iter()).map(rub).collect();
+            let changes =
+                self.holds[k].changes(&rubs, settled).map_err(|cycle| Rejected::StickSlipCycle {
+                    contact: contact.name.clone(),
+                    nodes: cycle
+                        .pairs
+                        .iter()
+                        .map(|&p| contact.kinematics.secondary()[pairs[p].node])
+                        .collect(),
+                })?;
+            for (p, hold) in changes {
+                (pairs[p].tangential.hold, changed) = (hold, true);
             }
         }
         Ok(changed)

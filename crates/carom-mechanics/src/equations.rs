@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use carom_contact::{Answer, ContactError, Direction, DiscreteGradient, Pair, Pairing, Point, Rows};
+use carom_contact::{Answer, ContactError, Direction, DiscreteGradient, Hold, Pair, Pairing, Point, Rows};
 use carom_time::{Internal, Stage};
 
 use crate::balance::{Forces, contact_weights, known_into, mean_acceleration, residual_into};
@@ -53,8 +53,13 @@ pub(crate) struct Evaluation {
     /// A row per pair of each contact.
     pub rows: Vec<Rows>,
     /// Directions of the contact forces where they are not the gradients of these rows: discrete
-    /// gradients, for active pairs; empty for other contacts.
+    /// gradients, or those of slipping pairs, for active pairs; empty for other contacts.
     pub discrete_gradients: Vec<Rows>,
+    /// H at the middle of the step, with the slip S as gap, for active pairs with friction; empty for other
+    /// contacts.
+    pub slips: Vec<Rows>,
+    /// y_½ = y_s + d/2; empty without friction.
+    pub middle: Vec<f64>,
     /// The interface's response to each row.
     pub answers: Vec<Vec<Answer>>,
     /// Strain energy of the bodies at `y`, or at the averaged positions.
@@ -82,7 +87,7 @@ pub(crate) struct Measure {
     pub residual: f64,
     /// Sum of the norms of its terms.
     pub forces: f64,
-    /// Largest |g| of the active constraints.
+    /// Largest |g| of the active constraints, and |S| of those that stick.
     pub gap: f64,
 }
 
@@ -124,6 +129,8 @@ pub(crate) struct Equations<'a> {
     pub motions: Vec<Prescribed>,
     /// Terms of the balance known from the step's start.
     pub known: Vec<f64>,
+    /// Positions after a free flight from the step's start; empty without friction.
+    pub flight: Vec<f64>,
 }
 
 impl std::fmt::Debug for Model {
@@ -148,6 +155,7 @@ impl<'a> Equations<'a> {
             loads: LoadsAt::default(),
             motions: Vec::new(),
             known: Vec::new(),
+            flight: Self::free_flight(model, state, to - state.time),
         };
         if !model.loads.is_empty() {
             model.loads.at(&model.parts, model.dofs(), time, &mut equations.loads)?;
@@ -285,6 +293,8 @@ impl<'a> Equations<'a> {
             forces,
             rows,
             discrete_gradients,
+            slips,
+            middle,
             answers,
             springs,
             measure,
@@ -296,12 +306,21 @@ impl<'a> Equations<'a> {
         forces.contact.resize(self.model.dofs(), 0.0);
         rows.resize_with(contacts, || Rows::new(self.model.dimension));
         discrete_gradients.resize_with(contacts, || Rows::new(self.model.dimension));
+        slips.resize_with(contacts, || Rows::new(self.model.dimension));
+        forces.friction.clear();
+        middle.clear();
+        if self.model.has_friction() {
+            forces.friction.resize(self.model.dofs(), 0.0);
+            middle.extend(self.state.y.iter().zip(&at.increment).map(|(y, d)| y + 0.5 * d));
+        }
         answers.resize_with(contacts, Vec::new);
         (*springs, measure.gap) = (0.0, 0.0);
         for (k, (contact, pairing)) in self.model.contacts.iter().zip(&mut at.pairings).enumerate() {
             let weight = contact_weights(&self.stage, contact.at_the_end).0;
             let (rows, discrete_gradients, answers) =
                 (&mut rows[k], &mut discrete_gradients[k], &mut answers[k]);
+            let slips = &mut slips[k];
+            slips.clear();
             let direction = contact.interface.direction();
             rows.clear();
             discrete_gradients.clear();
@@ -341,6 +360,25 @@ impl<'a> Equations<'a> {
                         discrete_gradients.gradient_mut(p).copy_from_slice(gradient.gradient());
                     } else {
                         discrete_gradients.push_open();
+                    }
+                }
+                if let Some(coefficient) = contact.friction {
+                    if answer.active {
+                        self.slip_into(k, pair, middle, &at.increment, slips).map_err(failed)?;
+                        let (slip, hold) = (slips.row(p), pair.tangential.hold);
+                        pair.tangential.traction = pair.tangential.of_law(coefficient, pair.lambda);
+                        discrete_gradients.push_row(row);
+                        if hold == Hold::Stick {
+                            slip.add_to(weight * pair.tangential.traction, &mut forces.contact);
+                            measure.gap = measure.gap.max(slip.gap.abs());
+                        } else {
+                            let along = discrete_gradients.gradient_mut(p).iter_mut().zip(slip.gradient);
+                            along.for_each(|(along, h)| *along -= hold.sign() * coefficient * h);
+                        }
+                        slip.add_to(weight * pair.tangential.traction, &mut forces.friction);
+                    } else {
+                        discrete_gradients.push_open();
+                        slips.push_open();
                     }
                 }
                 if answer.active {

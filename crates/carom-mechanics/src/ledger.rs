@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! F̄ = (1−α_f) F_{s+1} + α_f F_s,   Δy = y_{s+1} − y_s                    F̄ of other kernels: the mean of their velocity update, `Stage::mean`
-//! external_work += Δy·F̄_ext (beyond the potential) + Δy_moved·R̄ + Δy/Δt·M J        contact_work += −Δy·F̄_cont
+//! external_work += Δy·F̄_ext (beyond the potential) + Δy_moved·R̄ + Δy/Δt·M J        contact_work += −Δy·F̄_cont, friction_work its part of friction
 //! ```
 //!
 //! R̄ is the mean residual of the balance at prescribed dofs, their reaction force. J = v_{s+1} −
@@ -20,6 +20,7 @@ use carom_time::{Stage, Weights};
 
 use crate::balance::mean_acceleration;
 use crate::equations::{Equations, Evaluation};
+use crate::friction::{each_slip, secondary_friction};
 use crate::model::Model;
 use crate::state::{Means, Previous, State};
 use crate::sums::dot;
@@ -38,9 +39,19 @@ pub(crate) fn add_stage(
     let contact =
         Shares { now: now / stage.weights.contact, start, massless: stage.weights.external.recip() };
     contact.add(model, stage, &solved.forces.contact, &state.f_contact, &mut means.contact);
+    if model.has_friction() {
+        means.friction.resize(model.dofs(), 0.0);
+        contact.add(model, stage, &solved.forces.friction, &state.f_friction, &mut means.friction);
+    }
     for (k, contact) in model.contacts.iter().enumerate() {
         let (now, start) = if contact.at_the_end { (1.0, 0.0) } else { (now, start) };
-        let force = secondary_force(&solved.at.pairings[k].pairs, solved.directions(k).iter());
+        let pairs = &solved.at.pairings[k].pairs;
+        let mut force = secondary_force(pairs, solved.directions(k).iter());
+        if !solved.slips[k].is_empty() {
+            force = secondary_force(pairs, solved.rows[k].iter());
+            let friction = secondary_friction(pairs, solved.slips[k].iter());
+            (0..3).for_each(|i| force[i] += friction[i]);
+        }
         for i in 0..3 {
             means.contact_forces[k][i] += now * force[i] + start * state.contact_forces[k][i];
         }
@@ -121,6 +132,9 @@ fn add_previous(model: &Model, old: f64, before: &Means, means: &mut Means) {
         means.contact[i] += old * before.contact[i];
         means.loads[i] += old * before.loads[i];
     }
+    for i in (0..means.friction.len()).filter(|&i| !model.massless[i]) {
+        means.friction[i] += old * before.friction[i];
+    }
     for (mean, before) in means.contact_forces.iter_mut().zip(&before.contact_forces) {
         (0..3).for_each(|i| mean[i] += old * before[i]);
     }
@@ -181,6 +195,11 @@ pub(crate) fn account(
     let increment = &last.at.increment;
     for (moved, force) in increment.iter().zip(&means.contact) {
         next.ledger.contact_work -= moved * force;
+    }
+    if model.has_friction() {
+        let work = dot(increment, &means.friction);
+        next.ledger.contact_work += work;
+        next.ledger.friction_work -= work;
     }
     // Spring energy is not lost: it is part of the strain energy.
     next.ledger.contact_work += last.springs - next.ledger.springs;
@@ -269,5 +288,15 @@ pub(crate) fn book_contact_forces(model: &Model, state: &mut State) {
             }
         }
         state.contact_forces[k] = force;
+    }
+    if model.has_friction() {
+        let mut friction = vec![[0.0; 3]; model.contacts.len()];
+        each_slip(model, state, |k, p, row| {
+            let (traction, along) = (state.pairs[k][p].tangential.traction, row.normal());
+            (0..3).for_each(|i| friction[k][i] -= traction * along[i]);
+        });
+        for (force, friction) in state.contact_forces.iter_mut().zip(friction) {
+            (0..3).for_each(|i| force[i] += friction[i]);
+        }
     }
 }

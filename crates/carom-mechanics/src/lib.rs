@@ -13,6 +13,7 @@ mod created;
 mod equations;
 mod factor;
 pub mod frequencies;
+mod friction;
 mod grid;
 mod grid_report;
 mod ledger;
@@ -50,6 +51,7 @@ mod watched;
 mod workspace;
 
 pub use audit::{Doubt, audit};
+pub use friction::each_slip;
 pub use grid::Grid;
 pub use grid_report::{Attempt, GridReport, LogEvent};
 pub use ledger::secondary_force;

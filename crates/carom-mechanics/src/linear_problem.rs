@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! [ K  Fᵀ ] [Δy]   [−r]       K = w.mass a' M + w.internal K_int − w.external K_ext + Σ w.contact λ∇F   at the iterate
-//! [ G  −C ] [Δλ] = [−c]       G = ∇g,   F: direction of the forces, G itself or a discrete gradient of g
+//! [ G  −C ] [Δλ] = [−c]       G = ∇g,   F: direction of the forces, G itself, a discrete gradient of g, or ∇g − sμH of a slip
 //! ```
 //!
 //! Each correction is the factor's solution for the current residual. Mixed (`mixing.rs`) they are
@@ -65,6 +65,7 @@ pub(crate) struct LinearProblem {
     /// Size of the last correction, if comparable with the next.
     comparable: Option<f64>,
     rows: Vec<(usize, usize)>,
+    slips: Vec<bool>,
 }
 
 impl LinearProblem {
@@ -91,9 +92,10 @@ impl LinearProblem {
         depth: usize,
         timings: &mut Timings,
     ) -> Result<Correction, Rejected> {
-        if goal.fresh || self.rows != rows.places {
+        if goal.fresh || self.rows != rows.places || self.slips != rows.slips {
             self.restart();
             self.rows.clone_from(&rows.places);
+            self.slips.clone_from(&rows.slips);
         }
         self.begin(equations, now, rows, timings)?;
         let mut total = Correction::default();

@@ -223,8 +223,10 @@ fn advance(
         if length == 1.0 {
             equations.arrive(&mut at.increment);
         }
-        for (&(k, p), change) in rows.places.iter().zip(&correction.multipliers) {
-            at.pairings[k].pairs[p].lambda += length * change;
+        for ((&(k, p), is_slip), change) in rows.places.iter().zip(&rows.slips).zip(&correction.multipliers) {
+            let pair = &mut at.pairings[k].pairs[p];
+            let multiplier = if *is_slip { &mut pair.tangential.traction } else { &mut pair.lambda };
+            *multiplier += length * change;
         }
         equations.evaluate(at, &mut work.spare, &mut work.timings)
     };

@@ -7,13 +7,15 @@
 //!
 //! with all active rows as equalities. Projecting v alone would retain the accelerations of the
 //! impact and does not remove the oscillations (theory.md §5.3). Massless dofs keep their velocity:
-//! they follow the massive side. With a restitution, energy is returned (`restitution.rs`) before
+//! they follow the massive side. With friction only the normal velocities are projected; the forces of
+//! the second system include tractions, in slip those of its own λ (`friction.rs`). With a restitution, energy is returned (`restitution.rs`) before
 //! the accelerations are solved for.
 
 use carom_contact::{Row, Rows};
 
 use crate::active_rows::{measure_all, pressing};
 use crate::constraints::{Constraints, independent_rows};
+use crate::friction::{add_friction, balance_friction, each_slip};
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -56,12 +58,15 @@ pub(crate) fn project(
     take(model, state, before - model.kinetic(&state.v));
     impact.restitute(model, state, &rows, system)?;
 
-    let (forces, bending) = drive(model, state, &gaps, &rows);
-    system.factor.solve(model, &forces, &bending, &mut change, &mut multipliers)?;
-    take_accelerations(model, state, &change);
-    for (&(k, p), lambda) in places.iter().zip(&multipliers) {
-        state.pairs[k][p].lambda = *lambda;
-    }
+    balance_friction(model, state, |state| {
+        let (forces, bending) = drive(model, state, &gaps, &rows);
+        system.factor.solve(model, &forces, &bending, &mut change, &mut multipliers)?;
+        take_accelerations(model, state, &change);
+        for (&(k, p), lambda) in places.iter().zip(&multipliers) {
+            state.pairs[k][p].lambda = *lambda;
+        }
+        Ok(())
+    })?;
 
     averaged_contact_into(model, state, &gaps);
     book_contact_forces(model, state);
@@ -89,6 +94,7 @@ pub(crate) fn drive(
     for (k, p) in pressing(state).filter(|place| !constraints.places.contains(place)) {
         gaps[k].row(p).add_to(state.pairs[k][p].lambda, &mut carried);
     }
+    add_friction(model, state, &mut carried);
     let force = |i: usize| model.gravity[i] + state.f_external[i] - state.f_internal[i] - carried[i];
     let forces = (0..dofs).map(|i| if model.massless[i] { 0.0 } else { force(i) }).collect();
     let mut second = Vec::new();
@@ -116,6 +122,17 @@ pub(crate) fn averaged_contact_into(model: &Model, state: &mut State, rows: &[Ro
         for (pair, row) in pairs[k].iter().zip(rows[k].iter()).filter(|(pair, _)| pair.active) {
             row.add_to(pair.lambda, f_contact);
         }
+    }
+    state.f_friction.clear();
+    if model.has_friction() {
+        let mut friction = vec![0.0; model.dofs()];
+        each_slip(model, state, |k, p, row| {
+            if !model.contacts[k].at_the_end {
+                row.add_to(state.pairs[k][p].tangential.traction, &mut friction);
+            }
+        });
+        state.f_contact.iter_mut().zip(&friction).for_each(|(force, part)| *force += part);
+        state.f_friction = friction;
     }
 }
 

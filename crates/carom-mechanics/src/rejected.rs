@@ -45,6 +45,19 @@ pub enum Rejected {
         /// Global numbers of the nodes.
         nodes: Vec<usize>,
     },
+    /// The states of friction return to those visited before.
+    #[error("contact \"{contact}\": friction does not settle: nodes {nodes:?} stick and slip in turn")]
+    StickSlipCycle {
+        /// Contact.
+        contact: String,
+        /// Global numbers of the nodes.
+        nodes: Vec<usize>,
+    },
+    /// Tractions of friction and multipliers at a start or a projection do not converge.
+    #[error(
+        "friction at the start or at a projection does not converge: it is too large for the mass near the contact"
+    )]
+    NoFrictionBalance,
     /// The linear system could not be solved.
     #[error(transparent)]
     Linear(#[from] LinearError),
@@ -157,6 +170,8 @@ impl Rejected {
             Self::Contact { .. } => "contact-geometry",
             Self::NoConvergence { .. } | Self::Unsettled { .. } => "no-convergence",
             Self::Cycle { .. } => "active-set-cycle",
+            Self::StickSlipCycle { .. } => "stick-slip-cycle",
+            Self::NoFrictionBalance => "friction-balance",
             Self::Linear(_) => "linear-solver",
             Self::Overconstrained { .. } => "overconstrained-contact",
             Self::NegativeMass => "negative-mass",

@@ -12,6 +12,7 @@ use carom_contact::{Pair, Point, Rows};
 
 use crate::active_rows::{measure_all, pressing};
 use crate::constraints::{Constraints, independent_rows};
+use crate::friction::balance_friction;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::{LoadsAt, Model};
 use crate::persistency::{averaged_contact_into, drive, take_accelerations};
@@ -130,12 +131,14 @@ fn accelerate(model: &Model, state: &mut State, gaps: &[Rows], system: &mut Syst
     places.retain(asks);
     let rows = Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), gaps[k].row(p))));
     system.factor_mass(model, &rows)?;
-    let (forces, bending) = drive(model, state, gaps, &rows);
     let (mut solved, mut multipliers) = (vec![0.0; model.dofs()], Vec::new());
-    system.factor.solve(model, &forces, &bending, &mut solved, &mut multipliers)?;
-    take_accelerations(model, state, &solved);
-    for (&(k, p), lambda) in places.iter().zip(&multipliers) {
-        state.pairs[k][p].lambda = *lambda;
-    }
-    Ok(())
+    balance_friction(model, state, |state| {
+        let (forces, bending) = drive(model, state, gaps, &rows);
+        system.factor.solve(model, &forces, &bending, &mut solved, &mut multipliers)?;
+        take_accelerations(model, state, &solved);
+        for (&(k, p), lambda) in places.iter().zip(&multipliers) {
+            state.pairs[k][p].lambda = *lambda;
+        }
+        Ok(())
+    })
 }

@@ -27,6 +27,8 @@ pub struct Ledger {
     pub open: f64,
     /// Work of the contact forces on the bodies, and the jumps of kinetic energy at activation.
     pub contact_work: f64,
+    /// Work of friction on the bodies.
+    pub friction_work: f64,
     /// Energy that conserving contact with a restitution has still to return; negative if it created
     /// some (`restitution.rs`).
     pub owed: f64,
@@ -47,7 +49,7 @@ impl Ledger {
 
     /// Energy dissipated by the scheme; negative if created.
     pub fn dissipation(&self) -> f64 {
-        self.external_work + self.contact_work - (self.total() - self.total_at_start)
+        self.external_work + self.contact_work + self.friction_work - (self.total() - self.total_at_start)
     }
 
     /// Change of the energy since the start beyond the work of loads and supports.
@@ -125,6 +127,8 @@ pub struct Previous {
 pub struct Means {
     /// Contact forces.
     pub contact: Vec<f64>,
+    /// The part of friction in them; empty without friction.
+    pub friction: Vec<f64>,
     /// Loads without gravity.
     pub loads: Vec<f64>,
     /// Forces of moving supports; zero at other dofs.
@@ -149,6 +153,7 @@ impl Means {
             mean.clear();
             mean.resize(dofs, 0.0);
         }
+        self.friction.clear();
         self.contact_forces.clear();
         self.contact_forces.resize(contacts, [0.0; 3]);
     }
@@ -191,6 +196,8 @@ pub struct State {
     pub f_external: Vec<f64>,
     /// Σ Gᵀλ of the contacts with averaged forces, for the next step.
     pub f_contact: Vec<f64>,
+    /// The part of friction in it; empty without friction.
+    pub f_friction: Vec<f64>,
     /// Force on the secondary side of each contact.
     pub contact_forces: Vec<[f64; 3]>,
     /// Impulse of each contact on its secondary side since the start, projections included.
@@ -273,6 +280,7 @@ impl State {
         for (to, from) in [y, v, a, f_internal, f_external, f_contact].into_iter().zip(from) {
             to.clone_from(from);
         }
+        self.f_friction.clone_from(&other.f_friction);
         contact_forces.clone_from(&other.contact_forces);
         self.impulses.clone_from(&other.impulses);
         self.carried.copy_from(&other.carried);

@@ -1,6 +1,6 @@
 //! The matrix-free tangent of Newton's linear problem against differences of the whole residual.
 
-use carom_contact::ConservingUnilateral;
+use carom_contact::{ConservingUnilateral, Hold};
 use carom_formula::Formula;
 use carom_solid::{Element, Law, generate};
 use carom_time::schemes::energy_momentum::EnergyMomentum;
@@ -27,9 +27,13 @@ struct Tangent<'a> {
 impl<'a> Tangent<'a> {
     /// For the pairs of the state, with irregular increments of a given size.
     fn new(equations: &'a Equations<'a>, size: f64) -> Self {
+        Self::from(equations, Iterate::at_start(equations.state), size)
+    }
+
+    /// The same for other pairs.
+    fn from(equations: &'a Equations<'a>, mut at: Iterate, size: f64) -> Self {
         let model = equations.model;
         let mut work = Workspace::new(model);
-        let mut at = Iterate::at_start(equations.state);
         model.free.iter().for_each(|&dof| at.increment[dof] = size * wave(dof, 0.3));
         let now = equations.evaluate(at, &mut work.spare, &mut work.timings).unwrap();
         let rows = Constraints::of(equations, &now);
@@ -58,12 +62,16 @@ impl<'a> Tangent<'a> {
         let (free, mut at) = (&equations.model.free, at.clone());
         let (dofs, multipliers) = u.split_at(free.len());
         free.iter().zip(dofs).for_each(|(&dof, u)| at.increment[dof] += e * u);
-        for (&(k, p), u) in rows.places.iter().zip(multipliers) {
-            at.pairings[k].pairs[p].lambda += e * u;
+        for ((&(k, p), is_slip), u) in rows.places.iter().zip(&rows.slips).zip(multipliers) {
+            let pair = &mut at.pairings[k].pairs[p];
+            *(if *is_slip { &mut pair.tangential.traction } else { &mut pair.lambda }) += e * u;
         }
         let now = equations.evaluate(at, &mut work.spare, &mut work.timings).unwrap();
-        let gaps =
-            rows.places.iter().zip(&rows.weights).map(|(&(k, p), weight)| weight * now.rows[k].row(p).gap);
+        let gap = |(&(k, p), is_slip): (&(usize, usize), &bool)| {
+            if *is_slip { now.slips[k].row(p).gap } else { now.rows[k].row(p).gap }
+        };
+        let gaps = rows.places.iter().zip(&rows.slips).map(gap);
+        let gaps = gaps.zip(&rows.weights).map(|(gap, weight)| weight * gap);
         free.iter().map(|&dof| now.residual[dof]).chain(gaps).collect()
     }
 
@@ -146,6 +154,41 @@ fn the_whole_tangent_with_a_conserving_contact_is_the_derivative_of_the_residual
     let ku = tangent.product(&u);
     for (i, (numeric, k)) in tangent.derivative(&u, 2.5e-5).iter().zip(&ku).enumerate() {
         assert!((numeric - k).abs() < 1e-6 * largest(&ku), "{i}: {numeric} {k}");
+    }
+}
+
+/// With nodes that stick and others that slip, of which some closed in this step; the cone follows the
+/// pressure, and the matrix is not symmetric.
+#[test]
+fn the_whole_tangent_with_friction_is_the_derivative_of_the_residual() {
+    for scheme in [Scheme::chung_hulbert(0.6).unwrap(), Scheme::hht(0.2).unwrap()] {
+        let mut model = strike();
+        model.contacts[0].friction = Some(0.4);
+        let mut sim = simulation(model, scheme, 2e-3);
+        while sim.state().time < 0.1 {
+            sim.advance(&mut GridReport::default()).unwrap();
+        }
+        let mut state = sim.state().clone();
+        let holds = [Hold::Stick, Hold::Forward, Hold::Backward, Hold::Stick];
+        let closed = state.pairs[0].iter_mut().filter(|pair| pair.active);
+        for (pair, hold) in closed.zip(holds.iter().cycle()) {
+            (pair.tangential.hold, pair.tangential.traction) = (*hold, 0.1 * pair.lambda);
+        }
+        let at = Iterate::at_start(&state);
+        // These two were open, and would fly through the other side.
+        state.v.iter_mut().skip(1).step_by(2).for_each(|v| *v -= 0.5);
+        state.y.iter_mut().skip(1).step_by(2).take(state.v.len() / 8).for_each(|y| *y += 1e-5);
+        let closed = state.pairs[0].iter_mut().filter(|pair| pair.active);
+        closed.take(2).for_each(|pair| pair.active = false);
+        let equations = equations(sim.model(), &state, &scheme, sim.dt(), state.time + sim.dt());
+        let mut tangent = Tangent::from(&equations, at, 1e-3);
+        let (sticks, rows) = (tangent.rows.slips.iter().filter(|slip| **slip).count(), tangent.rows.len());
+        assert!(sticks >= 2 && rows - sticks > sticks, "{sticks} {rows}");
+        let u = tangent.direction(0.1);
+        let ku = tangent.product(&u);
+        for (i, (numeric, k)) in tangent.derivative(&u, 2.5e-5).iter().zip(&ku).enumerate() {
+            assert!((numeric - k).abs() < 1e-6 * largest(&ku), "{i}: {numeric} {k}");
+        }
     }
 }
 

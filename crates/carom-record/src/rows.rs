@@ -36,6 +36,13 @@ pub struct ContactRow<'a> {
     pub pressure: f64,
     /// Outward unit normal of the primary: the force on the node is −multiplier · normal.
     pub normal: [f64; 3],
+    /// `stick` or `slip`; `none` without friction.
+    pub friction: Cow<'a, str>,
+    /// Tangential traction: the force on the node is −traction · J normal, with J a quarter turn
+    /// counter-clockwise; on a facet of a body, along its tangent with the same sense as its nodes.
+    pub traction: f64,
+    /// Slip since the node came into contact, in the direction of the traction.
+    pub slip: f64,
 }
 
 /// Header of `contact.csv` for this number of axes.
@@ -46,6 +53,7 @@ pub(crate) fn contact_columns(axes: usize) -> Vec<&'static str> {
         places,
         &["facet", "xi", "gap", "multiplier", "pressure"],
         normals,
+        &["friction", "traction", "slip"],
     ]
     .concat()
 }
@@ -130,6 +138,9 @@ impl Table {
         self.integer(row.facet)?;
         [row.xi, row.gap, row.multiplier, row.pressure].iter().try_for_each(|x| self.number(*x))?;
         row.normal[..axes].iter().try_for_each(|x| self.number(*x))?;
+        self.text(&row.friction)?;
+        self.number(row.traction)?;
+        self.number(row.slip)?;
         self.end_row()
     }
 

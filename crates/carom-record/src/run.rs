@@ -197,6 +197,9 @@ fn contact(path: &Path, axes: usize) -> Result<Vec<ContactRow<'static>>, RecordE
             multiplier: real(after + 3)?,
             pressure: real(after + 4)?,
             normal: vector(after + 5)?,
+            friction: record.get(after + 5 + axes).unwrap_or_default().to_string().into(),
+            traction: real(after + 6 + axes)?,
+            slip: real(after + 7 + axes)?,
         });
         Ok(())
     })?;

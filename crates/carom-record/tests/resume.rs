@@ -57,6 +57,9 @@ fn record(writer: &mut RunWriter, step: u64) -> Result<(), RecordError> {
             multiplier,
             pressure: f64::NAN,
             normal: [0.6, 0.8, 0.0],
+            friction: "none".into(),
+            traction: 0.0,
+            slip: 0.0,
         };
         writer.contact(&row)?;
     }
@@ -320,6 +323,9 @@ fn what_is_written_is_read_back() {
         multiplier: -7.5,
         pressure: 75.0,
         normal: [-0.0, 1.0, 0.0],
+        friction: "none".into(),
+        traction: 0.0,
+        slip: 0.0,
     };
     writer.contact(&row).unwrap();
     let event = Event::new(3, 0.1, "cycle", "line\nbreak").with("nodes", vec![1, 2]);

@@ -171,13 +171,14 @@ fn energy(run: &Run) -> Option<Figure> {
         ("dissipation", "dissipation"),
         ("external_work", "external work"),
         ("contact_work", "contact work"),
+        ("friction_work", "friction work"),
     ];
     let panels = vec![
         panel("energy", unit, 200.0, curves(run, &energies, size)),
         panel("work, dissipation", unit, 150.0, curves(run, &works, 1e-3 * size)),
     ];
     let caption = "Energy balance. Top: energies. Bottom: accumulated work and dissipation, which is \
-                   external work + contact work − change of the total energy; where it is negative, energy \
+                   external work + contact work + friction work − change of the total energy; where it is negative, energy \
                    was created. Quantities that remain zero are omitted. Data: `history.csv`, columns of the \
                    same names.";
     Some(Figure { name: "energy", caption: caption.into(), svg: chart(run, "Energy balance", panels)? })

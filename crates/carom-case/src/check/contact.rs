@@ -166,6 +166,7 @@ impl Check<'_> {
             if !earlier().any(|other| other.entry == contact.entry) {
                 self.law(contact);
                 self.frozen_point(contact);
+                self.friction(contact);
             }
             let secondary = self.side(&contact.secondary, path("secondary"));
             let primary = match &contact.primary {

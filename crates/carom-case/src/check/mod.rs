@@ -2,6 +2,7 @@
 
 mod contact;
 mod expect;
+mod friction;
 mod loads;
 mod memory;
 mod restitution;

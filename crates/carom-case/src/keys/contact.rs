@@ -80,6 +80,14 @@ pub(super) const CONTACT: Table = Table {
         )
         .default("\"refuse\""),
         key(
+            "mu",
+            Number(NOT_NEGATIVE),
+            "Coefficient of Coulomb friction μ, for the slip of the secondary side on the primary one: a node sticks while its tangential force is \
+             less than μ times its normal force, and otherwise slips against exactly this force. 0: no friction. Dimension 2; rigid obstacles that do \
+             not turn and sides of bodies; implicit schemes except energy-momentum; multipliers.",
+        )
+        .default("0.0"),
+        key(
             "restitution",
             Number(RESTITUTION),
             "Coefficient of restitution e: Newton's, for contact laws on velocities; with energy-momentum and multipliers, e² is the fraction of the \
@@ -87,7 +95,7 @@ pub(super) const CONTACT: Table = Table {
         )
         .default("0.0"),
     ],
-    later: &["passes", "normals", "friction"],
+    later: &["passes", "normals"],
 };
 
 const RESTITUTION: Range = Range { low: Some((0.0, true)), high: Some((1.0, true)) };

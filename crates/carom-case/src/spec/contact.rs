@@ -43,6 +43,9 @@ pub struct ContactSpec {
     /// What happens to an overlap of the bodies at the start.
     #[serde(default)]
     pub overlap: Overlap,
+    /// Coefficient of friction μ ≥ 0.
+    #[serde(default)]
+    pub mu: f64,
     /// Coefficient of restitution e, 0 … 1: Newton's, for laws on velocities; for a constraint that
     /// conserves, e² is the share of the energy taken that is returned.
     pub restitution: f64,

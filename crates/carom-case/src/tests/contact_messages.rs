@@ -170,3 +170,24 @@ fn pairs_are_contacts_once() {
     let message = shown(&format!("{IMPACT}{twice}"), &[]);
     assert!(message.contains("this pair of sides is already a contact"), "{message}");
 }
+
+/// What has no friction says so, and never computes without.
+#[test]
+fn friction_is_refused_where_it_is_not_built() {
+    let with = "[[contact]]\nmu = 0.3";
+    let cases: &[(&str, &str)] = &[
+        ("time.scheme={ kind = \"energy-momentum\" }", "with scheme `energy-momentum`"),
+        ("time.scheme={ kind = \"moreau-jean\", theta = 0.5 }", "with scheme `moreau-jean`"),
+        ("time.scheme={ kind = \"central-difference\" }", "with scheme `central-difference`"),
+        ("contact.strike.enforcement=\"penalty\"", "with a penalty"),
+        ("contact.strike.law=\"predictor\"", "with law = \"predictor\""),
+        ("contact.strike.detection=\"trajectory\"", "with this contact point"),
+        ("body.cylinder.mass=\"redistributed\"", "with redistributed mass"),
+    ];
+    let text = IMPACT.replacen("[[contact]]", with, 1);
+    assert!(resolved(&text, &[]).is_ok());
+    for (set, what) in cases {
+        let message = shown(&text, &[*set]);
+        assert!(message.contains(&format!("mu = 0.3 cannot be used {what}")), "{set}:\n{message}");
+    }
+}

@@ -190,4 +190,18 @@ impl Kinematics for BothSides {
         let (direction, node) = self.direction(pair.node);
         direction.curvature_into(&Pair { node, ..*pair }, y, curvature);
     }
+
+    fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        let (direction, node) = self.direction(pair.node);
+        direction.slip(&Pair { node, ..*pair }, y, rows)?;
+        if node != pair.node {
+            rows.reverse_last();
+        }
+        Ok(())
+    }
+
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], matrix: &mut [f64]) {
+        let (direction, node) = self.direction(pair.node);
+        direction.slip_derivative_into(&Pair { node, ..*pair }, y, matrix);
+    }
 }

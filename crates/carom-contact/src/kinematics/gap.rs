@@ -11,6 +11,14 @@
 //! a = J², and τ = d·t/J² is the slip. Then −τ T_n is the extra term d·∂n/∂yᵅ of eqs. (9) and (11);
 //! it moves the force to the point of the line below the node, so that moments are balanced.
 //!
+//! The slip at the closest point has the row
+//!
+//! ```text
+//! H = (N_t + g T_n)/J,      ∂ξ/∂y = J H/a
+//! ```
+//!
+//! by the second of which rigid motions have none; the node's part has the length 1.
+//!
 //! For a point n = ±1, the outward direction, and ∇²g = 0.
 
 use carom_algebra::{Mat, Vector};
@@ -57,6 +65,46 @@ impl Gap {
     pub(crate) fn gradient(&self, count: usize) -> impl Iterator<Item = Vector<2>> {
         let of_facet = (0..count).map(|k| self.at.normal * -self.weight(k));
         std::iter::once(self.at.normal).chain(of_facet)
+    }
+
+    /// H of the node and of `count` nodes of the facet.
+    pub(crate) fn slip(&self, count: usize) -> impl Iterator<Item = Vector<2>> {
+        let FacetPoint { tangent, normal, measure, .. } = self.at;
+        let along = tangent * measure.recip();
+        let of_facet = move |k: usize| {
+            along * -self.shape.values[k] + normal * (self.distance * self.shape.first[k] / measure)
+        };
+        std::iter::once(along).chain((0..count).map(of_facet))
+    }
+
+    /// ∂H/∂y of the node and of `count` nodes of the facet in the plane: overwrites the first
+    /// (2 + 2 `count`)² entries, row-major.
+    pub(crate) fn slip_derivative_into(&self, count: usize, matrix: &mut [f64]) {
+        let FacetPoint { tangent: t, normal: n, measure: j, second, .. } = self.at;
+        let (gap, along, size) = (self.distance, t * j.recip(), 2 * (1 + count));
+        // φ, φ' and φ'' of the facet's nodes; those of the node itself are −1, 0 and 0.
+        let of = |p: usize, values: &[f64; 4], own: f64| if p == 0 { own } else { values[p - 1] };
+        let phi = |p: usize| of(p, &self.shape.values, -1.0);
+        let first = |p: usize| of(p, &self.shape.first, 0.0);
+        for q in 0..=count {
+            for k in 0..2 {
+                // Changes of ξ, of the direction, of J and of the gap with one component of one node.
+                let xi = (-phi(q) * t.0[k] + gap * first(q) * n.0[k]) / self.a;
+                let turn = (first(q) * n.0[k] + self.kappa * xi) / j;
+                let longer = first(q) * along.0[k] + along.dot(&second) * xi;
+                let opening = -phi(q) * n.0[k];
+                let (along_changed, normal_changed) = (n * turn, along * -turn);
+                let share_changed = opening / j - gap * longer / (j * j);
+                for p in 0..=count {
+                    let changed = along * (-first(p) * xi)
+                        + along_changed * -phi(p)
+                        + n * (share_changed * first(p) + gap / j * of(p, &self.shape.second, 0.0) * xi)
+                        + normal_changed * (gap / j * first(p));
+                    matrix[2 * p * size + 2 * q + k] = changed.0[0];
+                    matrix[(2 * p + 1) * size + 2 * q + k] = changed.0[1];
+                }
+            }
+        }
     }
 
     /// ∂²g/∂y∂y of the node and of `count` nodes of the facet, `d` components each: overwrites the

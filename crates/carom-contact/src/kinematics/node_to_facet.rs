@@ -397,4 +397,20 @@ impl Kinematics for NodeToFacet {
             curvature,
         );
     }
+
+    fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        let (node, facet) = (self.secondary[pair.node], self.primary.facet(pair.facet));
+        let gap = self.gap_of(pair, self.places(y));
+        if gap.a <= 0.0 || !gap.a.is_finite() {
+            return Err(ContactError::Focal { node, facet: pair.facet, xi: pair.xi, a: gap.a });
+        }
+        let nodes = std::iter::once(&node).chain(facet.nodes);
+        rows.push(0.0, nodes.zip(gap.slip(facet.nodes.len())).map(|(&n, slope)| (n, slope.0)));
+        Ok(())
+    }
+
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], matrix: &mut [f64]) {
+        let facet = self.primary.facet(pair.facet);
+        self.gap_of(pair, self.places(y)).slip_derivative_into(facet.nodes.len(), matrix);
+    }
 }

@@ -7,6 +7,9 @@
 //! ∂²g/∂x² = R H Rᵀ = ∂²g/∂c² = −∂²g/∂x∂c     ∂²g/∂x∂θ = R (Jn − H Js) = −∂²g/∂c∂θ     ∂²g/∂θ² = Js·H Js − n·s
 //! ```
 //!
+//! The slip of an obstacle that does not turn has the row ∂S/∂x = τ = Jn = −∂S/∂c, with ∂τ/∂x = −h n τᵀ
+//! where H = h (1 − n nᵀ).
+//!
 //! The angle is the first component of a node of its own, as the arc θℓ, a length like every other
 //! unknown; the force on it is moment/ℓ. So motion of an obstacle is motion of nodes: supports
 //! prescribe it, masses make it free, and reactions and works are theirs.
@@ -215,6 +218,34 @@ impl Kinematics for NodeToObstacle {
             curvature[angle * size + p * d + i] = entry;
         }
         curvature[angle * size + angle] = (dot(arm_turned, bent) - dot(normal, arm)) / (length * length);
+    }
+
+    fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        let node = self.secondary[pair.node];
+        let along = turned(self.near(pair.facet, self.local(node, y).at, node)?.normal);
+        match &self.carrier {
+            None => rows.push(0.0, [(node, along)]),
+            Some(Carrier { node: carrier, .. }) => {
+                rows.push(0.0, [(node, along), (*carrier, along.map(|x| -x))]);
+            }
+        }
+        Ok(())
+    }
+
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], matrix: &mut [f64]) {
+        let (d, blocks) = (self.dimension, self.stencil());
+        let size = d * blocks;
+        let matrix = &mut matrix[..size * size];
+        matrix.fill(0.0);
+        let at = self.local(self.secondary[pair.node], y).at;
+        let Some(Near { normal, bend, .. }) = self.shape.near(pair.facet, at) else { return };
+        let along = turned(normal);
+        let sign = |block: usize| if block == 0 { 1.0 } else { -1.0 };
+        for (p, q) in (0..blocks).flat_map(|p| (0..blocks).map(move |q| (p, q))) {
+            for (i, k) in (0..d).flat_map(|i| (0..d).map(move |k| (i, k))) {
+                matrix[(p * d + i) * size + q * d + k] = -sign(p) * sign(q) * bend * normal[i] * along[k];
+            }
+        }
     }
 }
 

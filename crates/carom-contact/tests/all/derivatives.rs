@@ -25,7 +25,7 @@ fn scene(shape: FacetShape, point: ContactPoint, height: f64) -> (NodeToFacet, V
 }
 
 fn pair() -> Pair {
-    Pair { node: 0, facet: 0, xi: 0.1, active: true, lambda: -3.0, start: None }
+    Pair { active: true, lambda: -3.0, ..Pair::open(0, 0, 0.1) }
 }
 
 /// The row of the scene's pair, and the pair at its contact point.

@@ -6,4 +6,5 @@ mod derivatives;
 mod discrete_gradient;
 mod kinks;
 mod obstacles;
+mod slip;
 mod update_facets;

@@ -22,6 +22,8 @@ pub struct Contact {
     /// Allowed depth, over the length of a facet, of nodes that the contact constrains, and of other
     /// nodes of its sides: a step in which a node is deeper is rejected.
     pub depths: [f64; 2],
+    /// Coefficient of friction μ > 0.
+    pub friction: Option<f64>,
     /// Whether penetration by the predictor y + Δt v is prevented too.
     pub predictor: bool,
     /// Nodes of both sides and of the carrier of a rigid primary, ascending.

@@ -8,6 +8,7 @@ use super::{Accepted, StepReport, Stepper, difference};
 use crate::carried;
 use crate::contact_update::{GAP_TOLERANCE, search, start_step};
 use crate::equations::{Equations, Iterate};
+use crate::friction::take_slips;
 use crate::ledger;
 use crate::model::{Contact, LoadsAt, Model};
 use crate::newton::solve_stage;
@@ -103,6 +104,7 @@ impl Stepper for Implicit {
         }
         take_motions(&equations, &mut next);
         next.take_pairs(&solved.at.pairings);
+        take_slips(model, &mut next, &solved.slips);
         next.f_external.clone_from(&solved.forces.loads);
         next.f_internal.clone_from(&solved.forces.internal);
         let mut strain = solved.strain;

@@ -134,6 +134,7 @@ pub(super) fn contacts(
                 (Enforcement::Multiplier, Some(ContactLaw::Position | ContactLaw::Predictor)) => [0.01, 0.1],
                 _ => [0.25; 2],
             },
+            friction: (spec.mu > 0.0).then_some(spec.mu),
             predictor: spec.law == Some(ContactLaw::Predictor),
             kinematics,
             // A mass that is thrown is a body; a prescribed obstacle is not.

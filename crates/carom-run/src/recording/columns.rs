@@ -4,7 +4,7 @@
 use carom_case::Case;
 use carom_contact::Rows;
 use carom_mechanics::model::{BodyInstance, Model, Quantity};
-use carom_mechanics::{Depths, GridReport, State};
+use carom_mechanics::{Depths, GridReport, State, each_slip};
 use carom_record::Column;
 
 use serde::{Deserialize, Serialize};
@@ -30,10 +30,14 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
         ("potential", "potential of constant conservative loads"),
         ("total", "kinetic + strain + potential"),
         ("external_work", "work of the loads without potential and of the supports, cumulative"),
-        ("contact_work", "work of the contact forces on the bodies and of projections, cumulative"),
+        (
+            "contact_work",
+            "work of the contact forces without friction on the bodies and of projections, cumulative",
+        ),
+        ("friction_work", "work of friction on the bodies, cumulative"),
         (
             "dissipation",
-            "external_work + contact_work − (total − total at the start); negative if energy was created",
+            "external_work + contact_work + friction_work − (total − total at the start); negative if energy was created",
         ),
         ("energy_created", "largest rise of total − external_work above its running minimum so far"),
         (
@@ -200,7 +204,7 @@ pub(super) fn row(model: &Model, state: &State, dt: f64, since: &Since, weights:
     row.clear();
     row.extend([state.step as f64, state.time, dt]);
     row.extend([ledger.kinetic, ledger.strain, ledger.potential, ledger.total()]);
-    row.extend([ledger.external_work, ledger.contact_work, ledger.dissipation()]);
+    row.extend([ledger.external_work, ledger.contact_work, ledger.friction_work, ledger.dissipation()]);
     row.extend([ledger.created.most(), ledger.scale()]);
 
     let mut momentum = vec![0.0; state.v.len()];
@@ -285,5 +289,6 @@ fn reactions(model: &Model, state: &State) -> Vec<f64> {
             }
         }
     }
+    each_slip(model, state, |k, p, row| row.add_to(state.pairs[k][p].tangential.traction, &mut force));
     force
 }

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use carom_case::Case;
+use carom_contact::Hold;
 use carom_mechanics::{Attempt, GridReport, Simulation, State, penetration};
 use carom_record::{ContactRow, Event, Manifest, Run, RunWriter, Source, Status, Stop};
 use cpu_time::{ProcessTime, ThreadTime};
@@ -320,6 +321,14 @@ impl<'a> Session<'a> {
                     multiplier: pair.lambda,
                     pressure: -of_node[pair.node] / weights[pair.node],
                     normal,
+                    friction: match (contact.friction, pair.tangential.hold) {
+                        (None, _) => "none",
+                        (_, Hold::Stick) => "stick",
+                        (_, Hold::Forward | Hold::Backward) => "slip",
+                    }
+                    .into(),
+                    traction: pair.tangential.traction,
+                    slip: pair.tangential.slip,
                 })?;
             }
         }

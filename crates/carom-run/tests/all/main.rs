@@ -8,6 +8,7 @@ mod common;
 mod conserving_contact;
 mod energy_momentum;
 mod frequencies;
+mod friction;
 mod impact;
 mod kernels;
 mod loads;

@@ -1,0 +1,219 @@
+//! Coulomb's law in the plane, with exact projection onto the cone:
+//!
+//! ```text
+//! |q| ≤ μ|λ|,    S = 0 where |q| < μ|λ|,    q = μ|λ| S/|S| where S ≠ 0
+//! ```
+//!
+//! S is the slip of a step and q the tangential traction: the force of the pair is λ∇g + qH with
+//! H = ∂S/∂y, and q S ≥ 0 is lost. A pair that slips has q = −sμλ, so that only the direction of its
+//! force, λ(∇g − sμH), differs from that without friction and the cone follows the pressure within
+//! Newton's method. A pair that sticks is a constraint S = 0 with the multiplier q.
+//!
+//! States follow from the iterates by a primal–dual active set over {open, stick, slip ±}: a stick
+//! whose traction leaves the cone slips in the direction of the traction, a slip in the wrong
+//! direction sticks. A recurring set first makes changes wait for convergence, then allows one at a
+//! time, as in `active_set.rs`.
+
+use std::collections::HashSet;
+
+use serde::{Deserialize, Serialize};
+
+use crate::active_set::Cycle;
+
+/// Excess of a traction over the cone, relative to the largest cone, that still sticks.
+const EDGE: f64 = 1e-10;
+
+/// Whether a closed pair sticks, or in which direction it slips.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Hold {
+    /// S = 0.
+    #[default]
+    Stick,
+    /// S ≥ 0.
+    Forward,
+    /// S ≤ 0.
+    Backward,
+}
+
+impl Hold {
+    /// The state in which a closing pair starts, from its slip in the iterate: the projection onto the
+    /// cone of a pressure that is still zero.
+    pub fn of(slip: f64, tolerance: f64) -> Self {
+        match slip {
+            s if s > tolerance => Self::Forward,
+            s if s < -tolerance => Self::Backward,
+            _ => Self::Stick,
+        }
+    }
+
+    /// s: the sign of the slip; 0 in stick.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Stick => 0.0,
+            Self::Forward => 1.0,
+            Self::Backward => -1.0,
+        }
+    }
+}
+
+/// The tangential state of a pair; of no meaning without friction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Tangential {
+    /// Stick or slip.
+    pub hold: Hold,
+    /// Traction q.
+    pub traction: f64,
+    /// Slip since the pair closed.
+    pub slip: f64,
+}
+
+impl Tangential {
+    /// The traction of a closed pair with a multiplier: −sμλ in slip, its own multiplier in stick.
+    pub fn of_law(&self, coefficient: f64, lambda: f64) -> f64 {
+        match self.hold {
+            Hold::Stick => self.traction,
+            slips => -slips.sign() * coefficient * lambda,
+        }
+    }
+}
+
+/// A closed pair as the law sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rub {
+    /// Its state.
+    pub hold: Hold,
+    /// Traction q.
+    pub traction: f64,
+    /// Slip S of the step.
+    pub slip: f64,
+    /// Radius μ|λ| of the cone.
+    pub cone: f64,
+}
+
+/// How often states may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Caution {
+    EveryIteration,
+    AfterConvergence,
+    OneAtATime,
+}
+
+/// History of the states visited in one step.
+#[derive(Clone, Debug)]
+pub struct StickSlip {
+    visited: HashSet<Vec<Option<Hold>>>,
+    caution: Caution,
+    slip_tolerance: f64,
+}
+
+impl StickSlip {
+    /// `slip_tolerance`: slip in the wrong direction that does not count. `within`: changes are
+    /// allowed before Newton has converged.
+    pub fn new(slip_tolerance: f64, within: bool) -> Self {
+        let caution = if within { Caution::EveryIteration } else { Caution::AfterConvergence };
+        Self { visited: HashSet::new(), caution, slip_tolerance }
+    }
+
+    /// Pairs to change, with their new states; none for an open pair, or one that has no traction yet.
+    ///
+    /// # Errors
+    /// If the states return to those visited before in spite of all restrictions.
+    pub fn changes(&mut self, pairs: &[Option<Rub>], converged: bool) -> Result<Vec<(usize, Hold)>, Cycle> {
+        if self.caution > Caution::EveryIteration && !converged {
+            return Ok(Vec::new());
+        }
+        let widest = pairs.iter().flatten().map(|pair| pair.cone).fold(0.0, f64::max);
+        let mut wrong: Vec<(usize, Hold, f64)> = Vec::new();
+        for (p, pair) in pairs.iter().enumerate() {
+            let Some(pair) = pair else { continue };
+            let backwards = -pair.hold.sign() * pair.slip;
+            if pair.hold == Hold::Stick {
+                let excess = pair.traction.abs() - pair.cone;
+                if excess > EDGE * widest {
+                    let hold = if pair.traction > 0.0 { Hold::Forward } else { Hold::Backward };
+                    wrong.push((p, hold, excess / widest));
+                }
+            } else if backwards > self.slip_tolerance {
+                wrong.push((p, Hold::Stick, backwards));
+            }
+        }
+        if wrong.is_empty() {
+            return Ok(Vec::new());
+        }
+        let after = |wrong: &[(usize, Hold, f64)]| -> Vec<Option<Hold>> {
+            let mut states: Vec<_> = pairs.iter().map(|pair| pair.map(|pair| pair.hold)).collect();
+            wrong.iter().for_each(|&(p, hold, _)| states[p] = Some(hold));
+            states
+        };
+        self.visited.insert(after(&[]));
+        if self.visited.contains(&after(&wrong)) {
+            match self.caution {
+                Caution::EveryIteration => {
+                    self.caution = Caution::AfterConvergence;
+                    self.visited.clear();
+                    return self.changes(pairs, converged);
+                }
+                Caution::AfterConvergence => {
+                    self.caution = Caution::OneAtATime;
+                    self.visited.clear();
+                }
+                Caution::OneAtATime => {}
+            }
+        }
+        if self.caution == Caution::OneAtATime {
+            // Sticks that leave the cone before slips in the wrong direction, the worst first.
+            wrong.sort_by(|a, b| (a.1 == Hold::Stick).cmp(&(b.1 == Hold::Stick)).then(b.2.total_cmp(&a.2)));
+            let untried = wrong.iter().find(|change| !self.visited.contains(&after(&[**change])));
+            return match untried {
+                Some(&(p, hold, _)) => Ok(vec![(p, hold)]),
+                None => Err(Cycle { pairs: wrong.iter().map(|change| change.0).collect() }),
+            };
+        }
+        Ok(wrong.into_iter().map(|(p, hold, _)| (p, hold)).collect())
+    }
+
+    /// Clears the visited states: the pairs themselves have changed.
+    pub fn restart(&mut self) {
+        self.visited.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rub(hold: Hold, traction: f64, slip: f64) -> Option<Rub> {
+        Some(Rub { hold, traction, slip, cone: 1.0 })
+    }
+
+    #[test]
+    fn tractions_leave_the_cone_and_slips_turn_into_stick() {
+        let pairs = [
+            rub(Hold::Stick, 0.9, 0.0),
+            rub(Hold::Stick, 1.1, 0.0),
+            rub(Hold::Stick, -1.1, 0.0),
+            rub(Hold::Stick, 1.0 + 1e-11, 0.0),
+            None,
+            rub(Hold::Forward, 1.0, 0.5),
+            rub(Hold::Forward, 1.0, -0.5),
+            rub(Hold::Backward, -1.0, 0.5),
+            rub(Hold::Backward, -1.0, 1e-13),
+        ];
+        let changes = StickSlip::new(1e-12, true).changes(&pairs, false).unwrap();
+        assert_eq!(changes, [(1, Hold::Forward), (2, Hold::Backward), (6, Hold::Stick), (7, Hold::Stick)]);
+    }
+
+    #[test]
+    fn a_two_cycle_is_named_in_the_end() {
+        let mut set = StickSlip::new(0.0, true);
+        let (stick, slip) = ([rub(Hold::Stick, 2.0, 0.0)], [rub(Hold::Forward, 1.0, -1.0)]);
+        assert_eq!(set.changes(&stick, false).unwrap(), [(0, Hold::Forward)]);
+        assert!(set.changes(&slip, false).unwrap().is_empty());
+        assert_eq!(set.changes(&slip, true).unwrap(), [(0, Hold::Stick)]);
+        let mut named = false;
+        for k in 0..6 {
+            named |= set.changes(if k % 2 == 0 { &stick } else { &slip }, true).is_err();
+        }
+        assert!(named);
+    }
+}
