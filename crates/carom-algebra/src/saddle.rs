@@ -5,6 +5,9 @@
 //! [ G  0  ] [λ] = [c]
 //! ```
 //!
+//! Where forces act along other directions F than G (friction), U = L⁻¹Fᵀ replaces the second T of
+//! each product, and TᵀU is factored by LU with partial pivoting.
+//!
 //! Both factors exist if S is positive definite and G has full rank; the matrix then has one
 //! negative eigenvalue per row of G (Benzi, Golub, Liesen, Acta Numerica 14 (2005), §3.4). If S is
 //! positive definite only on the kernel of G, S + Σ κ gᵀg with b + Σ κ c g has the same solution
@@ -13,7 +16,7 @@
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::linalg::solvers::{Lblt, Solve};
+use faer::linalg::solvers::{Lblt, PartialPivLu, Solve};
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
@@ -24,6 +27,23 @@ use crate::pivots::{Room, diagonal_size};
 /// Fraction of a row's square below which it depends on the others.
 const DEPENDENT: f64 = 1e-14;
 
+/// The factor of a square matrix that need not be positive definite.
+enum Whole {
+    Symmetric(Lblt<f64>),
+    General(PartialPivLu<f64>),
+}
+
+impl Whole {
+    fn solve(&self, x: &mut [f64]) {
+        let size = x.len();
+        let x = MatMut::from_column_major_slice_mut(x, size, 1);
+        match self {
+            Self::Symmetric(factor) => factor.solve_in_place(x),
+            Self::General(factor) => factor.solve_in_place(x),
+        }
+    }
+}
+
 /// Buffers and factors of the saddle point.
 #[derive(Default)]
 pub struct Saddle {
@@ -33,14 +53,18 @@ pub struct Saddle {
     stiffness: Vec<f64>,
     /// Gᵀ, then T; a column per row of G.
     rows: Vec<f64>,
+    /// Fᵀ, then U; empty where F = G.
+    directions: Vec<f64>,
     /// The lower triangle of TᵀT, then its factor.
     small: Vec<f64>,
+    /// The factor of TᵀU.
+    skew: Option<PartialPivLu<f64>>,
     /// κ of each row.
     penalties: Vec<f64>,
     nonzeros: Vec<usize>,
     room: Room,
     /// Factor of the whole matrix if S is not positive definite.
-    indefinite: Option<Lblt<f64>>,
+    indefinite: Option<Whole>,
 }
 
 impl Saddle {
@@ -51,6 +75,7 @@ impl Saddle {
         self.stiffness.extend_from_slice(stiffness);
         self.rows.clear();
         self.rows.resize(size * count, 0.0);
+        self.directions.clear();
         self.penalties.clear();
         self.penalties.resize(count, 0.0);
     }
@@ -87,6 +112,16 @@ impl Saddle {
         self.rows[row * self.size + j] += value;
     }
 
+    /// Gives forces directions of their own; F = 0 so far.
+    pub fn direct(&mut self) {
+        self.directions.resize(self.rows.len(), 0.0);
+    }
+
+    /// F(row, j) += value, after [`direct`](Self::direct).
+    pub fn add_direction(&mut self, row: usize, j: usize, value: f64) {
+        self.directions[row * self.size + j] += value;
+    }
+
     /// Factors; returns whether S is positive definite.
     ///
     /// # Errors
@@ -94,15 +129,22 @@ impl Saddle {
     pub fn factor(&mut self) -> Result<bool, LinearError> {
         let (n, m) = (self.size, self.count);
         let stiffness = self.stiffness.clone();
-        self.indefinite = None;
+        (self.indefinite, self.skew) = (None, None);
+        let is_skew = !self.directions.is_empty();
         if cholesky(&mut self.stiffness, n, &mut self.room).is_err() {
             self.stiffness = stiffness;
             let entry = |i: usize, j: usize| match (i < n, j < n) {
-                (true, true) if i >= j => self.stiffness[j * n + i],
+                (true, true) => self.stiffness[i.min(j) * n + i.max(j)],
                 (false, true) => self.rows[(i - n) * n + j],
+                (true, false) if is_skew => self.directions[(j - n) * n + i],
                 _ => 0.0,
             };
-            self.indefinite = Some(Mat::from_fn(n + m, n + m, entry).lblt(Side::Lower));
+            let whole = Mat::from_fn(n + m, n + m, entry);
+            self.indefinite = Some(if is_skew {
+                Whole::General(whole.partial_piv_lu())
+            } else {
+                Whole::Symmetric(whole.lblt(Side::Lower))
+            });
             return Ok(false);
         }
         let lower = MatRef::from_column_major_slice(&self.stiffness, n, n);
@@ -123,6 +165,13 @@ impl Saddle {
             1.0,
             Par::Seq,
         );
+        if is_skew {
+            let mut u = MatMut::from_column_major_slice_mut(&mut self.directions, n, m);
+            solve_lower_triangular_in_place(lower, u.rb_mut(), Par::Seq);
+            let mut product = Mat::zeros(m, m);
+            matmul(product.as_mut(), Accum::Replace, t.rb().transpose(), u.rb(), 1.0, Par::Seq);
+            self.skew = Some(product.partial_piv_lu());
+        }
         let diagonal: Vec<f64> = (0..m).map(|i| self.small[i * m + i]).collect();
         let dependent = |pivot: usize| LinearError::Singular { size: n + m, pivot: n + pivot, value: 0.0 };
         cholesky(&mut self.small, m, &mut self.room).map_err(dependent)?;
@@ -139,7 +188,7 @@ impl Saddle {
                 b.iter_mut().zip(row).for_each(|(b, slope)| *b += pull * slope);
             }
             let mut both = [&*b, &*c].concat();
-            indefinite.solve_in_place(MatMut::from_column_major_slice_mut(&mut both, n + m, 1));
+            indefinite.solve(&mut both);
             b.copy_from_slice(&both[..n]);
             c.copy_from_slice(&both[n..]);
             return;
@@ -160,9 +209,18 @@ impl Saddle {
             multipliers[(i, 0)] = -multipliers[(i, 0)];
         }
         matmul(multipliers.rb_mut(), Accum::Add, t.transpose(), x.rb(), 1.0, Par::Seq);
-        solve_lower_triangular_in_place(small, multipliers.rb_mut(), Par::Seq);
-        solve_upper_triangular_in_place(small.transpose(), multipliers.rb_mut(), Par::Seq);
-        matmul(x.rb_mut(), Accum::Add, t, multipliers.rb(), -1.0, Par::Seq);
+        let directions = match &self.skew {
+            Some(skew) => {
+                skew.solve_in_place(multipliers.rb_mut());
+                MatRef::from_column_major_slice(&self.directions, n, m)
+            }
+            None => {
+                solve_lower_triangular_in_place(small, multipliers.rb_mut(), Par::Seq);
+                solve_upper_triangular_in_place(small.transpose(), multipliers.rb_mut(), Par::Seq);
+                t
+            }
+        };
+        matmul(x.rb_mut(), Accum::Add, directions, multipliers.rb(), -1.0, Par::Seq);
         solve_upper_triangular_in_place(lower.transpose(), x.rb_mut(), Par::Seq);
     }
 }
@@ -224,5 +282,42 @@ mod tests {
         saddle.begin(&stiffness, n, 2);
         (0..2).for_each(|r| saddle.add_row(r, 0, 1.0));
         assert!(saddle.factor().is_err());
+    }
+
+    /// Forces along other directions, with S positive definite, only on the kernel, or not at all.
+    #[test]
+    fn forces_may_act_along_other_directions() {
+        let (n, m) = (6, 2);
+        let row = |r: usize, j: usize| ((r * 5 + j).pow(2) as f64 * 1.3).sin();
+        let direction = |r: usize, j: usize| row(r, j) - 0.4 * ((r * 7 + 3 * j) as f64).cos();
+        for (push, share) in [(0.0, 0.0), (0.0, 10.0), (-30.0, 10.0), (-30.0, 0.0)] {
+            let entry = |i: usize, j: usize| match (i, j) {
+                (2, 2) => 4.0 + push,
+                _ if i == j => 4.0,
+                _ => 1.0 / (1.0 + (i as f64 - j as f64).abs()),
+            };
+            let stiffness: Vec<f64> = (0..n * n).map(|k| entry(k % n, k / n)).collect();
+            let mut saddle = Saddle::default();
+            saddle.begin(&stiffness, n, m);
+            saddle.direct();
+            for r in 0..m {
+                (0..n).for_each(|j| saddle.add_row(r, j, row(r, j)));
+                (0..n).for_each(|j| saddle.add_direction(r, j, direction(r, j)));
+            }
+            saddle.augment(share);
+            saddle.factor().unwrap();
+            let b: Vec<f64> = (0..n).map(|i| i as f64 - 2.0).collect();
+            let c = [0.3, -0.1];
+            let (mut x, mut multipliers) = (b.clone(), c.to_vec());
+            saddle.solve(&mut x, &mut multipliers);
+            for i in 0..n {
+                let upper: f64 = (0..n).map(|j| entry(i, j) * x[j]).sum();
+                let lower: f64 = (0..m).map(|r| direction(r, i) * multipliers[r]).sum();
+                assert!((upper + lower - b[i]).abs() < 1e-12, "{push} {share}");
+            }
+            for r in 0..m {
+                assert!(((0..n).map(|j| row(r, j) * x[j]).sum::<f64>() - c[r]).abs() < 1e-12);
+            }
+        }
     }
 }

@@ -29,6 +29,8 @@ pub(crate) struct Constraints {
     pub rows: Rows,
     /// Directions of the forces.
     pub directions: Rows,
+    /// Whether friction turns some of these, which the factor then takes into account.
+    pub is_skew: bool,
     /// Weight of the contact force in the balance.
     pub weights: Vec<f64>,
     /// Gap per unit of multiplier.
@@ -48,6 +50,7 @@ impl Constraints {
             slips: Vec::new(),
             rows: Rows::new(dimension),
             directions: Rows::new(dimension),
+            is_skew: false,
             weights: Vec::new(),
             compliances: Vec::new(),
             open: Vec::new(),
@@ -62,16 +65,19 @@ impl Constraints {
         rows: impl IntoIterator<Item = ((usize, usize), Row<'a>)>,
     ) -> Self {
         let mut plain = Self::none(dimension);
-        for (place, row) in rows {
-            plain.places.push(place);
-            plain.slips.push(false);
-            plain.rows.push_row(row);
-            plain.directions.push_row(row);
-            plain.weights.push(1.0);
-            plain.compliances.push(0.0);
-            plain.open.push(0.0);
-        }
+        rows.into_iter().for_each(|(place, row)| plain.push_plain(place, row, false));
         plain
+    }
+
+    /// Adds such a row; `is_slip`: a slip that is prevented.
+    pub(crate) fn push_plain(&mut self, place: (usize, usize), row: Row, is_slip: bool) {
+        self.places.push(place);
+        self.slips.push(is_slip);
+        self.rows.push_row(row);
+        self.directions.push_row(row);
+        self.weights.push(1.0);
+        self.compliances.push(0.0);
+        self.open.push(0.0);
     }
 
     /// The rows of an evaluation, with second derivatives.
@@ -103,6 +109,7 @@ impl Constraints {
                 let (turned, _) = equations.slip_derivatives(evaluation, place, &mut rows);
                 let factor = hold.sign() * coefficient;
                 curvature.iter_mut().zip(turned).for_each(|(c, turned)| *c -= factor * turned);
+                constraints.is_skew = true;
             }
             curvature.iter_mut().for_each(|c| *c *= answer.lambda);
             constraints.places.push(place);
@@ -130,6 +137,7 @@ impl Constraints {
             (evaluation.slips[k].row(p), evaluation.at.pairings[k].pairs[p].tangential.traction);
         let (mut curvature, gradient) = equations.slip_derivatives(evaluation, (k, p), rows);
         curvature.iter_mut().for_each(|c| *c *= traction);
+        self.is_skew = true;
         self.places.push((k, p));
         self.slips.push(true);
         self.rows.push_row(slip);
@@ -160,8 +168,17 @@ impl Constraints {
     }
 
     /// Calls `visit(row, dof, slope)` for the entries w·∇g of all rows at unknowns.
-    pub(crate) fn each_entry(&self, model: &Model, mut visit: impl FnMut(usize, usize, f64)) {
-        for (r, row) in self.rows.iter().enumerate() {
+    pub(crate) fn each_entry(&self, model: &Model, visit: impl FnMut(usize, usize, f64)) {
+        self.each_of(&self.rows, model, visit);
+    }
+
+    /// Calls `visit(row, dof, slope)` for the entries of the directions, with their weights.
+    pub(crate) fn each_direction(&self, model: &Model, visit: impl FnMut(usize, usize, f64)) {
+        self.each_of(&self.directions, model, visit);
+    }
+
+    fn each_of(&self, rows: &Rows, model: &Model, mut visit: impl FnMut(usize, usize, f64)) {
+        for (r, row) in rows.iter().enumerate() {
             for (dof, slope) in row.entries() {
                 if let Some(unknown) = model.unknown(dof) {
                     visit(r, unknown, self.weights[r] * slope);
@@ -266,7 +283,7 @@ pub(crate) fn independent_rows(
 }
 
 /// The names of those rows that are linearly independent of the earlier ones on the free dofs.
-fn independent<'a, T>(model: &Model, rows: impl Iterator<Item = (T, Row<'a>)>) -> Vec<T> {
+pub(crate) fn independent<'a, T>(model: &Model, rows: impl Iterator<Item = (T, Row<'a>)>) -> Vec<T> {
     let mut accepted: Vec<Vec<(usize, f64)>> = Vec::new();
     // The accepted row whose pivot is this dof.
     let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();

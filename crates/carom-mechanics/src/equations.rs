@@ -129,8 +129,6 @@ pub(crate) struct Equations<'a> {
     pub motions: Vec<Prescribed>,
     /// Terms of the balance known from the step's start.
     pub known: Vec<f64>,
-    /// Positions after a free flight from the step's start; empty without friction.
-    pub flight: Vec<f64>,
 }
 
 impl std::fmt::Debug for Model {
@@ -155,7 +153,6 @@ impl<'a> Equations<'a> {
             loads: LoadsAt::default(),
             motions: Vec::new(),
             known: Vec::new(),
-            flight: Self::free_flight(model, state, to - state.time),
         };
         if !model.loads.is_empty() {
             model.loads.at(&model.parts, model.dofs(), time, &mut equations.loads)?;

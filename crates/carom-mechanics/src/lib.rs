@@ -7,6 +7,7 @@ mod audit;
 mod balance;
 mod carried;
 mod cells;
+mod cone;
 mod constraints;
 mod contact_update;
 mod created;

@@ -7,15 +7,15 @@
 //!
 //! with all active rows as equalities. Projecting v alone would retain the accelerations of the
 //! impact and does not remove the oscillations (theory.md §5.3). Massless dofs keep their velocity:
-//! they follow the massive side. With friction only the normal velocities are projected; the forces of
-//! the second system include tractions, in slip those of its own λ (`friction.rs`). With a restitution, energy is returned (`restitution.rs`) before
-//! the accelerations are solved for.
+//! they follow the massive side. With friction both systems have its impulses and forces (`cone.rs`).
+//! With a restitution, energy is returned (`restitution.rs`) before the accelerations are solved for.
 
 use carom_contact::{Row, Rows};
 
 use crate::active_rows::{measure_all, pressing};
-use crate::constraints::{Constraints, independent_rows};
-use crate::friction::{add_friction, balance_friction, each_slip};
+use crate::cone::{Closed, Right};
+use crate::constraints::independent_rows;
+use crate::friction::each_slip;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -39,62 +39,83 @@ pub(crate) fn project(
     let gaps = measure_all(model, state)?;
     let mut places = independent_rows(model, pressing(state), &gaps);
     places.retain(|&(k, _)| asks(k));
-    let rows = Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), gaps[k].row(p))));
-    system.factor_mass(model, &rows)?;
+    let closed = Closed::new(model, state, places, &gaps)?;
+    let rows = &closed.normals;
     let dofs = model.dofs();
-    let (mut change, mut multipliers) = (vec![0.0; dofs], Vec::new());
 
     let closing: Vec<f64> = rows.rows.iter().map(|row| -row.along(&state.v)).collect();
-    system.factor.solve(model, &vec![0.0; dofs], &closing, &mut change, &mut multipliers)?;
-    for i in 0..dofs {
-        state.v[i] += if model.massless[i] { 0.0 } else { change[i] };
+    let slips = closed.slip_rates(&state.v);
+    let stopping: Vec<f64> = slips.iter().map(|rate| -rate).collect();
+    let right = Right { forces: &vec![0.0; dofs], gaps: &closing, slips: &stopping };
+    let jump = closed.impulse(model, state, &right, system)?;
+    for i in (0..dofs).filter(|&i| !model.massless[i]) {
+        state.v[i] += jump.x[i];
     }
-    for ((&(k, _), row), impulse) in places.iter().zip(rows.rows.iter()).zip(&multipliers) {
-        let normal = row.normal();
-        (0..3).for_each(|i| state.impulses[k][i] -= impulse * normal[i]);
+    for (k, impulse) in closed.impulses(&jump) {
+        (0..3).for_each(|i| state.impulses[k][i] += impulse[i]);
     }
+    let after = closed.slip_rates(&state.v);
+    let rates = slips.iter().zip(&after).map(|(before, after)| 0.5 * (before + after));
+    let rubbed = -rates.zip(&jump.tangential).map(|(rate, q)| rate * q).sum::<f64>();
 
     let before = state.ledger.kinetic;
     take(model, state, before - model.kinetic(&state.v));
-    impact.restitute(model, state, &rows, system)?;
-
-    balance_friction(model, state, |state| {
-        let (forces, bending) = drive(model, state, &gaps, &rows);
-        system.factor.solve(model, &forces, &bending, &mut change, &mut multipliers)?;
-        take_accelerations(model, state, &change);
-        for (&(k, p), lambda) in places.iter().zip(&multipliers) {
-            state.pairs[k][p].lambda = *lambda;
-        }
-        Ok(())
-    })?;
+    if model.has_friction() {
+        system.factor_mass(model, rows)?;
+    }
+    impact.restitute(model, state, rows, system)?;
+    accelerate(model, state, &gaps, &closed, system)?;
 
     averaged_contact_into(model, state, &gaps);
     book_contact_forces(model, state);
     book_kinetic(model, state);
     let jump = state.ledger.kinetic - before;
-    state.ledger.contact_work += jump;
+    state.ledger.contact_work += jump - rubbed;
+    state.ledger.friction_work += rubbed;
     Ok(Some(jump))
+}
+
+/// Accelerations and multipliers of a state with these closed pairs.
+pub(crate) fn accelerate(
+    model: &Model,
+    state: &mut State,
+    gaps: &[Rows],
+    closed: &Closed,
+    system: &mut System,
+) -> Result<(), Rejected> {
+    let (forces, bending) = drive(model, state, gaps, closed);
+    let turning: Vec<f64> = closed.slip_curvatures(model, state).iter().map(|c| -c).collect();
+    let right = Right { forces: &forces, gaps: &bending, slips: &turning };
+    let motion = closed.accelerate(model, state, &right, system)?;
+    for &i in &model.free {
+        // Moving supports keep theirs.
+        state.a[i] = if model.massless[i] { 0.0 } else { motion.x[i] };
+    }
+    for (&(k, p), lambda) in closed.places.iter().zip(&motion.normal) {
+        state.pairs[k][p].lambda = *lambda;
+    }
+    Ok(())
 }
 
 /// Right-hand sides of M a + Gᵀλ = f_ext − f_int, G a = −v·∇²g·v for these constraints, minus the
 /// contributions of the accelerations of moving supports, in `state`, and of the forces of all
 /// other active pairs, including springs.
-pub(crate) fn drive(
-    model: &Model,
-    state: &State,
-    gaps: &[Rows],
-    constraints: &Constraints,
-) -> (Vec<f64>, Vec<f64>) {
+fn drive(model: &Model, state: &State, gaps: &[Rows], closed: &Closed) -> (Vec<f64>, Vec<f64>) {
     let dofs = model.dofs();
     let (mut moved, mut carried) = (vec![0.0; dofs], vec![0.0; dofs]);
     if !model.motions.is_empty() {
         model.motions.dofs().for_each(|dof| moved[dof] = state.a[dof]);
         model.mass.multiply_into(&moved, &mut carried);
     }
-    for (k, p) in pressing(state).filter(|place| !constraints.places.contains(place)) {
+    let others = |place: (usize, usize)| !closed.places.contains(&place);
+    for (k, p) in pressing(state).filter(|&place| others(place)) {
         gaps[k].row(p).add_to(state.pairs[k][p].lambda, &mut carried);
     }
-    add_friction(model, state, &mut carried);
+    each_slip(model, state, |k, p, row| {
+        if others((k, p)) {
+            row.add_to(state.pairs[k][p].tangential.traction, &mut carried);
+        }
+    });
     let force = |i: usize| model.gravity[i] + state.f_external[i] - state.f_internal[i] - carried[i];
     let forces = (0..dofs).map(|i| if model.massless[i] { 0.0 } else { force(i) }).collect();
     let mut second = Vec::new();
@@ -103,14 +124,7 @@ pub(crate) fn drive(
         model.contacts[k].kinematics.curvature_into(&state.pairs[k][p], &state.y, &mut second);
         -curvature(row, &second, &state.v) - row.along(&moved)
     };
-    (forces, constraints.places.iter().zip(constraints.rows.iter()).map(bending).collect())
-}
-
-/// Sets the accelerations of free dofs with mass; moving supports keep theirs.
-pub(crate) fn take_accelerations(model: &Model, state: &mut State, solved: &[f64]) {
-    for &i in &model.free {
-        state.a[i] = if model.massless[i] { 0.0 } else { solved[i] };
-    }
+    (forces, closed.places.iter().zip(closed.normals.rows.iter()).map(bending).collect())
 }
 
 /// Σ Gᵀλ over the contacts with averaged forces, for the next step.

@@ -11,11 +11,11 @@
 use carom_contact::{Pair, Point, Rows};
 
 use crate::active_rows::{measure_all, pressing};
-use crate::constraints::{Constraints, independent_rows};
-use crate::friction::balance_friction;
+use crate::cone::Closed;
+use crate::constraints::independent_rows;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::model::{LoadsAt, Model};
-use crate::persistency::{averaged_contact_into, drive, take_accelerations};
+use crate::persistency::{self, averaged_contact_into};
 use crate::rejected::Rejected;
 use crate::state::{Carried, Created, State};
 use crate::system::System;
@@ -129,16 +129,6 @@ fn accelerate(model: &Model, state: &mut State, gaps: &[Rows], system: &mut Syst
     };
     let mut places = independent_rows(model, pressing(state), gaps);
     places.retain(asks);
-    let rows = Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), gaps[k].row(p))));
-    system.factor_mass(model, &rows)?;
-    let (mut solved, mut multipliers) = (vec![0.0; model.dofs()], Vec::new());
-    balance_friction(model, state, |state| {
-        let (forces, bending) = drive(model, state, gaps, &rows);
-        system.factor.solve(model, &forces, &bending, &mut solved, &mut multipliers)?;
-        take_accelerations(model, state, &solved);
-        for (&(k, p), lambda) in places.iter().zip(&multipliers) {
-            state.pairs[k][p].lambda = *lambda;
-        }
-        Ok(())
-    })
+    let closed = Closed::new(model, state, places, gaps)?;
+    persistency::accelerate(model, state, gaps, &closed, system)
 }

@@ -2,11 +2,11 @@
 //! is solved on those alone.
 //!
 //! ```text
-//! [ A + Σ w λ∇²g  Gᵀ ] [Δy]   [−r]       A = w.mass a' M + w.internal K_int − w.external K_ext at the frozen point
+//! [ A + Σ w λ∇²g  Fᵀ ] [Δy]   [−r]       A = w.mass a' M + w.internal K_int − w.external K_ext at the frozen point
 //! [ G             0  ] [Δλ] = [−g]       (or M where velocities are projected)
 //! ```
 //!
-//! Gradients and second derivatives of the gaps are those of the current iterate: nodes may come,
+//! F = G except with friction. Gradients and second derivatives of the gaps are those of the current iterate: nodes may come,
 //! leave and slide without a new factor. Only A is old.
 
 use std::collections::VecDeque;
@@ -169,6 +169,15 @@ impl TangentFactor {
                 saddle.add_row(row, a, slope);
             }
         });
+        if rows.is_skew {
+            saddle.direct();
+            rows.each_direction(model, |r, unknown, slope| {
+                let included = !(self.of_mass && model.massless[model.free[unknown]]);
+                if let (Some(row), Some(a)) = (self.places[r].filter(|_| included), place(unknown)) {
+                    saddle.add_direction(row, a, slope);
+                }
+            });
+        }
         let mut add = |a: usize, b: usize, value: f64| {
             if let (Some(a), Some(b)) = (place(a), place(b)) {
                 saddle.add(a.max(b), a.min(b), value);
