@@ -23,8 +23,8 @@ use super::suggest;
 use super::tree::{Entry, Node, Table};
 use super::view::{View, word};
 use super::{
-    BodySpec, Case, ContactSpec, InitialSpec, MaterialSpec, NewtonSpec, ObstacleMotion, OutputSpec,
-    Persistency, Preset, PrimarySpec, ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
+    BodySpec, Case, ContactSpec, FrictionSpec, InitialSpec, MaterialSpec, NewtonSpec, ObstacleMotion,
+    OutputSpec, Persistency, Preset, PrimarySpec, ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
 };
 
 impl Case {
@@ -352,7 +352,13 @@ fn contact(
         xi: v.choice("xi")?,
         law: v.choice("law"),
         overlap: v.choice("overlap")?,
-        mu: v.number("mu")?,
+        friction: FrictionSpec {
+            mu: v.formula("mu").filter(|mu| !mu.is_zero()),
+            mu_dynamic: v.number("mu_dynamic"),
+            decay: v.number("decay"),
+            shear: v.number("shear"),
+            stick_stiffness: v.number("stick_stiffness"),
+        },
         restitution: v.number("restitution")?,
     })
 }

@@ -1,13 +1,14 @@
-//! Coulomb's law in the plane, with exact projection onto the cone:
+//! Coulomb's and Tresca's laws in the plane, with exact projection onto the cone:
 //!
 //! ```text
-//! |q| ≤ μ|λ|,    S = 0 where |q| < μ|λ|,    q = μ|λ| S/|S| where S ≠ 0
+//! |q| ≤ r,    S = 0 where |q| < r,    q = r S/|S| where S ≠ 0,    r = min(μ|λ|, limit)
+//! μ = μ_s in stick, μ_d + (μ_s − μ_d) exp(−c |Ṡ|) in slip
 //! ```
 //!
 //! S is the slip of a step and q the tangential traction: the force of the pair is λ∇g + qH with
 //! H = ∂S/∂y, and q S ≥ 0 is lost. A pair that slips has q = −sμλ, so that only the direction of its
 //! force, λ(∇g − sμH), differs from that without friction and the cone follows the pressure within
-//! Newton's method. A pair that sticks is a constraint S = 0 with the multiplier q.
+//! Newton's method. A pair that sticks is a constraint S = 0 with the multiplier q, or a spring.
 //!
 //! States follow from the iterates by a primal–dual active set over {open, stick, slip ±}: a stick
 //! whose traction leaves the cone slips in the direction of the traction, a slip in the wrong
@@ -65,15 +66,66 @@ pub struct Tangential {
     pub traction: f64,
     /// Slip since the pair closed.
     pub slip: f64,
+    /// Traction at the start of the step, from which a spring is stretched further.
+    pub before: f64,
 }
 
-impl Tangential {
-    /// The traction of a closed pair with a multiplier: −sμλ in slip, its own multiplier in stick.
-    pub fn of_law(&self, coefficient: f64, lambda: f64) -> f64 {
-        match self.hold {
-            Hold::Stick => self.traction,
-            slips => -slips.sign() * coefficient * lambda,
+/// The law of a node at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Law {
+    /// μ_s ≥ 0; infinite in Tresca's law.
+    pub stick: f64,
+    /// μ_d ≥ 0.
+    pub slip: f64,
+    /// c: time per length of slip; infinite if slip has μ_d at once.
+    pub decay: f64,
+    /// Largest traction; infinite in Coulomb's law.
+    pub limit: f64,
+}
+
+/// The traction of a slip, and its derivatives.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Radius {
+    /// r.
+    pub value: f64,
+    /// ∂r/∂|λ|.
+    pub by_pressure: f64,
+    /// ∂r/∂|Ṡ|.
+    pub by_rate: f64,
+}
+
+impl Law {
+    /// Coulomb's law with one coefficient.
+    pub const fn coulomb(coefficient: f64) -> Self {
+        Self { stick: coefficient, slip: coefficient, decay: 0.0, limit: f64::INFINITY }
+    }
+
+    /// Largest traction in stick under a pressure |λ|.
+    pub fn grip(&self, pressure: f64) -> f64 {
+        if pressure > 0.0 { (self.stick * pressure).min(self.limit) } else { 0.0 }
+    }
+
+    /// The traction of a slip under a pressure |λ| at a rate |Ṡ|.
+    pub fn slip(&self, pressure: f64, rate: f64) -> Radius {
+        if pressure <= 0.0 {
+            return Radius::default();
         }
+        let (coefficient, slope) = self.coefficient(rate);
+        let value = coefficient * pressure;
+        if value < self.limit {
+            Radius { value, by_pressure: coefficient, by_rate: slope * pressure }
+        } else {
+            Radius { value: self.limit, ..Radius::default() }
+        }
+    }
+
+    /// μ at a rate of slip, and its derivative.
+    pub fn coefficient(&self, rate: f64) -> (f64, f64) {
+        if self.stick == self.slip || self.decay.is_infinite() {
+            return (self.slip, 0.0);
+        }
+        let rest = (self.stick - self.slip) * (-self.decay * rate).exp();
+        (self.slip + rest, -self.decay * rest)
     }
 }
 
@@ -86,7 +138,7 @@ pub struct Rub {
     pub traction: f64,
     /// Slip S of the step.
     pub slip: f64,
-    /// Radius μ|λ| of the cone.
+    /// Largest traction in stick.
     pub cone: f64,
 }
 
@@ -201,6 +253,29 @@ mod tests {
         ];
         let changes = StickSlip::new(1e-12, true).changes(&pairs, false).unwrap();
         assert_eq!(changes, [(1, Hold::Forward), (2, Hold::Backward), (6, Hold::Stick), (7, Hold::Stick)]);
+    }
+
+    #[test]
+    fn the_radius_has_its_derivatives_and_its_limits() {
+        let law = Law { stick: 0.6, slip: 0.2, decay: 3.0, limit: 1.5 };
+        assert_eq!(law.grip(2.0), 1.2);
+        assert_eq!((law.grip(5.0), law.grip(-1.0)), (1.5, 0.0));
+        let h = 1e-6;
+        for (pressure, rate) in [(2.0, 0.0), (2.0, 0.4), (5.0, 2.0), (9.0, 0.1)] {
+            let radius = law.slip(pressure, rate);
+            let by_pressure =
+                (law.slip(pressure + h, rate).value - law.slip(pressure - h, rate).value) / (2.0 * h);
+            let by_rate =
+                (law.slip(pressure, rate + h).value - law.slip(pressure, rate - h).value) / (2.0 * h);
+            assert!((radius.by_pressure - by_pressure).abs() < 1e-8, "{pressure} {rate}");
+            assert!((radius.by_rate - by_rate).abs() < 1e-8, "{pressure} {rate}");
+        }
+        let tresca = Law { stick: f64::INFINITY, slip: f64::INFINITY, decay: 0.0, limit: 0.7 };
+        assert_eq!(
+            (tresca.grip(1e-9), tresca.slip(1e-9, 1.0)),
+            (0.7, Radius { value: 0.7, ..Radius::default() })
+        );
+        assert_eq!(Law::coulomb(0.3).slip(2.0, 7.0), Radius { value: 0.6, by_pressure: 0.3, by_rate: 0.0 });
     }
 
     #[test]

@@ -14,7 +14,7 @@ mod skin;
 
 pub use active_set::{ActiveSet, Contender, Cycle};
 pub use discrete_gradient::DiscreteGradient;
-pub use friction::{Hold, Rub, StickSlip, Tangential};
+pub use friction::{Hold, Law, Radius, Rub, StickSlip, Tangential};
 pub use interface::{
     Answer, ConservingPenalty, ConservingUnilateral, Direction, Interface, Penalty, Point, Unilateral,
 };

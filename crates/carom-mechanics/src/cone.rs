@@ -9,7 +9,7 @@
 //! others separate, or slip in their direction. Without friction all p count, and this is one linear
 //! solve.
 
-use carom_contact::{Hold, Rows, Rub, StickSlip, Tangential};
+use carom_contact::{Hold, Law, Rows, Rub, StickSlip, Tangential};
 
 use crate::constraints::{Constraints, independent};
 use crate::model::Model;
@@ -33,6 +33,8 @@ pub(crate) struct Closed {
     pub normals: Constraints,
     /// H of each; empty without friction.
     slips: Rows,
+    /// The law of each that has friction.
+    laws: Vec<Option<Law>>,
 }
 
 /// Right-hand sides of the problem; `slips` has an entry per pair, of no meaning without friction.
@@ -51,10 +53,12 @@ pub(crate) struct Motion {
     pub tangential: Vec<f64>,
 }
 
-/// Where a pair is in the law.
+/// The state of a pair in a solve.
 #[derive(Clone, Copy, PartialEq)]
-struct Law {
+struct Way {
     hold: Hold,
+    /// Coefficient and traction of a slip, of which one is zero.
+    slip: [f64; 2],
     /// Whether it may stick.
     is_free: bool,
     /// Whether its gap opens; and does so whatever the solution is.
@@ -72,9 +76,11 @@ impl Closed {
     ) -> Result<Self, Rejected> {
         let rows = places.iter().map(|&(k, p)| ((k, p), gaps[k].row(p)));
         let normals = Constraints::plain(model.dimension, rows);
-        let mut slips = Rows::new(model.dimension);
+        let (mut slips, mut laws) = (Rows::new(model.dimension), Vec::new());
+        let of_contacts = model.friction_laws(state.time)?;
         for &(k, p) in places.iter().filter(|_| model.has_friction()) {
             let contact = &model.contacts[k];
+            laws.push(of_contacts[k].get(state.pairs[k][p].node).copied());
             if contact.friction.is_none() {
                 slips.push_open();
                 continue;
@@ -82,7 +88,7 @@ impl Closed {
             let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
             contact.kinematics.slip(&state.pairs[k][p], &state.y, &mut slips).map_err(failed)?;
         }
-        Ok(Self { places, normals, slips })
+        Ok(Self { places, normals, slips, laws })
     }
 
     /// H x of each pair; 0 without friction.
@@ -123,7 +129,8 @@ impl Closed {
         })
     }
 
-    /// The change of velocity for an impulse: stick and slip follow from the slip rates after it.
+    /// The change of velocity for an impulse: stick and slip follow from the slip rates after it. A
+    /// limited traction has no impulse.
     pub(crate) fn impulse(
         &self,
         model: &Model,
@@ -131,8 +138,11 @@ impl Closed {
         right: &Right,
         system: &mut System,
     ) -> Result<Motion, Rejected> {
-        let laws = self.laws(state);
-        self.solve(model, state, right, system, laws)
+        let ways = self.ways(state);
+        let unlimited = |law: &Law| Law { limit: f64::INFINITY, ..*law };
+        let coulomb = |law: &Law| if law.limit.is_finite() { Law::coulomb(0.0) } else { unlimited(law) };
+        let laws: Vec<_> = self.laws.iter().map(|law| law.as_ref().map(coulomb)).collect();
+        self.solve(model, state, right, system, (ways, &laws))
     }
 
     /// The accelerations: pairs with a slip rate slip in its direction.
@@ -143,23 +153,24 @@ impl Closed {
         right: &Right,
         system: &mut System,
     ) -> Result<Motion, Rejected> {
-        let mut laws = self.laws(state);
+        let mut ways = self.ways(state);
         let (rates, still) = (self.slip_rates(&state.v), AT_REST * max_abs(&state.v));
-        for (i, law) in laws.iter_mut().enumerate() {
+        for (i, way) in ways.iter_mut().enumerate() {
             if Hold::of(rates[i], still) != Hold::Stick {
-                (law.hold, law.is_free) = (Hold::of(rates[i], still), false);
+                (way.hold, way.is_free) = (Hold::of(rates[i], still), false);
             }
-            law.separates = self.normals.rows.row(i).along(&state.v) > still;
-            law.opens = law.separates;
+            way.separates = self.normals.rows.row(i).along(&state.v) > still;
+            way.opens = way.separates;
         }
-        self.solve(model, state, right, system, laws)
+        self.solve(model, state, right, system, (ways, &self.laws))
     }
 
-    /// The laws of the pairs of a state.
-    fn laws(&self, state: &State) -> Vec<Law> {
+    /// The ways of the pairs of a state.
+    fn ways(&self, state: &State) -> Vec<Way> {
         let hold = |&(k, p): &(usize, usize)| state.pairs[k][p].tangential.hold;
-        let law = |place| Law { hold: hold(place), is_free: true, opens: false, separates: false };
-        self.places.iter().map(law).collect()
+        let way =
+            |place| Way { hold: hold(place), slip: [0.0; 2], is_free: true, opens: false, separates: false };
+        self.places.iter().map(way).collect()
     }
 
     /// Solves, and sets stick and slip of the pairs.
@@ -169,7 +180,7 @@ impl Closed {
         state: &mut State,
         right: &Right,
         system: &mut System,
-        mut laws: Vec<Law>,
+        (mut ways, laws): (Vec<Way>, &[Option<Law>]),
     ) -> Result<Motion, Rejected> {
         if self.slips.is_empty() {
             system.factor_mass(model, &self.normals)?;
@@ -178,45 +189,55 @@ impl Closed {
             motion.tangential = vec![0.0; self.places.len()];
             return Ok(motion);
         }
+        let before = self.slip_rates(&state.v);
+        let slip = |i: usize, law: &Law, pressure: f64| {
+            let radius = law.slip(pressure, before[i].abs());
+            if radius.by_pressure > 0.0 { [radius.by_pressure, 0.0] } else { [0.0, radius.value] }
+        };
+        for (i, law) in laws.iter().enumerate() {
+            let pressure = -state.pairs[self.places[i].0][self.places[i].1].lambda;
+            ways[i].slip = law.as_ref().map_or([0.0; 2], |law| slip(i, law, pressure));
+        }
         let mut set = StickSlip::new(0.0, true);
         for _ in 0..CHANGES {
-            let motion = self.solve_for(model, right, system, &laws)?;
+            let motion = self.solve_for(model, right, system, &ways)?;
             let rates = self.slip_rates(&motion.x);
             let all = rates.iter().chain(right.slips).chain(right.gaps);
             let none = ROUND_OFF * all.fold(0.0_f64, |most, rate| most.max(rate.abs()));
             let mut changed = false;
-            for (i, law) in laws.iter_mut().enumerate().filter(|(_, law)| !law.separates) {
-                let opens = match law.opens {
+            for (i, way) in ways.iter_mut().enumerate() {
+                let new = laws[i].as_ref().map_or([0.0; 2], |law| slip(i, law, -motion.normal[i]));
+                if !way.opens && motion.normal[i] < 0.0 {
+                    changed |= std::mem::replace(&mut way.slip, new) != new;
+                }
+                let opens = match way.opens {
+                    true if way.separates => true,
                     true => self.normals.rows.row(i).along(&motion.x) - right.gaps[i] >= -none,
                     false => motion.normal[i] > 0.0,
                 };
-                changed |= std::mem::replace(&mut law.opens, opens) != opens;
+                changed |= std::mem::replace(&mut way.opens, opens) != opens;
             }
             let rub = |i: usize| {
-                let (law, cone) = (laws[i], self.coefficient(model, i)? * (-motion.normal[i]).max(0.0));
+                let (way, cone) = (ways[i], laws[i]?.grip(-motion.normal[i]));
                 // What is no slip to round-off has no direction.
                 let rate = rates[i] - right.slips[i];
-                let slip = if law.is_free && rate.abs() > none { rate } else { law.hold.sign() };
-                (!law.opens).then_some(Rub { hold: law.hold, traction: motion.tangential[i], slip, cone })
+                let slip = if way.is_free && rate.abs() > none { rate } else { way.hold.sign() };
+                (!way.opens).then_some(Rub { hold: way.hold, traction: motion.tangential[i], slip, cone })
             };
-            let rubs: Vec<Option<Rub>> = (0..laws.len()).map(rub).collect();
+            let rubs: Vec<Option<Rub>> = (0..ways.len()).map(rub).collect();
             let changes = set.changes(&rubs, true).map_err(|_| Rejected::NoFrictionBalance)?;
             for &(i, hold) in &changes {
-                laws[i].hold = hold;
+                ways[i].hold = hold;
             }
             if changes.is_empty() && !changed {
-                for ((&(k, p), law), traction) in self.places.iter().zip(&laws).zip(&motion.tangential) {
+                for ((&(k, p), way), traction) in self.places.iter().zip(&ways).zip(&motion.tangential) {
                     let tangential = &mut state.pairs[k][p].tangential;
-                    *tangential = Tangential { hold: law.hold, traction: *traction, ..*tangential };
+                    *tangential = Tangential { hold: way.hold, traction: *traction, ..*tangential };
                 }
                 return Ok(motion);
             }
         }
         Err(Rejected::NoFrictionBalance)
-    }
-
-    fn coefficient(&self, model: &Model, i: usize) -> Option<f64> {
-        model.contacts[self.places[i].0].friction
     }
 
     /// One linear solve with given states.
@@ -225,20 +246,21 @@ impl Closed {
         model: &Model,
         right: &Right,
         system: &mut System,
-        laws: &[Law],
+        ways: &[Way],
     ) -> Result<Motion, Rejected> {
-        let closed: Vec<usize> = (0..laws.len()).filter(|&i| !laws[i].opens).collect();
+        let closed: Vec<usize> = (0..ways.len()).filter(|&i| !ways[i].opens).collect();
         let normal = |&i: &usize| (self.places[i], self.normals.rows.row(i));
         let mut rows = Constraints::plain(model.dimension, closed.iter().map(normal));
         rows.is_skew = true;
         let mut targets: Vec<f64> = closed.iter().map(|&i| right.gaps[i]).collect();
-        let coefficient = |i: usize| self.coefficient(model, i).unwrap_or(0.0);
+        let mut forces = right.forces.to_vec();
         for (r, &i) in closed.iter().enumerate() {
-            let factor = laws[i].hold.sign() * coefficient(i);
+            let [factor, traction] = ways[i].slip.map(|part| ways[i].hold.sign() * part);
+            self.slips.row(i).add_to(-traction, &mut forces);
             let direction = rows.directions.gradient_mut(r).iter_mut().zip(self.slips.row(i).gradient);
             direction.for_each(|(along, h)| *along -= factor * h);
         }
-        let sticks = |i: &&usize| self.coefficient(model, **i).is_some() && laws[**i].hold == Hold::Stick;
+        let sticks = |i: &&usize| self.laws[**i].is_some() && ways[**i].hold == Hold::Stick;
         let normals = closed.iter().map(|&i| (None, self.normals.rows.row(i)));
         let tangents = closed.iter().filter(sticks).map(|&i| (Some(i), self.slips.row(i)));
         let sticking: Vec<usize> =
@@ -249,11 +271,12 @@ impl Closed {
         }
         system.factor_mass(model, &rows)?;
         let (mut x, mut multipliers) = (vec![0.0; model.dofs()], Vec::new());
-        system.factor.solve(model, right.forces, &targets, &mut x, &mut multipliers)?;
-        let mut motion = Motion { x, normal: vec![0.0; laws.len()], tangential: vec![0.0; laws.len()] };
+        system.factor.solve(model, &forces, &targets, &mut x, &mut multipliers)?;
+        let mut motion = Motion { x, normal: vec![0.0; ways.len()], tangential: vec![0.0; ways.len()] };
         for (&i, p) in closed.iter().zip(&multipliers) {
             motion.normal[i] = *p;
-            motion.tangential[i] = -laws[i].hold.sign() * coefficient(i) * p;
+            let [coefficient, traction] = ways[i].slip;
+            motion.tangential[i] = ways[i].hold.sign() * (traction - coefficient * p);
         }
         for (&i, q) in sticking.iter().zip(&multipliers[closed.len()..]) {
             motion.tangential[i] = *q;

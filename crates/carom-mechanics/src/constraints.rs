@@ -90,9 +90,11 @@ impl Constraints {
         let held = evaluation.pressing().filter(|place| !is_spring(place));
         let gaps = held.map(|(k, p)| ((k, p, false), evaluation.rows[k].row(p)));
         // The slip of a pair after all gaps: what depends on both keeps its gap.
-        let slips = evaluation.sticking().map(|(k, p)| ((k, p, true), evaluation.slips[k].row(p)));
+        let sticking = evaluation.sticking().filter(|place| !is_spring(place));
+        let slips = sticking.map(|(k, p)| ((k, p, true), evaluation.slips[k].row(p)));
         let mut places = independent(model, gaps.chain(slips));
         places.extend(evaluation.pressing().filter(is_spring).map(|(k, p)| (k, p, false)));
+        places.extend(evaluation.sticking().filter(is_spring).map(|(k, p)| (k, p, true)));
         places.sort_unstable();
         for (k, p, is_slip) in places {
             let place = (k, p);
@@ -105,13 +107,11 @@ impl Constraints {
             let mut curvature =
                 derivative_of_direction(equations, evaluation, place, &mut rows, &mut gradient);
             let hold = evaluation.at.pairings[k].pairs[p].tangential.hold;
-            if let Some(coefficient) = contact.friction.filter(|_| hold != Hold::Stick) {
-                let (turned, _) = equations.slip_derivatives(evaluation, place, &mut rows);
-                let factor = hold.sign() * coefficient;
-                curvature.iter_mut().zip(turned).for_each(|(c, turned)| *c -= factor * turned);
+            curvature.iter_mut().for_each(|c| *c *= answer.lambda);
+            if contact.friction.is_some() && hold != Hold::Stick {
+                equations.slip_curvature_into(evaluation, place, &mut rows, &mut curvature);
                 constraints.is_skew = true;
             }
-            curvature.iter_mut().for_each(|c| *c *= answer.lambda);
             constraints.places.push(place);
             constraints.slips.push(false);
             constraints.rows.push_row(evaluation.rows[k].row(p));
@@ -133,8 +133,8 @@ impl Constraints {
         rows: &mut Rows,
     ) {
         let contact = &equations.model.contacts[k];
-        let (slip, traction) =
-            (evaluation.slips[k].row(p), evaluation.at.pairings[k].pairs[p].tangential.traction);
+        let (slip, pair) = (evaluation.slips[k].row(p), &evaluation.at.pairings[k].pairs[p]);
+        let (traction, spring) = (pair.tangential.traction, equations.stick_spring(k, pair));
         let (mut curvature, gradient) = equations.slip_derivatives(evaluation, (k, p), rows);
         curvature.iter_mut().for_each(|c| *c *= traction);
         self.is_skew = true;
@@ -144,8 +144,8 @@ impl Constraints {
         self.rows.gradient_mut(self.rows.len() - 1).copy_from_slice(&gradient);
         self.directions.push_row(slip);
         self.weights.push(contact_weights(&equations.stage, contact.at_the_end).0);
-        self.compliances.push(0.0);
-        self.open.push(slip.gap);
+        self.compliances.push(spring.map_or(0.0, f64::recip));
+        self.open.push(if spring.is_some() { 0.0 } else { slip.gap });
         self.curvatures.push(curvature);
     }
 

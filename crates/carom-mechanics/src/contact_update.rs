@@ -113,7 +113,7 @@ impl ContactUpdate {
     ) -> Result<bool, Rejected> {
         let model = equations.model;
         let mut changed = self.change_sets(equations, now, &work.system, settled)?;
-        changed |= self.change_holds(model, now, settled)?;
+        changed |= self.change_holds(equations, now, settled)?;
         let mut handed_over = false;
         if !settled && self.facet_updates > 0 && update_facets(model, now, events) {
             self.facet_updates -= 1;
@@ -176,18 +176,21 @@ impl ContactUpdate {
     /// Updates stick and slip of the closed pairs with friction; returns whether one changed.
     fn change_holds(
         &mut self,
-        model: &Model,
+        equations: &Equations,
         evaluation: &mut Evaluation,
         settled: bool,
     ) -> Result<bool, Rejected> {
         let mut changed = false;
-        for (k, contact) in model.contacts.iter().enumerate() {
-            let Some(coefficient) = contact.friction else { continue };
+        let constraints = equations.model.contacts.iter().enumerate();
+        for (k, contact) in constraints.filter(|(_, contact)| contact.interface.is_constraint()) {
+            if contact.friction.is_none() {
+                continue;
+            }
             let pairs = &mut evaluation.at.pairings[k].pairs;
             let rub = |(pair, row): (&Pair, Row)| {
                 let Tangential { hold, traction, .. } = pair.tangential;
                 // One that has just closed has no pressure yet.
-                let cone = coefficient * (-pair.lambda).max(0.0);
+                let cone = equations.laws[k][pair.node].grip(-pair.lambda);
                 (pair.active && pair.lambda != 0.0).then_some(Rub { hold, traction, slip: row.gap, cone })
             };
             let rubs: Vec<Option<Rub>> = pairs.iter().zip(evaluation.slips[k].iter()).map(rub).collect();

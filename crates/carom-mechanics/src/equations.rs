@@ -7,10 +7,11 @@
 
 use std::sync::Arc;
 
-use carom_contact::{Answer, ContactError, Direction, DiscreteGradient, Hold, Pair, Pairing, Point, Rows};
+use carom_contact::{Answer, ContactError, Direction, DiscreteGradient, Law, Pair, Pairing, Point, Rows};
 use carom_time::{Internal, Stage};
 
 use crate::balance::{Forces, contact_weights, known_into, mean_acceleration, residual_into};
+use crate::friction::Rubbing;
 use crate::model::{LoadsAt, Model, Prescribed};
 use crate::rejected::Rejected;
 use crate::renewal::Point as FactorPoint;
@@ -60,6 +61,10 @@ pub(crate) struct Evaluation {
     pub slips: Vec<Rows>,
     /// y_½ = y_s + d/2; empty without friction.
     pub middle: Vec<f64>,
+    /// Traction of each active pair of a contact beyond what acts along its direction.
+    pub rests: Vec<Vec<f64>>,
+    /// Energy of tangential springs, a part of `springs`.
+    pub stick_springs: f64,
     /// The interface's response to each row.
     pub answers: Vec<Vec<Answer>>,
     /// Strain energy of the bodies at `y`, or at the averaged positions.
@@ -129,6 +134,10 @@ pub(crate) struct Equations<'a> {
     pub motions: Vec<Prescribed>,
     /// Terms of the balance known from the step's start.
     pub known: Vec<f64>,
+    /// Laws of friction of the secondary nodes of each contact at the stage's end.
+    pub laws: Vec<Vec<Law>>,
+    /// Time since the step's start.
+    pub duration: f64,
 }
 
 impl std::fmt::Debug for Model {
@@ -153,6 +162,8 @@ impl<'a> Equations<'a> {
             loads: LoadsAt::default(),
             motions: Vec::new(),
             known: Vec::new(),
+            laws: model.friction_laws(to)?,
+            duration: to - state.time,
         };
         if !model.loads.is_empty() {
             model.loads.at(&model.parts, model.dofs(), time, &mut equations.loads)?;
@@ -292,6 +303,8 @@ impl<'a> Equations<'a> {
             discrete_gradients,
             slips,
             middle,
+            rests,
+            stick_springs,
             answers,
             springs,
             measure,
@@ -304,6 +317,7 @@ impl<'a> Equations<'a> {
         rows.resize_with(contacts, || Rows::new(self.model.dimension));
         discrete_gradients.resize_with(contacts, || Rows::new(self.model.dimension));
         slips.resize_with(contacts, || Rows::new(self.model.dimension));
+        rests.resize_with(contacts, Vec::new);
         forces.friction.clear();
         middle.clear();
         if self.model.has_friction() {
@@ -311,13 +325,14 @@ impl<'a> Equations<'a> {
             middle.extend(self.state.y.iter().zip(&at.increment).map(|(y, d)| y + 0.5 * d));
         }
         answers.resize_with(contacts, Vec::new);
-        (*springs, measure.gap) = (0.0, 0.0);
+        (*springs, *stick_springs, measure.gap) = (0.0, 0.0, 0.0);
         for (k, (contact, pairing)) in self.model.contacts.iter().zip(&mut at.pairings).enumerate() {
             let weight = contact_weights(&self.stage, contact.at_the_end).0;
             let (rows, discrete_gradients, answers) =
                 (&mut rows[k], &mut discrete_gradients[k], &mut answers[k]);
-            let slips = &mut slips[k];
+            let (slips, rests) = (&mut slips[k], &mut rests[k]);
             slips.clear();
+            rests.clear();
             let direction = contact.interface.direction();
             rows.clear();
             discrete_gradients.clear();
@@ -359,22 +374,33 @@ impl<'a> Equations<'a> {
                         discrete_gradients.push_open();
                     }
                 }
-                if let Some(coefficient) = contact.friction {
-                    if answer.active {
-                        self.slip_into(k, pair, middle, &at.increment, slips).map_err(failed)?;
-                        let (slip, hold) = (slips.row(p), pair.tangential.hold);
-                        pair.tangential.traction = pair.tangential.of_law(coefficient, pair.lambda);
-                        discrete_gradients.push_row(row);
-                        if hold == Hold::Stick {
-                            slip.add_to(weight * pair.tangential.traction, &mut forces.contact);
-                            measure.gap = measure.gap.max(slip.gap.abs());
+                if contact.friction.is_some() {
+                    if direction == Direction::End {
+                        if answer.active {
+                            discrete_gradients.push_row(row)
                         } else {
-                            let along = discrete_gradients.gradient_mut(p).iter_mut().zip(slip.gradient);
-                            along.for_each(|(along, h)| *along -= hold.sign() * coefficient * h);
+                            discrete_gradients.push_open()
                         }
+                    }
+                    if answer.active {
+                        self.slip_into(k, pair, row.gap, middle, &at.increment, slips).map_err(failed)?;
+                        let slip = slips.row(p);
+                        let Rubbing { sign, radius, .. } = self.rub(k, pair, slip.gap);
+                        let turn = sign * radius.by_pressure;
+                        let along = discrete_gradients.gradient_mut(p).iter_mut().zip(slip.gradient);
+                        along.for_each(|(along, h)| *along -= turn * h);
+                        let rest = pair.tangential.traction + turn * pair.lambda;
+                        rests.push(rest);
+                        slip.add_to(weight * rest, &mut forces.contact);
                         slip.add_to(weight * pair.tangential.traction, &mut forces.friction);
+                        match self.stick_spring(k, pair) {
+                            Some(stiffness) => {
+                                *stick_springs += 0.5 * pair.tangential.traction.powi(2) / stiffness;
+                            }
+                            None if sign == 0.0 => measure.gap = measure.gap.max(slip.gap.abs()),
+                            None => {}
+                        }
                     } else {
-                        discrete_gradients.push_open();
                         slips.push_open();
                     }
                 }
@@ -387,6 +413,7 @@ impl<'a> Equations<'a> {
                 answers.push(answer);
             }
         }
+        *springs += *stick_springs;
         Ok(())
     }
 

@@ -5,18 +5,19 @@
 //! S = H(y_½)·(Δy − Δy_free),   force  λ∇g + qH(y_½),   ∂S/∂y = H + ½ ∂H/∂yᵀ (Δy − Δy_free)
 //! ```
 //!
-//! Δy_free = 0, except for a pair that was open at the step's start. What slips before it touches
-//! does not count: its S is the velocity at the end of the stage, v(Δy) = v'·(Δy − Δy_free), divided
-//! by v'. A pair that slips has q = −sμλ and is the normal row with the direction ∇g − sμH; one that
-//! sticks is a row of its own with S = 0 and the multiplier q.
+//! Δy_free = 0, except for a pair that was open at the step's start: what slips before it touches
+//! does not count. Its S is the velocity at the end of the stage, v(Δy) = v'·(Δy − Δy_free), divided
+//! by v'; on a spring, the share of Δy in which the gap is negative. A pair that slips has q = s r(λ, Ṡ)
+//! and is the normal row with the direction ∇g − s ∂r/∂|λ| H; one that sticks is a row of its own with
+//! the multiplier q, S = 0 or, on a spring, S = (q − q_s)/k.
 //!
 //! Between steps q acts along H(y_s): in the averaged forces of the next step and in what is
 //! recorded.
 
-use carom_contact::{ContactError, Pair, Row, Rows, Tangential};
+use carom_contact::{ContactError, Hold, Law, Pair, Radius, Row, Rows, Tangential};
 
 use crate::equations::{Equations, Evaluation};
-use crate::model::{Contact, Model};
+use crate::model::{Contact, Model, NoValue};
 use crate::state::State;
 
 impl Model {
@@ -24,14 +25,59 @@ impl Model {
     pub(crate) fn has_friction(&self) -> bool {
         self.contacts.iter().any(|contact| contact.friction.is_some())
     }
+
+    /// The laws of the secondary nodes of each contact at a time; none without friction.
+    ///
+    /// # Errors
+    /// If a coefficient has no value.
+    pub(crate) fn friction_laws(&self, time: f64) -> Result<Vec<Vec<Law>>, NoValue> {
+        let of = |contact: &Contact| contact.friction.as_ref().map_or(Ok(Vec::new()), |f| f.laws(time));
+        self.contacts.iter().map(of).collect()
+    }
+
+    /// Energy of the tangential springs of closed pairs.
+    pub(crate) fn stick_energy<'a>(&self, pairs: impl Iterator<Item = &'a [Pair]>) -> f64 {
+        let of = |(contact, pairs): (&Contact, &'a [Pair])| {
+            let springs = contact.friction.as_ref().map_or(&[][..], |friction| &friction.springs);
+            let closed = pairs.iter().filter(|pair| pair.active && !springs.is_empty());
+            closed.map(|pair| 0.5 * pair.tangential.traction.powi(2) / springs[pair.node]).sum::<f64>()
+        };
+        self.contacts.iter().zip(pairs).map(of).sum()
+    }
+}
+
+/// Part of the motion of a pair that counts as slip.
+#[derive(Clone, Copy)]
+enum Counted {
+    /// This share of the step's increment.
+    Share(f64),
+    /// What gives the velocity at the end of the stage.
+    Velocity,
+}
+
+/// A closed pair that rubs.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Rubbing {
+    /// s, 0 in stick.
+    pub sign: f64,
+    /// The traction of a slip.
+    pub radius: Radius,
+    /// Factor between S and the rate of slip.
+    pub rate: f64,
 }
 
 impl Equations<'_> {
-    /// Adds the row H of a closed pair at y_½, with S as its gap.
+    /// Whether the friction of a contact is on springs, and the stiffness of a pair's.
+    pub(crate) fn stick_spring(&self, contact: usize, pair: &Pair) -> Option<f64> {
+        self.model.contacts[contact].friction.as_ref()?.springs.get(pair.node).copied()
+    }
+
+    /// Adds the row H of a closed pair at y_½, with S as its gap. `gap`: that of the pair.
     pub(crate) fn slip_into(
         &self,
         contact: usize,
         pair: &Pair,
+        gap: f64,
         middle: &[f64],
         increment: &[f64],
         slips: &mut Rows,
@@ -40,10 +86,10 @@ impl Equations<'_> {
         let mut at_middle = *pair;
         kinematics.measure(&mut at_middle, middle, slips)?;
         slips.pop();
-        let closes = self.closes(contact, pair);
+        let part = self.part(contact, pair, gap, slips);
         kinematics.slip(&at_middle, middle, slips)?;
         let row = slips.row(slips.len() - 1);
-        let counted = |(dof, slope): (usize, f64)| slope * self.counted(dof, closes, increment);
+        let counted = |(dof, slope): (usize, f64)| slope * self.counted(dof, part, increment);
         let slip = row.entries().map(counted).sum();
         *slips.gap_mut(slips.len() - 1) = slip;
         Ok(())
@@ -52,13 +98,57 @@ impl Equations<'_> {
     /// S of a pair that closes in an iterate; 0 if it has none.
     pub(crate) fn slip(&self, contact: usize, pair: &Pair, middle: &[f64], increment: &[f64]) -> f64 {
         let mut rows = Rows::new(self.model.dimension);
-        self.slip_into(contact, pair, middle, increment, &mut rows).map_or(0.0, |()| rows.row(0).gap)
+        self.slip_into(contact, pair, 0.0, middle, increment, &mut rows).map_or(0.0, |()| rows.row(0).gap)
+    }
+
+    /// Sets the traction of a closed pair from its slip.
+    pub(crate) fn rub(&self, contact: usize, pair: &mut Pair, slip: f64) -> Rubbing {
+        let (law, pressure) = (self.laws[contact][pair.node], (-pair.lambda).max(0.0));
+        let per_step = self.duration.recip();
+        let closes = self.closes(contact, pair);
+        let spring = self.stick_spring(contact, pair);
+        let rate = match (self.stage.is_static(), closes && spring.is_none()) {
+            (true, _) => 0.0,
+            (_, true) => self.stage.velocity.slope,
+            _ => per_step,
+        };
+        let Tangential { before, .. } = pair.tangential;
+        if let Some(stiffness) = spring {
+            let trial = if closes { 0.0 } else { before } + stiffness * slip;
+            let grips = trial.abs() <= law.grip(pressure);
+            pair.tangential.hold = if grips { Hold::Stick } else { Hold::of(trial, 0.0) };
+            pair.tangential.traction = trial;
+        }
+        let sign = pair.tangential.hold.sign();
+        let mut radius = law.slip(pressure, slip.abs() * rate);
+        if spring.is_some() {
+            // The rate of a slip that stretches a spring contains that of the spring.
+            radius = Radius { by_rate: 0.0, ..law.slip(pressure, 0.0) };
+        }
+        if sign != 0.0 {
+            pair.tangential.traction = sign * radius.value;
+        }
+        Rubbing { sign, radius, rate }
+    }
+
+    fn part(&self, contact: usize, pair: &Pair, gap: f64, rows: &mut Rows) -> Counted {
+        if !self.closes(contact, pair) {
+            return Counted::Share(1.0);
+        }
+        if self.stick_spring(contact, pair).is_none() {
+            return Counted::Velocity;
+        }
+        let start = self.gap_at_start(contact, pair, rows).unwrap_or(0.0);
+        Counted::Share(if start > 0.0 { (gap / (gap - start)).clamp(0.0, 1.0) } else { 1.0 })
     }
 
     /// A component of Δy − Δy_free.
-    fn counted(&self, dof: usize, closes: bool, increment: &[f64]) -> f64 {
+    fn counted(&self, dof: usize, part: Counted, increment: &[f64]) -> f64 {
         let velocity = &self.stage.velocity;
-        increment[dof] + if closes { velocity.at_start[dof] / velocity.slope } else { 0.0 }
+        match part {
+            Counted::Share(share) => share * increment[dof],
+            Counted::Velocity => increment[dof] + velocity.at_start[dof] / velocity.slope,
+        }
     }
 
     /// Whether a pair was open at the step's start.
@@ -80,21 +170,47 @@ impl Equations<'_> {
         let kinematics = &self.model.contacts[contact].kinematics;
         let (row, pair) = (evaluation.slips[contact].row(p), &evaluation.at.pairings[contact].pairs[p]);
         let mut matrix = vec![0.0; row.gradient.len().pow(2)];
-        let mut gradient = row.gradient.to_vec();
-        let mut at_middle = *pair;
         rows.clear();
-        let closes = self.closes(contact, pair);
+        let part = self.part(contact, pair, evaluation.rows[contact].row(p).gap, rows);
+        let share = if let Counted::Share(share) = part { share } else { 1.0 };
+        let mut gradient: Vec<f64> = row.gradient.iter().map(|h| share * h).collect();
+        let mut at_middle = *pair;
         // It was measured in the evaluation.
         if kinematics.measure(&mut at_middle, &evaluation.middle, rows).is_err() {
             return (matrix, gradient);
         }
         kinematics.slip_derivative_into(&at_middle, &evaluation.middle, &mut matrix);
         matrix.iter_mut().for_each(|entry| *entry *= 0.5);
-        let counted = row.entries().map(|(dof, _)| self.counted(dof, closes, &evaluation.at.increment));
+        let counted = row.entries().map(|(dof, _)| self.counted(dof, part, &evaluation.at.increment));
         for (turned, moved) in matrix.chunks_exact(gradient.len()).zip(counted) {
             gradient.iter_mut().zip(turned).for_each(|(slope, h)| *slope += h * moved);
         }
         (matrix, gradient)
+    }
+
+    /// Adds the derivative of the force s r H of a slipping pair, beyond that of r by λ, over the nodes
+    /// of its row.
+    pub(crate) fn slip_curvature_into(
+        &self,
+        evaluation: &Evaluation,
+        (contact, p): (usize, usize),
+        rows: &mut Rows,
+        curvature: &mut [f64],
+    ) {
+        let slip = evaluation.slips[contact].row(p);
+        let mut pair = evaluation.at.pairings[contact].pairs[p];
+        let Rubbing { sign, radius, rate } = self.rub(contact, &mut pair, slip.gap);
+        if sign == 0.0 {
+            return;
+        }
+        let (turned, gradient) = self.slip_derivatives(evaluation, (contact, p), rows);
+        let by_slip = radius.by_rate * rate * slip.gap.signum() * sign;
+        for (i, row) in curvature.chunks_exact_mut(gradient.len()).enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                *entry += sign * radius.value * turned[i * gradient.len() + j]
+                    + by_slip * slip.gradient[i] * gradient[j];
+            }
+        }
     }
 }
 
@@ -116,12 +232,15 @@ pub fn each_slip(model: &Model, state: &State, mut visit: impl FnMut(usize, usiz
     }
 }
 
-/// Force of friction on a secondary side, −Σ q ∂S/∂y_N over the closed pairs.
-pub(crate) fn secondary_friction<'a>(pairs: &[Pair], slips: impl Iterator<Item = Row<'a>>) -> [f64; 3] {
+/// Force on a secondary side of the tractions that are not in the direction of λ: −Σ (q + s ∂r/∂|λ| λ)
+/// ∂S/∂y_N over the closed pairs.
+pub(crate) fn secondary_friction(evaluation: &Evaluation, contact: usize) -> [f64; 3] {
     let mut force = [0.0; 3];
-    for (pair, row) in pairs.iter().zip(slips).filter(|(pair, _)| pair.active) {
+    let pairs = evaluation.at.pairings[contact].pairs.iter();
+    let closed = pairs.zip(evaluation.slips[contact].iter()).filter(|(pair, _)| pair.active);
+    for ((_, row), rest) in closed.zip(&evaluation.rests[contact]) {
         let along = row.normal();
-        (0..3).for_each(|i| force[i] -= pair.tangential.traction * along[i]);
+        (0..3).for_each(|i| force[i] -= rest * along[i]);
     }
     force
 }
@@ -135,6 +254,7 @@ pub(crate) fn take_slips(model: &Model, state: &mut State, slips: &[Rows]) {
         for (pair, row) in state.pairs[k].iter_mut().zip(slips[k].iter()) {
             if pair.active {
                 pair.tangential.slip += row.gap;
+                pair.tangential.before = pair.tangential.traction;
             } else {
                 pair.tangential = Tangential::default();
             }

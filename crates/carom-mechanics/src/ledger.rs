@@ -15,6 +15,8 @@
 //! The increment of the dissipation of the α family then equals (Δy·F̄_int − ΔU) − (γ+α_m−1) Δy·MΔa
 //! + Δt² (β−γ/2) Δa·M(a_s + γΔa) to round-off (Krenk 2006).
 
+use std::borrow::Cow;
+
 use carom_contact::{Pair, Row, Rows};
 use carom_time::{Stage, Weights};
 
@@ -41,17 +43,19 @@ pub(crate) fn add_stage(
     contact.add(model, stage, &solved.forces.contact, &state.f_contact, &mut means.contact);
     if model.has_friction() {
         means.friction.resize(model.dofs(), 0.0);
-        contact.add(model, stage, &solved.forces.friction, &state.f_friction, &mut means.friction);
+        // A state of a case without friction has none.
+        let mut before = Cow::from(&state.f_friction);
+        if before.is_empty() {
+            before.to_mut().resize(model.dofs(), 0.0);
+        }
+        contact.add(model, stage, &solved.forces.friction, &before, &mut means.friction);
     }
     for (k, contact) in model.contacts.iter().enumerate() {
         let (now, start) = if contact.at_the_end { (1.0, 0.0) } else { (now, start) };
         let pairs = &solved.at.pairings[k].pairs;
         let mut force = secondary_force(pairs, solved.directions(k).iter());
-        if !solved.slips[k].is_empty() {
-            force = secondary_force(pairs, solved.rows[k].iter());
-            let friction = secondary_friction(pairs, solved.slips[k].iter());
-            (0..3).for_each(|i| force[i] += friction[i]);
-        }
+        let friction = secondary_friction(solved, k);
+        (0..3).for_each(|i| force[i] += friction[i]);
         for i in 0..3 {
             means.contact_forces[k][i] += now * force[i] + start * state.contact_forces[k][i];
         }
@@ -132,8 +136,8 @@ fn add_previous(model: &Model, old: f64, before: &Means, means: &mut Means) {
         means.contact[i] += old * before.contact[i];
         means.loads[i] += old * before.loads[i];
     }
-    for i in (0..means.friction.len()).filter(|&i| !model.massless[i]) {
-        means.friction[i] += old * before.friction[i];
+    for (i, (mean, before)) in means.friction.iter_mut().zip(&before.friction).enumerate() {
+        *mean += if model.massless[i] { 0.0 } else { old * before };
     }
     for (mean, before) in means.contact_forces.iter_mut().zip(&before.contact_forces) {
         (0..3).for_each(|i| mean[i] += old * before[i]);
@@ -198,8 +202,10 @@ pub(crate) fn account(
     }
     if model.has_friction() {
         let work = dot(increment, &means.friction);
-        next.ledger.contact_work += work;
-        next.ledger.friction_work -= work;
+        let stored = last.stick_springs - next.ledger.stick_springs;
+        next.ledger.contact_work += work - stored;
+        next.ledger.friction_work += stored - work;
+        next.ledger.stick_springs = last.stick_springs;
     }
     // Spring energy is not lost: it is part of the strain energy.
     next.ledger.contact_work += last.springs - next.ledger.springs;

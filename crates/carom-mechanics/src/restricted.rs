@@ -22,7 +22,9 @@ impl State {
         for vector in [&mut state.y, &mut state.v, &mut state.a] {
             *vector = of(vector);
         }
-        for vector in [&mut state.f_internal, &mut state.f_external, &mut state.f_contact] {
+        for vector in
+            [&mut state.f_internal, &mut state.f_external, &mut state.f_contact, &mut state.f_friction]
+        {
             *vector = of(vector);
         }
         state.half_step.velocity = of(&self.half_step.velocity);
@@ -34,7 +36,7 @@ impl State {
             for vector in [increment, velocity, &mut means.contact, &mut means.loads] {
                 *vector = of(vector);
             }
-            for vector in [&mut means.supports, &mut means.accelerations] {
+            for vector in [&mut means.friction, &mut means.supports, &mut means.accelerations] {
                 *vector = of(vector);
             }
             means.contact_forces = each(&means.contact_forces);

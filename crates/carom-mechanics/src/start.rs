@@ -81,6 +81,8 @@ pub(crate) fn start(
     }
     let gaps = measure_all(model, &mut state)?;
     state.ledger.springs = press(model, &mut state, &gaps);
+    state.ledger.stick_springs = model.stick_energy(state.pairs.iter().map(Vec::as_slice));
+    state.ledger.springs += state.ledger.stick_springs;
     state.ledger.strain += state.ledger.springs;
     if inertia {
         accelerate(model, &mut state, &gaps, system)?;

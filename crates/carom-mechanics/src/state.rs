@@ -15,6 +15,8 @@ pub struct Ledger {
     pub strain: f64,
     /// The contribution of the springs.
     pub springs: f64,
+    /// The contribution of tangential springs to that.
+    pub stick_springs: f64,
     /// Potential of constant conservative loads.
     pub potential: f64,
     /// Total energy at the start.
@@ -250,6 +252,10 @@ impl State {
                 is("values of a previous step", list.len(), dofs)?;
             }
             is("contacts with means", means.contact_forces.len(), contacts)?;
+        }
+        let frictions = self.previous.iter().map(|previous| &previous.means.friction);
+        for friction in frictions.chain([&self.f_friction]).filter(|friction| !friction.is_empty()) {
+            is("forces of friction", friction.len(), dofs)?;
         }
         if !self.half_step.velocity.is_empty() {
             is("velocities at half a step", self.half_step.velocity.len(), dofs)?;

@@ -10,7 +10,7 @@ use crate::constraints::Constraints;
 use crate::equations::{Equations, Iterate};
 use crate::grid_report::GridReport;
 use crate::linear_problem::LinearProblem;
-use crate::model::{Load, Loads, Model, Motions};
+use crate::model::{Friction, Load, Loads, Model, Motions};
 use crate::state::State;
 use crate::sums::dot;
 use crate::testing::{contact, loaded, model, nodes, parts, simulation};
@@ -163,7 +163,7 @@ fn the_whole_tangent_with_a_conserving_contact_is_the_derivative_of_the_residual
 fn the_whole_tangent_with_friction_is_the_derivative_of_the_residual() {
     for scheme in [Scheme::chung_hulbert(0.6).unwrap(), Scheme::hht(0.2).unwrap()] {
         let mut model = strike();
-        model.contacts[0].friction = Some(0.4);
+        model.contacts[0].friction = Some(Friction::coulomb(0.4, 64));
         let mut sim = simulation(model, scheme, 2e-3);
         while sim.state().time < 0.1 {
             sim.advance(&mut GridReport::default()).unwrap();

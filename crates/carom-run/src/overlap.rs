@@ -16,7 +16,8 @@
 //! with the velocities of the case, and the energy that the bodies then store is in its first row.
 
 use carom_case::{
-    Case, ContactLaw, FormulaSpec, MassKind, ObstacleMotion, Overlap, Persistency, Problem, SchemeSpec,
+    Case, ContactLaw, FormulaSpec, FrictionSpec, MassKind, ObstacleMotion, Overlap, Persistency, Problem,
+    SchemeSpec,
 };
 use carom_contact::{Pairing, Rows};
 use carom_mechanics::model::Model;
@@ -221,7 +222,7 @@ fn quasi_static(case: &Case) -> Case {
         contact.persistency = Persistency::None;
         contact.restitution = 0.0;
         // Overlaps are closed before anything rubs.
-        contact.mu = 0.0;
+        contact.friction = FrictionSpec::default();
     }
     quasi
 }

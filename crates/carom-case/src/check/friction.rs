@@ -1,13 +1,16 @@
 //! Checks of friction: what it is built for. Everything else is refused, never without friction.
 
 use super::super::{ContactLaw, Detection};
-use super::super::{ContactPoint, ContactSpec, Enforcement, MassKind, ObstacleMotion};
+use super::super::{
+    ContactPoint, ContactSpec, Enforcement, FormulaSpec, FrictionSpec, MassKind, ObstacleMotion,
+};
 use super::Check;
 
 impl Check<'_> {
     /// Combinations that have no friction yet.
     pub(super) fn friction(&mut self, contact: &ContactSpec) {
-        if contact.mu == 0.0 {
+        self.friction_keys(contact);
+        if !contact.friction.exists() {
             return;
         }
         let draft = self.draft;
@@ -21,22 +24,26 @@ impl Check<'_> {
         };
         let light = is_light(&contact.secondary) || contact.primary.side().is_some_and(is_light);
         let mut refuse = |with: &str, why: &str, help: &str| {
-            let what = format!("mu = {} cannot be used {with}", contact.mu);
-            self.add_unique(contact.path("mu"), what, why, help);
+            let key = if contact.friction.mu.is_some() { "mu" } else { "shear" };
+            let value = contact.friction.mu.as_ref().map(|mu| format!(" = {mu}")).unwrap_or_default();
+            self.add_unique(contact.path(key), format!("{key}{value} cannot be used {with}"), why, help);
         };
         if draft.dimension == Some(1) {
             refuse("in dimension 1", "the end of a bar has no tangent", "leave mu out");
         }
         if let Some(scheme) = scheme
-            && (scheme.nonsmooth().is_some() || scheme.conserves())
+            && contact.enforcement == Enforcement::Penalty
+            && scheme.conserves()
         {
-            let why = "friction is built for schemes whose stages balance forces: the α family, two-stage and two-step schemes, and \"static\"";
+            let why = "the gap of a conserving spring is updated from step to step, and a stretch with it is not built";
+            refuse("with a conserving penalty", why, "use enforcement = \"multiplier\", or leave mu out");
+        }
+        if let Some(scheme) = scheme
+            && scheme.nonsmooth().is_some()
+        {
+            let why = "friction is built for schemes whose stages balance forces: the α family, two-stage and two-step schemes, energy-momentum and \"static\"";
             let help = "use a scheme such as chung-hulbert, hht, newmark, bathe or tr-bdf2, or leave mu out";
             refuse(&format!("with scheme `{}`", scheme.kind), why, help);
-        }
-        if contact.enforcement == Enforcement::Penalty {
-            let why = "friction of penalty springs needs springs of its own in the tangential direction, which are not built yet";
-            refuse("with a penalty", why, "use enforcement = \"multiplier\", or leave mu out");
         }
         if contact.law == Some(ContactLaw::Predictor) {
             let why = "the projection of the predictor has no friction";
@@ -60,6 +67,42 @@ impl Check<'_> {
                 "with redistributed mass",
                 why,
                 "use mass = \"consistent\" or \"lumped\", or leave mu out",
+            );
+        }
+    }
+
+    /// Keys of friction that say nothing without another one.
+    fn friction_keys(&mut self, contact: &ContactSpec) {
+        let FrictionSpec { mu, mu_dynamic, decay, stick_stiffness, .. } = &contact.friction;
+        let mut needs = |key: &str, given: bool, other: &str, has: bool, why: &str| {
+            if given && !has {
+                let what = format!("`{key}` is given without {other}");
+                self.add(contact.path(key), what, why, format!("give {other}, or leave out `{key}`"));
+            }
+        };
+        let why = "it is the coefficient of a node that slips, which is at most that of one that sticks";
+        needs("mu_dynamic", mu_dynamic.is_some(), "`mu`", mu.is_some(), why);
+        let why = "it is the rate of the transition from `mu` to `mu_dynamic`";
+        needs("decay", decay.is_some(), "`mu_dynamic`", mu_dynamic.is_some(), why);
+        let (penalty, why) =
+            (contact.enforcement == Enforcement::Penalty, "a multiplier holds a node that sticks exactly");
+        needs("stick_stiffness", stick_stiffness.is_some(), "a penalty", penalty, why);
+        if let (Some(FormulaSpec::Number(stick)), Some(slip)) = (mu, mu_dynamic)
+            && slip > stick
+        {
+            let what = format!("mu_dynamic = {slip} is larger than mu = {stick}");
+            let why = "a node that began to slip would stick again at once";
+            self.add(contact.path("mu_dynamic"), what, why, "give a smaller one");
+        }
+        if let Some(FormulaSpec::Number(mu)) = mu
+            && *mu < 0.0
+        {
+            let what = format!("`mu` must be a number ≥ 0, not {mu}");
+            self.add(
+                contact.path("mu"),
+                what,
+                "friction takes energy",
+                "give a positive number, or leave it out",
             );
         }
     }

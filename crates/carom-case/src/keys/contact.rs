@@ -1,7 +1,7 @@
 //! Keys of contacts and rigid obstacles.
 
 use super::Kind::{Choice, Formula, Name, Number, Side, SideOr, Truth, Vector};
-use super::{IN_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key};
+use super::{IN_SPACE_AND_TIME, IN_TIME, Kind, NOT_NEGATIVE, POSITIVE, Range, Table, key};
 
 pub(super) const CONTACT: Table = Table {
     name: "[[contact]]",
@@ -81,12 +81,44 @@ pub(super) const CONTACT: Table = Table {
         .default("\"refuse\""),
         key(
             "mu",
-            Number(NOT_NEGATIVE),
+            Formula(IN_SPACE_AND_TIME),
             "Coefficient of Coulomb friction μ, for the slip of the secondary side on the primary one: a node sticks while its tangential force is \
-             less than μ times its normal force, and otherwise slips against exactly this force. 0: no friction. Dimension 2; rigid obstacles that do \
-             not turn and sides of bodies; implicit schemes except energy-momentum; multipliers.",
+             less than μ times its normal force, and otherwise slips against exactly this force. A number, or a formula of the node's reference \
+             position and time. 0: no friction. Dimension 2; rigid obstacles that do not turn, and sides of bodies.",
         )
         .default("0.0"),
+        key(
+            "mu_dynamic",
+            Number(NOT_NEGATIVE),
+            "Coefficient of friction of a node that slips, at most `mu`, which is then that of a node that sticks. Default: `mu`.",
+        )
+        .optional()
+        .example("0.2"),
+        key(
+            "decay",
+            Number(NOT_NEGATIVE),
+            "Rate c of the transition to `mu_dynamic`: at a slip rate v, μ = mu_dynamic + (mu − mu_dynamic) exp(−c v). Default: at once.",
+        )
+        .unit("time/length")
+        .optional()
+        .example("10.0"),
+        key(
+            "shear",
+            Number(POSITIVE),
+            "Largest tangential stress (Tresca friction): a node slips against this stress times its area in the reference configuration if μ times \
+             its normal force is larger, or if `mu` is not given.",
+        )
+        .unit("stress")
+        .optional()
+        .example("1e3"),
+        key(
+            "stick_stiffness",
+            Number(POSITIVE),
+            "With enforcement = \"penalty\": stiffness of the tangential spring of a node that sticks, as a multiple of its reference stiffness. Its \
+             energy counts as strain energy. Default: `stiffness`.",
+        )
+        .optional()
+        .example("10.0"),
         key(
             "restitution",
             Number(RESTITUTION),

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::formula::FormulaSpec;
 use super::obstacle::ObstacleMotion;
 
 /// A contact pair: two sides that may come into contact.
@@ -43,12 +44,34 @@ pub struct ContactSpec {
     /// What happens to an overlap of the bodies at the start.
     #[serde(default)]
     pub overlap: Overlap,
-    /// Coefficient of friction μ ≥ 0.
+    /// Friction.
     #[serde(default)]
-    pub mu: f64,
+    pub friction: FrictionSpec,
     /// Coefficient of restitution e, 0 … 1: Newton's, for laws on velocities; for a constraint that
     /// conserves, e² is the share of the energy taken that is returned.
     pub restitution: f64,
+}
+
+/// The law of friction.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FrictionSpec {
+    /// μ, in stick if `mu_dynamic` is given; none: no friction, or Tresca's.
+    pub mu: Option<FormulaSpec>,
+    /// μ in slip.
+    pub mu_dynamic: Option<f64>,
+    /// Rate of the transition between them, time per length.
+    pub decay: Option<f64>,
+    /// Largest tangential stress.
+    pub shear: Option<f64>,
+    /// Stiffness of tangential springs, as a multiple of the reference stiffness.
+    pub stick_stiffness: Option<f64>,
+}
+
+impl FrictionSpec {
+    /// Whether there is friction.
+    pub fn exists(&self) -> bool {
+        self.mu.is_some() || self.shear.is_some()
+    }
 }
 
 impl ContactSpec {

@@ -13,8 +13,8 @@ mod time;
 pub use body::{BodySpec, Law, MassKind, MaterialSpec, PlaceSpec, Plane};
 pub use case::{Case, InitialSpec, Preset, Units, Velocities};
 pub use contact::{
-    ActiveSetRule, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime, Overlap,
-    Persistency, PrimarySpec,
+    ActiveSetRule, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime, FrictionSpec,
+    Overlap, Persistency, PrimarySpec,
 };
 pub use formula::FormulaSpec;
 pub use load::{LoadKind, LoadSpec, SupportSpec, TableSpec};

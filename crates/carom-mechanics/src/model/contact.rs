@@ -3,6 +3,8 @@
 use carom_contact::{Direction, Interface, Kinematics};
 use carom_solid::FacetShape;
 
+use super::friction::Friction;
+
 /// A contact: relative position of its surfaces, contact law, and treatment by the schemes.
 #[allow(clippy::struct_excessive_bools)] // Each is a choice of the case, independent of the others.
 pub struct Contact {
@@ -22,8 +24,8 @@ pub struct Contact {
     /// Allowed depth, over the length of a facet, of nodes that the contact constrains, and of other
     /// nodes of its sides: a step in which a node is deeper is rejected.
     pub depths: [f64; 2],
-    /// Coefficient of friction μ > 0.
-    pub friction: Option<f64>,
+    /// Friction.
+    pub friction: Option<Friction>,
     /// Whether penetration by the predictor y + Δt v is prevented too.
     pub predictor: bool,
     /// Nodes of both sides and of the carrier of a rigid primary, ascending.

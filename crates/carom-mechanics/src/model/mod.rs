@@ -3,6 +3,7 @@
 mod body_instance;
 mod contact;
 mod formulas;
+mod friction;
 mod loads;
 mod manufactured;
 mod mass;
@@ -15,6 +16,7 @@ mod whole;
 pub use body_instance::BodyInstance;
 pub use contact::Contact;
 pub use formulas::{NoValue, value};
+pub use friction::Friction;
 pub use loads::{Amplitude, Load, Loads, LoadsAt};
 pub use manufactured::Manufactured;
 pub use mass::Mass;

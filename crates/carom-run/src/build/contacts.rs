@@ -2,17 +2,19 @@
 //! new contact method is one line here.
 
 use carom_case::{
-    ActiveSetRule, Case, ContactLaw, ContactSpec, Enforcement, ForceTime, ObstacleMotion, Overlap,
-    Persistency, Problem,
+    ActiveSetRule, Case, ContactLaw, ContactSpec, Enforcement, ForceTime, FrictionSpec, ObstacleMotion,
+    Overlap, Persistency, Problem, load_variables,
 };
 use carom_contact::{
     BothSides, ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet,
     NodeToObstacle, Penalty, Surface, Unilateral,
 };
-use carom_mechanics::model::{BodyInstance, Contact, Model};
+use carom_mechanics::model::{BodyInstance, Contact, Friction, Model};
+use carom_solid::FacetShape;
 
 use super::obstacles::{self, Moving};
 use super::side::{Side, coordinates, side};
+use crate::recording::consistent_weights;
 
 /// Depth of smooth nodes of the primary in edges of the secondary, over its shortest facet.
 const ALLOWED: f64 = 0.02;
@@ -117,6 +119,25 @@ pub(super) fn contacts(
                 .map(|&node| spec.stiffness * node_stiffness(parts, node))
                 .collect::<Vec<_>>()
         };
+        let shapes = || {
+            std::iter::once((secondary.shape, &secondary.facets))
+                .chain(primary_facets.as_ref().map(|(shape, facets)| (*shape, facets)))
+        };
+        let friction = match friction(case, spec, kinematics.secondary(), &reference, shapes()) {
+            Ok(mut friction) => {
+                if let Some(friction) = friction.as_mut().filter(|_| spec.enforcement == Enforcement::Penalty)
+                {
+                    let factor = spec.friction.stick_stiffness.unwrap_or(spec.stiffness);
+                    let stiffness = |&node: &usize| factor * node_stiffness(parts, node);
+                    friction.springs = kinematics.secondary().iter().map(stiffness).collect();
+                }
+                friction
+            }
+            Err(problem) => {
+                problems.push(problem);
+                continue;
+            }
+        };
         let contact = Contact {
             name: spec.name.clone(),
             interface: match spec.enforcement {
@@ -134,7 +155,7 @@ pub(super) fn contacts(
                 (Enforcement::Multiplier, Some(ContactLaw::Position | ContactLaw::Predictor)) => [0.01, 0.1],
                 _ => [0.25; 2],
             },
-            friction: (spec.mu > 0.0).then_some(spec.mu),
+            friction,
             predictor: spec.law == Some(ContactLaw::Predictor),
             kinematics,
             // A mass that is thrown is a body; a prescribed obstacle is not.
@@ -168,6 +189,37 @@ pub(super) fn contacts(
         contacts.push(contact);
     }
     contacts
+}
+
+/// The friction of a contact, without tangential springs.
+fn friction<'a>(
+    case: &Case,
+    spec: &ContactSpec,
+    nodes: &[usize],
+    reference: &[f64],
+    facets: impl Iterator<Item = (FacetShape, &'a Vec<Vec<usize>>)>,
+) -> Result<Option<Friction>, Problem> {
+    let FrictionSpec { mu, mu_dynamic, decay, shear, .. } = &spec.friction;
+    if !spec.friction.exists() {
+        return Ok(None);
+    }
+    let stick = match mu.as_ref().map(|mu| mu.formula(&load_variables(case.dimension))).transpose() {
+        Ok(formula) => formula.map(|formula| (formula, format!("mu of contact \"{}\"", spec.name))),
+        Err(error) => return Err(Problem::new(spec.path("mu"), error.to_string(), "", "")),
+    };
+    let d = case.dimension;
+    let limits = shear.map(|shear| {
+        let areas = consistent_weights(nodes, facets, reference, case.thickness);
+        areas.iter().map(|area| shear * area).collect()
+    });
+    Ok(Some(Friction {
+        stick,
+        slip: *mu_dynamic,
+        decay: decay.unwrap_or(f64::INFINITY),
+        places: nodes.iter().map(|node| reference[node * d..(node + 1) * d].to_vec()).collect(),
+        limits: limits.unwrap_or_default(),
+        springs: Vec::new(),
+    }))
 }
 
 /// Contact of a side with itself.

@@ -8,7 +8,7 @@ use carom_contact::{Pair, Rows};
 use carom_mechanics::State;
 use carom_mechanics::model::{Contact, Model};
 use carom_record::{Block, Cell, FieldSet, PointArray};
-use carom_solid::Element;
+use carom_solid::{Element, FacetShape};
 
 use super::units::Labels;
 
@@ -105,7 +105,7 @@ fn nodal_stress(model: &Model, state: &State) -> Vec<f64> {
 fn pressures(case: &Case, model: &Model, state: &State) -> Vec<f64> {
     let mut pressure = vec![0.0; model.mass.nodes()];
     for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
-        let weights = consistent_weights(contact, state, case.thickness);
+        let weights = weights(contact, state, case.thickness);
         for pair in pairs.iter().filter(|p| p.active) {
             pressure[contact.kinematics.secondary()[pair.node]] -= pair.lambda / weights[pair.node];
         }
@@ -113,12 +113,21 @@ fn pressures(case: &Case, model: &Model, state: &State) -> Vec<f64> {
     pressure
 }
 
-/// ∫φᴺ ds over the current side of each node, times the thickness: the area of each multiplier. One
-/// entry per node of the contact's pairs.
-pub(super) fn consistent_weights(contact: &Contact, state: &State, thickness: f64) -> Vec<f64> {
-    let secondary = contact.kinematics.secondary();
+/// The area of each multiplier of a contact at a state, one entry per node of its pairs.
+pub(super) fn weights(contact: &Contact, state: &State, thickness: f64) -> Vec<f64> {
+    let facets = contact.facets.iter().map(|(shape, facets)| (*shape, facets));
+    consistent_weights(contact.kinematics.secondary(), facets, &state.y, thickness)
+}
+
+/// ∫φᴺ ds over the sides of each node at positions `y`, times the thickness.
+pub(crate) fn consistent_weights<'a>(
+    secondary: &[usize],
+    facets: impl Iterator<Item = (FacetShape, &'a Vec<Vec<usize>>)>,
+    y: &[f64],
+    thickness: f64,
+) -> Vec<f64> {
     let mut weights: HashMap<usize, f64> = secondary.iter().map(|&node| (node, 0.0)).collect();
-    for (shape, facets) in &contact.facets {
+    for (shape, facets) in facets {
         let d = shape.dimension();
         // Exact for constant |y'| and φ of degree 3.
         let rule = shape.rule(5);
@@ -127,7 +136,7 @@ pub(super) fn consistent_weights(contact: &Contact, state: &State, thickness: f6
                 let functions = shape.at(xi);
                 let mut tangent = [0.0; 2];
                 for (&n, slope) in facet.iter().zip(&functions.first) {
-                    (0..d).for_each(|i| tangent[i] += slope * state.y[n * d + i]);
+                    (0..d).for_each(|i| tangent[i] += slope * y[n * d + i]);
                 }
                 let [x, y] = shape.normal(tangent, 1.0);
                 let measure = x.hypot(y);

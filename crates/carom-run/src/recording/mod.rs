@@ -11,6 +11,7 @@ mod units;
 mod verdicts;
 
 pub use columns::columns;
+pub(crate) use fields::consistent_weights;
 pub use fields::initial_fields;
 pub use outcome::{End, Options, Outcome, Progress, RunError};
 pub use session::{resume, run};

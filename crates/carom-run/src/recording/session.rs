@@ -13,7 +13,7 @@ use cpu_time::{ProcessTime, ThreadTime};
 use serde::{Deserialize, Serialize};
 
 use super::columns::{Since, center_weights, columns, row};
-use super::fields::{consistent_weights, field_set, gap_of, sides};
+use super::fields::{field_set, gap_of, sides, weights};
 use super::log::{entry, relaxed, repairs};
 use super::outcome::{End, Options, Outcome, Progress, RunError};
 use super::stopped::{Record, write_stop};
@@ -301,7 +301,7 @@ impl<'a> Session<'a> {
             if pairs.iter().all(|p| !p.active) {
                 continue;
             }
-            let weights = consistent_weights(contact, state, self.case.thickness);
+            let weights = weights(contact, state, self.case.thickness);
             // In a dent, a node has several pairs.
             let mut of_node = vec![0.0; weights.len()];
             pairs.iter().filter(|p| p.active).for_each(|pair| of_node[pair.node] += pair.lambda);
@@ -321,7 +321,7 @@ impl<'a> Session<'a> {
                     multiplier: pair.lambda,
                     pressure: -of_node[pair.node] / weights[pair.node],
                     normal,
-                    friction: match (contact.friction, pair.tangential.hold) {
+                    friction: match (&contact.friction, pair.tangential.hold) {
                         (None, _) => "none",
                         (_, Hold::Stick) => "stick",
                         (_, Hold::Forward | Hold::Backward) => "slip",

@@ -1,0 +1,57 @@
+//! Friction of a contact: the law of each secondary node at a time, and its tangential spring.
+
+use carom_contact::Law;
+use carom_formula::Formula;
+
+use super::formulas::{NoValue, value};
+
+/// Friction between the sides of a contact.
+pub struct Friction {
+    /// μ_s as a formula of reference position and time, and its label; none: only the limit counts.
+    pub stick: Option<(Formula, String)>,
+    /// μ_d; μ_s if none.
+    pub slip: Option<f64>,
+    /// See [`Law::decay`].
+    pub decay: f64,
+    /// Reference positions of the secondary nodes.
+    pub places: Vec<Vec<f64>>,
+    /// Largest traction of each secondary node; empty if it has none.
+    pub limits: Vec<f64>,
+    /// Stiffness of the tangential spring of each secondary node; empty for constraints.
+    pub springs: Vec<f64>,
+}
+
+impl Friction {
+    /// Coulomb's law with one coefficient, by constraints.
+    pub fn coulomb(coefficient: f64, nodes: usize) -> Self {
+        Self {
+            stick: Some((Formula::constant(coefficient), "mu".into())),
+            slip: None,
+            decay: 0.0,
+            places: vec![Vec::new(); nodes],
+            limits: Vec::new(),
+            springs: Vec::new(),
+        }
+    }
+
+    /// The law of every secondary node at a time.
+    ///
+    /// # Errors
+    /// A coefficient that is negative or not finite.
+    pub fn laws(&self, time: f64) -> Result<Vec<Law>, NoValue> {
+        let law = |(node, place): (usize, &Vec<f64>)| {
+            let limit = self.limits.get(node).copied().unwrap_or(f64::INFINITY);
+            let Some((formula, label)) = &self.stick else {
+                return Ok(Law { stick: f64::INFINITY, slip: f64::INFINITY, decay: 0.0, limit });
+            };
+            let stick = value(formula, label, place, time)?;
+            if stick < 0.0 {
+                let formula = formula.text().to_owned();
+                let place = place.clone();
+                return Err(NoValue { what: label.clone(), formula, place, time, value: stick });
+            }
+            Ok(Law { stick, slip: self.slip.unwrap_or(stick).min(stick), decay: self.decay, limit })
+        };
+        self.places.iter().enumerate().map(law).collect()
+    }
+}
