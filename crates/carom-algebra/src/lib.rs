@@ -2,6 +2,7 @@
 
 mod complementarity;
 mod condensed;
+mod coulomb;
 mod difference;
 mod elimination;
 mod forest;
@@ -18,6 +19,7 @@ mod threads;
 
 pub use complementarity::{complementarity, proximal};
 pub use condensed::Condensed;
+pub use coulomb::{Kind, coulomb};
 pub use difference::jacobian_error;
 pub use elimination::Elimination;
 pub use linear::LinearError;

@@ -42,7 +42,7 @@ impl Workspace {
             system: System::new(model),
             spare: Spare::default(),
             states: Vec::new(),
-            explicit: Scratch::default(),
+            explicit: Scratch::new(model.dimension),
             valid_cells: ValidCells::default(),
             timings: Timings::default(),
             penetration: Penetration::of_contacts(model),

@@ -38,13 +38,6 @@ impl Check<'_> {
             let why = "the gap of a conserving spring is updated from step to step, and a stretch with it is not built";
             refuse("with a conserving penalty", why, "use enforcement = \"multiplier\", or leave mu out");
         }
-        if let Some(scheme) = scheme
-            && scheme.nonsmooth().is_some()
-        {
-            let why = "friction is built for schemes whose stages balance forces: the α family, two-stage and two-step schemes, energy-momentum and \"static\"";
-            let help = "use a scheme such as chung-hulbert, hht, newmark, bathe or tr-bdf2, or leave mu out";
-            refuse(&format!("with scheme `{}`", scheme.kind), why, help);
-        }
         if contact.law == Some(ContactLaw::Predictor) {
             let why = "the projection of the predictor has no friction";
             refuse("with law = \"predictor\"", why, "use law = \"position\", or leave mu out");

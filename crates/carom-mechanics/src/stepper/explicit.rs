@@ -24,11 +24,14 @@
 //! steps Δt < H that follow a step of H it is taken out at the same rate, g(y_{n+1}) ≥ (1 − Δt/H)
 //! g(y_n): within Δt it would be thrown out with g/Δt.
 //!
+//! With friction Q acts along H_n, the row of the slip (`friction.rs`), and its law is that of the mean
+//! slip rate H_n v_{n+½}: P and Q solve one small problem (`carom_algebra::coulomb`).
+//!
 //! The first step, and one of another size, starts with v_{n−½} := v_n − Δt/2 M⁻¹f_n; a contact
 //! force at t_n then acts over a whole step.
 
-use carom_algebra::{complementarity, proximal};
-use carom_contact::{Pairing, Rows};
+use carom_algebra::{Kind, complementarity, coulomb, proximal};
+use carom_contact::{Hold, Law, Pair, Pairing, Rows, Tangential};
 
 use super::forward::Forward;
 use super::scratch::Scratch;
@@ -36,6 +39,7 @@ use super::watch::{active, approach, carry_into, depth, gap_at, measure_into};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::constraints::independent_rows;
 use crate::contact_update::{GAP_TOLERANCE, search};
+use crate::friction::each_slip;
 use crate::ledger::book_contact_forces;
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -46,6 +50,8 @@ use crate::workspace::Workspace;
 
 /// Linearisations of the gaps in a step before it is rejected; two to five are typical.
 const ROUNDS: u32 = 60;
+/// Distance from the edge of the cone, relative to its radius, at which a node slips.
+const EDGE: f64 = 1e-12;
 
 /// The explicit stepper.
 pub struct Explicit {
@@ -126,11 +132,14 @@ impl Explicit {
         }
         let in_contact = |state: &State| state.pairs.iter().flatten().any(|pair| pair.active);
         if in_contact(start) || in_contact(next) {
-            for (v, (before, now)) in
-                start.half_step.velocity.iter().zip(start.f_contact.iter().zip(&next.f_contact))
-            {
-                next.ledger.contact_work -= dt * v * 0.5 * (before + now);
-            }
+            let velocity = &start.half_step.velocity;
+            let work = |before: &[f64], now: &[f64]| {
+                let powers = velocity.iter().zip(before.iter().zip(now));
+                powers.map(|(v, (before, now))| dt * v * 0.5 * (before + now)).sum::<f64>()
+            };
+            let rubbed = work(&start.f_friction, &next.f_friction);
+            next.ledger.contact_work -= work(&start.f_contact, &next.f_contact) - rubbed;
+            next.ledger.friction_work -= rubbed;
         }
         let State { impulses, contact_forces, .. } = next;
         for ((before, now), impulse) in start.contact_forces.iter().zip(contact_forces).zip(impulses) {
@@ -199,6 +208,14 @@ impl Explicit {
         for (k, p) in active(&scratch.pairings) {
             scratch.rows[k].row(p).add_to(scratch.pairings[k].pairs[p].lambda, &mut state.f_contact);
         }
+        if model.has_friction() {
+            let mut friction = vec![0.0; state.a.len()];
+            each_slip(model, state, |k, p, row| {
+                row.add_to(state.pairs[k][p].tangential.traction, &mut friction);
+            });
+            state.f_contact.iter_mut().zip(&friction).for_each(|(force, part)| *force += part);
+            state.f_friction = friction;
+        }
         for i in 0..state.a.len() {
             state.a[i] -= self.inverse_mass[i] * state.f_contact[i];
             state.v[i] = before[i] + 0.5 * dt * state.a[i];
@@ -222,7 +239,10 @@ impl Explicit {
         report: &mut StepReport,
     ) -> Result<bool, Rejected> {
         let tolerance = GAP_TOLERANCE * model.scale;
-        let Scratch { free, at, pairings, rows, impulses, places, loaded, .. } = scratch;
+        let Scratch { free, at, pairings, rows, impulses, places, loaded, acting, kinds, .. } = scratch;
+        let laws = model.friction_laws(state.time)?;
+        acting.clear();
+        kinds.clear();
         free.clear();
         free.extend(before.iter().zip(&state.a).map(|(v, a)| v + dt * a));
         carry_into(model, state, Pairing::near, pairings);
@@ -271,26 +291,76 @@ impl Explicit {
             report.newton += 1;
             places.clear();
             places.extend(active(pairings));
-            let (mut matrix, mut right) = self.problem(model, pairings, rows, places, dt);
+            acting.clear();
+            places.iter().for_each(|&(k, p)| acting.push_row(rows[k].row(p)));
+            kinds.clear();
+            kinds.resize(places.len(), Kind::Normal);
+            let of = |pair: &Pair| [-pair.lambda, -pair.tangential.traction];
+            impulses.clear();
+            impulses.extend(places.iter().map(|&(k, p)| of(&pairings[k].pairs[p])[0]));
+            for (i, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
+                let Some(law) = laws[k].get(pairings[k].pairs[p].node) else { continue };
+                let kind = slip_into(model, state, (k, &pairings[k].pairs[p]), law, i, acting)?;
+                kinds.push(kind);
+                impulses.push(of(&pairings[k].pairs[p])[1]);
+            }
+            let (mut matrix, mut right) = self.matrix(acting);
+            for (i, &(k, p)) in places.iter().enumerate() {
+                let leaves = pairings[k].pairs[p].start.is_some();
+                let restitution = if leaves { 0.0 } else { model.contacts[k].restitution };
+                right[i] = (1.0 + restitution) * rows[k].row(p).gap / (dt * dt)
+                    - (0..kinds.len()).map(|j| matrix[i * kinds.len() + j] * impulses[j]).sum::<f64>();
+            }
+            for i in places.len()..kinds.len() {
+                right[i] = acting.row(i).along(free) / dt;
+            }
             if independent_rows(model, active(pairings), rows).len() < places.len() {
-                impulses.clear();
-                impulses.extend(places.iter().map(|&(k, p)| -pairings[k].pairs[p].lambda));
                 proximal(&mut matrix, &mut right, impulses);
             }
-            complementarity(&matrix, &right, impulses)?;
-            pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs).for_each(|pair| pair.lambda = 0.0);
+            if kinds.len() > places.len() {
+                coulomb(&matrix, &right, kinds, impulses)?;
+            } else {
+                complementarity(&matrix, &right, impulses)?;
+            }
+            for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
+                (pair.lambda, pair.tangential.traction) = (0.0, 0.0);
+            }
             at.fill(0.0);
-            for (&(k, p), force) in places.iter().zip(impulses.iter()) {
-                pairings[k].pairs[p].lambda = -force;
-                rows[k].row(p).add_to(*force, at);
+            for (row, force) in acting.iter().zip(impulses.iter()) {
+                row.add_to(*force, at);
+            }
+            for (i, (kind, force)) in kinds.iter().zip(impulses.iter()).enumerate() {
+                match kind {
+                    Kind::Normal => {
+                        let (k, p) = places[i];
+                        pairings[k].pairs[p].lambda = -force;
+                    }
+                    Kind::Tangential { of, .. } => {
+                        let (k, p) = places[*of];
+                        pairings[k].pairs[p].tangential.traction = -force;
+                    }
+                }
             }
             for i in 0..free.len() {
                 velocity[i] = free[i] + dt * self.inverse_mass[i] * at[i];
             }
         }
+        for (i, kind) in kinds.iter().enumerate() {
+            if let Kind::Tangential { of, coefficient, limit } = *kind {
+                let (k, p) = places[of];
+                let radius = (coefficient * impulses[of]).min(limit);
+                let tangential = &mut pairings[k].pairs[p].tangential;
+                let sticks = tangential.traction.abs() < radius * (1.0 - EDGE);
+                tangential.hold = if sticks { Hold::Stick } else { Hold::of(tangential.traction, 0.0) };
+                tangential.slip += dt * acting.row(i).along(velocity);
+            }
+        }
         for (contact, pairing) in model.contacts.iter().zip(pairings) {
             for pair in &mut pairing.pairs {
                 (pair.active, pair.start) = (pair.lambda < 0.0, None);
+                if !pair.active {
+                    pair.tangential = Tangential::default();
+                }
                 if pair.active {
                     // The recorded contact point is that of the force: at y_n.
                     gap_at(contact, pair, &state.y, &mut row);
@@ -300,40 +370,45 @@ impl Explicit {
         Ok(is_behind)
     }
 
-    /// G M⁻¹Gᵀ over the rows, and the right-hand side from the linearised gaps: (1 + e) g/Δt² − G
-    /// M⁻¹Gᵀ P.
-    fn problem(
-        &self,
-        model: &Model,
-        pairings: &[Pairing],
-        rows: &[Rows],
-        places: &[(usize, usize)],
-        dt: f64,
-    ) -> (Vec<f64>, Vec<f64>) {
-        let count = places.len();
+    /// G M⁻¹Gᵀ over these rows, and room for a right-hand side.
+    fn matrix(&self, rows: &Rows) -> (Vec<f64>, Vec<f64>) {
+        let count = rows.len();
         let mut matrix = vec![0.0; count * count];
         let mut column = vec![0.0; self.inverse_mass.len()];
-        for (j, &(k, p)) in places.iter().enumerate() {
-            let row = rows[k].row(p);
+        for (j, row) in rows.iter().enumerate() {
             for (dof, slope) in row.entries() {
                 column[dof] = self.inverse_mass[dof] * slope;
             }
-            for (i, &(l, q)) in places.iter().enumerate() {
-                matrix[i * count + j] = rows[l].row(q).along(&column);
+            for (i, other) in rows.iter().enumerate() {
+                matrix[i * count + j] = other.along(&column);
             }
             row.entries().for_each(|(dof, _)| column[dof] = 0.0);
         }
-        let right = places.iter().enumerate().map(|(i, &(k, p))| {
-            let force = |&(l, q): &(usize, usize)| pairings[l].pairs[q].lambda;
-            let done: f64 =
-                places.iter().enumerate().map(|(j, place)| -matrix[i * count + j] * force(place)).sum();
-            let leaves = pairings[k].pairs[p].start.is_some();
-            let restitution = if leaves { 0.0 } else { model.contacts[k].restitution };
-            (1.0 + restitution) * rows[k].row(p).gap / (dt * dt) - done
-        });
-        let right = right.collect();
-        (matrix, right)
+        (matrix, vec![0.0; count])
     }
+}
+
+/// Adds H at y_n of a pair, the i-th one, and returns the law of its force. A node that stuck has its
+/// coefficient of stick until it slips.
+fn slip_into(
+    model: &Model,
+    state: &State,
+    (k, pair): (usize, &Pair),
+    law: &Law,
+    i: usize,
+    rows: &mut Rows,
+) -> Result<Kind, Rejected> {
+    let (contact, mut at) = (&model.contacts[k], *pair);
+    let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
+    contact.kinematics.measure(&mut at, &state.y, rows).map_err(failed)?;
+    rows.pop();
+    contact.kinematics.slip(&at, &state.y, rows).map_err(failed)?;
+    let rate = rows.row(rows.len() - 1).along(&state.v).abs();
+    let coefficient = match pair.tangential.hold {
+        Hold::Stick => law.stick,
+        _ => law.coefficient(rate).0,
+    };
+    Ok(Kind::Tangential { of: i, coefficient, limit: law.limit })
 }
 
 /// Contact, node and facet of the pairs with a force.

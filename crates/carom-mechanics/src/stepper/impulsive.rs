@@ -13,12 +13,14 @@
 //! d := d − K⁻¹r₀ + s K⁻¹GᵀP,    G v_{n+1} = b + D P,    D = v' s G K⁻¹Gᵀ + c G M⁻¹Gᵀ
 //! ```
 //!
-//! so that P solves a small complementarity problem, exactly, and Newton's method converges as
+//! so that P solves a small complementarity problem, exactly (`carom_algebra::coulomb` with friction:
+//! each normal row then has one of slip, H at the predicted positions, whose impulse obeys Coulomb's
+//! law with the rate H v_{n+1}; e acts on normal rates alone, which can create energy), and Newton's method converges as
 //! without contact. D is symmetric and positive definite. Velocities are constrained, not
 //! positions: an arriving node penetrates by up to Δt times its speed, which is recorded as it is.
 
-use carom_algebra::{complementarity, proximal};
-use carom_contact::{Pairing, Rows};
+use carom_algebra::{Kind, complementarity, coulomb, proximal};
+use carom_contact::{Hold, Pairing, Rows, Tangential};
 use carom_time::{Impulse, ImpulseShares, Memory, Stage};
 
 use super::watch::{active, approach, carry_into, depth, gap_at, measure_into};
@@ -45,6 +47,8 @@ const TIE: f64 = 1e-10;
 const SINKS: f64 = 0.1;
 /// Bisections of a Newton step that inverts a cell.
 const BISECTIONS: usize = 8;
+/// Distance from the edge of the cone, relative to its radius, at which a node slips.
+const EDGE: f64 = 1e-12;
 
 /// The stepper of impulse schemes.
 pub struct Impulsive {
@@ -56,8 +60,10 @@ pub struct Impulsive {
 struct Impulses {
     /// Rows at the predicted positions.
     rows: Constraints,
-    /// e of each contact.
+    /// e of each contact; 0 of slips.
     restitution: Vec<f64>,
+    /// The law of each row.
+    kinds: Vec<Kind>,
     /// Whether rows depend on each other.
     dependent: bool,
     /// G v_n.
@@ -110,7 +116,7 @@ impl Stepper for Impulsive {
         let mut clock = 0.0;
         timed(&mut clock, || {
             search(model, &state.y, &predicted, &mut pairings, &mut report.events);
-            impulses = Impulses::closed(model, state, shares, &predicted, &mut pairings, work)?;
+            impulses = Impulses::closed(model, (state, dt), shares, &predicted, &mut pairings, work)?;
             Ok::<(), Rejected>(())
         })?;
         work.timings.contact += clock;
@@ -141,14 +147,35 @@ impl Stepper for Impulsive {
             pair.lambda = 0.0;
         }
         impulses.record(dt, &mut next);
-        for (&(k, p), impulse) in impulses.rows.places.iter().zip(&impulses.values) {
-            pairings[k].pairs[p].lambda = -impulse / dt;
+        for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
+            pair.tangential.traction = 0.0;
+        }
+        for (r, (&(k, p), impulse)) in impulses.rows.places.iter().zip(&impulses.values).enumerate() {
+            let pair = &mut pairings[k].pairs[p];
+            match impulses.kinds[r] {
+                Kind::Normal => pair.lambda = -impulse / dt,
+                Kind::Tangential { of, coefficient, limit } => {
+                    let radius = (coefficient * impulses.values[of]).min(limit);
+                    let sticks = impulse.abs() < radius * (1.0 - EDGE);
+                    pair.tangential = Tangential {
+                        hold: if sticks { Hold::Stick } else { Hold::of(-impulse, 0.0) },
+                        traction: -impulse / dt,
+                        slip: pair.tangential.slip + dt * impulses.rows.rows.row(r).along(&next.v),
+                        ..Tangential::default()
+                    };
+                }
+            }
         }
         // Nodes that arrived later in the step than the prediction are tracked from now on.
         measure_into(model, &next.y, &mut pairings, &mut Vec::new())?;
         search(model, &state.y, &next.y, &mut pairings, &mut report.events);
         next.take_pairs(&pairings);
-        next.pairs.iter_mut().flatten().for_each(|pair| pair.active = pair.lambda < 0.0);
+        for pair in next.pairs.iter_mut().flatten() {
+            pair.active = pair.lambda < 0.0;
+            if !pair.active {
+                pair.tangential = Tangential::default();
+            }
+        }
         next.ledger.potential = model.potential(&next.y);
         book_kinetic(model, &mut next);
         work.spare.put(solved);
@@ -304,6 +331,13 @@ fn impulses_into(
     if impulses.dependent {
         proximal(&mut matrix, &mut right, &impulses.values);
     }
+    if impulses.rows.slips.contains(&true) {
+        for i in 0..count {
+            (0..i).for_each(|j| matrix[j * count + i] = matrix[i * count + j]);
+        }
+        values.clone_from(&impulses.values);
+        return Ok(coulomb(&matrix, &right, &impulses.kinds, values)?);
+    }
     Ok(complementarity(&matrix, &right, values)?)
 }
 
@@ -334,6 +368,7 @@ impl Impulses {
         Self {
             rows: Constraints::none(dimension),
             restitution: Vec::new(),
+            kinds: Vec::new(),
             dependent: false,
             before: Vec::new(),
             values: Vec::new(),
@@ -344,7 +379,7 @@ impl Impulses {
     /// The contacts whose gap is closed at the predicted positions.
     fn closed(
         model: &Model,
-        state: &State,
+        (state, dt): (&State, f64),
         shares: ImpulseShares,
         predicted: &[f64],
         pairings: &mut [Pairing],
@@ -359,8 +394,25 @@ impl Impulses {
         }
         let places: Vec<(usize, usize)> = active(pairings).collect();
         let dependent = independent_rows(model, active(pairings), &measured).len() < places.len();
-        let rows =
+        let mut rows =
             Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), measured[k].row(p))));
+        let mut kinds = vec![Kind::Normal; places.len()];
+        let mut restitution: Vec<f64> = places.iter().map(|&(k, _)| model.contacts[k].restitution).collect();
+        let laws = model.friction_laws(state.time + dt)?;
+        for (of, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
+            let (contact, pair) = (&model.contacts[k], &pairings[k].pairs[p]);
+            let Some(law) = laws[k].get(pair.node) else { continue };
+            let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
+            let mut slip = Rows::new(model.dimension);
+            contact.kinematics.slip(pair, predicted, &mut slip).map_err(failed)?;
+            let coefficient = match pair.tangential.hold {
+                Hold::Stick => law.stick,
+                _ => law.coefficient(slip.row(0).along(&state.v).abs()).0,
+            };
+            rows.push_plain((k, p), slip.row(0), true);
+            kinds.push(Kind::Tangential { of, coefficient, limit: dt * law.limit });
+            restitution.push(0.0);
+        }
         let mut released = Vec::new();
         if !rows.is_empty() && (shares.velocity != 0.0 || shares.acceleration != 0.0) {
             work.system.factor_mass(model, &Constraints::none(model.dimension))?;
@@ -374,7 +426,8 @@ impl Impulses {
             }
         }
         Ok(Self {
-            restitution: places.iter().map(|&(k, _)| model.contacts[k].restitution).collect(),
+            restitution,
+            kinds,
             dependent,
             before: rows.rows.iter().map(|row| row.along(&state.v)).collect(),
             values: vec![0.0; rows.len()],
@@ -402,7 +455,9 @@ impl Impulses {
                 next.contact_forces[self.rows.places[r].0][i] += impulse * normal[i] / dt;
                 next.impulses[self.rows.places[r].0][i] += impulse * normal[i];
             }
-            next.ledger.contact_work += 0.5 * impulse * (self.before[r] + row.along(&next.v));
+            let work = 0.5 * impulse * (self.before[r] + row.along(&next.v));
+            let is_slip = self.rows.slips[r];
+            *(if is_slip { &mut next.ledger.friction_work } else { &mut next.ledger.contact_work }) += work;
         }
     }
 }

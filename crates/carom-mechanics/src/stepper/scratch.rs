@@ -1,11 +1,12 @@
 //! Buffers of the explicit stepper.
 
+use carom_algebra::Kind;
 use carom_contact::{Pairing, Rows};
 
 use crate::model::LoadsAt;
 
 /// Buffers of a step.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Scratch {
     /// v_{n+½} without contact.
     pub free: Vec<f64>,
@@ -16,7 +17,28 @@ pub(crate) struct Scratch {
     pub impulses: Vec<f64>,
     /// Contact and pair of each impulse.
     pub places: Vec<(usize, usize)>,
+    /// Rows that the impulses act along: the gaps of these places, then slips.
+    pub acting: Rows,
+    pub kinds: Vec<Kind>,
     /// Contact, node and facet of the forces before a search.
     pub loaded: Vec<(usize, usize, usize)>,
     pub loads: LoadsAt,
+}
+
+impl Scratch {
+    /// Empty buffers.
+    pub(crate) fn new(dimension: usize) -> Self {
+        Self {
+            free: Vec::new(),
+            at: Vec::new(),
+            pairings: Vec::new(),
+            rows: Vec::new(),
+            impulses: Vec::new(),
+            places: Vec::new(),
+            acting: Rows::new(dimension),
+            kinds: Vec::new(),
+            loaded: Vec::new(),
+            loads: LoadsAt::default(),
+        }
+    }
 }
