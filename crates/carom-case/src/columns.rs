@@ -28,6 +28,8 @@ const COUNTS: [&str; 8] = [
     "min_det_f",
 ];
 
+const FRICTION: [&str; 4] = ["sticking", "stick_time", "rub_time", "slip"];
+
 const ERRORS: [&str; 2] = ["error_l2", "error_h1"];
 
 /// Name of a quantity in column names.
@@ -81,6 +83,9 @@ pub(super) fn of(
     vector(&mut columns, "contact_impulse");
     vector(&mut columns, "algorithmic_impulse");
     columns.extend(COUNTS.iter().map(ToString::to_string));
+    if contacts.iter().flatten().any(|contact| contact.friction.exists()) {
+        columns.extend(FRICTION.map(String::from));
+    }
     for body in bodies.iter().flatten() {
         vector(&mut columns, &format!("{}.center", body.name));
         vector(&mut columns, &format!("{}.velocity", body.name));

@@ -261,3 +261,14 @@ pub(crate) fn take_slips(model: &Model, state: &mut State, slips: &[Rows]) {
         }
     }
 }
+
+/// Adds a step of this size to what pairs with friction did.
+pub(crate) fn book_states(model: &Model, state: &mut State, dt: f64) {
+    let rubbed = &mut state.ledger.rubbed;
+    let rubs = model.contacts.iter().zip(&state.pairs).filter(|(contact, _)| contact.friction.is_some());
+    for pair in rubs.flat_map(|(_, pairs)| pairs).filter(|pair| pair.active) {
+        rubbed.closed += dt;
+        rubbed.stuck += if pair.tangential.hold == Hold::Stick { dt } else { 0.0 };
+        rubbed.farthest = rubbed.farthest.max(pair.tangential.slip.abs());
+    }
+}

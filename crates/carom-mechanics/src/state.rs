@@ -31,6 +31,8 @@ pub struct Ledger {
     pub contact_work: f64,
     /// Work of friction on the bodies.
     pub friction_work: f64,
+    /// Slip so far.
+    pub rubbed: Rubbed,
     /// Energy that conserving contact with a restitution has still to return; negative if it created
     /// some (`restitution.rs`).
     pub owed: f64,
@@ -58,6 +60,17 @@ impl Ledger {
     pub fn drift(&self) -> f64 {
         self.total() - self.total_at_start - self.external_work
     }
+}
+
+/// What pairs with friction did so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Rubbed {
+    /// Σ over the pairs of the time in which they were closed, and in which they stuck.
+    pub closed: f64,
+    /// See `closed`.
+    pub stuck: f64,
+    /// Largest slip of a pair since it closed.
+    pub farthest: f64,
 }
 
 /// The running minimum of E, and what rose above it.

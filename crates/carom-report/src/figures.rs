@@ -9,7 +9,7 @@ use crate::chart::{Chart, Options, Panel, Series};
 use crate::labels::{symbol, with_unit, words};
 use crate::obstacles;
 use crate::palette::{LINES, sequence};
-use crate::{animation, setup, stopped};
+use crate::{animation, setup, stick_slip, stopped};
 
 /// A figure of a report.
 #[derive(Clone, Debug)]
@@ -47,7 +47,8 @@ pub(crate) fn all(run: &Run) -> Shown {
         shown.figures.push(bodies);
         shown.animation = animation::section(run, &bands, shades(run), place);
     }
-    shown.figures.extend([probes(run), force(run), energy(run), solver(run)].into_iter().flatten());
+    let map = stick_slip::figure(run).map(|(svg, caption)| Figure { name: "stick-slip", caption, svg });
+    shown.figures.extend([probes(run), force(run), map, energy(run), solver(run)].into_iter().flatten());
     shown
 }
 

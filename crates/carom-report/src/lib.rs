@@ -32,6 +32,7 @@ mod publish;
 mod ranked;
 mod redraw;
 mod setup;
+mod stick_slip;
 mod stopped;
 mod study;
 mod study_page;

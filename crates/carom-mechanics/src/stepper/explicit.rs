@@ -39,7 +39,7 @@ use super::watch::{active, approach, carry_into, depth, gap_at, measure_into};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::constraints::independent_rows;
 use crate::contact_update::{GAP_TOLERANCE, search};
-use crate::friction::each_slip;
+use crate::friction::{book_states, each_slip};
 use crate::ledger::book_contact_forces;
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -114,6 +114,7 @@ impl Stepper for Explicit {
         if let Some(state) = begun {
             work.put(state);
         }
+        book_states(model, &mut next, dt);
         Accepted::within(model, next, report, [deepest, bound], work)
     }
 }

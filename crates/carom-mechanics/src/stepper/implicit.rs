@@ -8,7 +8,7 @@ use super::{Accepted, StepReport, Stepper, difference};
 use crate::carried;
 use crate::contact_update::{GAP_TOLERANCE, search, start_step};
 use crate::equations::{Equations, Iterate};
-use crate::friction::take_slips;
+use crate::friction::{book_states, take_slips};
 use crate::ledger;
 use crate::model::{Contact, LoadsAt, Model};
 use crate::newton::solve_stage;
@@ -159,6 +159,7 @@ impl Stepper for Implicit {
             means,
         });
         work.spare.put(solved);
+        book_states(model, &mut next, dt);
         Accepted::new(model, next, report, work)
     }
 }

@@ -29,6 +29,7 @@ use crate::balance::residual_into;
 use crate::constraints::{Constraints, independent_rows};
 use crate::contact_update::search;
 use crate::equations::{Equations, Evaluation, Iterate};
+use crate::friction::book_states;
 use crate::ledger::{book_kinetic, open_work, work_of_loads};
 use crate::model::{LoadsAt, Model};
 use crate::penetration::has_gaps;
@@ -187,6 +188,7 @@ impl Stepper for Impulsive {
         let fastest = approach(model, &state.v, dt).max(approach(model, &next.v, dt));
         let bound = depth(model, state) + fastest + tie;
         let deepest = depth(model, &next);
+        book_states(model, &mut next, dt);
         Accepted::within(model, next, report, [deepest, bound], work)
     }
 }

@@ -52,6 +52,12 @@ pub(super) fn by_integrator(facts: &Facts) -> Option<f64> {
     share(facts.history, "dissipation")
 }
 
+/// None without friction.
+pub(super) fn by_friction(facts: &Facts) -> Option<f64> {
+    facts.history.column("slip")?;
+    share(facts.history, "friction_work").map(|work| 0.0 - work)
+}
+
 pub(super) fn by_contact(facts: &Facts) -> Option<f64> {
     share(facts.history, "contact_work").map(|work| 0.0 - work)
 }

@@ -24,7 +24,7 @@ const OWN: &str = "this project";
 const TABLES: &str = "used by Doyen, Ern, Piperno 2011";
 
 /// Metrics of a history.
-pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
+pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 27] = [
     (
         d(
             "contact_start",
@@ -211,6 +211,39 @@ pub const HISTORY: [(Definition, fn(&Facts) -> Option<f64>); 24] = [
             "energy lost in the impact that changes it most, divided by the largest kinetic + strain energy; energy_lost:N is that of the N-th impact",
         ),
         ledger::at_worst_impact,
+    ),
+    (
+        d(
+            "friction_lost",
+            Unit::None,
+            "−W_f,last/E*",
+            OWN,
+            "energy lost in friction by the end, divided by the largest kinetic + strain energy",
+        ),
+        ledger::by_friction,
+    ),
+    (
+        d(
+            "slip_distance",
+            Unit::Length,
+            "max |Σ S| over pairs and steps",
+            OWN,
+            "largest slip of a contact node since it closed",
+        ),
+        |f| f.history.column("slip")?.last().copied(),
+    ),
+    (
+        d(
+            "stick_share",
+            Unit::None,
+            "Σ t_stick/Σ t_closed over pairs",
+            OWN,
+            "share of the time in contact in which nodes stick; each node counts by its own time",
+        ),
+        |f| {
+            let last = |name: &str| f.history.column(name)?.last().copied();
+            Some(last("stick_time")? / last("rub_time").filter(|&time| time > 0.0)?)
+        },
     ),
     (
         d(

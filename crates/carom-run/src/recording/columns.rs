@@ -2,7 +2,7 @@
 //! consistent.
 
 use carom_case::Case;
-use carom_contact::Rows;
+use carom_contact::{Hold, Pair, Rows};
 use carom_mechanics::model::{BodyInstance, Model, Quantity};
 use carom_mechanics::{Depths, GridReport, State, each_slip};
 use carom_record::Column;
@@ -99,6 +99,17 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
         false,
     );
     add("min_det_f".into(), "", "smallest J over all quadrature points", false);
+    if rubs(model) {
+        add("sticking".into(), "", "pairs in contact that stick", true);
+        add(
+            "stick_time".into(),
+            &label.time,
+            "time in which pairs stuck, summed over them, cumulative",
+            false,
+        );
+        add("rub_time".into(), &label.time, "the same of all closed pairs with friction", false);
+        add("slip".into(), &label.length, "largest slip of a pair since it closed, so far", false);
+    }
     for part in &model.parts {
         for axis in axes {
             add(format!("{}.center_{axis}", part.name), &label.length, "centre of mass", false);
@@ -145,6 +156,11 @@ pub fn columns(case: &Case, model: &Model) -> Vec<Column> {
         add("error_h1".into(), "", "√∫|∂y_h/∂X − ∂y/∂X|² dΩ₀ against the motion of [manufactured]", false);
     }
     columns
+}
+
+/// Whether a contact has friction.
+fn rubs(model: &Model) -> bool {
+    model.contacts.iter().any(|contact| contact.friction.is_some())
 }
 
 /// Name, unit and meaning of a probe's column.
@@ -223,6 +239,13 @@ pub(super) fn row(model: &Model, state: &State, dt: f64, since: &Since, weights:
     row.extend([since.activations, since.releases, since.newton, since.rejected].map(f64::from));
     row.extend([since.penetration.all, since.penetration.constrained]);
     row.push(model.min_det_f(&state.y));
+    if rubs(model) {
+        let sticks = |pair: &&Pair| pair.active && pair.tangential.hold == Hold::Stick;
+        let rubbing =
+            model.contacts.iter().zip(&state.pairs).filter(|(contact, _)| contact.friction.is_some());
+        row.push(rubbing.flat_map(|(_, pairs)| pairs).filter(sticks).count() as f64);
+        row.extend([ledger.rubbed.stuck, ledger.rubbed.closed, ledger.rubbed.farthest]);
+    }
     for part in &model.parts {
         for field in [&state.y, &state.v] {
             row.extend((0..d).map(|i| mean(part, field, weights, i)));
