@@ -57,13 +57,53 @@ enum State {
     Slips(f64, bool),
 }
 
-/// Overwrites `z`, a first guess if it has the size, with the solution for a matrix by rows.
+/// Overwrites `z`, a first guess if it has the size, with the solution for a matrix by rows. Contacts
+/// that do not feel each other are solved apart.
 ///
 /// # Errors
 /// If none is found, as for large μ, where there may be none.
 pub fn coulomb(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(), LinearError> {
     let n = kinds.len();
     z.resize(n, 0.0);
+    let mut group: Vec<Option<usize>> = vec![None; n];
+    for first in 0..n {
+        if group[first].is_some() {
+            continue;
+        }
+        let (mut members, mut next) = (vec![first], 0);
+        group[first] = Some(first);
+        while let Some(&i) = members.get(next) {
+            next += 1;
+            let belong = |j: usize| matches!(kinds[j], Kind::Tangential { of, .. } if of == i);
+            let owns = |j: usize| matches!(kinds[i], Kind::Tangential { of, .. } if of == j);
+            for j in (0..n).filter(|&j| a[i * n + j] != 0.0 || belong(j) || owns(j)) {
+                if group[j].is_none() {
+                    group[j] = Some(first);
+                    members.push(j);
+                }
+            }
+        }
+        members.sort_unstable();
+        let place = |i: usize| members.partition_point(|&member| member < i);
+        let part: Vec<f64> = members.iter().flat_map(|i| members.iter().map(|j| a[*i * n + *j])).collect();
+        let right: Vec<f64> = members.iter().map(|&i| b[i]).collect();
+        let local = |&i: &usize| match kinds[i] {
+            Kind::Tangential { of, coefficient, limit } => {
+                Kind::Tangential { of: place(of), coefficient, limit }
+            }
+            Kind::Normal => Kind::Normal,
+        };
+        let of_part: Vec<Kind> = members.iter().map(local).collect();
+        let mut solution: Vec<f64> = members.iter().map(|&i| z[i]).collect();
+        coupled(&part, &right, &of_part, &mut solution)?;
+        members.iter().zip(solution).for_each(|(&i, value)| z[i] = value);
+    }
+    Ok(())
+}
+
+/// The problem of contacts that feel each other.
+fn coupled(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(), LinearError> {
+    let n = kinds.len();
     let motion = |z: &[f64], i: usize| b[i] + (0..n).map(|j| a[i * n + j] * z[j]).sum::<f64>();
     let project = |z: &[f64], i: usize, value: f64| match kinds[i] {
         Kind::Normal => value.max(0.0),
@@ -121,17 +161,17 @@ pub fn coulomb(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result
 fn solve(a: &[f64], b: &[f64], kinds: &[Kind], states: &[State]) -> Option<Vec<f64>> {
     let n = kinds.len();
     let held: Vec<usize> = (0..n).filter(|&i| states[i] == State::Held).collect();
+    // A slip carries its normal force with it.
+    let mut carried: Vec<Vec<(usize, f64)>> = vec![Vec::new(); n];
+    for j in 0..n {
+        if let (Kind::Tangential { of, coefficient, .. }, State::Slips(sign, false)) = (kinds[j], states[j]) {
+            carried[of].push((j, -sign * coefficient));
+        }
+    }
     let entry = |r: usize, c: usize| {
         let (row, column) = (held[r], held[c]);
-        let own = a[row * n + column];
-        // A slip carries its normal force with it.
-        let slips = (0..n).filter_map(|j| match (kinds[j], states[j]) {
-            (Kind::Tangential { of, coefficient, .. }, State::Slips(sign, false)) if of == column => {
-                Some(-sign * coefficient * a[row * n + j])
-            }
-            _ => None,
-        });
-        own + slips.sum::<f64>()
+        let slips = carried[column].iter().map(|&(j, factor)| factor * a[row * n + j]);
+        a[row * n + column] + slips.sum::<f64>()
     };
     let matrix = Mat::from_fn(held.len(), held.len(), entry);
     let fixed = |j: usize| match (kinds[j], states[j]) {

@@ -1,7 +1,7 @@
 //! Where nodes stick and slip: a map over time and the arc length of the secondary side, a band per
 //! node, from the rows of `contact.csv`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use carom_record::{ContactRow, Run};
@@ -16,9 +16,9 @@ const LEFT: f64 = 74.0;
 const RIGHT: f64 = 14.0;
 const HEIGHT: f64 = 180.0;
 
-/// The states, with their colours: slip is dark, with one colour per direction.
+/// The states, with their colours.
 const STATES: [(&str, &str); 3] =
-    [("sticks", LINES[6]), ("slips forward", LINES[2]), ("slips backward", LINES[0])];
+    [("sticks", LINES[6]), ("slips forward", LINES[2]), ("slips backward", LINES[3])];
 
 /// A map of each contact that has friction, and the caption.
 pub(crate) fn figure(run: &Run) -> Option<(String, String)> {
@@ -64,41 +64,39 @@ pub(crate) fn figure(run: &Run) -> Option<(String, String)> {
 /// The map of one contact.
 fn draw(out: &mut String, run: &Run, name: &str, rows: &[&ContactRow], x_axis: &Axis, top: f64) {
     let plot = WIDTH - LEFT - RIGHT;
-    let places = arc_lengths(run, name, rows);
-    let (low, high) = range(places.values());
-    let y_axis = Axis::new((low, high), 4.0, false);
+    let bands = bands(run, name, rows);
+    let y_axis = Axis::new(range(bands.values().flatten()), 4.0, true);
     let to_x = |t: f64| LEFT + plot * x_axis.position(t);
     let to_y = |s: f64| top + HEIGHT * (1.0 - y_axis.position(s));
     write_text(out, LEFT, top - 6.0, "font-size=\"12\"", name);
-    let mut sorted: Vec<f64> = places.values().copied().collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.dedup();
-    // Half-way to the neighbours.
-    let band = |s: f64| {
-        let i = sorted.partition_point(|other| *other < s);
-        let below = i.checked_sub(1).map_or(s, |i| 0.5 * (s + sorted[i]));
-        let above = sorted.get(i + 1).map_or(s, |next| 0.5 * (s + next));
-        if sorted.len() == 1 { (y_axis.low, y_axis.high) } else { (below, above) }
-    };
     let times = instants(run, rows);
+    let next = |time: f64| times.get(times.partition_point(|t| *t <= time)).copied().unwrap_or(time);
+    let mut of_nodes: BTreeMap<u64, Vec<(f64, f64, usize)>> = BTreeMap::new();
     for row in rows {
-        let Some(s) = places.get(&row.node) else { continue };
         let state = match (row.friction.as_ref(), row.traction >= 0.0) {
             ("slip", true) => 1,
             ("slip", false) => 2,
             _ => 0,
         };
-        let i = times.partition_point(|t| *t <= row.time);
-        let (from, to) = (to_x(row.time), to_x(times.get(i).copied().unwrap_or(row.time)));
-        let (below, above) = band(*s);
-        let (y, h) = (to_y(above), to_y(below) - to_y(above));
-        let _ = writeln!(
-            out,
-            "<rect x=\"{from:.1}\" y=\"{y:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"{}\"/>",
-            (to - from).max(0.5),
-            h.max(0.5),
-            STATES[state].1
-        );
+        let spans = of_nodes.entry(row.node).or_default();
+        match spans.last_mut() {
+            // The same state goes on.
+            Some(last) if last.1 >= row.time && last.2 == state => last.1 = next(row.time),
+            _ => spans.push((row.time, next(row.time), state)),
+        }
+    }
+    for (node, spans) in &of_nodes {
+        let Some([below, above]) = bands.get(node) else { continue };
+        let (y, h) = (to_y(*above), to_y(*below) - to_y(*above));
+        for (from, to, state) in spans {
+            let (x, w) = (to_x(*from), to_x(*to) - to_x(*from));
+            let _ = writeln!(
+                out,
+                "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{:.1}\" height=\"{h:.1}\" fill=\"{}\" shape-rendering=\"crispEdges\"/>",
+                w.max(0.5),
+                STATES[*state].1
+            );
+        }
     }
     for (value, label) in &y_axis.ticks {
         write_text(out, LEFT - 8.0, to_y(*value) + 4.3, "text-anchor=\"end\"", label);
@@ -127,33 +125,65 @@ fn instants(run: &Run, rows: &[&ContactRow]) -> Vec<f64> {
     times
 }
 
-/// Arc length of each node along the secondary side in the reference configuration; its number in the
-/// order of the rows for nodes of no chain.
-fn arc_lengths(run: &Run, name: &str, rows: &[&ContactRow]) -> BTreeMap<u64, f64> {
-    let mut places = BTreeMap::new();
+/// Interval of arc length of each node that rubs, along the secondary side in the reference
+/// configuration: half-way to its neighbours. A closed side is cut where no node rubs for longest.
+fn bands(run: &Run, name: &str, rows: &[&ContactRow]) -> BTreeMap<u64, [f64; 2]> {
     let contacts = run.manifest.case.get("contacts").and_then(|value| value.as_array());
     let of_name = |item: &&serde_json::Value| item.get("name").and_then(|v| v.as_str()) == Some(name);
     let side = contacts.into_iter().flatten().find(of_name).and_then(|item| item.get("secondary")?.as_str());
     let chains = side.and_then(|side| run.manifest.sides.get(side)).map_or(&[][..], Vec::as_slice);
     let first = run.fields.first().and_then(|entry| run.field(entry).ok());
-    let mut s = 0.0;
+    let rubbing: BTreeSet<u64> = rows.iter().map(|row| row.node).collect();
+    let (mut bands, mut end) = (BTreeMap::new(), 0.0);
     for chain in chains {
-        let mut last: Option<[f64; 3]> = None;
-        for &node in chain {
-            let Some(point) = first.as_ref().and_then(|set| set.points.get(node).copied()) else { continue };
-            let step = last.map_or(0.0, |last: [f64; 3]| {
-                (0..3).map(|i| (point[i] - last[i]).powi(2)).sum::<f64>().sqrt()
-            });
-            s += step;
-            places.entry(node as u64).or_insert(s);
-            last = Some(point);
+        let point = |node: &usize| first.as_ref().and_then(|set| set.points.get(*node).copied());
+        let points: Vec<(u64, [f64; 3])> =
+            chain.iter().filter_map(|n| Some((*n as u64, point(n)?))).collect();
+        let length = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        let is_closed = points.len() > 2 && points[0].0 == points[points.len() - 1].0;
+        if is_closed {
+            order.pop();
+            let rubs: Vec<bool> = order.iter().map(|&i| rubbing.contains(&points[i].0)).collect();
+            order.rotate_left(cut(&rubs));
+        }
+        let mut places = Vec::new();
+        for (i, &k) in order.iter().enumerate() {
+            end += if i == 0 { 0.0 } else { length(points[order[i - 1]].1, points[k].1) };
+            places.push(end);
+        }
+        for (i, &k) in order.iter().enumerate().filter(|(_, k)| rubbing.contains(&points[**k].0)) {
+            let below = i.checked_sub(1).map_or(places[i], |j| 0.5 * (places[i] + places[j]));
+            let above = places.get(i + 1).map_or(places[i], |next| 0.5 * (places[i] + next));
+            bands.entry(points[k].0).or_insert([below, above]);
         }
     }
-    let rubbing: std::collections::BTreeSet<u64> = rows.iter().map(|row| row.node).collect();
-    places.retain(|node, _| rubbing.contains(node));
-    for (i, row) in rows.iter().enumerate() {
-        let end = s + i as f64;
-        places.entry(row.node).or_insert(end);
+    // Corners of the primary side, in the order in which they touch.
+    for row in rows {
+        if !bands.contains_key(&row.node) {
+            bands.insert(row.node, [end, end + 1.0]);
+            end += 1.0;
+        }
     }
-    places
+    bands
+}
+
+/// Where to cut a cycle: in the middle of the longest run without a rubbing node.
+fn cut(rubs: &[bool]) -> usize {
+    let n = rubs.len();
+    let run = |start: usize| (0..n).take_while(|k| !rubs[(start + k) % n]).count();
+    let longest = (0..n).max_by_key(|&start| (run(start), n - start)).unwrap_or(0);
+    (longest + run(longest) / 2) % n.max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::cut;
+
+    #[test]
+    fn a_cycle_is_cut_away_from_contact() {
+        assert_eq!(cut(&[true, false, false, false, false, true]), 3);
+        assert_eq!(cut(&[false, false, true, true, false, false]), 0);
+        assert_eq!(cut(&[true, true]), 0);
+    }
 }
