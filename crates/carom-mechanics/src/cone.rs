@@ -6,8 +6,7 @@
 //!
 //! For an impulse x is a change of velocity, G x − c and H x − b the rates of gap and slip after it. For
 //! accelerations they are the rates of change of these rates, which decide for pairs that have none;
-//! others separate, or slip in their direction. Without friction all p count, and this is one linear
-//! solve.
+//! others separate, or slip in their direction.
 
 use carom_contact::{Hold, Law, Rows, Rub, StickSlip, Tangential};
 
@@ -20,6 +19,8 @@ use crate::system::System;
 
 /// Most changes of stick and slip in one solve.
 const CHANGES: usize = 200;
+/// Most openings of a pair in a solve.
+const OPENINGS: u32 = 3;
 /// Rate of a gap or slip, as a fraction of the largest velocity, that is none.
 const AT_REST: f64 = 1e-10;
 /// Rate, as a fraction of the largest one in a solve, that is round-off.
@@ -31,7 +32,7 @@ pub(crate) struct Closed {
     pub places: Vec<(usize, usize)>,
     /// Rows of their gaps, a constraint each.
     pub normals: Constraints,
-    /// H of each; empty without friction.
+    /// H of each that has friction.
     slips: Rows,
     /// The law of each that has friction.
     laws: Vec<Option<Law>>,
@@ -64,6 +65,8 @@ struct Way {
     /// Whether its gap opens; and does so whatever the solution is.
     opens: bool,
     separates: bool,
+    /// How often it opened.
+    opened: u32,
 }
 
 impl Closed {
@@ -78,7 +81,7 @@ impl Closed {
         let normals = Constraints::plain(model.dimension, rows);
         let (mut slips, mut laws) = (Rows::new(model.dimension), Vec::new());
         let of_contacts = model.friction_laws(state.time)?;
-        for &(k, p) in places.iter().filter(|_| model.has_friction()) {
+        for &(k, p) in &places {
             let contact = &model.contacts[k];
             laws.push(of_contacts[k].get(state.pairs[k][p].node).copied());
             if contact.friction.is_none() {
@@ -93,9 +96,6 @@ impl Closed {
 
     /// H x of each pair; 0 without friction.
     pub(crate) fn slip_rates(&self, x: &[f64]) -> Vec<f64> {
-        if self.slips.is_empty() {
-            return vec![0.0; self.places.len()];
-        }
         self.slips.iter().map(|row| row.along(x)).collect()
     }
 
@@ -168,8 +168,14 @@ impl Closed {
     /// The ways of the pairs of a state.
     fn ways(&self, state: &State) -> Vec<Way> {
         let hold = |&(k, p): &(usize, usize)| state.pairs[k][p].tangential.hold;
-        let way =
-            |place| Way { hold: hold(place), slip: [0.0; 2], is_free: true, opens: false, separates: false };
+        let way = |place| Way {
+            hold: hold(place),
+            slip: [0.0; 2],
+            is_free: true,
+            opens: false,
+            separates: false,
+            opened: 0,
+        };
         self.places.iter().map(way).collect()
     }
 
@@ -182,13 +188,6 @@ impl Closed {
         system: &mut System,
         (mut ways, laws): (Vec<Way>, &[Option<Law>]),
     ) -> Result<Motion, Rejected> {
-        if self.slips.is_empty() {
-            system.factor_mass(model, &self.normals)?;
-            let mut motion = Motion { x: vec![0.0; model.dofs()], ..Motion::default() };
-            system.factor.solve(model, right.forces, right.gaps, &mut motion.x, &mut motion.normal)?;
-            motion.tangential = vec![0.0; self.places.len()];
-            return Ok(motion);
-        }
         let before = self.slip_rates(&state.v);
         let slip = |i: usize, law: &Law, pressure: f64| {
             let radius = law.slip(pressure, before[i].abs());
@@ -205,6 +204,7 @@ impl Closed {
             let all = rates.iter().chain(right.slips).chain(right.gaps);
             let none = ROUND_OFF * all.fold(0.0_f64, |most, rate| most.max(rate.abs()));
             let mut changed = false;
+            let pulls = ROUND_OFF * motion.normal.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
             for (i, way) in ways.iter_mut().enumerate() {
                 let new = laws[i].as_ref().map_or([0.0; 2], |law| slip(i, law, -motion.normal[i]));
                 if !way.opens && motion.normal[i] < 0.0 {
@@ -213,8 +213,10 @@ impl Closed {
                 let opens = match way.opens {
                     true if way.separates => true,
                     true => self.normals.rows.row(i).along(&motion.x) - right.gaps[i] >= -none,
-                    false => motion.normal[i] > 0.0,
+                    // One that opens again and again stays closed.
+                    false => motion.normal[i] > pulls && way.opened < OPENINGS,
                 };
+                way.opened += u32::from(opens && !way.opens);
                 changed |= std::mem::replace(&mut way.opens, opens) != opens;
             }
             let rub = |i: usize| {
@@ -251,10 +253,10 @@ impl Closed {
         let closed: Vec<usize> = (0..ways.len()).filter(|&i| !ways[i].opens).collect();
         let normal = |&i: &usize| (self.places[i], self.normals.rows.row(i));
         let mut rows = Constraints::plain(model.dimension, closed.iter().map(normal));
-        rows.is_skew = true;
+        rows.is_skew = self.laws.iter().any(Option::is_some);
         let mut targets: Vec<f64> = closed.iter().map(|&i| right.gaps[i]).collect();
         let mut forces = right.forces.to_vec();
-        for (r, &i) in closed.iter().enumerate() {
+        for (r, &i) in closed.iter().enumerate().filter(|(_, i)| self.laws[**i].is_some()) {
             let [factor, traction] = ways[i].slip.map(|part| ways[i].hold.sign() * part);
             self.slips.row(i).add_to(-traction, &mut forces);
             let direction = rows.directions.gradient_mut(r).iter_mut().zip(self.slips.row(i).gradient);

@@ -176,8 +176,6 @@ fn pairs_are_contacts_once() {
 fn friction_is_refused_where_it_is_not_built() {
     let with = "[[contact]]\nmu = 0.3";
     let cases: &[(&str, &str)] = &[
-        ("time.scheme={ kind = \"energy-momentum\" }", "with scheme `energy-momentum`"),
-        ("time.scheme={ kind = \"moreau-jean\", theta = 0.5 }", "with scheme `moreau-jean`"),
         ("time.scheme={ kind = \"central-difference\" }", "with scheme `central-difference`"),
         ("contact.strike.enforcement=\"penalty\"", "with a penalty"),
         ("contact.strike.law=\"predictor\"", "with law = \"predictor\""),
