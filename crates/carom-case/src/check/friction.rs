@@ -38,6 +38,15 @@ impl Check<'_> {
             let why = "the gap of a conserving spring is updated from step to step, and a stretch with it is not built";
             refuse("with a conserving penalty", why, "use enforcement = \"multiplier\", or leave mu out");
         }
+        let moves = matches!(contact.motion, ObstacleMotion::Prescribed { .. });
+        if let Some(scheme) = scheme
+            && scheme.nonsmooth().is_some()
+            && moves
+        {
+            let why = "the slip of explicit and impulse schemes does not contain the velocity of a prescribed motion";
+            let help = "use an implicit scheme, or a body with moving supports instead of the obstacle, or leave mu out";
+            refuse(&format!("with a moving obstacle and scheme `{}`", scheme.kind), why, help);
+        }
         if contact.law == Some(ContactLaw::Predictor) {
             let why = "the projection of the predictor has no friction";
             refuse("with law = \"predictor\"", why, "use law = \"position\", or leave mu out");

@@ -176,8 +176,6 @@ fn pairs_are_contacts_once() {
 fn friction_is_refused_where_it_is_not_built() {
     let with = "[[contact]]\nmu = 0.3";
     let cases: &[(&str, &str)] = &[
-        ("time.scheme={ kind = \"central-difference\" }", "with scheme `central-difference`"),
-        ("contact.strike.enforcement=\"penalty\"", "with a penalty"),
         ("contact.strike.law=\"predictor\"", "with law = \"predictor\""),
         ("contact.strike.detection=\"trajectory\"", "with this contact point"),
         ("body.cylinder.mass=\"redistributed\"", "with redistributed mass"),
