@@ -2,6 +2,7 @@
 //! positions, independent of time integration and matrices.
 
 mod active_set;
+mod depth;
 mod discrete_gradient;
 mod inside_itself;
 pub mod interface;
@@ -12,6 +13,7 @@ mod rows;
 mod skin;
 
 pub use active_set::{ActiveSet, Contender, Cycle};
+pub use depth::Depth;
 pub use discrete_gradient::DiscreteGradient;
 pub use interface::{
     Answer, ConservingPenalty, ConservingUnilateral, Direction, Interface, Penalty, Point, Unilateral,
@@ -22,4 +24,4 @@ pub use kinematics::{
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};
-pub use skin::{Depth, Skin};
+pub use skin::Skin;

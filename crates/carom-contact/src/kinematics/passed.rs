@@ -1,4 +1,5 @@
-//! Nodes that enter a body and leave it again within one step.
+//! Nodes that enter a body and leave it again within one step; through rigid obstacles in
+//! `obstacle/path.rs`.
 //!
 //! At the end of such a step nothing penetrates, and no facet is faced where the node entered: it has
 //! moved past the end of the side. Its straight path relative to the body shows it. A node that only
@@ -10,10 +11,9 @@ use super::surface::{Search, Surface};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
 use crate::places::Places;
-use crate::skin::Skin;
 
 /// Depth, relative to the facet, that a path may have.
-const SHARE: f64 = 0.01;
+pub(super) const SHARE: f64 = 0.01;
 /// Instants between entry and exit at which the depth is measured.
 const INSTANTS: usize = 7;
 
@@ -28,71 +28,112 @@ pub struct Passed {
     pub limit: f64,
 }
 
-/// The node of these that was deepest beyond its limit, if any; `allowed` is the depth that a node may
-/// have in any case. Needs the whole boundary of the body.
-pub(super) fn passed(
-    surface: &Surface,
-    nodes: &[usize],
-    allowed: impl Fn(usize) -> f64,
-    search: &mut Search,
-    swept: &mut SweptTest,
-    [before, now]: [&[f64]; 2],
-) -> Option<Passed> {
-    let first = *nodes.first()?;
-    if surface.shape() == FacetShape::Point || !surface.is_whole() {
-        return None;
-    }
-    let [start, end] = [before, now].map(|y| Places::new(y, 2));
-    let path = |node: usize| end.at(node) - start.at(node);
-    // Relative to one node, so that bodies that fly together do not count as moving.
-    let moved = |node: &usize| (path(*node) - path(first)).norm();
-    let facets = || 0..surface.all();
-    let of_body = facets().flat_map(|f| surface.facet(f).nodes).map(moved).fold(0.0, f64::max);
-    let of_nodes = nodes.iter().map(moved).fold(0.0, f64::max);
-    let shortest = facets().map(|f| surface.length(f, start)).fold(f64::INFINITY, f64::min);
-    // Entry, depth and exit need a path of twice the depth.
-    if of_body + of_nodes <= 2.0 * SHARE * shortest || !search.update(surface, nodes, 0.0, start, end) {
-        return None;
-    }
-    let (mut skin, mut between) = (None, Vec::new());
-    let mut worst: Option<Passed> = None;
-    for (place, &node) in nodes.iter().enumerate() {
-        search.find(node, start, end);
-        let near = search.found();
-        let relative = |&other: &usize| (path(node) - path(other)).norm();
-        let far = near.iter().any(|&f| {
-            let most = surface.facet(f).nodes.iter().map(relative).fold(0.0, f64::max);
-            most > 2.0 * SHARE * surface.length(f, start)
-        });
-        if !far {
-            continue;
+/// Nodes that may pass through a body.
+pub(super) struct Paths<'a> {
+    /// The whole boundary of the body.
+    pub surface: &'a Surface,
+    pub nodes: &'a [usize],
+    /// Depth that each node may have in any case.
+    pub allowed: &'a dyn Fn(usize) -> f64,
+    /// Whether a node enters through a facet, and whether the facet bounds what it enters.
+    pub enters: &'a dyn Fn(usize, usize) -> bool,
+    pub bounds: &'a dyn Fn(usize, usize) -> bool,
+}
+
+impl Paths<'_> {
+    /// The node that was deepest beyond its limit, if any.
+    pub(super) fn deepest(
+        &self,
+        search: &mut Search,
+        swept: &mut SweptTest,
+        [before, now]: [&[f64]; 2],
+    ) -> Option<Passed> {
+        let Self { surface, nodes, allowed, enters, bounds } = self;
+        let first = *nodes.first()?;
+        if surface.shape() == FacetShape::Point || !surface.is_whole() {
+            return None;
         }
-        let mut earliest = |from: Places, to: Places| {
-            let crossings = near.iter().filter_map(|&f| crossing(swept, surface.facet(f), from, to, node));
-            crossings.map(|c| c.theta).min_by(f64::total_cmp)
-        };
-        // The last exit is the first entry of the reversed motion.
-        let Some(entry) = earliest(start, end) else { continue };
-        let Some(exit) = earliest(end, start).map(|theta| 1.0 - theta) else { continue };
-        if exit <= entry {
-            continue;
+        let [start, end] = [before, now].map(|y| Places::new(y, 2));
+        let path = |node: usize| end.at(node) - start.at(node);
+        // Relative to one node, so that bodies that fly together do not count as moving.
+        let moved = |node: &usize| (path(*node) - path(first)).norm();
+        let facets = || 0..surface.all();
+        let of_body = facets().flat_map(|f| surface.facet(f).nodes).map(moved).fold(0.0, f64::max);
+        let of_nodes = nodes.iter().map(moved).fold(0.0, f64::max);
+        let shortest = facets().map(|f| surface.length(f, start)).fold(f64::INFINITY, f64::min);
+        // Entry, depth and exit need a path of twice the depth.
+        if of_body + of_nodes <= 2.0 * SHARE * shortest || !search.update(surface, nodes, 0.0, start, end) {
+            return None;
         }
-        let skin = skin.get_or_insert_with(|| Skin::new(surface.clone()));
-        for k in 0..INSTANTS {
-            let theta = entry + (exit - entry) * (k + 1) as f64 / (INSTANTS + 1) as f64;
-            between.clear();
-            between.extend(before.iter().zip(now).map(|(a, b)| a + theta * (b - a)));
-            skin.update(&between);
-            let point = [between[2 * node], between[2 * node + 1]];
-            let Some(found) = skin.depth(point, None, &between) else { continue };
-            let (depth, limit) =
-                (-found.distance, allowed(place) + SHARE * surface.length(found.facet, start));
-            if depth > limit && worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
-                worst = Some(Passed { node, depth, limit });
+        let mut between = Between { before, now, y: vec![0.0; now.len()] };
+        let mut worst: Option<Passed> = None;
+        for (place, &node) in nodes.iter().enumerate() {
+            search.find(node, start, end);
+            search.retain(|facet| bounds(node, facet));
+            let near = search.found();
+            let relative = |&other: &usize| (path(node) - path(other)).norm();
+            let far = near.iter().any(|&f| {
+                let most = surface.facet(f).nodes.iter().map(relative).fold(0.0, f64::max);
+                most > 2.0 * SHARE * surface.length(f, start)
+            });
+            if !far {
+                continue;
+            }
+            let mut earliest = |from: Places, to: Places, through: &dyn Fn(usize) -> bool| {
+                let met = near.iter().filter(|&&facet| through(facet));
+                let crossings =
+                    met.filter_map(|&f| Some((f, crossing(swept, surface.facet(f), from, to, node)?.theta)));
+                crossings.min_by(|a, b| a.1.total_cmp(&b.1))
+            };
+            // The last exit is the first entry of the reversed motion.
+            let Some((entered, entry)) = earliest(start, end, &|facet| enters(node, facet)) else { continue };
+            let Some((_, back)) = earliest(end, start, &|_| true) else { continue };
+            let exit = 1.0 - back;
+            if exit <= entry {
+                continue;
+            }
+            for k in 0..INSTANTS {
+                let theta = entry + (exit - entry) * (k + 1) as f64 / (INSTANTS + 1) as f64;
+                let point = between.at(theta, node);
+                let nearest = search.nearest(point, entered, |facet| {
+                    bounds(node, facet).then(|| {
+                        between.place(theta, surface.facet(facet).nodes);
+                        surface.nearest(facet, point, Places::new(&between.y, 2)).1
+                    })
+                });
+                let Some((facet, _)) = nearest else { continue };
+                for near in [Some(facet), surface.neighbour(facet, false), surface.neighbour(facet, true)] {
+                    near.iter().for_each(|&f| between.place(theta, surface.facet(f).nodes));
+                }
+                let found = surface.depth(facet, point, Places::new(&between.y, 2));
+                let (depth, limit) =
+                    (-found.distance, allowed(place) + SHARE * surface.length(found.facet, start));
+                if depth > limit && worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
+                    worst = Some(Passed { node, depth, limit });
+                }
             }
         }
+        worst
     }
-    worst
+}
+
+/// Positions at an instant of the motion, those of some nodes alone.
+struct Between<'a> {
+    before: &'a [f64],
+    now: &'a [f64],
+    y: Vec<f64>,
+}
+
+impl Between<'_> {
+    fn at(&self, theta: f64, node: usize) -> [f64; 2] {
+        [2 * node, 2 * node + 1].map(|i| self.before[i] + theta * (self.now[i] - self.before[i]))
+    }
+
+    fn place(&mut self, theta: f64, nodes: &[usize]) {
+        for &node in nodes {
+            [self.y[2 * node], self.y[2 * node + 1]] = self.at(theta, node);
+        }
+    }
 }
 
 #[cfg(test)]
