@@ -9,6 +9,7 @@
 //! A polyline consists of such pieces. So ∇²g = h (1 − n nᵀ) with one number h for every piece.
 
 mod near;
+mod path;
 mod polyline;
 
 pub(super) use near::{Near, Point};
