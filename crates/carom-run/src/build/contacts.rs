@@ -206,10 +206,7 @@ fn others(
 }
 
 /// The facets of a side in the plane with the distances between their ends.
-fn lengths<'a>(
-    facets: &'a [Vec<usize>],
-    reference: &[f64],
-) -> impl Iterator<Item = (&'a Vec<usize>, f64)> {
+fn lengths<'a>(facets: &'a [Vec<usize>], reference: &[f64]) -> impl Iterator<Item = (&'a Vec<usize>, f64)> {
     facets.iter().filter(|facet| facet.len() > 1).map(|facet| {
         let [start, end] = [facet[0], facet[1]].map(|node| &reference[2 * node..2 * node + 2]);
         (facet, (end[0] - start[0]).hypot(end[1] - start[1]))
@@ -250,7 +247,8 @@ fn siblings(
             Which::Primary => (other.secondary == spec.secondary, other.primary.side()?),
             Which::Secondary => (other.primary == spec.primary, other.secondary.as_str()),
         };
-        side(parts, name, "").ok().filter(|side| same && side.part == part)
+        // There may be a contact per pair of bodies: few of them need their nodes.
+        if !same { None } else { side(parts, name, "").ok().filter(|side| side.part == part) }
     };
     let of_contacts = |contacts: &[ContactSpec]| contacts.iter().filter_map(of).collect();
     (of_contacts(&case.contacts[..k]), of_contacts(&case.contacts[k + 1..]))
