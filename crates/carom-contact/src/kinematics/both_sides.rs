@@ -162,8 +162,8 @@ impl Kinematics for BothSides {
         self.each(pairing, |direction, pairing| direction.search(before, now, pairing, events))
     }
 
-    fn passed(&self, before: &[f64], now: &[f64]) -> Option<Passed> {
-        self.forward.passed(before, now).or_else(|| self.reverse.passed(before, now))
+    fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
+        self.forward.passed(before, now, bounce).or_else(|| self.reverse.passed(before, now, bounce))
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {

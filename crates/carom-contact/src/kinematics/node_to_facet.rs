@@ -313,7 +313,7 @@ impl Kinematics for NodeToFacet {
         changed
     }
 
-    fn passed(&self, before: &[f64], now: &[f64]) -> Option<Passed> {
+    fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         let Tools { search, swept, .. } = &mut *tools;
         let paths = Paths {
@@ -326,6 +326,7 @@ impl Kinematics for NodeToFacet {
         let Some((folds, side)) = &self.folds else { return paths.deepest(search, swept, [before, now]) };
         // Within one piece, a path may begin and end on either side of its own boundary.
         if !folds.has_pieces() {
+            bounce,
             return None;
         }
         let bounds = |node: usize, facet: usize| folds.is_of_another_piece(node, facet);

@@ -12,7 +12,7 @@
 //! prescribe it, masses make it free, and reactions and works are theirs.
 
 use super::obstacle::{AtCorner, Near, Obstacle, Point};
-use super::passed::{Passed, SHARE};
+use super::passed::{Passed, SHARE, share};
 use super::{Kinematics, watch_every_node};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
@@ -178,12 +178,14 @@ impl Kinematics for NodeToObstacle {
     }
 
     /// Along straight paths relative to the obstacle, also if it turns.
-    fn passed(&self, before: &[f64], now: &[f64]) -> Option<Passed> {
+    fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
         let through = |(place, length): (usize, &f64)| {
             let node = self.secondary[place];
-            let limit = self.kept(place) + SHARE * length;
+            let limit = |share: f64| self.kept(place) + share * length;
             let [from, to] = [before, now].map(|y| self.local(node, y).at);
-            self.shape.deepest_between(from, to, limit).map(|depth| Passed { node, depth, limit })
+            let (depth, normals) = self.shape.deepest_between(from, to, limit(SHARE))?;
+            let limit = limit(share(normals, bounce));
+            (depth > limit).then_some(Passed { node, depth, limit })
         };
         let beyond = |passed: &Passed| passed.depth - passed.limit;
         let passed = self.lengths.iter().enumerate().filter_map(through);

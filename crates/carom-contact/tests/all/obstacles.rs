@@ -175,7 +175,7 @@ fn a_path_through_an_obstacle_is_found_with_its_depth() {
     let plate = Obstacle::Polyline(Polyline::new(&plate, 0.0).unwrap());
     let passed = |shape: &Obstacle, from: [f64; 2], to: [f64; 2]| {
         let contact = NodeToObstacle::new(vec![0], 2, shape.clone()).with_lengths(vec![0.1]);
-        let passed = contact.passed(&from, &to)?;
+        let passed = contact.passed(&from, &to, 0.01)?;
         assert!((passed.limit - 1e-3).abs() < 1e-15 && passed.node == 0);
         Some(passed.depth)
     };
@@ -206,6 +206,6 @@ fn a_path_through_an_obstacle_is_found_with_its_depth() {
     // In the frame of an obstacle that moves with node 1: it passes the node.
     let carrier = Carrier { node: 1, origin: [1.0, 1.0, 0.0], turn: None };
     let moving = NodeToObstacle::new(vec![0], 2, circle).with_lengths(vec![0.1]).carried_by(carrier);
-    assert!(moving.passed(&[1.0, 2.0, 1.0, 1.0], &[1.0, 2.0, 1.0, 4.0]).is_some());
-    assert!(moving.passed(&[1.0, 2.0, 1.0, 1.0], &[1.0, 5.0, 1.0, 4.0]).is_none());
+    assert!(moving.passed(&[1.0, 2.0, 1.0, 1.0], &[1.0, 2.0, 1.0, 4.0], 0.01).is_some());
+    assert!(moving.passed(&[1.0, 2.0, 1.0, 1.0], &[1.0, 5.0, 1.0, 4.0], 0.01).is_none());
 }
