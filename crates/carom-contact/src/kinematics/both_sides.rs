@@ -143,6 +143,11 @@ impl Kinematics for BothSides {
         self.direction(pair.node).0.facet_nodes(pair)
     }
 
+    fn facets(&self, node: usize) -> usize {
+        let (direction, node) = self.direction(node);
+        direction.facets(node)
+    }
+
     fn stencil(&self) -> usize {
         self.forward.stencil().max(self.reverse.stencil())
     }

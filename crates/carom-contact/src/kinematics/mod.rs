@@ -53,6 +53,9 @@ pub trait Kinematics: Send + Sync {
     /// Global numbers of the nodes of a pair's facet; empty for a rigid primary.
     fn facet_nodes(&self, pair: &Pair) -> &[usize];
 
+    /// Number of facets that a pair of a secondary node, given by index, may name.
+    fn facets(&self, node: usize) -> usize;
+
     /// Largest number of nodes that one gap depends on.
     fn stencil(&self) -> usize;
 

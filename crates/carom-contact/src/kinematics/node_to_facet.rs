@@ -169,6 +169,10 @@ impl Kinematics for NodeToFacet {
         self.primary.facet(pair.facet).nodes
     }
 
+    fn facets(&self, _: usize) -> usize {
+        self.primary.facets()
+    }
+
     fn stencil(&self) -> usize {
         1 + self.primary.shape().nodes()
     }
@@ -322,11 +326,11 @@ impl Kinematics for NodeToFacet {
             allowed: &|place| self.slack(place),
             enters: &|_, _| true,
             bounds: &|_, _| true,
+            bounce,
         };
         let Some((folds, side)) = &self.folds else { return paths.deepest(search, swept, [before, now]) };
         // Within one piece, a path may begin and end on either side of its own boundary.
         if !folds.has_pieces() {
-            bounce,
             return None;
         }
         let bounds = |node: usize, facet: usize| folds.is_of_another_piece(node, facet);

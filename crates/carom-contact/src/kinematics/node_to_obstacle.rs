@@ -121,6 +121,10 @@ impl Kinematics for NodeToObstacle {
         &[]
     }
 
+    fn facets(&self, _: usize) -> usize {
+        self.shape.pieces()
+    }
+
     fn stencil(&self) -> usize {
         self.carrier.as_ref().map_or(1, |carrier| if carrier.turn.is_some() { 3 } else { 2 })
     }

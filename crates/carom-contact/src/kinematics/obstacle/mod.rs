@@ -53,6 +53,11 @@ impl Obstacle {
         Self::Circle { center: padded(center, 1.0), radius, inside }
     }
 
+    /// Number of pieces of the surface.
+    pub(crate) fn pieces(&self) -> usize {
+        if let Self::Polyline(line) = self { line.pieces() } else { 1 }
+    }
+
     /// The piece of the surface that is closest to a point.
     pub(crate) fn nearest(&self, at: Point) -> usize {
         if let Self::Polyline(line) = self { line.nearest(at) } else { 0 }
