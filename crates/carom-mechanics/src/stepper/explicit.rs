@@ -32,7 +32,7 @@ use carom_contact::{Pairing, Rows};
 
 use super::forward::Forward;
 use super::scratch::Scratch;
-use super::watch::{active, approach, carry_into, depth, gap_at, measure_into};
+use super::watch::{active, approach, carry_into, depth, gap_at, measure_into, moves};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::constraints::independent_rows;
 use crate::contact_update::{GAP_TOLERANCE, search};
@@ -230,6 +230,9 @@ impl Explicit {
         at.resize(free.len(), 0.0);
         velocity.clone_from(free);
         let mut is_behind = false;
+        // Contact, node and facet of the rows that were last examined, and whether they depend on each
+        // other: their gradients are those at y_n in every round.
+        let (mut examined, mut dependent) = (Vec::new(), false);
         for round in 0..=ROUNDS {
             Forward { state, before, velocity, dt }.place(0.0, at);
             loaded.clear();
@@ -258,6 +261,11 @@ impl Explicit {
                 for (p, pair) in pairings[k].pairs.iter_mut().enumerate() {
                     let gap = rows[k].row(p).gap;
                     let wrong = if pair.lambda < 0.0 { gap.abs() } else { -gap };
+                    if -gap > tolerance && !moves(model, rows[k].row(p)) {
+                        let node = contact.kinematics.secondary()[pair.node];
+                        let contact = contact.name.clone();
+                        return Err(Rejected::Overconstrained { contact, node, depth: -gap });
+                    }
                     worst = worst.max(wrong);
                     pair.active |= wrong > tolerance;
                 }
@@ -270,9 +278,18 @@ impl Explicit {
             }
             report.newton += 1;
             places.clear();
-            places.extend(active(pairings));
+            places.extend(active(pairings).filter(|&(k, p)| moves(model, rows[k].row(p))));
             let (mut matrix, mut right) = self.problem(model, pairings, rows, places, dt);
-            if independent_rows(model, active(pairings), rows).len() < places.len() {
+            let named = |&(k, p): &(usize, usize)| {
+                let pair = &pairings[k].pairs[p];
+                (k, pair.node, pair.facet)
+            };
+            if !places.iter().map(named).eq(examined.iter().copied()) {
+                examined.clear();
+                examined.extend(places.iter().map(named));
+                dependent = independent_rows(model, places.iter().copied(), rows).len() < places.len();
+            }
+            if dependent {
                 impulses.clear();
                 impulses.extend(places.iter().map(|&(k, p)| -pairings[k].pairs[p].lambda));
                 proximal(&mut matrix, &mut right, impulses);
