@@ -44,8 +44,19 @@ impl Rejected {
             Self::Penetration { contact, node, body, .. } => {
                 Place { contact: Some(contact), node: Some(*node), body: Some(body), ..Place::default() }
             }
+            Self::Passed { contact, node, .. } => {
+                Place { contact: Some(contact), node: Some(*node), ..Place::default() }
+            }
             Self::Jump { node, .. } => Place { node: Some(*node), ..Place::default() },
-            _ => Place::default(),
+            Self::NoConvergence { .. }
+            | Self::Linear(_)
+            | Self::NegativeMass
+            | Self::NoValue(_)
+            | Self::Unconstrained(_)
+            | Self::Unsettled { .. }
+            | Self::Deep { .. }
+            | Self::Energy { .. }
+            | Self::NotFinite { .. } => Place::default(),
         }
     }
 }
