@@ -89,7 +89,7 @@ pub(crate) fn decide(
     if kept.as_ref().is_some_and(|kept| progress.done() >= kept.at.next()) {
         *kept = None;
     }
-    let last = progress.level == limits.bisections;
+    let last = progress.level >= limits.bisections;
     let (rejected, returns) = match stepped {
         Ok(mut step) => {
             step.observe();
