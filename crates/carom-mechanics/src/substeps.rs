@@ -1,7 +1,7 @@
 //! Substeps of a grid step. A rejected step is bisected. So is a step that creates more than a tenth
-//! of the energy that the guard still allows; it is kept, and taken after all if a shorter step
-//! is rejected, or creates more than half as much: energy that the error of a smooth motion creates
-//! falls with the cube of the step, that of an impact or a change of facet does not.
+//! of the energy that the guard still allows; it is kept, and taken after all if the shortest step is
+//! rejected, or a shorter one creates more than four times as much: energy that the error of a smooth
+//! motion creates falls with the cube of the step, that of an impact or a change of facet does not.
 
 use crate::grid_report::GridReport;
 use crate::rejected::Rejected;

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! secondary nodes, corners of the primary    g ≥ 0
-//! other nodes of the primary                 g ≥ −d,   d a hundredth of a secondary facet
+//! other nodes of the primary                 g ≥ −d,   d a fiftieth of a secondary facet
 //! ```
 //!
 //! No secondary node enters the primary, and no corner of the primary cuts into an edge of the
