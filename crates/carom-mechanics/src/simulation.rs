@@ -255,34 +255,39 @@ impl Simulation {
                 timed(&mut self.work.timings.contact, check)?;
                 Ok(step)
             });
-            let (taken, rejected) = match decide(stepped, from, limits, &mut kept, &mut progress, report) {
-                Next::Take(step) => (Some(step), None),
-                Next::Bisect(rejected) => (None, Some(rejected)),
-                Next::Return(rejected, step) => (Some(step), Some(rejected)),
+            // A step that is returned to began earlier.
+            let (mut taken, mut returned, mut why) = (None, None, None);
+            match decide(stepped, from, limits, &mut kept, &mut progress, report) {
+                Next::Take(step) => taken = Some(step),
+                Next::Bisect(rejected) => why = Some(rejected),
+                Next::Return(rejected, step, start) => {
+                    (taken, returned, why) = (Some(step), Some(start), Some(rejected));
+                }
                 Next::Stop(rejected) => {
                     report.reject(time, dt, rejected.clone());
                     return Err(Stopped::NoStep { time, dt, halvings: progress.level, rejected });
                 }
-            };
-            if let Some(rejected) = rejected {
+            }
+            if let Some(rejected) = why {
                 report.reject(time, dt, rejected);
                 watch(&Attempt { time, dt, rejected: report.rejected - before });
             }
             let Some(step) = taken else {
                 progress.bisect();
-                bisected = true;
                 continue;
             };
             let (next, step) = step.into_parts();
             if self.audited {
-                let from = reached.as_ref().unwrap_or(&self.state);
-                audit(&self.model, &from.y, &next.y, step.penetration)
+                let from = &reached.as_ref().unwrap_or(&self.state).y;
+                audit(&self.model, returned.as_ref().unwrap_or(from), &next.y, step.penetration)
                     .map_err(|doubt| Stopped::Audit { time: next.time, doubt })?;
             }
             report.add(next.time, step);
             if let Some(before) = reached.replace(next) {
                 self.work.put(before);
             }
+            // A step over the whole grid step replaces those within it.
+            bisected = progress.level > 0;
             progress.advance();
         }
         let Some(mut state) = reached else { return Ok(()) };

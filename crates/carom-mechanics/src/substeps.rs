@@ -53,6 +53,8 @@ pub(crate) struct Kept {
     /// Whether the guard allows it.
     is_within: bool,
     at: Progress,
+    /// Positions at its start.
+    from: Vec<f64>,
     report: GridReport,
 }
 
@@ -62,8 +64,9 @@ pub(crate) enum Next {
     Take(Accepted),
     /// Shorter ones are tried.
     Bisect(Rejected),
-    /// Shorter ones do not help, for this reason: the one that was kept is the next one.
-    Return(Rejected, Accepted),
+    /// Shorter ones do not help, for this reason: the one that was kept is the next one, from these
+    /// positions.
+    Return(Rejected, Accepted, Vec<f64>),
     /// Not even the shortest one is accepted.
     Stop(Rejected),
 }
@@ -103,7 +106,8 @@ pub(crate) fn decide(
             }
             if kept.is_none() {
                 let is_within = created <= allowed / STEP;
-                *kept = Some(Kept { step, created, is_within, at: *progress, report: report.clone() });
+                let (at, from, report) = (*progress, from.y.clone(), report.clone());
+                *kept = Some(Kept { step, created, is_within, at, from, report });
             }
             (Rejected::Energy { created, allowed }, returns)
         }
@@ -113,7 +117,7 @@ pub(crate) fn decide(
         Some(kept) => {
             *progress = kept.at;
             report.return_to(kept.report);
-            Next::Return(rejected, kept.step)
+            Next::Return(rejected, kept.step, kept.from)
         }
         None if last => Next::Stop(rejected),
         None => Next::Bisect(rejected),

@@ -96,3 +96,16 @@ scheme = { kind = "paoli-schatzman" }
     }
     assert!(short.state().y[0] > 0.0 && fastest > 0.5 && fastest < 1.2, "{fastest}");
 }
+
+#[test]
+fn a_step_may_be_allowed_no_bisection_at_any_time() {
+    let mut run = simulation(DISC, &[""; 0]);
+    let mut stopped = 0;
+    while !run.finished() {
+        let mut once = super::common::restored(simulation(DISC, &[""; 0]), run.state().clone());
+        once.limit_bisections(0);
+        stopped += u32::from(once.step().is_err());
+        run.step().unwrap();
+    }
+    assert!(stopped < 20);
+}
