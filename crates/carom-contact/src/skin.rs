@@ -3,7 +3,7 @@
 //! The nearest point of the boundary decides (`depth.rs`). Independent of pairs, sides and history, so that it can judge them.
 
 use carom_algebra::Vector;
-use carom_solid::{Bounds, Hull, Tree};
+use carom_solid::{Bounds, FacetShape, Hull, Tree};
 
 use crate::depth::Depth;
 use crate::kinematics::{Folds, Side, Surface, Turns};
@@ -41,6 +41,15 @@ impl Skin {
     /// Global numbers of the nodes of a facet.
     pub fn facet_nodes(&self, facet: usize) -> &[usize] {
         self.surface.facet(facet).nodes
+    }
+
+    /// How much further a point of a facet may move than each of its nodes: the largest Σ |φᵅ|.
+    pub fn amplification(&self) -> f64 {
+        match self.surface.shape() {
+            FacetShape::Point | FacetShape::L2 => 1.0,
+            FacetShape::L3 => 1.25,
+            FacetShape::L4 => 1.6312,
+        }
     }
 
     /// Moves the boundary to positions `y`, flat over all nodes.
@@ -137,8 +146,6 @@ fn cross(a: [Vector<2>; 2], b: [Vector<2>; 2]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use carom_solid::FacetShape;
-
     use super::*;
 
     /// An L-shaped polygon: a convex corner at (2, 1), a concave one at (1, 1).
@@ -187,6 +194,17 @@ mod tests {
         (y[9], y[11]) = (-0.5, -0.5);
         skin.update(&y);
         assert!(skin.crosses_itself(&y, |_, _| false));
+    }
+
+    #[test]
+    fn no_point_of_a_facet_moves_further_than_its_nodes_by_more() {
+        for shape in [FacetShape::L2, FacetShape::L3, FacetShape::L4] {
+            let facet: Vec<usize> = (0..shape.nodes()).collect();
+            let skin = Skin::new(Surface::new(shape, &[facet], &[1.0]));
+            let sum = |k: i32| shape.at(f64::from(k) / 1e4).values.iter().map(|v| v.abs()).sum::<f64>();
+            let most = (-10_000..=10_000).map(sum).fold(0.0, f64::max);
+            assert!(most <= skin.amplification() && most > 0.9999 * skin.amplification(), "{most}");
+        }
     }
 
     #[test]

@@ -45,6 +45,7 @@ mod tangent_tests;
 mod testing;
 mod timings;
 mod trace;
+mod undeclared;
 mod valid_cells;
 mod watched;
 mod workspace;

@@ -294,9 +294,8 @@ impl Simulation {
         state.bisection = self.state.bisection.after(bisected);
         state.step += 1;
         state.time = self.grid.time(state.step);
-        let mut overlapping = self.work.others.overlapping(&self.model, &state.y);
-        overlapping.extend(self.work.others.crossing_themselves(&self.model, &state.y));
-        for pair in overlapping {
+        let Workspace { undeclared, timings, .. } = &mut self.work;
+        for pair in timed(&mut timings.contact, || undeclared.found(&self.model, &state.y)) {
             if !state.overlaps.contains(&pair) {
                 state.overlaps.push(pair);
                 report.events.push(LogEvent::Overlap { time: state.time, bodies: pair });
