@@ -173,8 +173,7 @@ fn a_block_does_not_pass_through_an_obstacle_in_a_long_step() {
         // Its mass is 0.08.
         let impulse = state.impulse()[1];
         assert!(rejected > 0 && impulse > 0.8, "{obstacle}: {rejected} steps rejected, {impulse}");
-        let booked = impulse - state.ledger.algorithmic_impulse[1] - (momentum + 0.8);
-        assert!(booked.abs() < 1e-9, "{booked:e}");
+        assert!((impulse - (momentum + 0.8)).abs() < 1e-9, "{impulse} {momentum}");
         // Not one bisection: the node is named that passes.
         let mut sim = Setup::new(&Case::from_text(FALLING, &[set.as_str()]).unwrap()).start().unwrap();
         sim.limit_bisections(0);
@@ -226,7 +225,7 @@ fn a_wall_that_reaches_a_clamped_node_is_named() {
     for scheme in [
         r#"{ kind = "central-difference" }"#,
         r#"{ kind = "paoli-schatzman" }"#,
-        r#"{ kind = "moreau-jean" }"#,
+        r#"{ kind = "moreau-jean", theta = 0.5 }"#,
         r#"{ kind = "chung-hulbert", rho_inf = 0.5 }"#,
     ] {
         let set = format!("time.scheme={scheme}");
