@@ -38,14 +38,11 @@ impl Rejected {
             Self::Cycle { contact, nodes } => {
                 Place { contact: Some(contact), node: nodes.first().copied(), ..Place::default() }
             }
-            Self::Overconstrained { contact, node, .. } => {
+            Self::Overconstrained { contact, node, .. } | Self::Passed { contact, node, .. } => {
                 Place { contact: Some(contact), node: Some(*node), ..Place::default() }
             }
             Self::Penetration { contact, node, body, .. } => {
                 Place { contact: Some(contact), node: Some(*node), body: Some(body), ..Place::default() }
-            }
-            Self::Passed { contact, node, .. } => {
-                Place { contact: Some(contact), node: Some(*node), ..Place::default() }
             }
             Self::Jump { node, .. } => Place { node: Some(*node), ..Place::default() },
             Self::NoConvergence { .. }

@@ -330,12 +330,10 @@ impl Kinematics for NodeToFacet {
         };
         let Some((folds, side)) = &self.folds else { return paths.deepest(search, swept, [before, now]) };
         // Within one piece, a path may begin and end on either side of its own boundary.
-        if !folds.has_pieces() {
-            return None;
-        }
         let bounds = |node: usize, facet: usize| folds.is_of_another_piece(node, facet);
         let enters = |node: usize, facet: usize| folds.admits(*side, node, facet);
-        Paths { enters: &enters, bounds: &bounds, ..paths }.deepest(search, swept, [before, now])
+        let among = Paths { enters: &enters, bounds: &bounds, ..paths };
+        folds.has_pieces().then(|| among.deepest(search, swept, [before, now])).flatten()
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {

@@ -75,7 +75,7 @@ impl Paths<'_> {
         {
             return None;
         }
-        let mut between = Between { before, now, y: vec![0.0; now.len()] };
+        let mut between = None;
         let mut worst: Option<Passed> = None;
         for (place, &node) in nodes.iter().enumerate() {
             search.find(node, start, end);
@@ -102,6 +102,7 @@ impl Paths<'_> {
             if exit <= entry.theta {
                 continue;
             }
+            let between = between.get_or_insert_with(|| Between { before, now, y: vec![0.0; now.len()] });
             let normals = [(entered, entry.theta, entry.xi), (left, exit, back.xi)];
             let share = share(normals.map(|(f, theta, xi)| between.normal(surface, f, theta, xi)), bounce);
             for k in 0..INSTANTS {

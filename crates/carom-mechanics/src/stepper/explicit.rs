@@ -32,7 +32,7 @@ use carom_contact::{Pairing, Rows};
 
 use super::forward::Forward;
 use super::scratch::Scratch;
-use super::watch::{active, approach, carry_into, depth, gap_at, measure_into, moves};
+use super::watch::{active, approach, carry_into, depth, gap_at, held, measure_into, moves};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::constraints::independent_rows;
 use crate::contact_update::{GAP_TOLERANCE, search};
@@ -262,9 +262,7 @@ impl Explicit {
                     let gap = rows[k].row(p).gap;
                     let wrong = if pair.lambda < 0.0 { gap.abs() } else { -gap };
                     if -gap > tolerance && !moves(model, rows[k].row(p)) {
-                        let node = contact.kinematics.secondary()[pair.node];
-                        let contact = contact.name.clone();
-                        return Err(Rejected::Overconstrained { contact, node, depth: -gap });
+                        return Err(held(contact, pair, gap));
                     }
                     worst = worst.max(wrong);
                     pair.active |= wrong > tolerance;

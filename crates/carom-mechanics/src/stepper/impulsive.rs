@@ -21,7 +21,7 @@ use carom_algebra::{complementarity, proximal};
 use carom_contact::{Pairing, Rows};
 use carom_time::{Impulse, ImpulseShares, Memory, Stage};
 
-use super::watch::{active, approach, carry_into, depth, gap_at, measure_into, moves};
+use super::watch::{active, approach, carry_into, depth, gap_at, held, measure_into, moves};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::balance::residual_into;
 use crate::constraints::{Constraints, independent_rows};
@@ -357,18 +357,15 @@ impl Impulses {
                 pair.active = row.gap < -TIE * model.scale;
             }
         }
-        let (places, held): (Vec<_>, Vec<_>) =
+        let (places, stuck): (Vec<_>, Vec<_>) =
             active(pairings).partition(|&(k, p)| moves(model, measured[k].row(p)));
-        for (k, p) in held {
+        for (k, p) in stuck {
             // No impulse changes its velocity.
             let row = measured[k].row(p);
             let path = |dof: usize| predicted[dof] - state.y[dof];
             let sinks = -row.entries().map(|(dof, slope)| slope * path(dof)).sum::<f64>();
             if sinks > TIE * model.scale {
-                let contact = &model.contacts[k];
-                let node = contact.kinematics.secondary()[pairings[k].pairs[p].node];
-                let (contact, depth) = (contact.name.clone(), -row.gap);
-                return Err(Rejected::Overconstrained { contact, node, depth });
+                return Err(held(&model.contacts[k], &pairings[k].pairs[p], row.gap));
             }
         }
         let dependent = independent_rows(model, places.iter().copied(), &measured).len() < places.len();

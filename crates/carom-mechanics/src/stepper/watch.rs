@@ -44,6 +44,12 @@ pub(super) fn moves(model: &Model, row: Row) -> bool {
     row.entries().any(|(dof, slope)| !model.fixed[dof] && slope.abs() > DEPENDENT)
 }
 
+/// The rejection of a gap that supports prevent from opening.
+pub(super) fn held(contact: &Contact, pair: &Pair, gap: f64) -> Rejected {
+    let node = contact.kinematics.secondary()[pair.node];
+    Rejected::Overconstrained { contact: contact.name.clone(), node, depth: -gap }
+}
+
 /// Gaps and gradients of all pairs at `y`, updating their contact points.
 ///
 /// # Errors

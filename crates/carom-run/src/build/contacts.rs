@@ -248,7 +248,7 @@ fn siblings(
             Which::Secondary => (other.primary == spec.primary, other.secondary.as_str()),
         };
         // There may be a contact per pair of bodies: few of them need their nodes.
-        if !same { None } else { side(parts, name, "").ok().filter(|side| side.part == part) }
+        if same { side(parts, name, "").ok().filter(|side| side.part == part) } else { None }
     };
     let of_contacts = |contacts: &[ContactSpec]| contacts.iter().filter_map(of).collect();
     (of_contacts(&case.contacts[..k]), of_contacts(&case.contacts[k + 1..]))

@@ -127,7 +127,7 @@ fn rectangles(of: [(&str, [f64; 4], [usize; 2]); 2]) -> String {
     let list = |name: &str, lines: Vec<String>| {
         format!("${name}\n{}\n{}\n$End{name}\n", lines.len(), lines.join("\n"))
     };
-    format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n")
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n".to_owned()
         + &list("PhysicalNames", names)
         + &list("Nodes", nodes)
         + &list("Elements", cells)
