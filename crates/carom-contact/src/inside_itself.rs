@@ -30,7 +30,7 @@ impl Skin {
                 }
                 let nearest = (0..surface.all())
                     .filter(|&other| !self.facet_nodes(other).contains(&node))
-                    .map(|other| (other, self.nearest(other, at.at(node).0, at).1))
+                    .map(|other| (other, surface.nearest(other, at.at(node).0, at).1))
                     .min_by(|a, b| a.1.total_cmp(&b.1));
                 if let Some((other, distance)) = nearest
                     && deepest.is_none_or(|(.., most)| distance > most)

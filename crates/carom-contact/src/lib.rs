@@ -2,6 +2,7 @@
 //! positions, independent of time integration and matrices.
 
 mod active_set;
+mod depth;
 mod discrete_gradient;
 mod friction;
 mod inside_itself;
@@ -13,6 +14,7 @@ mod rows;
 mod skin;
 
 pub use active_set::{ActiveSet, Contender, Cycle};
+pub use depth::Depth;
 pub use discrete_gradient::DiscreteGradient;
 pub use friction::{Hold, Law, Radius, Rub, StickSlip, Tangential};
 pub use interface::{
@@ -24,4 +26,4 @@ pub use kinematics::{
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};
-pub use skin::{Depth, Skin};
+pub use skin::Skin;

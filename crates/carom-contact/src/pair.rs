@@ -12,7 +12,7 @@ pub struct Pair {
     /// Index of the secondary node in [`Kinematics::secondary`](crate::Kinematics::secondary). A
     /// node in a dent of the primary has several pairs.
     pub node: usize,
-    /// Facet of the primary side; 0 for a rigid primary.
+    /// Facet of the primary side, or piece of a polyline; 0 for a plane or a circle.
     pub facet: usize,
     /// Contact point on the facet, −1 … 1; 0 if the facet is a point or a plane.
     pub xi: f64,

@@ -1,12 +1,11 @@
 //! The whole boundary of a body in the plane: how deep a point lies inside.
 //!
-//! The nearest point of the boundary decides. Inside a facet the sign of the distance is that of the
-//! normal; at a joint the point is outside if the joint is convex, inside if it is concave.
-//! Independent of pairs, sides and history, so that it can judge them.
+//! The nearest point of the boundary decides (`depth.rs`). Independent of pairs, sides and history, so that it can judge them.
 
 use carom_algebra::Vector;
-use carom_solid::{Bounds, Hull, Tree};
+use carom_solid::{Bounds, FacetShape, Hull, Tree};
 
+use crate::depth::Depth;
 use crate::kinematics::{Folds, Side, Surface, Turns};
 use crate::places::Places;
 
@@ -18,17 +17,6 @@ pub struct Skin {
     tree: Tree,
     /// For its own nodes.
     folds: Option<(Folds, Turns)>,
-}
-
-/// A point relative to a skin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Depth {
-    /// Distance to the boundary, positive outside.
-    pub distance: f64,
-    /// Nearest facet, and its point.
-    pub facet: usize,
-    /// ξ of that point.
-    pub xi: f64,
 }
 
 impl Skin {
@@ -55,6 +43,15 @@ impl Skin {
         self.surface.facet(facet).nodes
     }
 
+    /// How much further a point of a facet may move than each of its nodes: the largest Σ |φᵅ|.
+    pub fn amplification(&self) -> f64 {
+        match self.surface.shape() {
+            FacetShape::Point | FacetShape::L2 => 1.0,
+            FacetShape::L3 => 1.25,
+            FacetShape::L4 => 1.6312,
+        }
+    }
+
     /// Moves the boundary to positions `y`, flat over all nodes.
     pub fn update(&mut self, y: &[f64]) {
         let (surface, hull, y) = (&self.surface, &self.hull, Places::new(y, 2));
@@ -76,9 +73,9 @@ impl Skin {
     /// known; `None` without a boundary.
     pub fn depth(&self, point: [f64; 2], from: Option<usize>, y: &[f64]) -> Option<Depth> {
         let y = Places::new(y, 2);
-        let (facet, _) = self.tree.nearest(&point, from, |facet| Some(self.nearest(facet, point, y).1))?;
-        let (xi, distance) = self.nearest(facet, point, y);
-        Some(self.signed(facet, xi, distance, point, y))
+        let (facet, _) =
+            self.tree.nearest(&point, from, |facet| Some(self.surface.nearest(facet, point, y).1))?;
+        Some(self.surface.depth(facet, point, y))
     }
 
     /// Where a node of the boundary lies relative to those parts of it that it may meet and that lie
@@ -88,30 +85,21 @@ impl Skin {
         let y = Places::new(y, 2);
         let point = y.at(node);
         let meets = |facet: usize| folds.admits(side, node, facet) && folds.face(turns, node, facet);
-        let mut nearest: Option<(usize, f64, f64)> = None;
+        let mut nearest: Option<(usize, f64)> = None;
         for facet in self.tree.meeting(&Bounds::of(&point.0).grown(reach)).filter(|&facet| meets(facet)) {
-            let (xi, distance) = self.nearest(facet, point.0, y);
+            let (xi, distance) = self.surface.nearest(facet, point.0, y);
             // An end next to what the node cannot meet, such as its own facet, is no place to enter.
             let beyond = || self.surface.neighbour(facet, xi > 0.0);
             if xi.abs() >= 1.0 && !beyond().is_some_and(meets) {
                 continue;
             }
-            let least = nearest.map_or(reach, |(.., least)| least);
+            let least = nearest.map_or(reach, |(_, least)| least);
             // The first of equals, in whatever order the tree finds them.
-            if distance < least || distance == least && nearest.is_some_and(|(first, ..)| facet < first) {
-                nearest = Some((facet, xi, distance));
+            if distance < least || distance == least && nearest.is_some_and(|(first, _)| facet < first) {
+                nearest = Some((facet, distance));
             }
         }
-        let (facet, xi, distance) = nearest?;
-        Some(self.signed(facet, xi, distance, point.0, y))
-    }
-
-    fn signed(&self, facet: usize, xi: f64, distance: f64, point: [f64; 2], y: Places) -> Depth {
-        let joint = xi.abs() >= 1.0;
-        let outside =
-            if joint { Self::is_outside_joint } else { Self::is_outside }(self, facet, xi, point, y);
-        let distance = if outside { distance } else { -distance };
-        Depth { distance, facet, xi }
+        nearest.map(|(facet, _)| self.surface.depth(facet, point.0, y))
     }
 
     /// Distance between a point and the boundary at ξ of a facet, which may lie elsewhere.
@@ -142,33 +130,6 @@ impl Skin {
                 .any(|b| !known(a, b) && crossing(a, b))
         })
     }
-
-    /// ξ of a facet's point nearest to a point, and its distance.
-    pub(crate) fn nearest(&self, facet: usize, point: [f64; 2], y: Places) -> (f64, f64) {
-        let (side, point) = (self.surface.facet(facet), Vector(point));
-        let distance = |xi: f64| (point - side.at(y, xi).position).norm();
-        let ends = [-1.0, 1.0].map(|xi| (xi, distance(xi)));
-        let inner = side.closest_point(y, point, 1.0).map(|xi| (xi, distance(xi)));
-        let first = if ends[1].1 < ends[0].1 { ends[1] } else { ends[0] };
-        inner.filter(|inner| inner.1 < first.1).unwrap_or(first)
-    }
-
-    fn is_outside(&self, facet: usize, xi: f64, point: [f64; 2], y: Places) -> bool {
-        let at = self.surface.facet(facet).at(y, xi);
-        (Vector(point) - at.position).dot(&at.normal) >= 0.0
-    }
-
-    /// The same where the nearest point is an end of the facet: in front of either facet at a convex
-    /// joint, of both at a concave one, which is nearest to a remote point by round-off only.
-    fn is_outside_joint(&self, facet: usize, xi: f64, point: [f64; 2], y: Places) -> bool {
-        let Some(neighbour) = self.surface.neighbour(facet, xi > 0.0) else {
-            return self.is_outside(facet, xi, point, y);
-        };
-        let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
-        let (_, sine) = self.surface.kink(first, second, y);
-        let [before, after] = [(first, 1.0), (second, -1.0)].map(|(f, xi)| self.is_outside(f, xi, point, y));
-        if sine > 0.0 { before || after } else { before && after }
-    }
 }
 
 /// Chords of a curved facet.
@@ -185,8 +146,6 @@ fn cross(a: [Vector<2>; 2], b: [Vector<2>; 2]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use carom_solid::FacetShape;
-
     use super::*;
 
     /// An L-shaped polygon: a convex corner at (2, 1), a concave one at (1, 1).
@@ -235,6 +194,17 @@ mod tests {
         (y[9], y[11]) = (-0.5, -0.5);
         skin.update(&y);
         assert!(skin.crosses_itself(&y, |_, _| false));
+    }
+
+    #[test]
+    fn no_point_of_a_facet_moves_further_than_its_nodes_by_more() {
+        for shape in [FacetShape::L2, FacetShape::L3, FacetShape::L4] {
+            let facet: Vec<usize> = (0..shape.nodes()).collect();
+            let skin = Skin::new(Surface::new(shape, &[facet], &[1.0]));
+            let sum = |k: i32| shape.at(f64::from(k) / 1e4).values.iter().map(|v| v.abs()).sum::<f64>();
+            let most = (-10_000..=10_000).map(sum).fold(0.0, f64::max);
+            assert!(most <= skin.amplification() && most > 0.9999 * skin.amplification(), "{most}");
+        }
     }
 
     #[test]

@@ -16,7 +16,7 @@ use crate::model::Model;
 
 /// Remainder after elimination (gradients are of order one) below which a row depends on the
 /// others.
-const DEPENDENT: f64 = 1e-8;
+pub(crate) const DEPENDENT: f64 = 1e-8;
 
 /// Rows of a linear system.
 #[derive(Clone, Debug)]

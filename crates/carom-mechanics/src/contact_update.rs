@@ -145,8 +145,13 @@ impl ContactUpdate {
         // The activity of a spring follows from its gap alone.
         let constraints =
             model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.is_constraint());
+        // A sum over all dofs, the same for all contacts.
+        let mut mean = None;
         for (k, contact) in constraints {
-            let stiffness = system.mean_stiffness(equations);
+            if evaluation.at.pairings[k].pairs.is_empty() {
+                continue;
+            }
+            let stiffness = *mean.get_or_insert_with(|| system.mean_stiffness(equations));
             let Iterate { pairings, increment } = &mut evaluation.at;
             let pairs = &mut pairings[k].pairs;
             let contender = |(pair, row): (&Pair, Row)| {

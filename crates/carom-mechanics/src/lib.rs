@@ -47,11 +47,12 @@ mod tangent_tests;
 mod testing;
 mod timings;
 mod trace;
+mod undeclared;
 mod valid_cells;
 mod watched;
 mod workspace;
 
-pub use audit::{Doubt, audit};
+pub use audit::{Doubt, audit, unaudited};
 pub use friction::each_slip;
 pub use grid::Grid;
 pub use grid_report::{Attempt, GridReport, LogEvent};

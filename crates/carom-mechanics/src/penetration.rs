@@ -8,17 +8,17 @@
 use carom_contact::{Rows, Side, Skin};
 use serde::{Deserialize, Serialize};
 
-use crate::model::{BodyInstance, Contact, Model};
+use crate::model::{Contact, Model};
 use crate::rejected::Rejected;
-use crate::skins::{itself, length, part_of, skin, skin_facets};
+use crate::skins::{folding_skin, length, part_of, skin};
 use crate::state::State;
-use crate::watched::{Watched, Way, lengths, watched};
+use crate::watched::{Way, watched};
 
 /// Measures penetration. A cache: its content affects no result.
 #[derive(Debug, Default)]
 pub(crate) struct Penetration {
     skins: Vec<Option<Skin>>,
-    ways: Vec<Way>,
+    pub(crate) ways: Vec<Way>,
     /// Positions to which the clearances refer.
     y: Vec<f64>,
     /// Bodies whose skins have their positions of this step.
@@ -26,9 +26,6 @@ pub(crate) struct Penetration {
     /// Depths of the active pairs of a contact and lengths of their facets, by node.
     held: Vec<(usize, f64, f64)>,
     rows: Option<Rows>,
-    /// The skins of all bodies, once they have been asked for, with the contact of each facet with
-    /// its own body.
-    all: Vec<Option<(Skin, Vec<Option<usize>>)>>,
 }
 
 /// Largest depths of nodes of the sides of contacts in the other body, ≥ 0.
@@ -88,31 +85,13 @@ impl Penetration {
         Self::new(model, ways)
     }
 
-    /// For all pairs of bodies without a contact, in the plane.
-    pub(crate) fn of_others(model: &Model) -> Self {
-        let declared = |a: usize, b: usize| {
-            model.contacts.iter().any(|contact| {
-                let other = contact.facets.first().and_then(|(_, facets)| part_of(model, facets.first()?[0]));
-                let pair = (contact.primary_part, other);
-                pair == (Some(a), Some(b)) || pair == (Some(b), Some(a))
-            })
+    pub(crate) fn new(model: &Model, ways: Vec<Way>) -> Self {
+        let skin = |body: usize| {
+            let part = &model.parts[body];
+            let mut of_body = ways.iter().filter(|way| way.body == body).peekable();
+            of_body.peek()?;
+            if of_body.any(|way| way.itself.is_some()) { folding_skin(model, part) } else { skin(part) }
         };
-        let mut ways = Vec::new();
-        let solid = |(_, part): &(usize, &BodyInstance)| model.dimension == 2 && skin(model, part).is_some();
-        for (a, part) in model.parts.iter().enumerate().filter(solid) {
-            let facets = skin_facets(part);
-            for body in (0..model.parts.len()).filter(|&b| b != a && !declared(a, b)) {
-                let nodes = lengths(model, &facets)
-                    .map(|(node, length)| Watched::new(node, length, false, UNDECLARED));
-                ways.push(Way::new(model, None, body, nodes.collect()));
-            }
-        }
-        Self::new(model, ways)
-    }
-
-    fn new(model: &Model, ways: Vec<Way>) -> Self {
-        let skin =
-            |body: usize| ways.iter().any(|way| way.body == body).then(|| skin(model, &model.parts[body]))?;
         Self { skins: (0..model.parts.len()).map(skin).collect(), ways, ..Self::default() }
     }
 
@@ -175,45 +154,14 @@ impl Penetration {
         (depth > CHORDS * length).then_some((body, Inside { node, depth, limit: contact.depths[1] * length }))
     }
 
-    /// Bodies without a contact of which one is inside the other: (body, other).
-    pub(crate) fn overlapping(&mut self, model: &Model, y: &[f64]) -> Vec<(usize, usize)> {
-        self.begin(model, y);
-        let mut pairs = Vec::new();
-        for k in 0..self.ways.len() {
-            if let (_, Some(found)) = self.deepest(model, k, None)
-                && let Some(part) = part_of(model, found.node)
-            {
-                pairs.push((part.min(self.ways[k].body), part.max(self.ways[k].body)));
-            }
-        }
-        pairs.sort_unstable();
-        pairs.dedup();
-        pairs
-    }
-
-    /// Bodies in the plane whose boundary crosses itself, each as a pair with itself.
-    pub(crate) fn crossing_themselves(&mut self, model: &Model, y: &[f64]) -> Vec<(usize, usize)> {
-        let skins = &mut self.all;
-        if skins.is_empty() {
-            let declared = |part: &BodyInstance| skin_facets(part).iter().map(|f| itself(model, f)).collect();
-            skins.extend(model.parts.iter().map(|part| Some((skin(model, part)?, declared(part)))));
-        }
-        let crosses = |(k, skin): (usize, &mut Option<(Skin, Vec<Option<usize>>)>)| {
-            let (skin, declared) = skin.as_mut()?;
-            skin.update(y);
-            let known = |a: usize, b: usize| declared[a].is_some() && declared[a] == declared[b];
-            skin.crosses_itself(y, known).then_some((k, k))
-        };
-        skins.iter_mut().enumerate().filter_map(crosses).collect()
-    }
-
     /// Subtracts the motion since the last call from the clearances.
-    fn begin(&mut self, model: &Model, y: &[f64]) {
+    pub(crate) fn begin(&mut self, model: &Model, y: &[f64]) {
         if self.y.len() == y.len() {
             let moved = |node: usize| square(&self.y, y, node);
             for way in &mut self.ways {
                 if way.nodes.iter().any(|watched| watched.clearance > 0.0) {
-                    let body = way.boundary.iter().map(|&node| moved(node)).fold(0.0, f64::max).sqrt();
+                    let nodes = way.boundary.iter().map(|&node| moved(node)).fold(0.0, f64::max).sqrt();
+                    let body = nodes * self.skins[way.body].as_ref().map_or(1.0, Skin::amplification);
                     for watched in way.nodes.iter_mut().filter(|watched| watched.clearance > 0.0) {
                         watched.clearance -= moved(watched.node).sqrt() + body;
                     }
@@ -229,7 +177,12 @@ impl Penetration {
     }
 
     /// Depths of the nodes of a way, and the node that is furthest beyond its limit.
-    fn deepest(&mut self, model: &Model, way: usize, state: Option<&State>) -> (Depths, Option<Inside>) {
+    pub(crate) fn deepest(
+        &mut self,
+        model: &Model,
+        way: usize,
+        state: Option<&State>,
+    ) -> (Depths, Option<Inside>) {
         let Self { skins, ways, y, current, held, rows, .. } = self;
         let Way { contact, body, itself, nodes, first, .. } = &mut ways[way];
         let (mut deepest, mut worst) = (Depths::default(), None::<Inside>);
@@ -259,7 +212,9 @@ impl Penetration {
                     held.push((node, (-rows.row(0).gap).max(0.0), length(model, facet)));
                 }
             }
-            held.sort_unstable_by_key(|(node, ..)| *node);
+            // A node in a dent has two pairs: the deeper one counts.
+            held.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
+            held.dedup_by_key(|(node, ..)| *node);
         }
         let start = *first;
         for i in 0..nodes.len() {
@@ -346,9 +301,6 @@ pub(crate) fn has_gaps(model: &Model, contact: &Contact) -> bool {
 
 /// Depth over the length of a facet that a chord of it may feign.
 const CHORDS: f64 = 0.01;
-/// Allowed depth of bodies without a contact, over the length of a facet.
-const UNDECLARED: f64 = 0.01;
-
 /// Square of the distance between two positions of a node.
 fn square(a: &[f64], b: &[f64], node: usize) -> f64 {
     (a[2 * node] - b[2 * node]).powi(2) + (a[2 * node + 1] - b[2 * node + 1]).powi(2)

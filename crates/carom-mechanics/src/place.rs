@@ -38,14 +38,23 @@ impl Rejected {
             Self::Cycle { contact, nodes } | Self::StickSlipCycle { contact, nodes } => {
                 Place { contact: Some(contact), node: nodes.first().copied(), ..Place::default() }
             }
-            Self::Overconstrained { contact, node, .. } => {
+            Self::Overconstrained { contact, node, .. } | Self::Passed { contact, node, .. } => {
                 Place { contact: Some(contact), node: Some(*node), ..Place::default() }
             }
             Self::Penetration { contact, node, body, .. } => {
                 Place { contact: Some(contact), node: Some(*node), body: Some(body), ..Place::default() }
             }
             Self::Jump { node, .. } => Place { node: Some(*node), ..Place::default() },
-            _ => Place::default(),
+            Self::NoConvergence { .. }
+            | Self::Linear(_)
+            | Self::NegativeMass
+            | Self::NoFrictionBalance
+            | Self::NoValue(_)
+            | Self::Unconstrained(_)
+            | Self::Unsettled { .. }
+            | Self::Deep { .. }
+            | Self::Energy { .. }
+            | Self::NotFinite { .. } => Place::default(),
         }
     }
 }

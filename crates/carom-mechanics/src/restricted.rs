@@ -1,9 +1,11 @@
 //! The part of a state that belongs to some of the bodies and contacts of a model.
 
+use crate::active_rows::measure_all;
 use crate::ledger::book_kinetic;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::renewal::FrozenTangent;
+use crate::start::press;
 use crate::state::{Created, Ledger, Previous, State};
 
 impl State {
@@ -47,7 +49,7 @@ impl State {
         let strain = model
             .internal_force(&state.y, &mut internal)
             .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
-        let springs = self.ledger.springs;
+        let springs = springs(model, &state)?;
         state.ledger = Ledger {
             strain: strain + springs,
             springs,
@@ -59,4 +61,12 @@ impl State {
         state.ledger.created = Created::at_start(&state.ledger);
         Ok(state)
     }
+}
+
+/// Energy of the springs of a model at a state.
+fn springs(model: &Model, state: &State) -> Result<f64, Rejected> {
+    // Measuring moves contact points, and pressing forgets gaps.
+    let mut at = state.clone();
+    let gaps = measure_all(model, &mut at)?;
+    Ok(press(model, &mut at, &gaps))
 }

@@ -255,43 +255,47 @@ impl Simulation {
                 timed(&mut self.work.timings.contact, check)?;
                 Ok(step)
             });
-            let (taken, rejected) = match decide(stepped, from, limits, &mut kept, &mut progress, report) {
-                Next::Take(step) => (Some(step), None),
-                Next::Bisect(rejected) => (None, Some(rejected)),
-                Next::Return(rejected, step) => (Some(step), Some(rejected)),
+            // A step that is returned to began earlier.
+            let (mut taken, mut returned, mut why) = (None, None, None);
+            match decide(stepped, from, limits, &mut kept, &mut progress, report) {
+                Next::Take(step) => taken = Some(step),
+                Next::Bisect(rejected) => why = Some(rejected),
+                Next::Return(rejected, step, start) => {
+                    (taken, returned, why) = (Some(step), Some(start), Some(rejected));
+                }
                 Next::Stop(rejected) => {
                     report.reject(time, dt, rejected.clone());
                     return Err(Stopped::NoStep { time, dt, halvings: progress.level, rejected });
                 }
-            };
-            if let Some(rejected) = rejected {
+            }
+            if let Some(rejected) = why {
                 report.reject(time, dt, rejected);
                 watch(&Attempt { time, dt, rejected: report.rejected - before });
             }
             let Some(step) = taken else {
                 progress.bisect();
-                bisected = true;
                 continue;
             };
             let (next, step) = step.into_parts();
             if self.audited {
-                let from = reached.as_ref().unwrap_or(&self.state);
-                audit(&self.model, &from.y, &next.y, step.penetration)
+                let from = &reached.as_ref().unwrap_or(&self.state).y;
+                audit(&self.model, returned.as_ref().unwrap_or(from), &next.y, step.penetration)
                     .map_err(|doubt| Stopped::Audit { time: next.time, doubt })?;
             }
             report.add(next.time, step);
             if let Some(before) = reached.replace(next) {
                 self.work.put(before);
             }
+            // A step over the whole grid step replaces those within it.
+            bisected = progress.level > 0;
             progress.advance();
         }
         let Some(mut state) = reached else { return Ok(()) };
         state.bisection = self.state.bisection.after(bisected);
         state.step += 1;
         state.time = self.grid.time(state.step);
-        let mut overlapping = self.work.others.overlapping(&self.model, &state.y);
-        overlapping.extend(self.work.others.crossing_themselves(&self.model, &state.y));
-        for pair in overlapping {
+        let Workspace { undeclared, timings, .. } = &mut self.work;
+        for pair in timed(&mut timings.contact, || undeclared.found(&self.model, &state.y)) {
             if !state.overlaps.contains(&pair) {
                 state.overlaps.push(pair);
                 report.events.push(LogEvent::Overlap { time: state.time, bodies: pair });
@@ -320,7 +324,8 @@ impl Simulation {
 /// That no node was inside a body between these positions.
 fn nothing_passed(model: &Model, before: &[f64], now: &[f64]) -> Result<(), Rejected> {
     for contact in &model.contacts {
-        if let Some(Passed { node, depth, limit }) = contact.kinematics.passed(before, now) {
+        if let Some(Passed { node, depth, limit }) = contact.kinematics.passed(before, now, contact.depths[0])
+        {
             return Err(Rejected::Passed { contact: contact.name.clone(), node, depth, limit });
         }
     }

@@ -98,7 +98,7 @@ pub(crate) fn start(
 }
 
 /// Evaluates the forces of penalty springs; returns their energy.
-fn press(model: &Model, state: &mut State, gaps: &[Rows]) -> f64 {
+pub(crate) fn press(model: &Model, state: &mut State, gaps: &[Rows]) -> f64 {
     let mut energy = 0.0;
     for (k, contact) in
         model.contacts.iter().enumerate().filter(|(_, contact)| !contact.interface.is_constraint())

@@ -237,8 +237,7 @@ pub struct State {
 }
 
 impl State {
-    /// Whether every vector and every node of a pair belongs to this model. Facets are not compared:
-    /// kinematics does not tell how many it has.
+    /// Whether every vector, and node and facet of every pair, exist in this model.
     ///
     /// # Errors
     /// What does not.
@@ -280,6 +279,15 @@ impl State {
             let nodes = contact.kinematics.secondary().len();
             if let Some(pair) = pairs.iter().find(|pair| pair.node >= nodes) {
                 let what = format!("node {} of contact \"{}\" with {nodes} nodes", pair.node, contact.name);
+                return Err(OtherModel { what });
+            }
+            let facets = |pair: &Pair| contact.kinematics.facets(pair.node);
+            if let Some(pair) = pairs.iter().find(|pair| pair.facet >= facets(pair)) {
+                let (facet, facets) = (pair.facet, facets(pair));
+                let what = format!(
+                    "facet {facet} of the primary of contact \"{}\", which has {facets}",
+                    contact.name
+                );
                 return Err(OtherModel { what });
             }
         }

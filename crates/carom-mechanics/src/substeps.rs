@@ -1,7 +1,7 @@
 //! Substeps of a grid step. A rejected step is bisected. So is a step that creates more than a tenth
-//! of the energy that the guard still allows; it is kept, and taken after all if a shorter step
-//! is rejected, or creates more than half as much: energy that the error of a smooth motion creates
-//! falls with the cube of the step, that of an impact or a change of facet does not.
+//! of the energy that the guard still allows; it is kept, and taken after all if the shortest step is
+//! rejected, or a shorter one creates more than four times as much: energy that the error of a smooth
+//! motion creates falls with the cube of the step, that of an impact or a change of facet does not.
 
 use crate::grid_report::GridReport;
 use crate::rejected::Rejected;
@@ -53,6 +53,8 @@ pub(crate) struct Kept {
     /// Whether the guard allows it.
     is_within: bool,
     at: Progress,
+    /// Positions at its start.
+    from: Vec<f64>,
     report: GridReport,
 }
 
@@ -62,8 +64,9 @@ pub(crate) enum Next {
     Take(Accepted),
     /// Shorter ones are tried.
     Bisect(Rejected),
-    /// Shorter ones do not help, for this reason: the one that was kept is the next one.
-    Return(Rejected, Accepted),
+    /// Shorter ones do not help, for this reason: the one that was kept is the next one, from these
+    /// positions.
+    Return(Rejected, Accepted, Vec<f64>),
     /// Not even the shortest one is accepted.
     Stop(Rejected),
 }
@@ -89,7 +92,7 @@ pub(crate) fn decide(
     if kept.as_ref().is_some_and(|kept| progress.done() >= kept.at.next()) {
         *kept = None;
     }
-    let last = progress.level == limits.bisections;
+    let last = progress.level >= limits.bisections;
     let (rejected, returns) = match stepped {
         Ok(mut step) => {
             step.observe();
@@ -103,7 +106,8 @@ pub(crate) fn decide(
             }
             if kept.is_none() {
                 let is_within = created <= allowed / STEP;
-                *kept = Some(Kept { step, created, is_within, at: *progress, report: report.clone() });
+                let (at, from, report) = (*progress, from.y.clone(), report.clone());
+                *kept = Some(Kept { step, created, is_within, at, from, report });
             }
             (Rejected::Energy { created, allowed }, returns)
         }
@@ -113,7 +117,7 @@ pub(crate) fn decide(
         Some(kept) => {
             *progress = kept.at;
             report.return_to(kept.report);
-            Next::Return(rejected, kept.step)
+            Next::Return(rejected, kept.step, kept.from)
         }
         None if last => Next::Stop(rejected),
         None => Next::Bisect(rejected),

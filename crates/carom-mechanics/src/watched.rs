@@ -1,5 +1,7 @@
 //! The nodes whose penetration is measured, with the bodies that they must not enter.
 
+use std::collections::{BTreeMap, HashMap, HashSet};
+
 use carom_contact::Side;
 
 use crate::model::{Contact, Model};
@@ -52,13 +54,20 @@ impl Way {
         let Contact { kinematics, facets, depths, primary_part, .. } = &model.contacts[contact];
         let (nodes, half) = (kinematics.secondary(), kinematics.secondary().len() / 2);
         let facets = &facets[0].1;
+        let earlier: HashMap<usize, usize> = nodes[half..].iter().copied().zip(half..).collect();
+        let mut shortest: HashMap<usize, f64> = HashMap::new();
+        for facet in facets {
+            let length = length(model, facet);
+            for &node in facet {
+                let shortest = shortest.entry(node).or_insert(length);
+                *shortest = shortest.min(length);
+            }
+        }
         let watched = |(node, longest)| {
-            let earlier = || nodes[half..].iter().position(|&n| n == node);
-            let constrained =
-                side == Side::Later || earlier().is_some_and(|k| kinematics.allowed(half + k) == 0.0);
+            let constrained = side == Side::Later
+                || earlier.get(&node).is_some_and(|&place| kinematics.allowed(place) == 0.0);
             // Before a node can enter a facet that it does not meet yet, the boundary folds.
-            let own = facets.iter().filter(|facet| facet.contains(&node));
-            let reach = 0.5 * own.map(|facet| length(model, facet)).fold(f64::INFINITY, f64::min);
+            let reach = 0.5 * shortest.get(&node).copied().unwrap_or(f64::INFINITY);
             Watched { reach, ..Watched::new(node, longest, constrained, depths[usize::from(!constrained)]) }
         };
         let nodes = lengths(model, facets).map(watched).collect();
@@ -82,10 +91,9 @@ impl Watched {
 pub(crate) fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -> Vec<Watched> {
     let nodes = contact.kinematics.secondary().iter().enumerate();
     let strict = nodes.filter(|(k, _)| contact.kinematics.allowed(*k) == 0.0).map(|(_, &node)| node);
-    let strict: std::collections::HashSet<usize> = strict.collect();
+    let strict: HashSet<usize> = strict.collect();
     let nodes = contact.kinematics.secondary().iter().enumerate();
-    let kept: std::collections::HashMap<usize, f64> =
-        nodes.map(|(k, &node)| (node, contact.kinematics.kept(k))).collect();
+    let kept: HashMap<usize, f64> = nodes.map(|(k, &node)| (node, contact.kinematics.kept(k))).collect();
     let watched = |(node, length)| {
         let constrained = strict.contains(&node);
         let kept = kept.get(&node).copied().unwrap_or(0.0);
@@ -96,7 +104,7 @@ pub(crate) fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -
 
 /// The nodes of facets, ascending, each with the longest of its facets in the reference configuration.
 pub(crate) fn lengths(model: &Model, facets: &[Vec<usize>]) -> impl Iterator<Item = (usize, f64)> {
-    let mut nodes = std::collections::BTreeMap::new();
+    let mut nodes = BTreeMap::new();
     for facet in facets {
         let length = length(model, facet);
         for &node in facet {

@@ -9,6 +9,7 @@ use crate::stepper::Scratch;
 use crate::system::System;
 use crate::timings::Timings;
 use crate::trace::Trace;
+use crate::undeclared::Undeclared;
 use crate::valid_cells::ValidCells;
 
 /// Buffers that may be discarded: no result depends on them.
@@ -27,8 +28,8 @@ pub struct Workspace {
     pub timings: Timings,
     /// Penetration of the contacts.
     pub(crate) penetration: Penetration,
-    /// Overlap of bodies without a contact.
-    pub(crate) others: Penetration,
+    /// Overlaps without a contact.
+    pub(crate) undeclared: Undeclared,
     /// The linear problem of an iteration, and its history.
     pub(crate) linear: LinearProblem,
     /// The last iterations, to explain a rejection.
@@ -46,7 +47,7 @@ impl Workspace {
             valid_cells: ValidCells::default(),
             timings: Timings::default(),
             penetration: Penetration::of_contacts(model),
-            others: Penetration::of_others(model),
+            undeclared: Undeclared::new(model),
             linear: LinearProblem::default(),
             trace: Trace::default(),
         }

@@ -16,7 +16,7 @@ pub use carom_mechanics::{
     Accepted, Attempt, Before, Bisection, Depths, Doubt, Explicit, FrozenTangent, Grid, GridReport,
     HalfStepVelocity, Implicit, Impulsive, Ledger, LogEvent, Means, OtherModel, Point, Previous, Rejected,
     Settings, Simulation, State, StepReport, Stepper, Stopped, Tangent, Timings, Workspace, audit,
-    frequencies, model, stability,
+    frequencies, model, stability, unaudited,
 };
 pub use overlap::{OverlapNode, overlapping};
 pub use reduce::{ReduceError, Reduced, reduce};

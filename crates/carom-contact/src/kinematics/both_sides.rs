@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! secondary nodes, corners of the primary    g ≥ 0
-//! other nodes of the primary                 g ≥ −d,   d a hundredth of a secondary facet
+//! other nodes of the primary                 g ≥ −d,   d a fiftieth of a secondary facet
 //! ```
 //!
 //! No secondary node enters the primary, and no corner of the primary cuts into an edge of the
@@ -143,6 +143,11 @@ impl Kinematics for BothSides {
         self.direction(pair.node).0.facet_nodes(pair)
     }
 
+    fn facets(&self, node: usize) -> usize {
+        let (direction, node) = self.direction(node);
+        direction.facets(node)
+    }
+
     fn stencil(&self) -> usize {
         self.forward.stencil().max(self.reverse.stencil())
     }
@@ -162,8 +167,8 @@ impl Kinematics for BothSides {
         self.each(pairing, |direction, pairing| direction.search(before, now, pairing, events))
     }
 
-    fn passed(&self, before: &[f64], now: &[f64]) -> Option<Passed> {
-        self.forward.passed(before, now).or_else(|| self.reverse.passed(before, now))
+    fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
+        self.forward.passed(before, now, bounce).or_else(|| self.reverse.passed(before, now, bounce))
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {

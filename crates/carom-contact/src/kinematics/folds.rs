@@ -133,6 +133,18 @@ impl Folds {
             && (own == other || self.pieces[own] != self.pieces[other])
     }
 
+    /// Whether there are several pieces.
+    pub(crate) fn has_pieces(&self) -> bool {
+        self.pieces.iter().any(|piece| *piece != self.pieces[0])
+    }
+
+    /// Whether a facet bounds another piece than that of a node.
+    pub(crate) fn is_of_another_piece(&self, node: usize, facet: usize) -> bool {
+        self.around(node).is_some_and(|[before, _]| {
+            self.pieces[self.of[self.order[before]]] != self.pieces[self.of[facet]]
+        })
+    }
+
     /// Whether a node and a facet meet where the boundary folds: an admissible pair is compared only
     /// then.
     pub(crate) fn face(&self, turns: &Turns, node: usize, facet: usize) -> bool {

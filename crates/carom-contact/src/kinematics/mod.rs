@@ -53,6 +53,9 @@ pub trait Kinematics: Send + Sync {
     /// Global numbers of the nodes of a pair's facet; empty for a rigid primary.
     fn facet_nodes(&self, pair: &Pair) -> &[usize];
 
+    /// Number of facets that a pair of a secondary node, given by index, may name.
+    fn facets(&self, node: usize) -> usize;
+
     /// Largest number of nodes that one gap depends on.
     fn stencil(&self) -> usize;
 
@@ -67,9 +70,10 @@ pub trait Kinematics: Send + Sync {
     -> bool;
 
     /// The node that was deepest inside the primary's body between `before` and `now`, and outside it
-    /// at both: its motion is that of a step without contact.
-    fn passed(&self, before: &[f64], now: &[f64]) -> Option<Passed> {
-        let _ = (before, now);
+    /// at both: its motion is that of a step without contact. `bounce`: allowed depth, over the length of
+    /// a facet, of a node that leaves on the side on which it entered.
+    fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
+        let _ = (before, now, bounce);
         None
     }
 

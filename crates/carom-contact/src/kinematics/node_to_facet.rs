@@ -16,7 +16,7 @@ use carom_solid::FacetShape;
 use super::facing::{Next, PAST, REACH};
 use super::folds::{Folds, Side, Turns};
 use super::gap::Gap;
-use super::passed::{Passed, passed};
+use super::passed::{Passed, Paths};
 use super::surface::{Search, Surface};
 use super::swept::SweptTest;
 use super::{Kinematics, watch_every_node};
@@ -169,6 +169,10 @@ impl Kinematics for NodeToFacet {
         self.primary.facet(pair.facet).nodes
     }
 
+    fn facets(&self, _: usize) -> usize {
+        self.primary.facets()
+    }
+
     fn stencil(&self) -> usize {
         1 + self.primary.shape().nodes()
     }
@@ -313,15 +317,23 @@ impl Kinematics for NodeToFacet {
         changed
     }
 
-    fn passed(&self, before: &[f64], now: &[f64]) -> Option<Passed> {
-        // Within one body, a path may begin and end on either side of its own boundary.
-        if self.folds.is_some() {
-            return None;
-        }
+    fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         let Tools { search, swept, .. } = &mut *tools;
-        let allowed = |place| self.slack(place);
-        passed(&self.primary, &self.secondary, allowed, search, swept, [before, now])
+        let paths = Paths {
+            surface: &self.primary,
+            nodes: &self.secondary,
+            allowed: &|place| self.slack(place),
+            enters: &|_, _| true,
+            bounds: &|_, _| true,
+            bounce,
+        };
+        let Some((folds, side)) = &self.folds else { return paths.deepest(search, swept, [before, now]) };
+        // Within one piece, a path may begin and end on either side of its own boundary.
+        let bounds = |node: usize, facet: usize| folds.is_of_another_piece(node, facet);
+        let enters = |node: usize, facet: usize| folds.admits(*side, node, facet);
+        let among = Paths { enters: &enters, bounds: &bounds, ..paths };
+        folds.has_pieces().then(|| among.deepest(search, swept, [before, now])).flatten()
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {

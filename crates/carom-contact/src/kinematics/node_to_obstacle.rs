@@ -15,6 +15,7 @@
 //! prescribe it, masses make it free, and reactions and works are theirs.
 
 use super::obstacle::{AtCorner, Near, Obstacle, Point};
+use super::passed::{Passed, SHARE, share};
 use super::{Kinematics, watch_every_node};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
@@ -38,6 +39,8 @@ pub struct NodeToObstacle {
     dimension: usize,
     shape: Obstacle,
     carrier: Option<Carrier>,
+    /// Length of each node's facets; empty if they have none.
+    lengths: Vec<f64>,
     /// Depth that each node keeps; empty if none does.
     kept: Vec<f64>,
 }
@@ -53,13 +56,19 @@ struct Local {
 impl NodeToObstacle {
     /// Keeps the secondary nodes out of a fixed obstacle.
     pub fn new(secondary: Vec<usize>, dimension: usize, shape: Obstacle) -> Self {
-        Self { secondary, dimension, shape, carrier: None, kept: Vec::new() }
+        Self { secondary, dimension, shape, carrier: None, lengths: Vec::new(), kept: Vec::new() }
     }
 
     /// The same for an obstacle that moves with nodes.
     #[must_use]
     pub fn carried_by(self, carrier: Carrier) -> Self {
         Self { carrier: Some(carrier), ..self }
+    }
+
+    /// The same with the length of each node's facets, by which a path through the obstacle is judged.
+    #[must_use]
+    pub fn with_lengths(self, lengths: Vec<f64>) -> Self {
+        Self { lengths, ..self }
     }
 
     fn position(&self, node: usize, y: &[f64]) -> Point {
@@ -113,6 +122,10 @@ impl Kinematics for NodeToObstacle {
 
     fn facet_nodes(&self, _: &Pair) -> &[usize] {
         &[]
+    }
+
+    fn facets(&self, _: usize) -> usize {
+        self.shape.pieces()
     }
 
     fn stencil(&self) -> usize {
@@ -169,6 +182,21 @@ impl Kinematics for NodeToObstacle {
             }
         }
         changed
+    }
+
+    /// Along straight paths relative to the obstacle, also if it turns.
+    fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
+        let through = |(place, length): (usize, &f64)| {
+            let node = self.secondary[place];
+            let limit = |share: f64| self.kept(place) + share * length;
+            let [from, to] = [before, now].map(|y| self.local(node, y).at);
+            let (depth, normals) = self.shape.deepest_between(from, to, limit(SHARE))?;
+            let limit = limit(share(normals, bounce));
+            (depth > limit).then_some(Passed { node, depth, limit })
+        };
+        let beyond = |passed: &Passed| passed.depth - passed.limit;
+        let passed = self.lengths.iter().enumerate().filter_map(through);
+        passed.max_by(|a, b| beyond(a).total_cmp(&beyond(b)))
     }
 
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {

@@ -1,19 +1,21 @@
-//! Nodes that enter a body and leave it again within one step.
+//! Nodes that enter a body and leave it again within one step; through rigid obstacles in
+//! `obstacle/path.rs`.
 //!
 //! At the end of such a step nothing penetrates, and no facet is faced where the node entered: it has
 //! moved past the end of the side. Its straight path relative to the body shows it. A node that only
 //! cuts off a corner does so by less the shorter the step is.
 
+use carom_algebra::Vector;
 use carom_solid::FacetShape;
 
 use super::surface::{Search, Surface};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
+use crate::depth::Depth;
 use crate::places::Places;
-use crate::skin::Skin;
 
 /// Depth, relative to the facet, that a path may have.
-const SHARE: f64 = 0.01;
+pub(super) const SHARE: f64 = 0.01;
 /// Instants between entry and exit at which the depth is measured.
 const INSTANTS: usize = 7;
 
@@ -28,71 +30,147 @@ pub struct Passed {
     pub limit: f64,
 }
 
-/// The node of these that was deepest beyond its limit, if any; `allowed` is the depth that a node may
-/// have in any case. Needs the whole boundary of the body.
-pub(super) fn passed(
-    surface: &Surface,
-    nodes: &[usize],
-    allowed: impl Fn(usize) -> f64,
-    search: &mut Search,
-    swept: &mut SweptTest,
-    [before, now]: [&[f64]; 2],
-) -> Option<Passed> {
-    let first = *nodes.first()?;
-    if surface.shape() == FacetShape::Point || !surface.is_whole() {
-        return None;
-    }
-    let [start, end] = [before, now].map(|y| Places::new(y, 2));
-    let path = |node: usize| end.at(node) - start.at(node);
-    // Relative to one node, so that bodies that fly together do not count as moving.
-    let moved = |node: &usize| (path(*node) - path(first)).norm();
-    let facets = || 0..surface.all();
-    let of_body = facets().flat_map(|f| surface.facet(f).nodes).map(moved).fold(0.0, f64::max);
-    let of_nodes = nodes.iter().map(moved).fold(0.0, f64::max);
-    let shortest = facets().map(|f| surface.length(f, start)).fold(f64::INFINITY, f64::min);
-    // Entry, depth and exit need a path of twice the depth.
-    if of_body + of_nodes <= 2.0 * SHARE * shortest || !search.update(surface, nodes, 0.0, start, end) {
-        return None;
-    }
-    let (mut skin, mut between) = (None, Vec::new());
-    let mut worst: Option<Passed> = None;
-    for (place, &node) in nodes.iter().enumerate() {
-        search.find(node, start, end);
-        let near = search.found();
-        let relative = |&other: &usize| (path(node) - path(other)).norm();
-        let far = near.iter().any(|&f| {
-            let most = surface.facet(f).nodes.iter().map(relative).fold(0.0, f64::max);
-            most > 2.0 * SHARE * surface.length(f, start)
-        });
-        if !far {
-            continue;
+/// Nodes that may pass through a body.
+pub(super) struct Paths<'a> {
+    /// The whole boundary of the body.
+    pub surface: &'a Surface,
+    pub nodes: &'a [usize],
+    /// Depth that each node may have in any case.
+    pub allowed: &'a dyn Fn(usize) -> f64,
+    /// Whether a node enters through a facet, and whether the facet bounds what it enters.
+    pub enters: &'a dyn Fn(usize, usize) -> bool,
+    pub bounds: &'a dyn Fn(usize, usize) -> bool,
+    /// Allowed depth of a node that leaves where it entered, over the length of a facet.
+    pub bounce: f64,
+}
+
+impl Paths<'_> {
+    /// The node that was deepest beyond its limit, if any.
+    pub(super) fn deepest(
+        &self,
+        search: &mut Search,
+        swept: &mut SweptTest,
+        [before, now]: [&[f64]; 2],
+    ) -> Option<Passed> {
+        let Self { surface, nodes, allowed, enters, bounds, bounce } = *self;
+        let first = *nodes.first()?;
+        if surface.shape() == FacetShape::Point || !surface.is_whole() {
+            return None;
         }
-        let mut earliest = |from: Places, to: Places| {
-            let crossings = near.iter().filter_map(|&f| crossing(swept, surface.facet(f), from, to, node));
-            crossings.map(|c| c.theta).min_by(f64::total_cmp)
-        };
-        // The last exit is the first entry of the reversed motion.
-        let Some(entry) = earliest(start, end) else { continue };
-        let Some(exit) = earliest(end, start).map(|theta| 1.0 - theta) else { continue };
-        if exit <= entry {
-            continue;
+        let [start, end] = [before, now].map(|y| Places::new(y, 2));
+        let path = |node: usize| end.at(node) - start.at(node);
+        // Squares, relative to one node, so that bodies that fly together do not count as moving.
+        let moved = |node: &usize| square(path(*node) - path(first));
+        let (mut of_body, mut shortest) = (0.0_f64, f64::INFINITY);
+        for facet in 0..surface.all() {
+            let nodes = surface.facet(facet).nodes;
+            of_body = nodes.iter().map(moved).fold(of_body, f64::max);
+            shortest = shortest.min(square(start.at(nodes[1]) - start.at(nodes[0])));
         }
-        let skin = skin.get_or_insert_with(|| Skin::new(surface.clone()));
-        for k in 0..INSTANTS {
-            let theta = entry + (exit - entry) * (k + 1) as f64 / (INSTANTS + 1) as f64;
-            between.clear();
-            between.extend(before.iter().zip(now).map(|(a, b)| a + theta * (b - a)));
-            skin.update(&between);
-            let point = [between[2 * node], between[2 * node + 1]];
-            let Some(found) = skin.depth(point, None, &between) else { continue };
-            let (depth, limit) =
-                (-found.distance, allowed(place) + SHARE * surface.length(found.facet, start));
-            if depth > limit && worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
-                worst = Some(Passed { node, depth, limit });
+        let of_nodes = nodes.iter().map(moved).fold(0.0, f64::max);
+        let shortest = shortest.sqrt();
+        // Entry, depth and exit need a path of twice the depth.
+        if of_body.sqrt() + of_nodes.sqrt() <= 2.0 * SHARE * shortest
+            || !search.update(surface, nodes, 0.0, start, end)
+        {
+            return None;
+        }
+        let mut between = None;
+        let mut worst: Option<Passed> = None;
+        for (place, &node) in nodes.iter().enumerate() {
+            search.find(node, start, end);
+            search.retain(|facet| bounds(node, facet));
+            let near = search.found();
+            let relative = |&other: &usize| (path(node) - path(other)).norm();
+            let far = near.iter().any(|&f| {
+                let most = surface.facet(f).nodes.iter().map(relative).fold(0.0, f64::max);
+                most > 2.0 * SHARE * surface.length(f, start)
+            });
+            if !far {
+                continue;
+            }
+            let mut earliest = |from: Places, to: Places, through: &dyn Fn(usize) -> bool| {
+                let met = near.iter().filter(|&&facet| through(facet));
+                let crossings =
+                    met.filter_map(|&f| Some((f, crossing(swept, surface.facet(f), from, to, node)?)));
+                crossings.min_by(|a, b| a.1.theta.total_cmp(&b.1.theta))
+            };
+            // The last exit is the first entry of the reversed motion.
+            let Some((entered, entry)) = earliest(start, end, &|facet| enters(node, facet)) else { continue };
+            let Some((left, back)) = earliest(end, start, &|_| true) else { continue };
+            let exit = 1.0 - back.theta;
+            if exit <= entry.theta {
+                continue;
+            }
+            let between = between.get_or_insert_with(|| Between { before, now, y: vec![0.0; now.len()] });
+            let normals = [(entered, entry.theta, entry.xi), (left, exit, back.xi)];
+            let share = share(normals.map(|(f, theta, xi)| between.normal(surface, f, theta, xi)), bounce);
+            for k in 0..INSTANTS {
+                let theta = entry.theta + (exit - entry.theta) * (k + 1) as f64 / (INSTANTS + 1) as f64;
+                let point = between.at(theta, node);
+                let mut distance = |facet: usize| between.distance(surface, facet, theta, point);
+                // No deeper than the facet that it entered is away, as nearly always where it slides.
+                if distance(entered) <= allowed(place) + share * shortest {
+                    continue;
+                }
+                let of_body = |facet: usize| bounds(node, facet).then(|| distance(facet));
+                let Some((facet, _)) = search.nearest(point, entered, of_body) else { continue };
+                let found = between.depth(surface, facet, theta, point);
+                let (depth, limit) =
+                    (-found.distance, allowed(place) + share * surface.length(found.facet, start));
+                if depth > limit && worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
+                    worst = Some(Passed { node, depth, limit });
+                }
             }
         }
+        worst
     }
-    worst
+}
+
+fn square(v: Vector<2>) -> f64 {
+    v.dot(&v)
+}
+
+/// Allowed depth over the length of a facet, from the normals where a node enters and leaves: on the same
+/// side it has bounced, and may be as deep as at the end of a step.
+pub(super) fn share([entered, left]: [Vector<2>; 2], bounce: f64) -> f64 {
+    if entered.dot(&left) > 0.0 { bounce.max(SHARE) } else { SHARE }
+}
+
+/// Positions at an instant of the motion, those of some nodes alone.
+struct Between<'a> {
+    before: &'a [f64],
+    now: &'a [f64],
+    y: Vec<f64>,
+}
+
+impl Between<'_> {
+    fn at(&self, theta: f64, node: usize) -> [f64; 2] {
+        [2 * node, 2 * node + 1].map(|i| self.before[i] + theta * (self.now[i] - self.before[i]))
+    }
+
+    fn places(&mut self, theta: f64, nodes: &[usize]) -> Places<'_> {
+        for &node in nodes {
+            [self.y[2 * node], self.y[2 * node + 1]] = self.at(theta, node);
+        }
+        Places::new(&self.y, 2)
+    }
+
+    fn normal(&mut self, surface: &Surface, facet: usize, theta: f64, xi: f64) -> Vector<2> {
+        let facet = surface.facet(facet);
+        facet.at(self.places(theta, facet.nodes), xi).normal
+    }
+
+    fn distance(&mut self, surface: &Surface, facet: usize, theta: f64, point: [f64; 2]) -> f64 {
+        surface.nearest(facet, point, self.places(theta, surface.facet(facet).nodes)).1
+    }
+
+    fn depth(&mut self, surface: &Surface, facet: usize, theta: f64, point: [f64; 2]) -> Depth {
+        for near in [false, true].into_iter().filter_map(|forward| surface.neighbour(facet, forward)) {
+            self.places(theta, surface.facet(near).nodes);
+        }
+        surface.depth(facet, point, self.places(theta, surface.facet(facet).nodes))
+    }
 }
 
 #[cfg(test)]
@@ -103,6 +181,10 @@ mod tests {
     /// A plate −1 ≤ x ≤ 1, −0.1 ≤ y ≤ 0 of two facets along its length, of which those at the top are the
     /// side; node 6 moves from `start` to `end`, all of it with another motion as well.
     fn passed_by(start: [f64; 2], end: [f64; 2], with: [f64; 2]) -> Option<Passed> {
+        bounced(start, end, with, 0.01)
+    }
+
+    fn bounced(start: [f64; 2], end: [f64; 2], with: [f64; 2], bounce: f64) -> Option<Passed> {
         let plate = [[-1.0, -0.1], [0.0, -0.1], [1.0, -0.1], [1.0, 0.0], [0.0, 0.0], [-1.0, 0.0]];
         let facet = |k: usize| vec![k, (k + 1) % 6];
         let surface = Surface::new(FacetShape::L2, &[facet(3), facet(4)], &[1.0; 2]);
@@ -110,7 +192,7 @@ mod tests {
         let contact = NodeToFacet::new(vec![6], surface, Detection::ClosestPoint);
         let before: Vec<f64> = plate.iter().chain([&start]).flatten().copied().collect();
         let moved = plate.iter().chain([&end]).map(|p| [p[0] + with[0], p[1] + with[1]]);
-        contact.passed(&before, &moved.flatten().collect::<Vec<_>>())
+        contact.passed(&before, &moved.flatten().collect::<Vec<_>>(), bounce)
     }
 
     #[test]
@@ -133,5 +215,24 @@ mod tests {
         // 0.001 of the top and of the end, which is 0.1 long: 0.0005 deep at most.
         assert_eq!(passed_by([0.899, 0.1], [1.1, -0.101], [0.0; 2]), None);
         assert!(passed_by([0.8, 0.1], [1.1, -0.2], [0.0; 2]).is_some());
+    }
+
+    #[test]
+    fn a_node_that_leaves_where_it_entered_may_be_as_deep_as_a_contact_allows() {
+        // Through a low ridge of the top, 0.04 deep; its facets are 1 long.
+        let bounce = |share: f64| {
+            let plate = [[-1.0, -0.1], [0.0, -0.1], [1.0, -0.1], [1.0, 0.0], [0.0, 0.08], [-1.0, 0.0]];
+            let facet = |k: usize| vec![k, (k + 1) % 6];
+            let surface = Surface::new(FacetShape::L2, &[facet(3), facet(4)], &[1.0; 2]);
+            let surface = surface.bounded_by(&[facet(0), facet(1), facet(2), facet(5)], 0);
+            let contact = NodeToFacet::new(vec![6], surface, Detection::ClosestPoint);
+            let at = |x: f64| plate.into_iter().chain([[x, 0.04]]).flatten().collect::<Vec<_>>();
+            contact.passed(&at(-0.9), &at(0.9), share)
+        };
+        let found = bounce(0.01).unwrap();
+        assert!((found.depth - 0.04 / f64::hypot(1.0, 0.08)).abs() < 1e-6, "{found:?}");
+        assert_eq!(bounce(0.25), None);
+        // Through the plate, however much a bounce may have.
+        assert!(bounced([0.1, 0.2], [2.5, -1.0], [0.0; 2], 0.25).is_some());
     }
 }

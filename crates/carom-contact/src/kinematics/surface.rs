@@ -204,6 +204,17 @@ impl Search {
         }
     }
 
+    /// The facet nearest to a point of a path at some instant of the motion, and its distance, which
+    /// `distance` gives at that instant; `None` excludes a facet.
+    pub(crate) fn nearest(
+        &self,
+        point: [f64; 2],
+        from: usize,
+        distance: impl FnMut(usize) -> Option<f64>,
+    ) -> Option<(usize, f64)> {
+        self.tree.as_ref()?.nearest(&point, Some(from), distance)
+    }
+
     /// Forgets found facets that are not possible.
     pub(crate) fn retain(&mut self, mut possible: impl FnMut(usize) -> bool) {
         self.found.retain(|&facet| possible(facet));

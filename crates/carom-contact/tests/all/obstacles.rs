@@ -167,3 +167,45 @@ fn the_centre_of_a_circle_is_an_error_only_for_a_node_that_has_to_leave_it() {
     assert_eq!(at(true), Ok(()));
     assert_eq!(at(false), Err(ContactError::Center { node: 0 }));
 }
+
+#[test]
+fn a_path_through_an_obstacle_is_found_with_its_depth() {
+    let circle = Obstacle::circle(&[1.0, 1.0], 0.5, false);
+    let plate = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.1], [0.0, 0.1], [0.0, 0.0]];
+    let plate = Obstacle::Polyline(Polyline::new(&plate, 0.0).unwrap());
+    let passed = |shape: &Obstacle, from: [f64; 2], to: [f64; 2]| {
+        let contact = NodeToObstacle::new(vec![0], 2, shape.clone()).with_lengths(vec![0.1]);
+        let passed = contact.passed(&from, &to, 0.01)?;
+        assert!((passed.limit - 1e-3).abs() < 1e-15 && passed.node == 0);
+        Some(passed.depth)
+    };
+    // Chords at a distance from the centre, and through it; the ends may lie on the circle.
+    for (x, depth) in [(1.0, 0.5), (1.3, 0.2), (0.6, 0.1), (1.49, 0.01)] {
+        let end = f64::sqrt(0.25 - (x - 1.0_f64).powi(2));
+        for (above, below) in [(3.0, -7.0), (1.0 + end, 1.0 - end), (1.0 + end + 1e-9, -2.0)] {
+            let found = passed(&circle, [x, above], [x, below]).unwrap();
+            assert!(found <= depth + 1e-12 && found > depth - 0.01, "{x}: {found}");
+        }
+    }
+    for (from, to, depth) in
+        [([0.5, 0.3], [0.5, -4.0], 0.05), ([-1.0, 0.03], [2.0, 0.03], 0.03), ([0.97, 0.1], [1.2, -0.3], 0.02)]
+    {
+        let found = passed(&plate, from, to).unwrap();
+        assert!(found <= depth + 1e-12 && found > depth - 5e-3, "{from:?}: {found}");
+    }
+    // Beside it, along it, up to it, and deep inside at the end, which its gap says.
+    for (from, to) in [([1.501, 3.0], [1.501, -3.0]), ([1.0, 3.0], [1.0, 1.5]), ([1.0, 3.0], [1.0, 1.2])] {
+        assert_eq!(passed(&circle, from, to), None);
+    }
+    for (from, to) in [([-0.5, 0.1], [1.5, 0.1]), ([1.0, 0.2], [1.01, -0.2]), ([0.5, 0.2], [0.5, 0.1])] {
+        assert_eq!(passed(&plate, from, to), None);
+    }
+    // From inside, every chord is free.
+    let room = Obstacle::circle(&[1.0, 1.0], 0.5, true);
+    assert_eq!(passed(&room, [0.5, 1.0], [1.5, 1.0]), None);
+    // In the frame of an obstacle that moves with node 1: it passes the node.
+    let carrier = Carrier { node: 1, origin: [1.0, 1.0, 0.0], turn: None };
+    let moving = NodeToObstacle::new(vec![0], 2, circle).with_lengths(vec![0.1]).carried_by(carrier);
+    assert!(moving.passed(&[1.0, 2.0, 1.0, 1.0], &[1.0, 2.0, 1.0, 4.0], 0.01).is_some());
+    assert!(moving.passed(&[1.0, 2.0, 1.0, 1.0], &[1.0, 5.0, 1.0, 4.0], 0.01).is_none());
+}

@@ -35,7 +35,7 @@ use carom_contact::{Hold, Law, Pair, Pairing, Rows, Tangential};
 
 use super::forward::Forward;
 use super::scratch::Scratch;
-use super::watch::{active, approach, carry_into, depth, gap_at, measure_into};
+use super::watch::{active, approach, carry_into, depth, gap_at, held, measure_into, moves};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::constraints::independent_rows;
 use crate::contact_update::{GAP_TOLERANCE, search};
@@ -251,6 +251,9 @@ impl Explicit {
         at.resize(free.len(), 0.0);
         velocity.clone_from(free);
         let mut is_behind = false;
+        // Contact, node and facet of the rows that were last examined, and whether they depend on each
+        // other: their gradients are those at y_n in every round.
+        let (mut examined, mut dependent) = (Vec::new(), false);
         for round in 0..=ROUNDS {
             Forward { state, before, velocity, dt }.place(0.0, at);
             loaded.clear();
@@ -279,6 +282,9 @@ impl Explicit {
                 for (p, pair) in pairings[k].pairs.iter_mut().enumerate() {
                     let gap = rows[k].row(p).gap;
                     let wrong = if pair.lambda < 0.0 { gap.abs() } else { -gap };
+                    if -gap > tolerance && !moves(model, rows[k].row(p)) {
+                        return Err(held(contact, pair, gap));
+                    }
                     worst = worst.max(wrong);
                     pair.active |= wrong > tolerance;
                 }
@@ -291,7 +297,7 @@ impl Explicit {
             }
             report.newton += 1;
             places.clear();
-            places.extend(active(pairings));
+            places.extend(active(pairings).filter(|&(k, p)| moves(model, rows[k].row(p))));
             acting.clear();
             places.iter().for_each(|&(k, p)| acting.push_row(rows[k].row(p)));
             kinds.clear();
@@ -315,7 +321,16 @@ impl Explicit {
             for i in places.len()..kinds.len() {
                 right[i] = acting.row(i).along(free) / dt;
             }
-            if independent_rows(model, active(pairings), rows).len() < places.len() {
+            let named = |&(k, p): &(usize, usize)| {
+                let pair = &pairings[k].pairs[p];
+                (k, pair.node, pair.facet)
+            };
+            if !places.iter().map(named).eq(examined.iter().copied()) {
+                examined.clear();
+                examined.extend(places.iter().map(named));
+                dependent = independent_rows(model, places.iter().copied(), rows).len() < places.len();
+            }
+            if dependent {
                 proximal(&mut matrix, &mut right, impulses);
             }
             if kinds.len() > places.len() {

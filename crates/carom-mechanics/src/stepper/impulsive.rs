@@ -23,7 +23,7 @@ use carom_algebra::{Kind, complementarity, coulomb, proximal};
 use carom_contact::{Hold, Pairing, Rows, Tangential};
 use carom_time::{Impulse, ImpulseShares, Memory, Stage};
 
-use super::watch::{active, approach, carry_into, depth, gap_at, measure_into};
+use super::watch::{active, approach, carry_into, depth, gap_at, held, measure_into, moves};
 use super::{Accepted, StepReport, Stepper, difference};
 use crate::balance::residual_into;
 use crate::constraints::{Constraints, independent_rows};
@@ -394,8 +394,18 @@ impl Impulses {
                 pair.active = row.gap < -TIE * model.scale;
             }
         }
-        let places: Vec<(usize, usize)> = active(pairings).collect();
-        let dependent = independent_rows(model, active(pairings), &measured).len() < places.len();
+        let (places, stuck): (Vec<_>, Vec<_>) =
+            active(pairings).partition(|&(k, p)| moves(model, measured[k].row(p)));
+        for (k, p) in stuck {
+            // No impulse changes its velocity.
+            let row = measured[k].row(p);
+            let path = |dof: usize| predicted[dof] - state.y[dof];
+            let sinks = -row.entries().map(|(dof, slope)| slope * path(dof)).sum::<f64>();
+            if sinks > TIE * model.scale {
+                return Err(held(&model.contacts[k], &pairings[k].pairs[p], row.gap));
+            }
+        }
+        let dependent = independent_rows(model, places.iter().copied(), &measured).len() < places.len();
         let mut rows =
             Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), measured[k].row(p))));
         let mut kinds = vec![Kind::Normal; places.len()];

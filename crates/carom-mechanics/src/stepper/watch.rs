@@ -2,8 +2,9 @@
 //! step while in contact or penetrating. The search ignores a node behind a facet at the start of a
 //! step, so pairs of a law that allows penetration must persist.
 
-use carom_contact::{Pair, Pairing, Rows};
+use carom_contact::{Pair, Pairing, Row, Rows};
 
+use crate::constraints::DEPENDENT;
 use crate::model::{Contact, Model};
 use crate::penetration::has_gaps;
 use crate::rejected::Rejected;
@@ -36,6 +37,17 @@ pub(super) fn gap_at(contact: &Contact, pair: &mut Pair, y: &[f64], row: &mut Ro
     row.clear();
     let found = contact.kinematics.measure(pair, y, row);
     found.map_or(f64::INFINITY, |()| row.row(0).gap)
+}
+
+/// Whether a force along a row moves anything: not if supports hold all its nodes.
+pub(super) fn moves(model: &Model, row: Row) -> bool {
+    row.entries().any(|(dof, slope)| !model.fixed[dof] && slope.abs() > DEPENDENT)
+}
+
+/// The rejection of a gap that supports prevent from opening.
+pub(super) fn held(contact: &Contact, pair: &Pair, gap: f64) -> Rejected {
+    let node = contact.kinematics.secondary()[pair.node];
+    Rejected::Overconstrained { contact: contact.name.clone(), node, depth: -gap }
 }
 
 /// Gaps and gradients of all pairs at `y`, updating their contact points.

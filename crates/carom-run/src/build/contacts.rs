@@ -1,6 +1,8 @@
 //! The contacts of a model: kinematics from the named sides, interface from law and enforcement. A
 //! new contact method is one line here.
 
+use std::collections::HashMap;
+
 use carom_case::{
     ActiveSetRule, Case, ContactLaw, ContactSpec, Enforcement, ForceTime, FrictionSpec, ObstacleMotion,
     Overlap, Persistency, Problem, load_variables,
@@ -55,7 +57,8 @@ pub(super) fn contacts(
         let obstacle = obstacles.iter().find(|obstacle| obstacle.contact == k);
         let kinematics: Box<dyn Kinematics> = match (shape, spec.primary.side()) {
             (Some(shape), _) => {
-                let mut contact = NodeToObstacle::new(nodes, case.dimension, shape);
+                let lengths = longest(&nodes, &secondary.facets, &reference);
+                let mut contact = NodeToObstacle::new(nodes, case.dimension, shape).with_lengths(lengths);
                 if let Some(obstacle) = obstacle {
                     surface.extend(parts[obstacle.part].nodes());
                     contact = contact.carried_by(obstacle.carrier.clone());
@@ -246,17 +249,33 @@ fn others(
     surface: &Surface,
     reference: &[f64],
 ) -> (Vec<usize>, Vec<f64>) {
-    let lengths = secondary.facets.iter().filter(|facet| facet.len() > 1).map(|facet| {
-        let [start, end] = [facet[0], facet[1]].map(|node| &reference[2 * node..2 * node + 2]);
-        (end[0] - start[0]).hypot(end[1] - start[1])
-    });
-    let shortest = lengths.fold(f64::INFINITY, f64::min);
+    let shortest = lengths(&secondary.facets, reference).map(|(_, l)| l).fold(f64::INFINITY, f64::min);
     let corners = surface.corners(reference);
     let mut nodes = without(&primary.nodes, earlier);
     nodes.sort_unstable();
     let allowed = nodes.iter().map(|node| if corners.contains(node) { 0.0 } else { ALLOWED * shortest });
     let allowed = allowed.collect();
     (nodes, allowed)
+}
+
+/// The facets of a side in the plane with the distances between their ends.
+fn lengths<'a>(facets: &'a [Vec<usize>], reference: &[f64]) -> impl Iterator<Item = (&'a Vec<usize>, f64)> {
+    facets.iter().filter(|facet| facet.len() > 1).map(|facet| {
+        let [start, end] = [facet[0], facet[1]].map(|node| &reference[2 * node..2 * node + 2]);
+        (facet, (end[0] - start[0]).hypot(end[1] - start[1]))
+    })
+}
+
+/// The length of the longest facet of each node of a side in the plane.
+fn longest(nodes: &[usize], facets: &[Vec<usize>], reference: &[f64]) -> Vec<f64> {
+    let mut of: HashMap<usize, f64> = HashMap::new();
+    for (facet, length) in lengths(facets, reference) {
+        for &node in facet {
+            let longest = of.entry(node).or_default();
+            *longest = longest.max(length);
+        }
+    }
+    nodes.iter().filter_map(|node| of.get(node).copied()).collect()
 }
 
 /// A side of a contact.
@@ -281,7 +300,8 @@ fn siblings(
             Which::Primary => (other.secondary == spec.secondary, other.primary.side()?),
             Which::Secondary => (other.primary == spec.primary, other.secondary.as_str()),
         };
-        side(parts, name, "").ok().filter(|side| same && side.part == part)
+        // There may be a contact per pair of bodies: few of them need their nodes.
+        if same { side(parts, name, "").ok().filter(|side| side.part == part) } else { None }
     };
     let of_contacts = |contacts: &[ContactSpec]| contacts.iter().filter_map(of).collect();
     (of_contacts(&case.contacts[..k]), of_contacts(&case.contacts[k + 1..]))

@@ -83,7 +83,16 @@ pub fn run(
     )?;
     let mut session = Session::new(case, simulation, writer, manifest);
     session.write_start()?;
-    session.go(options, observe, stop, Vec::new())
+    let remarks = audit_remarks(options, &session.simulation);
+    session.go(options, observe, stop, remarks)
+}
+
+/// What an audit leaves out.
+fn audit_remarks(options: Options, simulation: &Simulation) -> Vec<String> {
+    if !options.audit {
+        return Vec::new();
+    }
+    vec![format!("the audit did not judge: {}", carom_mechanics::unaudited(simulation.model()).join("; "))]
 }
 
 /// Resumes a run that was stopped or killed; a finished one is returned as it is.

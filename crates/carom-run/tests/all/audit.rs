@@ -1,6 +1,6 @@
 //! The second method that checks contact: it agrees with a run, and contradicts what is wrong.
 
-use carom_run::{Doubt, Simulation, audit};
+use carom_run::{Doubt, Simulation, audit, unaudited};
 
 use super::common::{DISCS, finish, simulation};
 
@@ -29,4 +29,28 @@ fn the_audit_finds_what_was_not_measured_and_what_has_passed() {
     assert!(depth > 0.01 && depth < 1.0 - f64::hypot(0.3, 0.2) + 0.01, "{depth}");
     let found = audit(model, start, &moved(&sim, 2.5), nothing);
     assert!(matches!(found, Err(Doubt::Passed { .. })), "{found:?}");
+}
+
+#[test]
+fn the_audit_finds_a_passage_that_the_contact_does_not_allow_and_says_what_it_leaves_out() {
+    let sim = simulation(DISCS, &[""; 0]);
+    let (model, start) = (sim.model(), &sim.state().y);
+    // The left disc, s lower, passes below the right one: on the way they overlap by 1 − |0.2 − s|, at most
+    // 0.4 of a facet.
+    let passed = |s: f64| {
+        let mut y = moved(&sim, 2.5);
+        model.parts[0].nodes().for_each(|node| y[2 * node + 1] -= s);
+        let mut from = start.clone();
+        model.parts[0].nodes().for_each(|node| from[2 * node + 1] -= s);
+        audit(model, &from, &y, carom_run::Depths::default())
+    };
+    assert_eq!(passed(1.21), Ok(()));
+    let found = passed(1.1);
+    let Err(Doubt::Passed { depth, .. }) = found else { panic!("{found:?}") };
+    assert!(depth > 0.01 && depth < 0.1 + 1e-3, "{depth}");
+    let left = unaudited(model);
+    assert_eq!(left, ["bodies without a contact between them"]);
+    let floor = "contact.strike.primary={ plane = { point = [0.0, -3.0], normal = [0.0, 1.0] } }";
+    let left = unaudited(simulation(DISCS, &[floor]).model());
+    assert_eq!(left[0], "contact \"strike\" with a rigid obstacle");
 }

@@ -2,7 +2,7 @@
 //! described, and a thrown mass takes the momentum that it loses to the body.
 
 use carom_run::case::Case;
-use carom_run::{Setup, Simulation};
+use carom_run::{Rejected, Setup, Simulation, Stopped};
 
 use super::common::schemes;
 
@@ -136,4 +136,110 @@ fn a_thrown_mass_and_a_rod_keep_their_momentum() {
         checked += 1;
     }
     assert!(checked > 40, "{checked}");
+}
+
+/// A block in free fall, fast enough to be past an obstacle after a step.
+const FALLING: &str = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 1e4, poisson = 0.3 }]
+[[body]]
+name = "block"
+material = "m"
+element = "T3"
+mesh = { shape = "rectangle", min = [-0.2, 0.5], max = [0.2, 0.7], cells = [8, 4] }
+velocity = [0.0, -10.0]
+[[contact]]
+name = "rigid"
+secondary = "block.skin"
+[time]
+end = 0.3
+step = 0.1
+scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
+"#;
+
+#[test]
+fn a_block_does_not_pass_through_an_obstacle_in_a_long_step() {
+    for obstacle in [
+        "{ circle = { center = [0.0, 0.0], radius = 0.2 } }",
+        "{ polyline = { points = [[-0.5, 0.0], [0.5, 0.0], [0.5, 0.1], [-0.5, 0.1], [-0.5, 0.0]] } }",
+    ] {
+        let set = format!("contact.rigid.primary={obstacle}");
+        let mut sim = Setup::new(&Case::from_text(FALLING, &[set.as_str()]).unwrap()).start().unwrap();
+        let rejected: u32 = (0..3).map(|_| sim.step().unwrap().rejected).sum();
+        let (model, state) = (sim.model(), sim.state());
+        let mut momentum = vec![0.0; model.dofs()];
+        model.mass.multiply_into(&state.v, &mut momentum);
+        let momentum: f64 = momentum.iter().skip(1).step_by(2).sum();
+        // Its mass is 0.08.
+        let impulse = state.impulse()[1];
+        assert!(rejected > 0 && impulse > 0.8, "{obstacle}: {rejected} steps rejected, {impulse}");
+        assert!((impulse - (momentum + 0.8)).abs() < 1e-9, "{impulse} {momentum}");
+        // Not one bisection: the node is named that passes.
+        let mut sim = Setup::new(&Case::from_text(FALLING, &[set.as_str()]).unwrap()).start().unwrap();
+        sim.limit_bisections(0);
+        let stopped = sim.step().unwrap_err();
+        let Stopped::NoStep { rejected, .. } = stopped else { panic!("{stopped}") };
+        assert!(matches!(rejected, Rejected::Passed { .. }), "{rejected}");
+        let place = rejected.place();
+        assert!(place.contact == Some("rigid") && place.node.is_some(), "{place:?}");
+    }
+}
+
+#[test]
+fn a_pair_of_a_piece_that_is_not_there_belongs_to_another_model() {
+    let start = |floor: &str| {
+        let set = format!("contact.floor.primary={floor}");
+        Setup::new(&Case::from_text(DISC, &[set.as_str()]).unwrap()).start().unwrap()
+    };
+    let mut long = start(FLOORS[2]);
+    long.step().unwrap();
+    let mut short = start(FLOORS[1]);
+    let error = short.restore(long.state().clone()).unwrap_err().to_string();
+    assert!(error.contains("facet 2 of the primary of contact \"floor\", which has 1"), "{error}");
+    assert!(start(FLOORS[2]).restore(long.state().clone()).is_ok());
+}
+
+/// A block whose lower corner is clamped, and a wall that reaches it at t = 0.1: no force helps.
+const CLAMPED: &str = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 1000.0, poisson = 0.3 }]
+support = [{ on = ["block.bottom"], fix = ["x", "y"] }]
+[[body]]
+name = "block"
+material = "m"
+element = "T6"
+mass = "lumped"
+mesh = { shape = "rectangle", min = [-1.0, -0.5], max = [1.0, 0.0], cells = [6, 3] }
+[[contact]]
+name = "wall"
+secondary = "block.left"
+primary = { plane = { point = [-1.05, 0.0], normal = [1.0, 0.0] }, motion = { x = "0.5*t" } }
+[time]
+end = 0.2
+step = 2e-4
+scheme = { kind = "hu" }
+"#;
+
+#[test]
+fn a_wall_that_reaches_a_clamped_node_is_named() {
+    for scheme in [
+        r#"{ kind = "central-difference" }"#,
+        r#"{ kind = "paoli-schatzman" }"#,
+        r#"{ kind = "moreau-jean", theta = 0.5 }"#,
+        r#"{ kind = "chung-hulbert", rho_inf = 0.5 }"#,
+    ] {
+        let set = format!("time.scheme={scheme}");
+        let mut sim = Setup::new(&Case::from_text(CLAMPED, &[set.as_str()]).unwrap()).start().unwrap();
+        let stopped = loop {
+            assert!(!sim.finished(), "{scheme}");
+            if let Err(stopped) = sim.step() {
+                break stopped;
+            }
+        };
+        let Stopped::NoStep { time, rejected: Rejected::Overconstrained { node, .. }, .. } = stopped else {
+            panic!("{scheme}: {stopped}")
+        };
+        assert_eq!(sim.model().reference[2 * node..2 * node + 2], [-1.0, -0.5], "{scheme}");
+        assert!((time - 0.1).abs() < 4e-4, "{scheme}: {time}");
+    }
 }

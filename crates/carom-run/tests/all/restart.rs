@@ -1,7 +1,7 @@
 //! Resumed runs, and runs that start where another ended.
 
 use carom_contact::Pair;
-use carom_run::{GridReport, State};
+use carom_run::{GridReport, Simulation, State};
 
 use super::common::{DISCS, case as case_of, finish, simulation};
 use super::loads::time;
@@ -182,4 +182,55 @@ fn a_run_is_finished_even_if_its_record_cannot_be_read() {
     assert!(matches!(run, Err(carom_run::recording::RunError::Record(_))), "{run:?}");
     let manifest = carom_record::Manifest::read(&directory).unwrap();
     assert_eq!(manifest.status, carom_record::Status::Finished);
+}
+
+#[test]
+fn a_restricted_state_has_the_energy_of_its_own_springs() {
+    let text = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }]
+time = { end = 0.2, step = 1e-3, scheme = { kind = "newmark", beta = 0.25, gamma = 0.5 } }
+"#;
+    let block = |name: &str, left: f64, gravity: f64| {
+        format!(
+            r#"
+[[body]]
+name = "{name}"
+material = "m"
+element = "T3"
+mesh = {{ shape = "rectangle", min = [{left}, 0.0], max = [{left}, 1.0], cells = [3, 3] }}
+gravity = [0.0, -{gravity}]
+[[contact]]
+name = "under-{name}"
+secondary = "{name}.bottom"
+primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
+enforcement = "penalty"
+"#
+        )
+        .replace(&format!("max = [{left}"), &format!("max = [{}", left + 1.0))
+    };
+    let both = text.to_owned() + &block("gone", 0.0, 3.0) + &block("kept", 2.0, 1.0);
+    let alone = text.to_owned() + &block("kept", 2.0, 1.0);
+    let mut large = simulation(&both, &[""; 0]);
+    (0..100).for_each(|_| drop(large.step().unwrap()));
+    let small = simulation(&alone, &[""; 0]);
+    let first = large.model().parts[1].nodes().start;
+    let dofs: Vec<usize> = (2 * first..2 * first + small.model().dofs()).collect();
+    let part = large.state().restricted(small.model(), &dofs, &[1]).unwrap();
+    // ½ k g² = ½ |λ| |g| of each spring.
+    let springs = |sim: &Simulation, state: &State| {
+        let mut energy = 0.0;
+        for (contact, pairs) in sim.model().contacts.iter().zip(&state.pairs) {
+            for pair in pairs.iter().filter(|pair| pair.active) {
+                let gap = contact.kinematics.signed_distance(pair.node, &state.y).unwrap();
+                energy += 0.5 * (pair.lambda * gap).abs();
+            }
+        }
+        energy
+    };
+    let [whole, own] = [springs(&large, large.state()), springs(&small, &part)];
+    assert!(own > 0.0 && whole > 2.0 * own, "{whole} {own}");
+    assert!((large.state().ledger.springs - whole).abs() < 1e-12 * whole);
+    assert!((part.ledger.springs - own).abs() < 1e-12 * own, "{} {own}", part.ledger.springs);
+    assert!((part.ledger.total() - part.ledger.total_at_start).abs() < 1e-15);
 }

@@ -101,3 +101,88 @@ fn a_run_that_is_continued_from_its_state_is_the_same() {
     assert_eq!(whole.state().y, resumed.state().y);
     assert_eq!(whole.state().pairs, resumed.state().pairs);
 }
+
+/// Two rectangles of triangles in the format of Gmsh, each with a surface of its own and both with "both".
+fn rectangles(of: [(&str, [f64; 4], [usize; 2]); 2]) -> String {
+    let (mut nodes, mut cells, mut names) = (Vec::new(), Vec::new(), vec!["2 9 \"both\"".to_owned()]);
+    for (k, (name, [left, right, bottom, top], [n, m])) in of.into_iter().enumerate() {
+        let first = nodes.len() + 1;
+        for (i, j) in (0..=n).flat_map(|i| (0..=m).map(move |j| (i, j))) {
+            let x = left + (right - left) * i as f64 / n as f64;
+            let y = bottom + (top - bottom) * j as f64 / m as f64;
+            nodes.push(format!("{} {x} {y} 0", nodes.len() + 1));
+        }
+        let at = |i: usize, j: usize| first + i * (m + 1) + j;
+        for (i, j) in (0..n).flat_map(|i| (0..m).map(move |j| (i, j))) {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            for triangle in [[a, b, c], [a, c, d]] {
+                let triangle = triangle.map(|node| node.to_string()).join(" ");
+                for tag in [k + 1, 9] {
+                    cells.push(format!("{} 2 2 {tag} {tag} {triangle}", cells.len() + 1));
+                }
+            }
+        }
+        names.push(format!("2 {} \"{name}\"", k + 1));
+    }
+    let list = |name: &str, lines: Vec<String>| {
+        format!("${name}\n{}\n{}\n$End{name}\n", lines.len(), lines.join("\n"))
+    };
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n".to_owned()
+        + &list("PhysicalNames", names)
+        + &list("Nodes", nodes)
+        + &list("Elements", cells)
+}
+
+/// A small box strikes the end of a plate of one cell at a slant, fast enough to be past it after a
+/// step: nothing penetrates at its ends.
+#[test]
+fn a_piece_that_would_pass_another_one_within_a_step_strikes_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let plate = ("plate", [-0.5, 0.5, -0.02, 0.0], [20, 1]);
+    let box_ = ("box", [-0.99, -0.95, 0.48, 0.52], [2, 2]);
+    let mesh = folder.path().join("pieces.msh");
+    std::fs::write(&mesh, rectangles([plate, box_])).unwrap();
+    let body = |surface: &str| {
+        format!(
+            r#"
+            [[body]]
+            name = "{surface}"
+            material = "m"
+            element = "T3"
+            mesh = {{ file = '{}', surface = "{surface}" }}
+            velocity = ["if(Y > 0.4, 12, 0)", "if(Y > 0.4, -4, 0)"]
+            "#,
+            mesh.display()
+        )
+    };
+    let case = |bodies: &str, between: &str| {
+        let text = format!(
+            r#"
+            dimension = 2
+            material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 1e4, poisson = 0.3 }}]
+            contact = [{{ name = "joint", {between} }}]
+            time = {{ end = 0.4, step = 0.2, scheme = {{ kind = "chung-hulbert", rho_inf = 0.5 }} }}
+            {bodies}
+            # Tolerances are relative to the largest body: it is the same with one body and with two.
+            [[body]]
+            name = "other"
+            material = "m"
+            element = "T3"
+            mesh = {{ shape = "rectangle", min = [-10.0, 5.0], max = [10.0, 6.0], cells = [20, 1] }}
+            "#
+        );
+        Case::from_text(&text, &[]).unwrap()
+    };
+    let one = case(&body("both"), r#"between = ["both"]"#);
+    let two = case(&(body("plate") + &body("box")), r#"secondary = "box.skin", primary = "plate.skin""#);
+    let mut simulations = [one, two].map(|case| simulation(&case));
+    let reports = simulations.each_mut().map(|simulation| simulation.step().unwrap());
+    let [one, two] = &simulations;
+    assert!(reports[0].rejected > 0, "no step was rejected");
+    assert_eq!(reports[0].rejected, reports[1].rejected);
+    let [a, b] = [one, two].map(|simulation| simulation.state().impulse());
+    assert!(a[1].abs() > 1e-3, "{a:?}");
+    let (y, z) = (&one.state().y, &two.state().y);
+    let difference = y.iter().zip(z).map(|(y, z)| (y - z).abs()).fold(0.0, f64::max);
+    assert!(difference < 1e-9, "{difference:e}; impulses {a:?} {b:?}");
+}

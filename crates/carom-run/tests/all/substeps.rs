@@ -96,3 +96,38 @@ scheme = { kind = "paoli-schatzman" }
     }
     assert!(short.state().y[0] > 0.0 && fastest > 0.5 && fastest < 1.2, "{fastest}");
 }
+
+#[test]
+fn a_step_may_be_allowed_no_bisection_at_any_time() {
+    let mut run = simulation(DISC, &[""; 0]);
+    let mut stopped = 0;
+    while !run.finished() {
+        let mut once = super::common::restored(simulation(DISC, &[""; 0]), run.state().clone());
+        once.limit_bisections(0);
+        stopped += u32::from(once.step().is_err());
+        run.step().unwrap();
+    }
+    assert!(stopped < 20);
+}
+
+/// Where shorter steps create more, the whole grid step is taken after all, and the next one is tried whole
+/// again. So tight a guard stops the run later.
+#[test]
+fn a_grid_step_that_is_taken_whole_after_all_is_not_remembered_as_bisected() {
+    let sets = [
+        "time.energy_guard=1e-4",
+        "time.step=0.005",
+        "time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.9 }",
+    ];
+    let mut run = simulation(DISC, &sets);
+    let (mut returned, dt) = (0, run.dt());
+    while !run.finished() {
+        let Ok(report) = run.step() else { break };
+        let whole = run.state().carried.dt().is_some_and(|last| (last - dt).abs() < 1e-9 * dt);
+        if report.rejected > 0 && whole {
+            returned += 1;
+            assert_eq!(run.state().bisection, carom_run::Bisection::default());
+        }
+    }
+    assert!(returned > 0);
+}

@@ -9,6 +9,7 @@
 //! A polyline consists of such pieces. So ∇²g = h (1 − n nᵀ) with one number h for every piece.
 
 mod near;
+mod path;
 mod polyline;
 
 pub(super) use near::{Near, Point};
@@ -50,6 +51,11 @@ impl Obstacle {
     /// A circle, with bodies outside or `inside` it.
     pub fn circle(center: &[f64], radius: f64, inside: bool) -> Self {
         Self::Circle { center: padded(center, 1.0), radius, inside }
+    }
+
+    /// Number of pieces of the surface.
+    pub(crate) fn pieces(&self) -> usize {
+        if let Self::Polyline(line) = self { line.pieces() } else { 1 }
     }
 
     /// The piece of the surface that is closest to a point.

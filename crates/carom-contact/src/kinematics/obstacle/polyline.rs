@@ -120,6 +120,11 @@ impl Polyline {
         Ok(Self { pieces, closed })
     }
 
+    /// Number of segments and corners.
+    pub(in super::super) fn pieces(&self) -> usize {
+        self.pieces.len()
+    }
+
     /// The neighbour of a piece, if there is one.
     fn neighbour(&self, piece: usize, forward: bool) -> Option<usize> {
         let count = self.pieces.len();

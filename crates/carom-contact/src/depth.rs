@@ -1,0 +1,60 @@
+//! Where a point lies relative to the boundary of a body in the plane, seen from the facet nearest to it.
+//!
+//! Inside a facet the sign of the distance is that of the normal; at a joint the point is outside if the
+//! joint is convex, inside if it is concave.
+
+use carom_algebra::Vector;
+
+use crate::kinematics::Surface;
+use crate::places::Places;
+
+/// A point relative to a boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Depth {
+    /// Distance to the boundary, positive outside.
+    pub distance: f64,
+    /// Nearest facet, and its point.
+    pub facet: usize,
+    /// ξ of that point.
+    pub xi: f64,
+}
+
+impl Surface {
+    /// ξ of a facet's point nearest to a point, and its distance.
+    pub(crate) fn nearest(&self, facet: usize, point: [f64; 2], y: Places) -> (f64, f64) {
+        let (side, point) = (self.facet(facet), Vector(point));
+        let distance = |xi: f64| (point - side.at(y, xi).position).norm();
+        let ends = [-1.0, 1.0].map(|xi| (xi, distance(xi)));
+        let inner = side.closest_point(y, point, 1.0).map(|xi| (xi, distance(xi)));
+        let first = if ends[1].1 < ends[0].1 { ends[1] } else { ends[0] };
+        inner.filter(|inner| inner.1 < first.1).unwrap_or(first)
+    }
+
+    /// Where a point lies whose nearest facet is known. Reads the positions of that facet and of its
+    /// neighbours alone.
+    pub(crate) fn depth(&self, facet: usize, point: [f64; 2], y: Places) -> Depth {
+        let (xi, distance) = self.nearest(facet, point, y);
+        let joint = xi.abs() >= 1.0;
+        let outside =
+            if joint { Self::is_outside_joint } else { Self::is_outside }(self, facet, xi, point, y);
+        let distance = if outside { distance } else { -distance };
+        Depth { distance, facet, xi }
+    }
+
+    fn is_outside(&self, facet: usize, xi: f64, point: [f64; 2], y: Places) -> bool {
+        let at = self.facet(facet).at(y, xi);
+        (Vector(point) - at.position).dot(&at.normal) >= 0.0
+    }
+
+    /// The same where the nearest point is an end of the facet: in front of either facet at a convex
+    /// joint, of both at a concave one, which is nearest to a remote point by round-off only.
+    fn is_outside_joint(&self, facet: usize, xi: f64, point: [f64; 2], y: Places) -> bool {
+        let Some(neighbour) = self.neighbour(facet, xi > 0.0) else {
+            return self.is_outside(facet, xi, point, y);
+        };
+        let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
+        let (_, sine) = self.kink(first, second, y);
+        let [before, after] = [(first, 1.0), (second, -1.0)].map(|(f, xi)| self.is_outside(f, xi, point, y));
+        if sine > 0.0 { before || after } else { before && after }
+    }
+}
