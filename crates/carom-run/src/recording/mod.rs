@@ -1,17 +1,18 @@
-//! Records a simulation while it runs: the run directory of design.md §1.4. Recording never changes
-//! the result.
+//! Records a simulation while it runs, in its run directory. Recording never changes the result.
 
 mod columns;
 mod fields;
 mod log;
 mod outcome;
 mod session;
+mod start;
 mod stopped;
+mod tally;
 mod units;
 mod verdicts;
 
 pub use columns::columns;
 pub use fields::initial_fields;
 pub use outcome::{End, Options, Outcome, Progress, RunError};
-pub use session::{resume, run};
+pub use start::{resume, run};
 pub(crate) use stopped::explain;
