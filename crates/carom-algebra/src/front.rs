@@ -53,10 +53,14 @@ struct Update<T> {
     begin: usize,
 }
 
+/// The entries of a matrix. Not a type of its own for every matrix: the factorisation would be
+/// compiled for each, in every crate that factors one.
+pub(crate) type Value<'a> = &'a (dyn Fn(usize) -> f64 + Sync);
+
 /// A matrix to be factored: `scale` times `value(k)` for entry k of the pattern.
-pub(crate) struct Matrix<'a, F> {
+pub(crate) struct Matrix<'a> {
     pub(crate) elimination: &'a Elimination,
-    pub(crate) value: F,
+    pub(crate) value: Value<'a>,
     pub(crate) scale: f64,
     pub(crate) threads: &'a Threads,
     /// Whether pivots may be negative, and the places of those that are.
@@ -71,7 +75,7 @@ struct Work<T> {
     runs: Vec<[usize; 3]>,
 }
 
-impl<F: Fn(usize) -> f64 + Sync> Matrix<'_, F> {
+impl Matrix<'_> {
     /// Factors all columns before the last unknowns; `schur` becomes the lower triangle of their
     /// Schur complement.
     ///

@@ -15,6 +15,7 @@ mod saddle;
 mod simd;
 mod small;
 mod substitution;
+mod symbolic;
 mod threads;
 
 pub use complementarity::{complementarity, proximal};

@@ -72,7 +72,6 @@ fn sides_of(shape: &str) -> &'static [&'static str] {
 mod tests {
     use super::*;
     use crate::keys::shapes;
-    use crate::{Document, read};
 
     /// Every built-in shape is listed here, with the sides that its documentation names.
     #[test]
@@ -81,30 +80,5 @@ mod tests {
             let sides = sides_of(shape);
             assert!(!sides.is_empty() && sides.iter().all(|side| table.doc.contains(side)), "{shape}");
         }
-    }
-
-    #[test]
-    fn examples_name_what_the_case_has() {
-        let case = r#"
-title = "t"
-dimension = 2
-[[body]]
-name = "ball"
-material = "steel"
-element = "T6"
-mesh = { shape = "disc", radius = 1.0, center = [0.0, 0.0], size = 0.2 }
-[[contact]]
-name = "c"
-primary = 3
-[[support]]
-on = "floor"
-"#;
-        let document = Document::parse("case", case, &[]).unwrap();
-        let message = document.diagnose_all(&read(&document).unwrap_err()).to_string();
-        assert!(
-            message.contains("primary = \"ball.arc\"") && message.contains("on = [\"ball.arc\"]"),
-            "{message}"
-        );
-        assert!(!message.contains("prism") && !message.contains("cylinder"), "{message}");
     }
 }

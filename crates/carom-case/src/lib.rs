@@ -23,13 +23,13 @@ mod overrides;
 mod place;
 mod problem;
 mod read;
+mod read_scheme;
 mod refine;
 mod schema;
 mod scheme;
 mod spec;
 mod suggest;
-#[cfg(test)]
-mod tests;
+mod tables;
 mod tree;
 mod view;
 
@@ -40,7 +40,8 @@ pub use excerpt::Excerpt;
 pub use expect::{Asked, read_expects};
 pub use load::load_variables;
 pub use problem::{CaseError, Diagnostic, Problem, Problems};
-pub use read::{read, read_scheme};
+pub use read::read;
+pub use read_scheme::read_scheme;
 pub use schema::{changes, expectation, schema};
 pub use spec::{
     ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime,

@@ -1,31 +1,22 @@
-//! Document → case: reads every table with its defaults. Checks that concern a single table are
-//! here, the others in `check`.
+//! Document → case: all tables (`tables.rs`), what follows from several of them, and the checks.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use carom_time::SchemeError;
-
 use super::between::Bodies;
 use super::check;
 use super::conform;
-use super::document::{Document, joined};
+use super::document::Document;
 use super::draft::Draft;
 use super::expect::{self, Asked, Exact};
 use super::keys::{self, Kind};
 use super::load;
-use super::mesh;
-use super::obstacle;
-use super::place;
-use super::problem::{CaseError, Diagnostic, Problem, Problems};
+use super::problem::{CaseError, Problem, Problems};
 use super::refine::{self, Counts};
-use super::suggest;
+use super::tables::{body, contact, initial, material, newton, output, probe, support, time};
 use super::tree::{Entry, Node, Table};
-use super::view::{View, word};
-use super::{
-    BodySpec, Case, ContactSpec, FrictionSpec, InitialSpec, MaterialSpec, NewtonSpec, ObstacleMotion,
-    OutputSpec, Persistency, Preset, PrimarySpec, ProbeSpec, SchemeSpec, SupportSpec, TimeSpec, Units,
-};
+use super::view::View;
+use super::{BodySpec, Case, ContactSpec, Persistency, Preset, Units};
 
 impl Case {
     /// Reads a case from its text, with overrides `key=value` applied in their order. Files that it
@@ -235,231 +226,4 @@ impl<'a> Reader<'a> {
 
 fn all<T>(list: Vec<Option<T>>) -> Option<Vec<T>> {
     list.into_iter().collect()
-}
-
-fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<MaterialSpec> {
-    let (name, law, density) = (v.text("name"), v.choice("law"), v.number("density"));
-    let given: Vec<_> = ["lambda", "mu", "young", "poisson"].into_iter().filter(|k| v.has(k)).collect();
-    let (lambda, mu) = match given.as_slice() {
-        ["lambda", "mu"] => (v.number("lambda")?, v.number("mu")?),
-        ["young", "poisson"] => {
-            let (young, poisson) = (v.number("young")?, v.number("poisson")?);
-            (young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson)))
-        }
-        given => {
-            // A misspelt key is reported once, not as a missing key too.
-            let misspelt = v.table.0.iter().any(|e| !v.keys.iter().any(|k| k.name == e.key));
-            if !misspelt || given.len() > 2 {
-                let had = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
-                let what = format!("the elastic constants are not a valid pair: {had}");
-                let help = elastic_help(v, given);
-                problems.push(
-                    Problem::new(path, what, "an isotropic material has two elastic constants", help)
-                        .at_key(),
-                );
-            }
-            return None;
-        }
-    };
-    if mu > 0.0 && 3.0 * lambda + 2.0 * mu <= 0.0 {
-        let what = format!("the elastic constants Λ = {lambda}, μ = {mu} are not positive definite");
-        let why = format!("the bulk modulus Λ + 2μ/3 = {} must be > 0", lambda + 2.0 * mu / 3.0);
-        let help = format!("lambda must be > {}", -2.0 * mu / 3.0);
-        problems.push(Problem::new(format!("{path}.lambda"), what, why, help));
-    }
-    Some(MaterialSpec { name: name?, law: law?, density: density?, lambda, mu })
-}
-
-fn body(
-    v: View,
-    dimension: usize,
-    refine: f64,
-    folder: &Path,
-    path: &str,
-    problems: &mut Vec<Problem>,
-) -> Option<BodySpec> {
-    let shape = v.value("mesh")?;
-    let mesh = mesh::read(
-        shape.table()?,
-        dimension,
-        v.choice("element"),
-        folder,
-        v.preset,
-        &format!("{path}.mesh"),
-        problems,
-    )?;
-    Some(BodySpec {
-        name: v.text("name")?,
-        material: v.text("material")?,
-        element: v.choice("element")?,
-        mesh: mesh.refined(refine),
-        place: match v.table.get("place") {
-            Some(node) => {
-                let Some(Kind::Table(spec)) = v.keys.iter().find(|k| k.name == "place").map(|k| k.kind)
-                else {
-                    return None;
-                };
-                let v = View { table: node.table()?, keys: spec.keys, preset: v.preset };
-                Some(place::read(v, dimension, &format!("{path}.place"), problems)?)
-            }
-            None => None,
-        },
-        position: if v.has("position") { Some(v.formulas("position")?) } else { None },
-        gravity: if v.has("gravity") { v.numbers("gravity")? } else { Vec::new() },
-        velocity: load::velocity(&v, dimension, path, problems)?,
-        mass: v.choice("mass")?,
-    })
-}
-
-fn support(v: View) -> Option<SupportSpec> {
-    let fix = if v.has("fix") { v.texts("fix")? } else { Vec::new() };
-    let fix = fix.iter().map(|d| ["x", "y"].iter().position(|x| x == d)).collect::<Option<_>>()?;
-    Some(SupportSpec { name: v.text("name"), on: v.texts("on")?, fix, moves: load::motion(&v)? })
-}
-
-fn initial(v: View, folder: &Path) -> Option<InitialSpec> {
-    let joined = folder.join(v.text("from")?);
-    let from = std::path::absolute(&joined).unwrap_or(joined);
-    Some(InitialSpec { from, velocities: v.choice("velocities")? })
-}
-
-fn contact(
-    v: View,
-    entry: usize,
-    dimension: Option<usize>,
-    problems: &mut Vec<Problem>,
-) -> Option<ContactSpec> {
-    let between = v.has("between");
-    let (secondary, primary, motion) = if between {
-        (String::new(), PrimarySpec::Side(String::new()), ObstacleMotion::Fixed)
-    } else {
-        let (primary, motion) = obstacle::read(&v, dimension, &format!("contact[{entry}]"), problems)?;
-        (v.text("secondary")?, primary, motion)
-    };
-    Some(ContactSpec {
-        name: v.text("name")?,
-        entry,
-        between,
-        secondary,
-        primary,
-        motion,
-        enforcement: v.choice("enforcement")?,
-        stiffness: v.number("stiffness")?,
-        force: v.choice("force")?,
-        persistency: v.choice("persistency")?,
-        active_set: v.choice("active_set")?,
-        detection: v.choice("detection")?,
-        xi: v.choice("xi")?,
-        law: v.choice("law"),
-        overlap: v.choice("overlap")?,
-        friction: FrictionSpec {
-            mu: v.formula("mu").filter(|mu| !mu.is_zero()),
-            mu_dynamic: v.number("mu_dynamic"),
-            decay: v.number("decay"),
-            shear: v.number("shear"),
-            stick_stiffness: v.number("stick_stiffness"),
-        },
-        restitution: v.number("restitution")?,
-    })
-}
-
-/// The pair of elastic constants that was probably meant.
-fn elastic_help(v: View, given: &[&str]) -> String {
-    let pairs = "give `lambda` and `mu`, or `young` and `poisson`";
-    let ([mu, poisson], ["lambda", "mu", "poisson"]) =
-        (["mu", "poisson"].map(|key| v.number(key).filter(|x| x.is_finite())), given)
-    else {
-        return pairs.to_owned();
-    };
-    let (Some(mu), Some(poisson)) = (mu, poisson) else { return pairs.to_owned() };
-    // Where there is no such material, the nearest that there is.
-    let poisson = poisson.clamp(-0.99, 0.49);
-    let lambda = (2.0 * mu * poisson / (1.0 - 2.0 * poisson) * 1e6).round() / 1e6;
-    format!("{pairs}; with this `mu`, Poisson's ratio is {poisson} for `lambda = {lambda}`")
-}
-
-fn probe(v: View) -> Option<ProbeSpec> {
-    let record = v.texts("record")?.iter().map(|q| word(q)).collect::<Option<_>>()?;
-    Some(ProbeSpec { name: v.text("name")?, at: v.numbers("at")?, body: v.text("body")?, record })
-}
-
-fn time(v: View, problems: &mut Vec<Problem>) -> Option<TimeSpec> {
-    let scheme = v.value("scheme").and_then(|node| scheme(node.table()?, v.preset, "time.scheme", problems));
-    Some(TimeSpec {
-        end: v.number("end")?,
-        step: v.number("step")?,
-        phase: v.number("phase")?,
-        scheme: scheme?,
-        energy_guard: v.value("energy_guard")?.number(),
-    })
-}
-
-fn scheme(table: &Table, preset: Preset, path: &str, problems: &mut Vec<Problem>) -> Option<SchemeSpec> {
-    let kind = table.get("kind")?.text()?;
-    let v = View { table, keys: keys::schemes().table(kind)?.keys, preset };
-    let numbers = v.keys.iter().filter(|k| matches!(k.kind, Kind::Number(_)));
-    let parameters = numbers.filter_map(|k| Some((k.name.to_owned(), v.number(k.name)?))).collect();
-    let forces = if v.keys.iter().any(|k| k.name == "forces") {
-        v.choice("forces")?
-    } else {
-        carom_time::ForceRule::default()
-    };
-    let spec = SchemeSpec { kind: kind.to_owned(), parameters, forces };
-    if let Err(error) = spec.integrator()
-        && !problems.iter().any(|p| p.path.starts_with(path))
-    {
-        let help = match &error {
-            SchemeError::OutOfRange { hint, .. } => hint.clone(),
-            SchemeError::Missing { examples, .. } | SchemeError::Superfluous { examples, .. } => {
-                let written: Vec<_> = examples.iter().map(|example| format!("`{example}`")).collect();
-                format!("write for example {}", written.join(" or "))
-            }
-            SchemeError::UnknownKind { .. } => suggest::help(kind, error.known().iter().copied()),
-        };
-        let why = keys::schemes().table(kind).map_or(keys::schemes().doc, |t| t.doc);
-        problems.push(Problem::new(joined(path, error.key()), error.to_string(), why, help));
-    }
-    Some(spec)
-}
-
-/// A scheme by its kind and parameters `key=value`, as `carom explain` takes them.
-pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, CaseError> {
-    let line = |parameter: &String| {
-        let (key, value) =
-            parameter.split_once('=').map_or((parameter.trim(), ""), |(k, v)| (k.trim(), v.trim()));
-        // A word needs no quotes on the command line.
-        let value = value.parse().unwrap_or_else(|_| toml_edit::Value::from(value));
-        format!("{key} = {}", value.to_string().trim())
-    };
-    if let Some(parameter) = parameters.iter().find(|parameter| !parameter.contains('=')) {
-        let what = format!("`{parameter}` is not a parameter");
-        let (why, help) = ("parameters are written KEY=VALUE", "write for example rho_inf=0.1");
-        return Err(CaseError::Wrong(vec![Diagnostic::of_file("carom explain", what, why, help)]));
-    }
-    let kind_line = format!("kind = {}", toml_edit::Value::from(kind));
-    let text = std::iter::once(kind_line).chain(parameters.iter().map(line)).collect::<Vec<_>>().join("\n");
-    let document = Document::parse("arguments", &text, &[])?;
-    let mut problems = conform::variant(document.root(), keys::schemes());
-    let spec = scheme(document.root(), Preset::Default, "", &mut problems);
-    spec.filter(|_| problems.is_empty()).ok_or_else(|| document.diagnose_all(&problems))
-}
-
-fn newton(v: View) -> Option<NewtonSpec> {
-    Some(NewtonSpec {
-        tolerance: v.number("tolerance")?,
-        max_iterations: v.count("max_iterations")?,
-        tangent: v.choice("tangent")?,
-        mixing: v.count("mixing")?,
-    })
-}
-
-fn output(v: View) -> Option<OutputSpec> {
-    let every = if v.has("at_times") { 0 } else { 20 };
-    Some(OutputSpec {
-        fields_every: if v.has("fields_every") { v.count("fields_every")? } else { every },
-        format: v.choice("format")?,
-        at_times: v.numbers("at_times")?,
-        history_every: v.count("history_every")?,
-        checkpoint_every: v.count("checkpoint_every")?,
-    })
 }

@@ -13,7 +13,7 @@
 use std::ops::Range;
 
 use winnow::ascii::{digit0, digit1, multispace0};
-use winnow::combinator::Infix::{Left, Right};
+use winnow::combinator::Infix::{self, Left, Right};
 use winnow::combinator::{self, Prefix, alt, delimited, opt, preceded, separated, terminated};
 use winnow::error::{ErrMode, ParseError, ParserError};
 use winnow::stream::{AsChar, LocatingSlice, Location, Stateful};
@@ -90,8 +90,29 @@ fn misplaced<T>(input: &Input, wanted: &str) -> ModalResult<T, FormulaError> {
     }
 }
 
+type Error = ErrMode<FormulaError>;
+
+/// Each sign and each power is a call: its parts are functions, which keeps the stack of 4000 small.
 fn expression(input: &mut Input) -> ModalResult<Tree, FormulaError> {
+    combinator::expression(preceded(multispace0, operand))
+        .prefix(preceded(multispace0, sign))
+        .infix(preceded(multispace0, operator))
+        .parse_next(input)
+}
+
+#[inline(never)]
+fn operand(input: &mut Input) -> ModalResult<Tree, FormulaError> {
+    alt((number, named, delimited(open, expression, close))).parse_next(input)
+}
+
+#[inline(never)]
+fn sign<'a>(input: &mut Input<'a>) -> Result<Prefix<Input<'a>, Tree, Error>, Error> {
     let signs = [("+", Prefix(6, |_: &mut _, a| Ok(a))), ("-", Prefix(6, |_, a| Ok(negative(a))))];
+    alt((alt(signs.map(|(symbol, sign)| symbol.value(sign))), no_operand)).parse_next(input)
+}
+
+#[inline(never)]
+fn operator<'a>(input: &mut Input<'a>) -> Result<Infix<Input<'a>, Tree, Error>, Error> {
     let operators = [
         ("||", Left(1, |_: &mut _, a, b| Ok(Call(Function::Or, vec![a, b])))),
         ("&&", Left(2, |_, a, b| Ok(Call(Function::And, vec![a, b])))),
@@ -107,13 +128,7 @@ fn expression(input: &mut Input) -> ModalResult<Tree, FormulaError> {
         ("/", Left(5, |_, a, b| Ok(Call(Function::Divide, vec![a, b])))),
         ("^", Right(7, |_, a, b| Ok(Call(Function::Power, vec![a, b])))),
     ];
-    let operand = alt((number, named, delimited(open, expression, close)));
-    let sign = alt((alt(signs.map(|(symbol, sign)| symbol.value(sign))), no_operand));
-    let operator = alt((starred, alt(operators.map(|(symbol, operator)| symbol.value(operator)))));
-    combinator::expression(preceded(multispace0, operand))
-        .prefix(preceded(multispace0, sign))
-        .infix(preceded(multispace0, operator))
-        .parse_next(input)
+    alt((starred, alt(operators.map(|(symbol, operator)| symbol.value(operator))))).parse_next(input)
 }
 
 fn negative(a: Tree) -> Tree {

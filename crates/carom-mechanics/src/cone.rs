@@ -1,12 +1,14 @@
 //! Velocities and accelerations of a state with closed pairs, under Coulomb's law:
 //!
 //! ```text
-//! M x + Gᵀp + Hᵀq = f,   G x − c ≥ 0 ⊥ p ≤ 0,   H x = b in stick,   q = −sμp in slip,   |q| ≤ −μp,   s (H x − b) ≥ 0
+//! M x + Gᵀp + Hᵀq = f,   G x = c,   H x = b in stick,   q = −sμp in slip,   |q| ≤ −μp,   s (H x − b) ≥ 0
 //! ```
 //!
-//! For an impulse x is a change of velocity, G x − c and H x − b the rates of gap and slip after it. For
-//! accelerations they are the rates of change of these rates, which decide for pairs that have none;
-//! others separate, or slip in their direction.
+//! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations it
+//! is the rate of change of the slip rate, which decides for pairs that have none; others slip in
+//! their direction. All rows are equalities, as without friction: a closed gap stays closed
+//! (`persistency.rs`). A pair whose p pulls has no friction, so that the solution depends
+//! continuously on μ.
 
 use carom_contact::{Hold, Law, Rows, Rub, StickSlip, Tangential};
 
@@ -19,9 +21,9 @@ use crate::system::System;
 
 /// Most changes of stick and slip in one solve.
 const CHANGES: usize = 200;
-/// Most openings of a pair in a solve.
-const OPENINGS: u32 = 3;
-/// Rate of a gap or slip, as a fraction of the largest velocity, that is none.
+/// Times that a pair may begin to pull in a solve.
+const PULLS: u32 = 3;
+/// Slip rate, as a fraction of the largest velocity, that is none.
 const AT_REST: f64 = 1e-10;
 /// Rate, as a fraction of the largest one in a solve, that is round-off.
 const ROUND_OFF: f64 = 1e-12;
@@ -62,11 +64,9 @@ struct Way {
     slip: [f64; 2],
     /// Whether it may stick.
     is_free: bool,
-    /// Whether its gap opens; and does so whatever the solution is.
-    opens: bool,
-    separates: bool,
-    /// How often it opened.
-    opened: u32,
+    /// Whether it pulls, and how often it began to.
+    pulls: bool,
+    pulled: u32,
 }
 
 impl Closed {
@@ -159,8 +159,6 @@ impl Closed {
             if Hold::of(rates[i], still) != Hold::Stick {
                 (way.hold, way.is_free) = (Hold::of(rates[i], still), false);
             }
-            way.separates = self.normals.rows.row(i).along(&state.v) > still;
-            way.opens = way.separates;
         }
         self.solve(model, state, right, system, (ways, &self.laws))
     }
@@ -168,14 +166,7 @@ impl Closed {
     /// The ways of the pairs of a state.
     fn ways(&self, state: &State) -> Vec<Way> {
         let hold = |&(k, p): &(usize, usize)| state.pairs[k][p].tangential.hold;
-        let way = |place| Way {
-            hold: hold(place),
-            slip: [0.0; 2],
-            is_free: true,
-            opens: false,
-            separates: false,
-            opened: 0,
-        };
+        let way = |place| Way { hold: hold(place), slip: [0.0; 2], is_free: true, pulls: false, pulled: 0 };
         self.places.iter().map(way).collect()
     }
 
@@ -204,27 +195,22 @@ impl Closed {
             let all = rates.iter().chain(right.slips).chain(right.gaps);
             let none = ROUND_OFF * all.fold(0.0_f64, |most, rate| most.max(rate.abs()));
             let mut changed = false;
-            let pulls = ROUND_OFF * motion.normal.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
-            for (i, way) in ways.iter_mut().enumerate() {
-                let new = laws[i].as_ref().map_or([0.0; 2], |law| slip(i, law, -motion.normal[i]));
-                if !way.opens && motion.normal[i] < 0.0 {
-                    changed |= std::mem::replace(&mut way.slip, new) != new;
-                }
-                let opens = match way.opens {
-                    true if way.separates => true,
-                    true => self.normals.rows.row(i).along(&motion.x) - right.gaps[i] >= -none,
-                    // One that opens again and again stays closed.
-                    false => motion.normal[i] > pulls && way.opened < OPENINGS,
-                };
-                way.opened += u32::from(opens && !way.opens);
-                changed |= std::mem::replace(&mut way.opens, opens) != opens;
+            let none_pulls = ROUND_OFF * max_abs(&motion.normal);
+            let rubbing = ways.iter_mut().zip(laws).enumerate();
+            for (i, (way, law)) in rubbing.filter_map(|(i, (way, law))| Some((i, (way, law.as_ref()?)))) {
+                // One that begins to pull again and again has no friction.
+                let pulls = motion.normal[i] > none_pulls || way.pulled == PULLS;
+                way.pulled += u32::from(pulls && !way.pulls);
+                changed |= std::mem::replace(&mut way.pulls, pulls) != pulls;
+                let new = slip(i, law, -motion.normal[i]);
+                changed |= !pulls && std::mem::replace(&mut way.slip, new) != new;
             }
             let rub = |i: usize| {
                 let (way, cone) = (ways[i], laws[i]?.grip(-motion.normal[i]));
                 // What is no slip to round-off has no direction.
                 let rate = rates[i] - right.slips[i];
                 let slip = if way.is_free && rate.abs() > none { rate } else { way.hold.sign() };
-                (!way.opens).then_some(Rub { hold: way.hold, traction: motion.tangential[i], slip, cone })
+                (!way.pulls).then_some(Rub { hold: way.hold, traction: motion.tangential[i], slip, cone })
             };
             let rubs: Vec<Option<Rub>> = (0..ways.len()).map(rub).collect();
             let changes = set.changes(&rubs, true).map_err(|_| Rejected::NoFrictionBalance)?;
@@ -250,21 +236,21 @@ impl Closed {
         system: &mut System,
         ways: &[Way],
     ) -> Result<Motion, Rejected> {
-        let closed: Vec<usize> = (0..ways.len()).filter(|&i| !ways[i].opens).collect();
-        let normal = |&i: &usize| (self.places[i], self.normals.rows.row(i));
-        let mut rows = Constraints::plain(model.dimension, closed.iter().map(normal));
-        rows.is_skew = self.laws.iter().any(Option::is_some);
-        let mut targets: Vec<f64> = closed.iter().map(|&i| right.gaps[i]).collect();
+        let mut rows = self.normals.clone();
+        let mut targets = right.gaps.to_vec();
         let mut forces = right.forces.to_vec();
-        for (r, &i) in closed.iter().enumerate().filter(|(_, i)| self.laws[**i].is_some()) {
+        let rubs: Vec<usize> =
+            (0..ways.len()).filter(|&i| self.laws[i].is_some() && !ways[i].pulls).collect();
+        rows.is_skew = !rubs.is_empty();
+        for &i in &rubs {
             let [factor, traction] = ways[i].slip.map(|part| ways[i].hold.sign() * part);
             self.slips.row(i).add_to(-traction, &mut forces);
-            let direction = rows.directions.gradient_mut(r).iter_mut().zip(self.slips.row(i).gradient);
+            let direction = rows.directions.gradient_mut(i).iter_mut().zip(self.slips.row(i).gradient);
             direction.for_each(|(along, h)| *along -= factor * h);
         }
-        let sticks = |i: &&usize| self.laws[**i].is_some() && ways[**i].hold == Hold::Stick;
-        let normals = closed.iter().map(|&i| (None, self.normals.rows.row(i)));
-        let tangents = closed.iter().filter(sticks).map(|&i| (Some(i), self.slips.row(i)));
+        let normals = self.normals.rows.iter().map(|row| (None, row));
+        let sticks = rubs.iter().filter(|i| ways[**i].hold == Hold::Stick);
+        let tangents = sticks.map(|&i| (Some(i), self.slips.row(i)));
         let sticking: Vec<usize> =
             independent(model, normals.chain(tangents)).into_iter().flatten().collect();
         for &i in &sticking {
@@ -274,15 +260,13 @@ impl Closed {
         system.factor_mass(model, &rows)?;
         let (mut x, mut multipliers) = (vec![0.0; model.dofs()], Vec::new());
         system.factor.solve(model, &forces, &targets, &mut x, &mut multipliers)?;
-        let mut motion = Motion { x, normal: vec![0.0; ways.len()], tangential: vec![0.0; ways.len()] };
-        for (&i, p) in closed.iter().zip(&multipliers) {
-            motion.normal[i] = *p;
+        let held = multipliers.split_off(ways.len());
+        let mut motion = Motion { x, normal: multipliers, tangential: vec![0.0; ways.len()] };
+        for &i in &rubs {
             let [coefficient, traction] = ways[i].slip;
-            motion.tangential[i] = ways[i].hold.sign() * (traction - coefficient * p);
+            motion.tangential[i] = ways[i].hold.sign() * (traction - coefficient * motion.normal[i]);
         }
-        for (&i, q) in sticking.iter().zip(&multipliers[closed.len()..]) {
-            motion.tangential[i] = *q;
-        }
+        sticking.iter().zip(held).for_each(|(&i, q)| motion.tangential[i] = q);
         Ok(motion)
     }
 }

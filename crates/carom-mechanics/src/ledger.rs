@@ -1,5 +1,4 @@
-//! The energy ledger of a step (design.md §5): exact for eq. (15), because it uses the same
-//! averaged forces.
+//! The energy ledger of a step: exact for eq. (15), because it uses the same averaged forces.
 //!
 //! ```text
 //! F̄ = (1−α_f) F_{s+1} + α_f F_s,   Δy = y_{s+1} − y_s                    F̄ of other kernels: the mean of their velocity update, `Stage::mean`

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::model::Model;
 use crate::renewal::FrozenTangent;
 
-/// Energies and works, design.md §5: cumulative from the start of the run.
+/// Energies and works (`ledger.rs`), cumulative from the start of the run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
     /// ½ vᵀM v.

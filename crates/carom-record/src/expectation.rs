@@ -145,9 +145,9 @@ impl Bound {
     }
 }
 
-/// A number for messages: small ones with an exponent.
+/// A number for messages: small and large ones with an exponent.
 fn plain(x: f64) -> String {
-    if x != 0.0 && x.abs() < 1e-4 { format!("{x:e}") } else { x.to_string() }
+    if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) { format!("{x:e}") } else { x.to_string() }
 }
 
 /// A share in per cent, without the digits that the product by 100 makes up.

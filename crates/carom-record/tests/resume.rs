@@ -37,6 +37,12 @@ fn fields(step: u64) -> FieldSet {
     }
 }
 
+/// A folder in memory, if the system has one: a process is killed here, and no disk. On a disk the
+/// tests would wait for thousands of its writes.
+fn scratch() -> tempfile::TempDir {
+    tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap()
+}
+
 /// Records one step of a simulation; the payload is the step.
 fn record(writer: &mut RunWriter, step: u64) -> Result<(), RecordError> {
     let time = step as f64 * 0.1;
@@ -121,7 +127,7 @@ fn killed_anywhere_with_fields_in_one_file_ends_in_the_same_bytes() {
 }
 
 fn killed_anywhere(format: FieldFormat) {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = scratch();
     let expected = whole(&scratch.path().join("whole"), format);
     for kill in 0..STEPS {
         for generation in [None, Some(Generation::A), Some(Generation::B)] {
@@ -164,7 +170,7 @@ fn killed_anywhere(format: FieldFormat) {
 
 #[test]
 fn a_damaged_checkpoint_falls_back_to_the_one_before() {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = scratch();
     let directory = scratch.path().join("run");
     let expected = whole(&directory, FieldFormat::Vtu);
     // 36 is the newest step; find its file and change one byte.
@@ -199,7 +205,7 @@ fn a_damaged_checkpoint_falls_back_to_the_one_before() {
 #[test]
 fn an_altered_record_is_not_continued() {
     for format in [FieldFormat::Vtu, FieldFormat::VtkHdf] {
-        let scratch = tempfile::tempdir().unwrap();
+        let scratch = scratch();
         let directory = scratch.path().join("run");
         drop(advance(started(&directory, format), 0, 0, STEPS));
         let (mut refused, mut repeated) = (0, 0);
@@ -259,7 +265,7 @@ fn altered(directory: &Path, scratch: &Path) -> Result<(u64, Option<RecordError>
 #[test]
 fn cut_and_missing_fields_are_refused_or_computed_again() {
     for format in [FieldFormat::Vtu, FieldFormat::VtkHdf] {
-        let scratch = tempfile::tempdir().unwrap();
+        let scratch = scratch();
         let directory = scratch.path().join("run");
         drop(advance(started(&directory, format), 0, 0, STEPS));
         let file = |step: u64| match format {
@@ -303,7 +309,7 @@ fn cut_and_missing_fields_are_refused_or_computed_again() {
 
 #[test]
 fn what_is_written_is_read_back() {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = scratch();
     let directory = scratch.path().join("deep/er/run");
     let mut writer = RunWriter::create(&directory, &manifest(), b"").unwrap();
     let awkward =
@@ -350,7 +356,7 @@ fn what_is_written_is_read_back() {
 
 #[test]
 fn errors_say_why() {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = scratch();
     let directory = scratch.path().join("run");
     let mut writer = RunWriter::create(&directory, &manifest(), b"0").unwrap();
     let shown = |error: RecordError| (error.exit_code(), error.to_string());

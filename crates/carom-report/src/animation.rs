@@ -101,7 +101,8 @@ pub(crate) fn tracks(run: &Run) -> Vec<Track> {
     tracks
 }
 
-/// Time histories beside the picture: contact force, then the probes.
+/// Time histories beside the picture: contact force (its label is short, for a low panel), then the
+/// probes.
 fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     let h = &run.history;
     let series = |name: &str, label: String, k: usize| {
@@ -114,7 +115,7 @@ fn histories(run: &Run, shades: Vec<(f64, f64)>) -> String {
     let label = if flat { "f_{x}" } else { "f_{y}" };
     if let Some(s) = series(force, String::new(), 0) {
         panels.push(Panel {
-            label: format!("contact force {label}"),
+            label: format!("force {label}"),
             unit: h.unit(force).into(),
             height: 96.0,
             series: vec![s],

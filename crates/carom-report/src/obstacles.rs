@@ -30,7 +30,12 @@ pub(crate) struct Obstacle {
 
 /// The obstacles of a run in the plane whose bodies fill a frame (left, right, bottom, top).
 pub(crate) fn all(run: &Run, frame: [f64; 4]) -> Vec<Obstacle> {
-    let contacts = run.manifest.case.get("contacts").and_then(Value::as_array);
+    of_case(&run.manifest.case, frame)
+}
+
+/// The obstacles of a case, likewise.
+pub(crate) fn of_case(case: &Value, frame: [f64; 4]) -> Vec<Obstacle> {
+    let contacts = case.get("contacts").and_then(Value::as_array);
     contacts.into_iter().flatten().filter_map(|contact| one(contact, frame)).collect()
 }
 
@@ -127,6 +132,11 @@ impl Obstacle {
     /// Whether it has a recorded position.
     pub(crate) fn moves(&self, run: &Run) -> bool {
         run.column(&self.center[0]).is_some()
+    }
+
+    /// Its surface as the case gives it.
+    pub(crate) fn at_first(&self) -> &Walk {
+        &self.walk
     }
 
     /// Its points and normals in one list, relative to the point about which it turns.

@@ -1,17 +1,20 @@
-//! Picture of the overlap of bodies at the start: the mesh around the nodes that lie inside the other
-//! body, each with a circle whose area grows with its depth.
+//! Picture of the overlap of bodies at the start: the mesh and the rigid obstacles around the nodes that
+//! lie inside another body or an obstacle, each node with a circle whose area grows with its depth.
 
 use std::fmt::Write as _;
 
 use carom_record::{Cell, FieldSet};
+use serde_json::Value;
 
 use crate::axis::round_step;
 use crate::bodies::{Instant, places};
 use crate::chart::{open, write_text};
 use crate::labels::number;
+use crate::obstacles;
 use crate::palette::LINES;
 use crate::pen::Point;
 use crate::place::mesh;
+use crate::symbols::wall;
 
 const WIDTH: f64 = 720.0;
 const TOP: f64 = 30.0;
@@ -20,21 +23,24 @@ const FILLS: [&str; 4] = ["#e9eef4", "#f3ece0", "#e8f1e9", "#f1e8ef"];
 const LARGE: f64 = 12.0;
 const SMALL: f64 = 2.0;
 
-/// The picture of nodes (number, depth) of bodies in the plane; none without any.
-pub fn overlap(fields: &FieldSet, nodes: &[(usize, f64)]) -> Option<String> {
+/// The picture of nodes (number, depth) of the bodies of a case in the plane; none without any.
+pub fn overlap(case: &Value, fields: &FieldSet, nodes: &[(usize, f64)]) -> Option<String> {
     let points = places(fields);
     let nodes: Vec<(usize, f64)> = nodes.iter().copied().filter(|(node, _)| *node < points.len()).collect();
     let &(deepest, depth) = nodes.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     if fields.blocks.iter().any(|block| block.cell != Cell::Triangle) {
         return None;
     }
-    let extent = |i: usize| {
-        nodes.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (node, _)| {
-            [low.min(points[*node][i]), high.max(points[*node][i])]
+    let extent = |points: &mut dyn Iterator<Item = Point>| {
+        points.fold([f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY], |e, p| {
+            [e[0].min(p[0]), e[1].max(p[0]), e[2].min(p[1]), e[3].max(p[1])]
         })
     };
-    let (x, y) = (extent(0), extent(1));
-    let room = (0.25 * (x[1] - x[0]).max(y[1] - y[0])).max(8.0 * depth);
+    let size = |e: [f64; 4]| (e[1] - e[0]).max(e[3] - e[2]);
+    let around = extent(&mut nodes.iter().map(|(node, _)| points[*node]));
+    let bodies = extent(&mut points.iter().copied());
+    let (x, y) = ([around[0], around[1]], [around[2], around[3]]);
+    let room = (0.25 * size(around)).max((8.0 * depth).min(size(bodies)));
     let frame = [x[0] - room, x[1] + room, y[0] - room, y[1] + room];
     let scale = (WIDTH / (frame[1] - frame[0])).min(600.0 / (frame[3] - frame[2]));
     let height = (frame[3] - frame[2]) * scale;
@@ -50,6 +56,12 @@ pub fn overlap(fields: &FieldSet, nodes: &[(usize, f64)]) -> Option<String> {
         let instant = Instant { points: points.clone(), ..Instant::of_block(fields, block) };
         mesh(&mut out, &instant, FILLS[k % FILLS.len()], &to);
     }
+    for obstacle in obstacles::of_case(case, bodies) {
+        for walk in obstacles::clipped(obstacle.at_first(), frame) {
+            let line: Vec<_> = walk.iter().map(|&(p, n)| (to(p), [-n[0], n[1]])).collect();
+            wall(&mut out, &line, 0.0);
+        }
+    }
     let large = (0.4 * WIDTH / nodes.len() as f64).clamp(3.5, LARGE);
     for (node, d) in &nodes {
         let [x, y] = to(points[*node]);
@@ -63,7 +75,7 @@ pub fn overlap(fields: &FieldSet, nodes: &[(usize, f64)]) -> Option<String> {
     out.push_str("</g>\n");
     let unit = fields.array("displacement").map_or("", |u| &u.unit);
     let label = format!(
-        "{} nodes inside the other body; deepest: node {deepest}, {} {unit}",
+        "{} nodes inside another body or an obstacle; deepest: node {deepest}, {} {unit}",
         nodes.len(),
         number(depth)
     );

@@ -248,7 +248,8 @@ impl Setup<'_> {
                 let label = if self.flat {
                     plus(at, 10.0, [-d[0].signum(), 0.5])
                 } else {
-                    plus(plus(at, 30.0, d), 11.0, [-d[1].abs().max(0.4), d[0].abs()])
+                    // Across the arrow, to the left.
+                    plus(plus(at, 30.0, d), 11.0, [-d[1].abs().max(0.4), d[0] * d[1].signum()])
                 };
                 write_text(out, label[0], label[1], &halo.replace("15", "14"), symbol);
                 at = plus(at, 22.0, if self.flat { [0.0, -1.0] } else { [1.0, 0.0] });

@@ -1,6 +1,8 @@
 //! Checks that the quantities of expectations exist: columns, metrics, times within the run.
 
-use carom_record::question::{Form, Quantity, Question, Series, column_metric_names, metric_names};
+use carom_record::question::{
+    Form, Quantity, Question, Series, column_metric_names, form_names, metric_names,
+};
 
 use super::super::document::joined;
 use super::super::suggest;
@@ -93,7 +95,8 @@ impl Check<'_> {
         if names.contains(&name) {
             return;
         }
-        let why = "a quantity is FORM COLUMN, where FORM is min, max, first, last, at TIME, time of min, time of max, range, drift, peak or rms, or the name of a metric";
+        let why =
+            format!("a quantity is FORM COLUMN, where FORM is {}, or the name of a metric", form_names());
         let help = if columns.iter().any(|c| c == name) {
             format!("`{name}` is a column: write for example `last {name}`, or add a `formula`")
         } else {

@@ -142,7 +142,7 @@ const RIGID: Table = Table {
         key("circle", Kind::Table(&CIRCLE), "A rigid circle, with bodies outside or inside it; dimension 2.")
             .optional()
             .example("{ center = [0.0, 0.0], radius = 1.0, inside = true }"),
-        key("polyline", Kind::Table(&POLYLINE), "A rigid chain of segments; dimension 2.")
+        key("polyline", Kind::Table(&POLYLINE), "A rigid chain of segments, solid to the left of the direction of travel; dimension 2.")
             .optional()
             .example("{ points = [[2.0, 0.0], [0.0, 0.0], [-2.0, 1.0]], radius = 0.1 }"),
         key(

@@ -255,6 +255,11 @@ const fn key(name: &'static str, kind: Kind, doc: &'static str) -> Key {
 }
 
 impl Key {
+    /// What it means, with its unit.
+    pub(crate) fn meaning(&self) -> String {
+        if self.unit.is_empty() { self.doc.to_owned() } else { format!("{} Unit: {}.", self.doc, self.unit) }
+    }
+
     const fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }

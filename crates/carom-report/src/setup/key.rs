@@ -63,7 +63,8 @@ impl Setup<'_> {
             let real = |key| m.get(key).and_then(Value::as_f64).map_or(String::new(), number);
             line("", &format!("{}: {}", text(m, "name"), text(m, "law")), false);
             let (density, lambda, mu) = (real("density"), real("lambda"), real("mu"));
-            line("", &format!("ρ = {density} {mass}/{length}^3; Λ = {lambda}, μ = {mu} {stress}"), false);
+            line("", &format!("ρ = {density} {mass}/{length}^3"), false);
+            line("", &format!("Λ = {lambda}, μ = {mu} {stress}"), false);
         }
         for (k, support) in list(self.case(), "supports").iter().enumerate() {
             if k == 0 {

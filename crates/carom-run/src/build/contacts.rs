@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use carom_case::{
     ActiveSetRule, Case, ContactLaw, ContactSpec, Enforcement, ForceTime, FrictionSpec, ObstacleMotion,
-    Overlap, Persistency, Problem, load_variables,
+    Overlap, Persistency, PrimarySpec, Problem, load_variables,
 };
 use carom_contact::{
     BothSides, ConservingPenalty, ConservingUnilateral, ContactPoint, Detection, Kinematics, NodeToFacet,
@@ -348,14 +348,21 @@ pub fn overlaps(case: &Case, model: &Model) -> Vec<Problem> {
         let name = &model.contacts[k].name;
         let owner = model.parts.iter().find(|part| part.nodes().contains(&node));
         let owner = owner.map_or("", |part| part.name.as_str());
+        let (inside, turn) = match &case.contacts[k].primary {
+            PrimarySpec::Plane { .. } => ("behind the rigid plane", "reverse its normal, "),
+            PrimarySpec::Polyline { .. } => {
+                ("to the left of the polyline, which is rigid", "reverse the order of its points, ")
+            }
+            _ => ("inside the other side's body", ""),
+        };
         Problem::new(
             format!("contact[{}]", case.contacts[k].entry),
             format!("the bodies of contact \"{name}\" overlap at the start by {depth:.6e}"),
             format!(
-                "the node of \"{owner}\" at {place} lies inside the other side's body; closing the overlap within one step would drive the bodies apart"
+                "the node of \"{owner}\" at {place} lies {inside}; closing the overlap within one step would drive the bodies apart"
             ),
             format!(
-                "move a body by at least {depth:.6e}, or give the contact overlap = \"relax\" or \"keep-gap\""
+                "move a body by at least {depth:.6e}, {turn}or give the contact overlap = \"relax\" or \"keep-gap\""
             ),
         )
     };

@@ -1,5 +1,4 @@
-//! Columns of `history.csv` (design.md §1.4): a single list of names, units and values keeps them
-//! consistent.
+//! Columns of `history.csv`: a single list of names, units and values keeps them consistent.
 
 use carom_case::Case;
 use carom_contact::{Hold, Pair, Rows};

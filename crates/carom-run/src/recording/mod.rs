@@ -1,12 +1,13 @@
-//! Records a simulation while it runs: the run directory of design.md §1.4. Recording never changes
-//! the result.
+//! Records a simulation while it runs, in its run directory. Recording never changes the result.
 
 mod columns;
 mod fields;
 mod log;
 mod outcome;
 mod session;
+mod start;
 mod stopped;
+mod tally;
 mod units;
 mod verdicts;
 
@@ -14,5 +15,5 @@ pub use columns::columns;
 pub(crate) use fields::consistent_weights;
 pub use fields::initial_fields;
 pub use outcome::{End, Options, Outcome, Progress, RunError};
-pub use session::{resume, run};
+pub use start::{resume, run};
 pub(crate) use stopped::explain;

@@ -1,42 +1,31 @@
-//! `run` and `resume`: run a simulation to its end, with records, checkpoints and manifest.
+//! The steps of a run in one process, with rows, fields, events and checkpoints, up to its end.
 
-use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use carom_case::Case;
 use carom_contact::Hold;
 use carom_mechanics::{Attempt, GridReport, Simulation, State, penetration};
-use carom_record::{ContactRow, Event, Manifest, Run, RunWriter, Source, Status, Stop};
-use cpu_time::{ProcessTime, ThreadTime};
-use serde::{Deserialize, Serialize};
+use carom_record::{ContactRow, Event, Manifest, Run, RunWriter, Status};
 
-use super::columns::{Since, center_weights, columns, row};
-use super::fields::{field_set, gap_of, sides, weights};
+use super::columns::{Since, center_weights, row};
+use super::fields::{field_set, gap_of, weights};
 use super::log::{entry, relaxed, repairs};
 use super::outcome::{End, Options, Outcome, Progress, RunError};
 use super::stopped::{Record, write_stop};
+use super::tally::{Busy, Tally, checkpoint};
 use super::verdicts::judge;
-use crate::setup::Setup;
-use crate::warnings::{warnings, warnings_of_record};
+use crate::warnings::warnings_of_record;
 
 /// Time between signs of life while a step is bisected.
 const HEARTBEAT: Duration = Duration::from_secs(1);
 
-/// What a run has counted, and where its time went, up to a checkpoint.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct Tally {
-    counters: BTreeMap<String, u64>,
-    timings: BTreeMap<String, f64>,
-}
-
-/// Data of a step besides the simulation.
-struct Session<'a> {
+/// A simulation with its record, while this process works on it.
+pub(super) struct Session<'a> {
     case: &'a Case,
-    simulation: Simulation,
-    writer: RunWriter,
-    manifest: Manifest,
+    pub(super) simulation: Simulation,
+    pub(super) writer: RunWriter,
+    pub(super) manifest: Manifest,
     weights: Vec<f64>,
     field_steps: Vec<u64>,
     /// Whether each probe had its recorded stresses after the last step.
@@ -44,9 +33,9 @@ struct Session<'a> {
     began: Instant,
     first_step: u64,
     /// What happened since the previous row.
-    since: Since,
+    pub(super) since: Since,
     /// What earlier processes counted up to the checkpoint that this one began from.
-    earlier: Tally,
+    pub(super) earlier: Tally,
     /// Wall seconds spent on writing.
     output: f64,
     /// Processor seconds in steps.
@@ -56,110 +45,13 @@ struct Session<'a> {
     checkpoints: [State; 2],
 }
 
-/// Runs a case into a directory that must not exist yet.
-///
-/// # Errors
-/// The case's problems (nothing is written), or an input/output error.
-pub fn run(
-    case: &Case,
-    source: Source,
-    directory: &Path,
-    options: Options,
-    observe: &mut (dyn FnMut(&Progress) + Send),
-    stop: &AtomicBool,
-) -> Result<Outcome, RunError> {
-    let simulation = Setup::new(case).threads(options.threads).start().map_err(RunError::Case)?;
-    let simulation = if options.audit { simulation.audited() } else { simulation };
-    let resolved = serde_json::to_value(case).map_err(|e| RunError::Incompatible { what: e.to_string() })?;
-    let version = env!("CARGO_PKG_VERSION");
-    let mut manifest =
-        Manifest::new(version, resolved, source, columns(case, simulation.model()), options.threads);
-    manifest.sides = sides(simulation.model());
-    manifest.warnings = warnings(case, simulation.model());
-    let writer = RunWriter::create(
-        directory,
-        &manifest,
-        &bytes(simulation.state(), Since::default(), &Tally::default())?,
-    )?;
-    let mut session = Session::new(case, simulation, writer, manifest);
-    session.write_start()?;
-    let remarks = audit_remarks(options, &session.simulation);
-    session.go(options, observe, stop, remarks)
-}
-
-/// What an audit leaves out.
-fn audit_remarks(options: Options, simulation: &Simulation) -> Vec<String> {
-    if !options.audit {
-        return Vec::new();
-    }
-    vec![format!("the audit did not judge: {}", carom_mechanics::unaudited(simulation.model()).join("; "))]
-}
-
-/// Resumes a run that was stopped or killed; a finished one is returned as it is.
-///
-/// # Errors
-/// As [`run`], and if the record does not fit this version.
-pub fn resume(
-    directory: &Path,
-    options: Options,
-    observe: &mut (dyn FnMut(&Progress) + Send),
-    stop: &AtomicBool,
-) -> Result<Outcome, RunError> {
-    let manifest = Manifest::read(directory)?;
-    let case: Case =
-        serde_json::from_value(manifest.case.clone()).map_err(|error| RunError::Incompatible {
-            what: format!(
-                "the case in {} was resolved by Carom {} and does not fit this version: {error}",
-                directory.join("manifest.json").display(),
-                manifest.version
-            ),
-        })?;
-    let case = &case;
-    if manifest.status == Status::Finished {
-        // The process may have been killed between the last row and the verdicts.
-        if manifest.expectations.is_empty() && !case.expects.is_empty() {
-            judge(Run::open(directory)?, &case.expects)?;
-        }
-        let steps = case.time.steps();
-        return Ok(Outcome {
-            directory: directory.to_path_buf(),
-            end: End::Finished,
-            steps: steps as u64,
-            time: case.time.end,
-            wall: 0.0,
-            remarks: vec!["the run was already finished; nothing was computed".into()],
-        });
-    }
-    let reopened = RunWriter::reopen(directory)?;
-    let (state, since, tally): (State, Since, Tally) =
-        postcard::from_bytes(&reopened.payload).map_err(|error| RunError::Incompatible {
-            what: format!(
-                "the checkpoint of {} does not fit this version of Carom: {error}",
-                directory.display()
-            ),
-        })?;
-    let simulation = Setup::new(case).threads(options.threads).resume(state).map_err(RunError::Case)?;
-    let simulation = if options.audit { simulation.audited() } else { simulation };
-    let mut manifest = reopened.manifest;
-    manifest.status = Status::Running;
-    // Those of a killed process are older in the manifest.
-    (manifest.counters, manifest.timings) = (tally.counters.clone(), tally.timings.clone());
-    manifest.reason = None;
-    Stop::forget(directory, &mut manifest);
-    manifest.started = carom_record::now();
-    manifest.threads = options.threads;
-    let remarks = reopened.fallback.iter().map(ToString::to_string).collect();
-    let mut session = Session::new(case, simulation, reopened.writer, manifest);
-    (session.since, session.earlier) = (since, tally);
-    session.writer.manifest(&session.manifest)?;
-    if reopened.rows == 0 {
-        session.write_start()?;
-    }
-    session.go(options, observe, stop, remarks)
-}
-
 impl<'a> Session<'a> {
-    fn new(case: &'a Case, simulation: Simulation, mut writer: RunWriter, manifest: Manifest) -> Self {
+    pub(super) fn new(
+        case: &'a Case,
+        simulation: Simulation,
+        mut writer: RunWriter,
+        manifest: Manifest,
+    ) -> Self {
         writer.field_format(case.output.format);
         let at = |time: &f64| simulation.grid().nearest(*time);
         let field_steps = case.output.at_times.iter().map(at).collect();
@@ -188,7 +80,7 @@ impl<'a> Session<'a> {
     }
 
     /// Mesh repairs, warnings, row and fields of the initial state.
-    fn write_start(&mut self) -> Result<(), RunError> {
+    pub(super) fn write_start(&mut self) -> Result<(), RunError> {
         let strain = self.simulation.state().ledger.strain;
         for event in repairs(self.case).into_iter().chain(relaxed(self.case, strain)) {
             self.writer.log(&event)?;
@@ -217,7 +109,7 @@ impl<'a> Session<'a> {
         self.log_warnings(known)
     }
 
-    fn go(
+    pub(super) fn go(
         mut self,
         options: Options,
         observe: &mut (dyn FnMut(&Progress) + Send),
@@ -413,7 +305,7 @@ impl<'a> Session<'a> {
         let state = self.simulation.state();
         let tally =
             Tally { counters: self.manifest.counters.clone(), timings: self.manifest.timings.clone() };
-        Ok(self.writer.checkpoint(state.step, &bytes(state, self.since, &tally)?)?)
+        Ok(self.writer.checkpoint(state.step, &checkpoint(state, self.since, &tally)?)?)
     }
 
     /// Writes the last checkpoint and manifest, with the warnings and verdicts on the record.
@@ -467,30 +359,4 @@ impl<'a> Session<'a> {
 fn stressed(simulation: &Simulation) -> Vec<bool> {
     let (model, state) = (simulation.model(), simulation.state());
     model.probes.iter().map(|probe| probe.has_stress(&model.parts, &state.y)).collect()
-}
-
-/// A checkpoint: the state, what the next row will count, and what the run has counted.
-fn bytes(state: &State, since: Since, tally: &Tally) -> Result<Vec<u8>, RunError> {
-    postcard::to_stdvec(&(state, since, tally))
-        .map_err(|e| RunError::Incompatible { what: format!("the state cannot be encoded: {e}") })
-}
-
-/// Processor time: of this thread alone, since other runs may share the process; of the whole
-/// process if steps use several threads.
-enum Busy {
-    Thread(ThreadTime),
-    Process(ProcessTime),
-}
-
-impl Busy {
-    fn now(threads: usize) -> Self {
-        if threads == 1 { Self::Thread(ThreadTime::now()) } else { Self::Process(ProcessTime::now()) }
-    }
-
-    fn seconds(&self) -> f64 {
-        match self {
-            Self::Thread(began) => began.elapsed().as_secs_f64(),
-            Self::Process(began) => began.elapsed().as_secs_f64(),
-        }
-    }
 }

@@ -38,6 +38,30 @@ step = 1e-3
 scheme = { kind = "hu" }
 "#;
 
+/// A bar that bounces on a wall.
+pub(crate) const BAR: &str = r#"
+title = "A bar that bounces on a wall"
+dimension = 1
+material = [{ name = "steel", law = "neo-hookean", density = 1.0, young = 900.0, poisson = 0.0 }]
+[[body]]
+name = "bar"
+material = "steel"
+element = "L2"
+mass = "lumped"
+mesh = { shape = "interval", min = 0.02, max = 10.02, cells = 12 }
+velocity = [-1.0]
+gravity = [-3.0]
+[[contact]]
+name = "wall"
+secondary = "bar.left"
+primary = { plane = { point = [0.0], normal = [1.0] } }
+[time]
+end = 3.0
+step = 0.01
+energy_guard = false
+scheme = { kind = "hu" }
+"#;
+
 /// A case from its text, with some of its keys changed.
 pub(crate) fn case<S: AsRef<str>>(text: &str, sets: &[S]) -> Case {
     let sets: Vec<String> = sets.iter().map(|set| set.as_ref().to_owned()).collect();

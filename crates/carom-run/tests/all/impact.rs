@@ -27,7 +27,7 @@ fn contact_force(sim: &Simulation) -> Vec<f64> {
     force
 }
 
-/// Krenk's identity for the α family (design.md §5): the dissipation of a step from its two states.
+/// Krenk's identity for the α family: the dissipation of a step from its two states.
 fn predicted_dissipation(sim: &Simulation, before: &State, scheme: &carom_time::Scheme) -> f64 {
     let (dt, now) = (sim.dt(), &sim.state());
     let n = now.y.len();

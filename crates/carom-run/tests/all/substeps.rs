@@ -2,7 +2,7 @@
 
 use carom_run::{GridReport, Rejected, Setup};
 
-use super::common::{case, finish, simulation};
+use super::common::{BAR, case, finish, simulation};
 
 /// A stiff disc that falls on a plane; a step is 30 times as long as a wave takes to cross a cell.
 const DISC: &str = r#"
@@ -61,33 +61,20 @@ fn a_step_that_creates_energy_is_shortened_and_resumes_with_the_same_bits() {
 /// in the next one. In steps 64 times shorter it must not be thrown out 64 times as fast.
 #[test]
 fn a_shorter_step_takes_a_node_out_at_the_rate_of_the_longer_one() {
-    let bar = r#"
-dimension = 1
-material = [{ name = "steel", law = "neo-hookean", density = 1.0, young = 900.0, poisson = 0.0 }]
-[[body]]
-name = "bar"
-material = "steel"
-element = "L2"
-mass = "lumped"
-mesh = { shape = "interval", min = 0.0051, max = 1.0051, cells = 4 }
-velocity = [-1.0]
-[[contact]]
-name = "wall"
-secondary = "bar.left"
-primary = { plane = { point = [0.0], normal = [1.0] } }
-restitution = 0.9
-[time]
-end = 0.03
-step = 1e-3
-energy_guard = false
-scheme = { kind = "paoli-schatzman" }
-"#;
-    let mut long = simulation(bar, &[""; 0]);
+    let sets = [
+        "body.bar.mesh={ shape = \"interval\", min = 0.0051, max = 1.0051, cells = 4 }",
+        "body.bar.gravity=[0.0]",
+        "contact.wall.restitution=0.9",
+        "time.scheme={ kind = \"paoli-schatzman\" }",
+        "time.end=0.03",
+        "time.step=1e-3",
+    ];
+    let mut long = simulation(BAR, &sets);
     while long.state().y[0] >= 0.0 {
         long.step().unwrap();
     }
     let state = long.state().clone();
-    let mut short = simulation(bar, &["time.step=1.5625e-5"]);
+    let mut short = simulation(BAR, &[&sets[..5], &["time.step=1.5625e-5"]].concat());
     short.restore(carom_run::State { step: 64 * state.step, ..state }).unwrap();
     let mut fastest = 0.0_f64;
     while short.state().step < 64 * long.state().step + 256 {

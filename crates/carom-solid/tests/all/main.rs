@@ -7,3 +7,4 @@ mod gmsh;
 mod gmsh_faults;
 mod manufactured;
 mod plane_stress;
+mod subdivided;

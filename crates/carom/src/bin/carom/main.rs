@@ -63,8 +63,8 @@ impl Command {
     /// Whether standard output is JSON.
     fn json(&self) -> bool {
         match self {
-            Self::Run(arguments) => arguments.json,
-            Self::Resume(arguments) => arguments.json,
+            Self::Run(arguments) => arguments.flags.json,
+            Self::Resume(arguments) => arguments.flags.json,
             Self::Study(arguments) => arguments.json,
             Self::Verify(arguments) => arguments.json,
             Self::Check(arguments) => arguments.json,

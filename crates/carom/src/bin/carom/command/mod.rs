@@ -3,6 +3,7 @@
 pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod explain;
+mod flags;
 pub(crate) mod man;
 pub(crate) mod mesh;
 pub(crate) mod new;

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use carom_record::study::StudyManifest;
 use serde_json::json;
 
+use super::flags::Flags;
 use crate::exit::{Exit, Failure};
 use crate::live::{Live, stop_on_signal};
-use crate::simulation::{self, Options};
-use crate::{out, summary};
+use crate::{out, simulation, summary};
 
 /// Resume a run or a study that was stopped; the result is bitwise identical
 #[derive(clap::Args)]
@@ -17,45 +17,24 @@ use crate::{out, summary};
 Examples:
   carom resume runs/impact
   carom resume runs/fair --jobs 2")]
-#[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Arguments {
     /// The directory of the run or study
     directory: PathBuf,
-    /// Number of threads of a run; results are bitwise identical for any number;
-    /// at most four per core, or 64 [default: one per core]
-    #[arg(long, value_name = "N")]
-    threads: Option<NonZero<usize>>,
     /// Number of concurrent arms of a study; results are bitwise identical for any number;
     /// at most four per core, or 64 [default: all cores]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
-    /// Do not write figures and report page
-    #[arg(long)]
-    no_report: bool,
-    /// Where a run stops, do not try what may get it past that place
-    #[arg(long)]
-    no_trials: bool,
-    /// Check the contact of every step by a second method, which holds every node against the whole
-    /// outline of the other body, and stop where it contradicts; slow
-    #[arg(long)]
-    audit: bool,
-    /// Print a timing profile of a run
-    #[arg(long)]
-    profile: bool,
-    /// Exit with code 1 if an expectation of a run is missed
-    #[arg(long)]
-    strict: bool,
-    /// Print one JSON object per event on standard output, and nothing else
-    #[arg(long)]
-    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) flags: Flags,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let flags = &arguments.flags;
     if StudyManifest::is_in(&arguments.directory) {
         let of_a_run = [
-            (arguments.threads.is_some(), "--threads"),
-            (arguments.profile, "--profile"),
-            (arguments.strict, "--strict"),
+            (flags.threads.is_some(), "--threads"),
+            (flags.profile, "--profile"),
+            (flags.strict, "--strict"),
         ];
         if let Some((_, option)) = of_a_run.iter().find(|(given, _)| *given) {
             let what =
@@ -64,31 +43,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                         the timings of an arm are in its manifest.json";
             return Err(Failure::Argument { what, help: help.to_owned() });
         }
-        return super::study::resume(
-            &arguments.directory,
-            arguments.jobs,
-            !arguments.no_report,
-            arguments.json,
-        );
+        return super::study::resume(&arguments.directory, arguments.jobs, !flags.no_report, flags.json);
     }
     if arguments.jobs.is_some() {
         let what = format!("--jobs is an option for studies, but {} is a run", arguments.directory.display());
         return Err(Failure::Argument { what, help: "use --threads for a run".to_owned() });
     }
     super::report::run_directory(&arguments.directory)?;
-    let options = Options {
-        threads: super::parallel("--threads", arguments.threads)?,
-        report: !arguments.no_report,
-        profile: arguments.profile,
-        trials: !arguments.no_trials,
-        audit: arguments.audit,
-    };
+    let options = flags.options()?;
     let stop = stop_on_signal()?;
-    if arguments.json {
+    if flags.json {
         out::event(&json!({ "event": "resume", "directory": arguments.directory }))?;
     }
-    let mut live = Live::new(arguments.json, &arguments.directory);
+    let mut live = Live::new(flags.json, &arguments.directory);
     let done = simulation::resume(&arguments.directory, options, &mut |p| live.show(p), &stop);
     live.end(&done);
-    summary::print(done, arguments.json, arguments.strict)
+    summary::print(done, flags.json, flags.strict)
 }

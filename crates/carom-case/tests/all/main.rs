@@ -1,16 +1,19 @@
 //! The shipped cases, defaults and presets, overrides, and messages.
 
+#![allow(clippy::unwrap_used)] // the helpers are tests too
+
 mod contact_messages;
+mod excerpt;
 mod files;
 mod mesh_file;
 mod messages;
 mod misspelt;
 mod shapes;
 
-use super::*;
+use carom_case::*;
 
-const IMPACT: &str = include_str!("../../../cases/impact/impact.toml");
-const REBOUND: &str = include_str!("../../../cases/impact/rebound.toml");
+const IMPACT: &str = include_str!("../../../../cases/impact/impact.toml");
+const REBOUND: &str = include_str!("../../../../cases/impact/rebound.toml");
 
 /// Two bars in a row, with everything that dimension 1 and a second contact can have.
 const BARS: &str = r#"

@@ -1,7 +1,9 @@
 //! Meshes from files: paths relative to the folder of the case, hashes, and errors reported at the
 //! key that names the file.
 
-use super::*;
+use carom_case::*;
+
+use super::resolved_as;
 
 const GMSH: &str = include_str!("../../../../cases/gmsh/gmsh.toml");
 

@@ -1,7 +1,7 @@
 //! Rings, polygons with local refinement, and placed bodies.
 
-use super::super::*;
 use super::{BARS, IMPACT, resolved};
+use carom_case::*;
 
 const POLYGON: &str = "body.prism.mesh={ shape = \"polygon\", points = [[0, 0], [0, -1], [1, -0.5]], size = 0.2, refine = [{ near = [0, 0], size = 0.05 }] }";
 

@@ -1,6 +1,7 @@
 //! Messages: some compared word by word, the others by parts of them.
 
 use super::{BARS, IMPACT, resolved};
+use carom_case::{Document, read};
 
 pub(super) fn shown(text: &str, sets: &[&str]) -> String {
     let found = resolved(text, sets).expect_err("the case is wrong");
@@ -42,6 +43,10 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (
         &["material.rubber.density=-0.25"],
         &["must be a number ≥ 0, not -0.25", "did you mean `density = 0.25`?"],
+    ),
+    (
+        &["material.rubber.density=\"2 kg\""],
+        &["not the string \"2 kg\"", "write `density = 2`: the number alone"],
     ),
     (&["time.end=nan"], &["`end` is NaN", "all numbers of a case must be finite"]),
     (&["body.cylinder.gravity=[0.0, -inf]"], &["`gravity` is -inf"]),
@@ -329,4 +334,29 @@ fn all_problems_in_one_pass() {
         message.lines().filter(|l| l.starts_with("a/case") || l.starts_with("--set")).collect();
     assert_eq!(lines.len(), 4);
     assert!(lines[3].starts_with("--set"));
+}
+
+#[test]
+fn examples_name_what_the_case_has() {
+    let case = r#"
+title = "t"
+dimension = 2
+[[body]]
+name = "ball"
+material = "steel"
+element = "T6"
+mesh = { shape = "disc", radius = 1.0, center = [0.0, 0.0], size = 0.2 }
+[[contact]]
+name = "c"
+primary = 3
+[[support]]
+on = "floor"
+"#;
+    let document = Document::parse("case", case, &[]).unwrap();
+    let message = document.diagnose_all(&read(&document).unwrap_err()).to_string();
+    assert!(
+        message.contains("primary = \"ball.arc\"") && message.contains("on = [\"ball.arc\"]"),
+        "{message}"
+    );
+    assert!(!message.contains("prism") && !message.contains("cylinder"), "{message}");
 }

@@ -2,7 +2,7 @@
 
 use super::IMPACT;
 use super::messages::shown;
-use crate::{CaseError, Document, read};
+use carom_case::{CaseError, Document, read};
 
 #[test]
 fn texts_that_are_not_cases() {

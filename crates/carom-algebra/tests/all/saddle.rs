@@ -1,0 +1,89 @@
+//! The dense system of the last unknowns and the constraints.
+
+use carom_algebra::Saddle;
+
+#[test]
+fn meets_both_lines_of_the_system_and_refuses_dependent_rows() {
+    let (n, m) = (7, 3);
+    let entry = |i: usize, j: usize| if i == j { 4.0 } else { 1.0 / (1.0 + (i as f64 - j as f64).abs()) };
+    let stiffness: Vec<f64> = (0..n * n).map(|k| entry(k % n, k / n)).collect();
+    let row = |r: usize, j: usize| ((r * 5 + j).pow(2) as f64 * 1.3).sin();
+    let mut saddle = Saddle::default();
+    saddle.begin(&stiffness, n, m);
+    saddle.add(4, 2, 0.25);
+    for r in 0..m {
+        (0..n).for_each(|j| saddle.add_row(r, j, row(r, j)));
+    }
+    saddle.factor().unwrap();
+    let b: Vec<f64> = (0..n).map(|i| i as f64 - 2.0).collect();
+    let c = [0.3, -0.1, 0.7];
+    let (mut x, mut multipliers) = (b.clone(), c.to_vec());
+    saddle.solve(&mut x, &mut multipliers);
+    for i in 0..n {
+        let changed = |j: usize| if (i, j) == (4, 2) || (i, j) == (2, 4) { 0.25 } else { 0.0 };
+        let upper: f64 = (0..n).map(|j| (entry(i, j) + changed(j)) * x[j]).sum();
+        let lower: f64 = (0..m).map(|r| row(r, i) * multipliers[r]).sum();
+        assert!((upper + lower - b[i]).abs() < 1e-13);
+    }
+    for r in 0..m {
+        assert!(((0..n).map(|j| row(r, j) * x[j]).sum::<f64>() - c[r]).abs() < 1e-13);
+    }
+    // Indefinite along the first row alone: augmented along that row S has a factor; otherwise
+    // the whole matrix is factored.
+    let push = -30.0;
+    let along = |i: usize| if i == 2 { 1.0 } else { 0.0 };
+    for share in [0.0, 20.0] {
+        saddle.begin(&stiffness, n, 1);
+        saddle.add_row(0, 2, 2.0);
+        saddle.add(2, 2, push);
+        saddle.augment(share);
+        assert_eq!(saddle.factor(), Ok(share > 0.0));
+        let (mut x, mut multiplier) = (b.clone(), [0.5]);
+        saddle.solve(&mut x, &mut multiplier);
+        assert!((2.0 * x[2] - 0.5).abs() < 1e-13);
+        for i in 0..n {
+            let upper: f64 = (0..n).map(|j| entry(i, j) * x[j]).sum();
+            assert!((upper + along(i) * (push * x[2] + 2.0 * multiplier[0]) - b[i]).abs() < 1e-12);
+        }
+    }
+    saddle.begin(&stiffness, n, 2);
+    (0..2).for_each(|r| saddle.add_row(r, 0, 1.0));
+    assert!(saddle.factor().is_err());
+}
+
+/// Forces along other directions, with S positive definite, only on the kernel, or not at all.
+#[test]
+fn forces_may_act_along_other_directions() {
+    let (n, m) = (6, 2);
+    let row = |r: usize, j: usize| ((r * 5 + j).pow(2) as f64 * 1.3).sin();
+    let direction = |r: usize, j: usize| row(r, j) - 0.4 * ((r * 7 + 3 * j) as f64).cos();
+    for (push, share) in [(0.0, 0.0), (0.0, 10.0), (-30.0, 10.0), (-30.0, 0.0)] {
+        let entry = |i: usize, j: usize| match (i, j) {
+            (2, 2) => 4.0 + push,
+            _ if i == j => 4.0,
+            _ => 1.0 / (1.0 + (i as f64 - j as f64).abs()),
+        };
+        let stiffness: Vec<f64> = (0..n * n).map(|k| entry(k % n, k / n)).collect();
+        let mut saddle = Saddle::default();
+        saddle.begin(&stiffness, n, m);
+        saddle.direct();
+        for r in 0..m {
+            (0..n).for_each(|j| saddle.add_row(r, j, row(r, j)));
+            (0..n).for_each(|j| saddle.add_direction(r, j, direction(r, j)));
+        }
+        saddle.augment(share);
+        saddle.factor().unwrap();
+        let b: Vec<f64> = (0..n).map(|i| i as f64 - 2.0).collect();
+        let c = [0.3, -0.1];
+        let (mut x, mut multipliers) = (b.clone(), c.to_vec());
+        saddle.solve(&mut x, &mut multipliers);
+        for i in 0..n {
+            let upper: f64 = (0..n).map(|j| entry(i, j) * x[j]).sum();
+            let lower: f64 = (0..m).map(|r| direction(r, i) * multipliers[r]).sum();
+            assert!((upper + lower - b[i]).abs() < 1e-12, "{push} {share}");
+        }
+        for r in 0..m {
+            assert!(((0..n).map(|j| row(r, j) * x[j]).sum::<f64>() - c[r]).abs() < 1e-12);
+        }
+    }
+}

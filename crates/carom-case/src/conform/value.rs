@@ -1,0 +1,228 @@
+//! Checks a value against what its key may have: type, range, choice, formula.
+
+use super::Check;
+use crate::document::joined;
+use crate::keys::{self, Default, Key, Kind, Range};
+use crate::problem::Problem;
+use crate::suggest;
+use crate::tree::{Node, Value};
+
+impl Check {
+    /// All problems of a value, and of the tables in it.
+    pub(super) fn value(&mut self, node: &Node, key: &Key, path: &str) {
+        match (&key.kind, &node.value) {
+            (Kind::Text | Kind::Side | Kind::SideOr(_), Value::Text(_))
+            | (Kind::NumberOrFalse(_), Value::Flag(false))
+            | (Kind::Truth, Value::Flag(_)) => {}
+            (Kind::Name, Value::Text(name)) => self.name(name, key, path),
+            (Kind::Choice(now, later), Value::Text(word)) => {
+                self.choice(word, key.name, now, later, &key.meaning(), path);
+            }
+            (Kind::Choices(words), Value::List(list)) if !list.is_empty() => {
+                for (i, node) in list.iter().enumerate() {
+                    let path = format!("{path}[{i}]");
+                    match node.text() {
+                        Some(word) => self.choice(word, key.name, words, &[], &key.meaning(), &path),
+                        None => self.wrong(node, key, &path),
+                    }
+                }
+            }
+            (Kind::Number(range) | Kind::NumberOrFalse(range), Value::Integer(_) | Value::Float(_)) => {
+                self.number(node, range, key, path);
+            }
+            (Kind::Count(least), Value::Integer(n)) => self.count(*n, *least, node, key, path),
+            (Kind::Counts(least), Value::Integer(n)) if self.dimension == Some(1) => {
+                self.count(*n, *least, node, key, path);
+            }
+            (Kind::Counts(least), Value::List(list)) if list.len() == 2 => {
+                for (i, node) in list.iter().enumerate() {
+                    let path = format!("{path}[{i}]");
+                    match node.value {
+                        Value::Integer(n) => self.count(n, *least, node, key, &path),
+                        _ => self.wrong(node, key, &path),
+                    }
+                }
+            }
+            (Kind::Vector, Value::List(list)) if self.dimension.is_none_or(|d| d == list.len()) => {
+                self.numbers(list, key, path);
+            }
+            (Kind::Numbers, Value::List(list)) => self.numbers(list, key, path),
+            (Kind::Points(least), Value::List(list)) if list.len() >= *least => {
+                for (i, node) in list.iter().enumerate() {
+                    let path = format!("{path}[{i}]");
+                    match &node.value {
+                        Value::List(point) if point.len() == 2 => self.numbers(point, key, &path),
+                        _ => self.wrong(node, key, &path),
+                    }
+                }
+            }
+            (Kind::ByColumn, Value::Table(table)) => {
+                for entry in &table.0 {
+                    self.formula(&entry.node, &["t"], key, &joined(path, &entry.key));
+                }
+            }
+            (Kind::Formula(variables), _) => self.formula(node, variables, key, path),
+            (Kind::Formulas(variables) | Kind::FormulasOr(variables, _), Value::List(list))
+                if self.dimension.is_none_or(|d| d == list.len()) =>
+            {
+                for (i, node) in list.iter().enumerate() {
+                    self.formula(node, variables, key, &format!("{path}[{i}]"));
+                }
+            }
+            (Kind::Between, Value::Text(word)) if word == "all" => {}
+            (Kind::Sides | Kind::Between, Value::List(list)) if !list.is_empty() => {
+                for (i, node) in list.iter().enumerate().filter(|(_, n)| n.text().is_none()) {
+                    self.wrong(node, key, &format!("{path}[{i}]"));
+                }
+            }
+            (Kind::Table(spec) | Kind::SideOr(spec) | Kind::FormulasOr(_, spec), Value::Table(table)) => {
+                self.table(table, spec, path);
+            }
+            (Kind::Tables(spec), Value::List(list))
+                if !list.is_empty() || matches!(key.default, Default::Absent) =>
+            {
+                for (i, node) in list.iter().enumerate() {
+                    let path = format!("{path}[{i}]");
+                    match node.table() {
+                        Some(table) => self.table(table, spec, &path),
+                        None => self.wrong(node, key, &path),
+                    }
+                }
+            }
+            (Kind::Variant(variants), Value::Table(table)) => self.variant(table, variants(), path),
+            _ => self.wrong(node, key, path),
+        }
+    }
+
+    pub(super) fn choice(
+        &mut self,
+        word: &str,
+        key: &str,
+        now: &[&str],
+        later: &[&str],
+        meaning: &str,
+        path: &str,
+    ) {
+        if now.contains(&word) {
+            return;
+        }
+        if later.contains(&word) {
+            let what = format!("`{key} = \"{word}\"` is not supported yet");
+            let why = format!("\"{word}\" is planned for a later version of Carom");
+            return self.add(path, what, why, format!("use one of: {}", suggest::list(now.iter().copied())));
+        }
+        let what = format!("`{key}` cannot be \"{word}\"");
+        let near = suggest::nearest(word, now.iter().copied());
+        let why = match near {
+            Some(_) => format!("{meaning} Allowed values: {}", suggest::list(now.iter().copied())),
+            None => meaning.to_owned(),
+        };
+        self.add(path, what, why, suggest::help(word, now.iter().copied()));
+    }
+
+    fn name(&mut self, name: &str, key: &Key, path: &str) {
+        let bad = |c: char| c.is_whitespace() || c.is_control() || "./\\,\"'[]".contains(c);
+        if name.is_empty() || name.contains(bad) {
+            let what = format!("{name:?} is not a valid name");
+            let why = "names are part of the names of columns and sides (`name.side`), so they may not contain dots, blanks, slashes, commas, quotes or brackets";
+            let good: String = name.chars().map(|c| if bad(c) { '_' } else { c }).collect();
+            let good = if good.is_empty() { key.example.to_owned() } else { format!("\"{good}\"") };
+            self.add(path, what, why.to_owned(), format!("write `{} = {good}`", key.name));
+        }
+    }
+
+    fn number(&mut self, node: &Node, range: &Range, key: &Key, path: &str) {
+        let Some(x) = node.number() else { return };
+        if !x.is_finite() {
+            let what = format!("`{}` is {x}", key.name);
+            let why = format!("all numbers of a case must be finite. {}", key.meaning());
+            self.add(path, what, why, format!("write {}", key.kind.described(self.dimension)));
+        } else if !range.contains(x) {
+            let what = format!("`{}` must be {}, not {x}", key.name, range.described());
+            // A sign is easily lost, or of another convention.
+            let help = if x < 0.0 && range.contains(-x) {
+                format!("did you mean `{} = {}`?", key.name, -x)
+            } else if let Some(end) = range.end_next_to(x) {
+                format!("write for example `{} = {end}`", key.name)
+            } else {
+                format!("write for example `{} = {}`", key.name, self.names.example(key))
+            };
+            self.add(path, what, key.meaning(), help);
+        }
+    }
+
+    fn numbers(&mut self, list: &[Node], key: &Key, path: &str) {
+        for (i, node) in list.iter().enumerate() {
+            let path = format!("{path}[{i}]");
+            if node.number().is_some() {
+                self.number(node, &keys::ANY, key, &path);
+            } else {
+                self.wrong(node, key, &path);
+            }
+        }
+    }
+
+    fn formula(&mut self, node: &Node, variables: &'static [&'static str], key: &Key, path: &str) {
+        match &node.value {
+            Value::Integer(_) | Value::Float(_) => self.number(node, &keys::ANY, key, path),
+            Value::Text(text) => {
+                let variables = keys::variables(variables, self.dimension.unwrap_or(2));
+                if let Err(error) = carom_formula::Formula::parse(text, &variables) {
+                    let what = format!("the formula of `{}`: {}", key.name, error.message);
+                    let why = format!(
+                        "{} It is a formula in the variables {}.",
+                        key.meaning(),
+                        variables.join(", ")
+                    );
+                    let help = format!("write for example `{} = {}`", key.name, self.names.example(key));
+                    self.problems.push(Problem::new(path, what, why, help).within(error.at));
+                }
+            }
+            _ => self.wrong(node, key, path),
+        }
+    }
+
+    fn count(&mut self, n: i64, least: usize, node: &Node, key: &Key, path: &str) {
+        if usize::try_from(n).is_ok_and(|n| n >= least) {
+            return;
+        }
+        let what = format!("`{}` must be an integer ≥ {least}, not {}", key.name, node.described());
+        self.add(
+            path,
+            what,
+            key.meaning(),
+            format!("write for example `{} = {}`", key.name, self.names.example(key)),
+        );
+    }
+
+    fn wrong(&mut self, node: &Node, key: &Key, path: &str) {
+        let wanted = key.kind.described(self.dimension);
+        let later =
+            !key.later.is_empty() && matches!(node.value, Value::Table(_) | Value::Text(_) | Value::List(_));
+        let mut what = format!("`{}` must be {wanted}, not {}", key.name, node.described());
+        let mut why = key.meaning();
+        if later {
+            why = format!("{why} A later version of Carom will also accept {}", key.later);
+        }
+        if matches!(key.kind, Kind::Tables(_)) && matches!(node.value, Value::Table(_)) {
+            what = format!("`{}` must be a list of tables, not a single table", key.name);
+        }
+        let help = match key.kind {
+            Kind::Tables(table) => format!("write its header in double brackets: {}", table.name),
+            Kind::Number(_) | Kind::NumberOrFalse(_) if let Some(number) = number_with_unit(node) => {
+                format!("write `{} = {number}`: the number alone, in the units of the whole case", key.name)
+            }
+            Kind::Vector if self.dimension == Some(1) => {
+                format!("write one number in brackets, for example `{} = [0.0]`", key.name)
+            }
+            _ => format!("write for example `{} = {}`", key.name, self.names.example(key)),
+        };
+        self.add(path, what, why, help);
+    }
+}
+
+/// The number of a string like `2 GPa`.
+fn number_with_unit(node: &Node) -> Option<&str> {
+    let number = node.text()?.trim_end_matches(|c: char| !c.is_ascii_digit()).trim();
+    number.parse::<f64>().is_ok().then_some(number)
+}

@@ -1,0 +1,68 @@
+//! A scheme and its parameters, from the case or from the command line.
+
+use carom_time::SchemeError;
+
+use super::conform;
+use super::document::{Document, joined};
+use super::keys::{self, Kind};
+use super::problem::{CaseError, Diagnostic, Problem};
+use super::suggest;
+use super::tree::Table;
+use super::view::View;
+use super::{Preset, SchemeSpec};
+
+/// The scheme of a table with `kind` and parameters.
+pub(super) fn scheme(
+    table: &Table,
+    preset: Preset,
+    path: &str,
+    problems: &mut Vec<Problem>,
+) -> Option<SchemeSpec> {
+    let kind = table.get("kind")?.text()?;
+    let v = View { table, keys: keys::schemes().table(kind)?.keys, preset };
+    let numbers = v.keys.iter().filter(|k| matches!(k.kind, Kind::Number(_)));
+    let parameters = numbers.filter_map(|k| Some((k.name.to_owned(), v.number(k.name)?))).collect();
+    let forces = if v.keys.iter().any(|k| k.name == "forces") {
+        v.choice("forces")?
+    } else {
+        carom_time::ForceRule::default()
+    };
+    let spec = SchemeSpec { kind: kind.to_owned(), parameters, forces };
+    if let Err(error) = spec.integrator()
+        && !problems.iter().any(|p| p.path.starts_with(path))
+    {
+        let help = match &error {
+            SchemeError::OutOfRange { hint, .. } => hint.clone(),
+            SchemeError::Missing { examples, .. } | SchemeError::Superfluous { examples, .. } => {
+                let written: Vec<_> = examples.iter().map(|example| format!("`{example}`")).collect();
+                format!("write for example {}", written.join(" or "))
+            }
+            SchemeError::UnknownKind { .. } => suggest::help(kind, error.known().iter().copied()),
+        };
+        let why = keys::schemes().table(kind).map_or(keys::schemes().doc, |t| t.doc);
+        problems.push(Problem::new(joined(path, error.key()), error.to_string(), why, help));
+    }
+    Some(spec)
+}
+
+/// A scheme by its kind and parameters `key=value`, as `carom explain` takes them.
+pub fn read_scheme(kind: &str, parameters: &[String]) -> Result<SchemeSpec, CaseError> {
+    let line = |parameter: &String| {
+        let (key, value) =
+            parameter.split_once('=').map_or((parameter.trim(), ""), |(k, v)| (k.trim(), v.trim()));
+        // A word needs no quotes on the command line.
+        let value = value.parse().unwrap_or_else(|_| toml_edit::Value::from(value));
+        format!("{key} = {}", value.to_string().trim())
+    };
+    if let Some(parameter) = parameters.iter().find(|parameter| !parameter.contains('=')) {
+        let what = format!("`{parameter}` is not a parameter");
+        let (why, help) = ("parameters are written KEY=VALUE", "write for example rho_inf=0.1");
+        return Err(CaseError::Wrong(vec![Diagnostic::of_file("carom explain", what, why, help)]));
+    }
+    let kind_line = format!("kind = {}", toml_edit::Value::from(kind));
+    let text = std::iter::once(kind_line).chain(parameters.iter().map(line)).collect::<Vec<_>>().join("\n");
+    let document = Document::parse("arguments", &text, &[])?;
+    let mut problems = conform::variant(document.root(), keys::schemes());
+    let spec = scheme(document.root(), Preset::Default, "", &mut problems);
+    spec.filter(|_| problems.is_empty()).ok_or_else(|| document.diagnose_all(&problems))
+}

@@ -1,0 +1,193 @@
+//! A table of a case → its numbers, with the checks that concern this table alone.
+
+use std::path::Path;
+
+use super::keys::Kind;
+use super::load;
+use super::mesh;
+use super::obstacle;
+use super::place;
+use super::problem::Problem;
+use super::read_scheme::scheme;
+use super::view::{View, word};
+use super::{
+    BodySpec, ContactSpec, FrictionSpec, InitialSpec, MaterialSpec, NewtonSpec, ObstacleMotion, OutputSpec,
+    PrimarySpec, ProbeSpec, SupportSpec, TimeSpec,
+};
+
+pub(super) fn material(v: View, path: &str, problems: &mut Vec<Problem>) -> Option<MaterialSpec> {
+    let (name, law, density) = (v.text("name"), v.choice("law"), v.number("density"));
+    let given: Vec<_> = ["lambda", "mu", "young", "poisson"].into_iter().filter(|k| v.has(k)).collect();
+    let (lambda, mu) = match given.as_slice() {
+        ["lambda", "mu"] => (v.number("lambda")?, v.number("mu")?),
+        ["young", "poisson"] => {
+            let (young, poisson) = (v.number("young")?, v.number("poisson")?);
+            (young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson)))
+        }
+        given => {
+            // A misspelt key is reported once, not as a missing key too.
+            let misspelt = v.table.0.iter().any(|e| !v.keys.iter().any(|k| k.name == e.key));
+            if !misspelt || given.len() > 2 {
+                let had = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
+                let what = format!("the elastic constants are not a valid pair: {had}");
+                let help = elastic_help(v, given);
+                problems.push(
+                    Problem::new(path, what, "an isotropic material has two elastic constants", help)
+                        .at_key(),
+                );
+            }
+            return None;
+        }
+    };
+    if mu > 0.0 && 3.0 * lambda + 2.0 * mu <= 0.0 {
+        let what = format!("the elastic constants Λ = {lambda}, μ = {mu} are not positive definite");
+        let why = format!("the bulk modulus Λ + 2μ/3 = {} must be > 0", lambda + 2.0 * mu / 3.0);
+        let help = format!("lambda must be > {}", -2.0 * mu / 3.0);
+        problems.push(Problem::new(format!("{path}.lambda"), what, why, help));
+    }
+    Some(MaterialSpec { name: name?, law: law?, density: density?, lambda, mu })
+}
+
+pub(super) fn body(
+    v: View,
+    dimension: usize,
+    refine: f64,
+    folder: &Path,
+    path: &str,
+    problems: &mut Vec<Problem>,
+) -> Option<BodySpec> {
+    let shape = v.value("mesh")?;
+    let mesh = mesh::read(
+        shape.table()?,
+        dimension,
+        v.choice("element"),
+        folder,
+        v.preset,
+        &format!("{path}.mesh"),
+        problems,
+    )?;
+    Some(BodySpec {
+        name: v.text("name")?,
+        material: v.text("material")?,
+        element: v.choice("element")?,
+        mesh: mesh.refined(refine),
+        place: match v.table.get("place") {
+            Some(node) => {
+                let Some(Kind::Table(spec)) = v.keys.iter().find(|k| k.name == "place").map(|k| k.kind)
+                else {
+                    return None;
+                };
+                let v = View { table: node.table()?, keys: spec.keys, preset: v.preset };
+                Some(place::read(v, dimension, &format!("{path}.place"), problems)?)
+            }
+            None => None,
+        },
+        position: if v.has("position") { Some(v.formulas("position")?) } else { None },
+        gravity: if v.has("gravity") { v.numbers("gravity")? } else { Vec::new() },
+        velocity: load::velocity(&v, dimension, path, problems)?,
+        mass: v.choice("mass")?,
+    })
+}
+
+pub(super) fn support(v: View) -> Option<SupportSpec> {
+    let fix = if v.has("fix") { v.texts("fix")? } else { Vec::new() };
+    let fix = fix.iter().map(|d| ["x", "y"].iter().position(|x| x == d)).collect::<Option<_>>()?;
+    Some(SupportSpec { name: v.text("name"), on: v.texts("on")?, fix, moves: load::motion(&v)? })
+}
+
+pub(super) fn initial(v: View, folder: &Path) -> Option<InitialSpec> {
+    let joined = folder.join(v.text("from")?);
+    let from = std::path::absolute(&joined).unwrap_or(joined);
+    Some(InitialSpec { from, velocities: v.choice("velocities")? })
+}
+
+pub(super) fn contact(
+    v: View,
+    entry: usize,
+    dimension: Option<usize>,
+    problems: &mut Vec<Problem>,
+) -> Option<ContactSpec> {
+    let between = v.has("between");
+    let (secondary, primary, motion) = if between {
+        (String::new(), PrimarySpec::Side(String::new()), ObstacleMotion::Fixed)
+    } else {
+        let (primary, motion) = obstacle::read(&v, dimension, &format!("contact[{entry}]"), problems)?;
+        (v.text("secondary")?, primary, motion)
+    };
+    Some(ContactSpec {
+        name: v.text("name")?,
+        entry,
+        between,
+        secondary,
+        primary,
+        motion,
+        enforcement: v.choice("enforcement")?,
+        stiffness: v.number("stiffness")?,
+        force: v.choice("force")?,
+        persistency: v.choice("persistency")?,
+        active_set: v.choice("active_set")?,
+        detection: v.choice("detection")?,
+        xi: v.choice("xi")?,
+        law: v.choice("law"),
+        overlap: v.choice("overlap")?,
+        friction: FrictionSpec {
+            mu: v.formula("mu").filter(|mu| !mu.is_zero()),
+            mu_dynamic: v.number("mu_dynamic"),
+            decay: v.number("decay"),
+            shear: v.number("shear"),
+            stick_stiffness: v.number("stick_stiffness"),
+        },
+        restitution: v.number("restitution")?,
+    })
+}
+
+/// The pair of elastic constants that was probably meant.
+fn elastic_help(v: View, given: &[&str]) -> String {
+    let pairs = "give `lambda` and `mu`, or `young` and `poisson`";
+    let ([mu, poisson], ["lambda", "mu", "poisson"]) =
+        (["mu", "poisson"].map(|key| v.number(key).filter(|x| x.is_finite())), given)
+    else {
+        return pairs.to_owned();
+    };
+    let (Some(mu), Some(poisson)) = (mu, poisson) else { return pairs.to_owned() };
+    // Where there is no such material, the nearest that there is.
+    let poisson = poisson.clamp(-0.99, 0.49);
+    let lambda = (2.0 * mu * poisson / (1.0 - 2.0 * poisson) * 1e6).round() / 1e6;
+    format!("{pairs}; with this `mu`, Poisson's ratio is {poisson} for `lambda = {lambda}`")
+}
+
+pub(super) fn probe(v: View) -> Option<ProbeSpec> {
+    let record = v.texts("record")?.iter().map(|q| word(q)).collect::<Option<_>>()?;
+    Some(ProbeSpec { name: v.text("name")?, at: v.numbers("at")?, body: v.text("body")?, record })
+}
+
+pub(super) fn time(v: View, problems: &mut Vec<Problem>) -> Option<TimeSpec> {
+    let scheme = v.value("scheme").and_then(|node| scheme(node.table()?, v.preset, "time.scheme", problems));
+    Some(TimeSpec {
+        end: v.number("end")?,
+        step: v.number("step")?,
+        phase: v.number("phase")?,
+        scheme: scheme?,
+        energy_guard: v.value("energy_guard")?.number(),
+    })
+}
+
+pub(super) fn newton(v: View) -> Option<NewtonSpec> {
+    Some(NewtonSpec {
+        tolerance: v.number("tolerance")?,
+        max_iterations: v.count("max_iterations")?,
+        tangent: v.choice("tangent")?,
+        mixing: v.count("mixing")?,
+    })
+}
+
+pub(super) fn output(v: View) -> Option<OutputSpec> {
+    let every = if v.has("at_times") { 0 } else { 20 };
+    Some(OutputSpec {
+        fields_every: if v.has("fields_every") { v.count("fields_every")? } else { every },
+        format: v.choice("format")?,
+        at_times: v.numbers("at_times")?,
+        history_every: v.count("history_every")?,
+        checkpoint_every: v.count("checkpoint_every")?,
+    })
+}

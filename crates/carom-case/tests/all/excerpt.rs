@@ -1,0 +1,66 @@
+//! The parts of a case that remain when it is reduced.
+
+use carom_case::Excerpt;
+use toml_edit::DocumentMut;
+
+const CASE: &str = r#"
+title = "three"
+material = [{ name = "m", density = 1 }, { name = "unused", density = 2 }]
+
+[[body]]
+name = "a"
+material = "m"
+velocity = [1.0, 0.0]
+mesh = { file = "far/a.msh", surface = "a" }
+
+[[body]] # goes
+name = "b"
+material = "unused"
+
+[[support]]
+on = ["a.left", "b.right"]
+fix = ["x"]
+
+[[support]]
+on = ["b.left"]
+fix = ["x"]
+
+[[contact]]
+name = "c"
+secondary = "a.top"
+primary = "b.top"
+
+[time]
+end = 9.0
+step = 0.5 # kept
+
+[[expect]]
+what = "max a.uy"
+"#;
+
+#[test]
+fn what_remains_is_complete() {
+    let excerpt = Excerpt {
+        bodies: vec!["a".into()],
+        end: 1.5,
+        state: "state.bin".into(),
+        meshes: [("a".to_owned(), "a.msh".to_owned())].into(),
+        comment: "# reduced".into(),
+        ..Excerpt::default()
+    };
+    let sets = ["body.a.element=T6".to_owned(), "time.scheme={ kind = \"hu\" }".to_owned()];
+    let text = excerpt.of(CASE, &sets).unwrap();
+    let case: DocumentMut = text.parse().unwrap();
+    let body = &case["body"][0];
+    assert_eq!(body["element"].as_str(), Some("T6"));
+    assert_eq!((body["mesh"]["file"].as_str(), body.get("velocity").is_none()), (Some("a.msh"), true));
+    assert_eq!(case["support"].as_array_of_tables().map(toml_edit::ArrayOfTables::len), Some(1));
+    assert_eq!(case["support"][0]["on"].as_array().map(toml_edit::Array::len), Some(1));
+    assert_eq!(case["material"].as_array().map(toml_edit::Array::len), Some(1));
+    assert!(case.get("contact").is_none() && case.get("expect").is_none());
+    assert_eq!(
+        (case["time"]["end"].as_float(), case["initial"]["from"].as_str()),
+        (Some(1.5), Some("state.bin"))
+    );
+    assert!(text.starts_with("# reduced\n") && text.contains("# kept") && text.contains("\"hu\""), "{text}");
+}

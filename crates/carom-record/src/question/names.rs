@@ -1,0 +1,24 @@
+//! The names of metrics that a question may use, and the message about all others.
+
+use super::form::form_names;
+use crate::metrics::{COLUMNS, FREE, HISTORY, PRESSURE, WORK};
+
+/// Names of the metrics of a column.
+pub fn column_metric_names() -> Vec<&'static str> {
+    COLUMNS.iter().chain(&FREE).map(|(d, _)| d.name).collect()
+}
+
+/// Names of metrics that need no column.
+pub fn metric_names() -> Vec<&'static str> {
+    let history = HISTORY.iter().map(|(d, _)| d.name);
+    history.chain(PRESSURE.iter().chain(&WORK).map(|(d, _)| d.name)).chain(["stopped"]).collect()
+}
+
+/// The message about words that are no quantity.
+pub(super) fn unknown(what: &str) -> String {
+    format!(
+        "`{what}` is not a valid quantity: give {} and a column, or one of the metrics {}",
+        form_names(),
+        metric_names().join(", ")
+    )
+}

@@ -1,0 +1,119 @@
+//! `run` and `resume`: a session from the start of a case, or from the checkpoint of a run.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use carom_case::Case;
+use carom_record::{Manifest, Run, RunWriter, Source, Status, Stop};
+
+use super::columns::{Since, columns};
+use super::fields::sides;
+use super::outcome::{End, Options, Outcome, Progress, RunError};
+use super::session::Session;
+use super::tally::{Tally, checkpoint, from_checkpoint};
+use super::verdicts::judge;
+use crate::setup::Setup;
+use crate::warnings::warnings;
+
+/// Runs a case into a directory that must not exist yet.
+///
+/// # Errors
+/// The case's problems (nothing is written), or an input/output error.
+pub fn run(
+    case: &Case,
+    source: Source,
+    directory: &Path,
+    options: Options,
+    observe: &mut (dyn FnMut(&Progress) + Send),
+    stop: &AtomicBool,
+) -> Result<Outcome, RunError> {
+    let simulation = Setup::new(case).threads(options.threads).start().map_err(RunError::Case)?;
+    let simulation = if options.audit { simulation.audited() } else { simulation };
+    let resolved = serde_json::to_value(case).map_err(|e| RunError::Incompatible { what: e.to_string() })?;
+    let version = env!("CARGO_PKG_VERSION");
+    let mut manifest =
+        Manifest::new(version, resolved, source, columns(case, simulation.model()), options.threads);
+    manifest.sides = sides(simulation.model());
+    manifest.warnings = warnings(case, simulation.model());
+    let writer = RunWriter::create(
+        directory,
+        &manifest,
+        &checkpoint(simulation.state(), Since::default(), &Tally::default())?,
+    )?;
+    let mut session = Session::new(case, simulation, writer, manifest);
+    session.write_start()?;
+    let remarks = audit_remarks(options, &session);
+    session.go(options, observe, stop, remarks)
+}
+
+/// What an audit leaves out.
+fn audit_remarks(options: Options, session: &Session) -> Vec<String> {
+    if !options.audit {
+        return Vec::new();
+    }
+    let left_out = carom_mechanics::unaudited(session.simulation.model());
+    vec![format!("the audit did not judge: {}", left_out.join("; "))]
+}
+
+/// Resumes a run that was stopped or killed; a finished one is returned as it is.
+///
+/// # Errors
+/// As [`run`], and if the record does not fit this version.
+pub fn resume(
+    directory: &Path,
+    options: Options,
+    observe: &mut (dyn FnMut(&Progress) + Send),
+    stop: &AtomicBool,
+) -> Result<Outcome, RunError> {
+    let manifest = Manifest::read(directory)?;
+    let case: Case =
+        serde_json::from_value(manifest.case.clone()).map_err(|error| RunError::Incompatible {
+            what: format!(
+                "the case in {} was resolved by Carom {} and does not fit this version: {error}",
+                directory.join("manifest.json").display(),
+                manifest.version
+            ),
+        })?;
+    let case = &case;
+    if manifest.status == Status::Finished {
+        // The process may have been killed between the last row and the verdicts.
+        if manifest.expectations.is_empty() && !case.expects.is_empty() {
+            judge(Run::open(directory)?, &case.expects)?;
+        }
+        let steps = case.time.steps();
+        return Ok(Outcome {
+            directory: directory.to_path_buf(),
+            end: End::Finished,
+            steps: steps as u64,
+            time: case.time.end,
+            wall: 0.0,
+            remarks: vec!["the run was already finished; nothing was computed".into()],
+        });
+    }
+    let reopened = RunWriter::reopen(directory)?;
+    let (state, since, tally) =
+        from_checkpoint(&reopened.payload).map_err(|error| RunError::Incompatible {
+            what: format!(
+                "the checkpoint of {} does not fit this version of Carom: {error}",
+                directory.display()
+            ),
+        })?;
+    let simulation = Setup::new(case).threads(options.threads).resume(state).map_err(RunError::Case)?;
+    let simulation = if options.audit { simulation.audited() } else { simulation };
+    let mut manifest = reopened.manifest;
+    manifest.status = Status::Running;
+    // Those of a killed process are older in the manifest.
+    (manifest.counters, manifest.timings) = (tally.counters.clone(), tally.timings.clone());
+    manifest.reason = None;
+    Stop::forget(directory, &mut manifest);
+    manifest.started = carom_record::now();
+    manifest.threads = options.threads;
+    let remarks = reopened.fallback.iter().map(ToString::to_string).collect();
+    let mut session = Session::new(case, simulation, reopened.writer, manifest);
+    (session.since, session.earlier) = (since, tally);
+    session.writer.manifest(&session.manifest)?;
+    if reopened.rows == 0 {
+        session.write_start()?;
+    }
+    session.go(options, observe, stop, remarks)
+}

@@ -1,0 +1,49 @@
+//! What a run has counted and spent, over all processes that worked on it; a checkpoint
+//! contains it.
+
+use std::collections::BTreeMap;
+
+use carom_mechanics::State;
+use cpu_time::{ProcessTime, ThreadTime};
+use serde::{Deserialize, Serialize};
+
+use super::columns::Since;
+use super::outcome::RunError;
+
+/// What a run has counted, and where its time went, up to a checkpoint.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Tally {
+    pub(super) counters: BTreeMap<String, u64>,
+    pub(super) timings: BTreeMap<String, f64>,
+}
+
+/// A checkpoint: the state, what the next row will count, and what the run has counted.
+pub(super) fn checkpoint(state: &State, since: Since, tally: &Tally) -> Result<Vec<u8>, RunError> {
+    postcard::to_stdvec(&(state, since, tally))
+        .map_err(|e| RunError::Incompatible { what: format!("the state cannot be encoded: {e}") })
+}
+
+/// What [`checkpoint`] has written.
+pub(super) fn from_checkpoint(bytes: &[u8]) -> Result<(State, Since, Tally), postcard::Error> {
+    postcard::from_bytes(bytes)
+}
+
+/// Processor time: of this thread alone, since other runs may share the process; of the whole
+/// process if steps use several threads.
+pub(super) enum Busy {
+    Thread(ThreadTime),
+    Process(ProcessTime),
+}
+
+impl Busy {
+    pub(super) fn now(threads: usize) -> Self {
+        if threads == 1 { Self::Thread(ThreadTime::now()) } else { Self::Process(ProcessTime::now()) }
+    }
+
+    pub(super) fn seconds(&self) -> f64 {
+        match self {
+            Self::Thread(began) => began.elapsed().as_secs_f64(),
+            Self::Process(began) => began.elapsed().as_secs_f64(),
+        }
+    }
+}

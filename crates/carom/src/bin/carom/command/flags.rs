@@ -1,0 +1,47 @@
+//! What `carom run` and `carom resume` have in common: how a simulation is run.
+
+use std::num::NonZero;
+
+use crate::exit::Failure;
+use crate::simulation::Options;
+
+// How a run is computed and reported. (A doc comment would replace the help of the commands.)
+#[derive(clap::Args)]
+#[allow(clippy::struct_excessive_bools)] // flags of the command line
+pub(crate) struct Flags {
+    /// Number of threads of a run; results are bitwise identical for any number;
+    /// at most four per core, or 64 [default: one per core]
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZero<usize>>,
+    /// Do not write figures and report page
+    #[arg(long)]
+    pub(crate) no_report: bool,
+    /// Where a run stops, do not try what may get it past that place
+    #[arg(long)]
+    no_trials: bool,
+    /// Check the contact of every step by a second method, which holds every node against the whole
+    /// outline of the other body, and stop where it contradicts; slow
+    #[arg(long)]
+    audit: bool,
+    /// Print a timing profile of a run
+    #[arg(long)]
+    pub(crate) profile: bool,
+    /// Exit with code 1 if an expectation of a run is missed
+    #[arg(long)]
+    pub(crate) strict: bool,
+    /// Print one JSON object per event on standard output, and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl Flags {
+    pub(crate) fn options(&self) -> Result<Options, Failure> {
+        Ok(Options {
+            threads: super::parallel("--threads", self.threads)?,
+            report: !self.no_report,
+            profile: self.profile,
+            trials: !self.no_trials,
+            audit: self.audit,
+        })
+    }
+}
