@@ -1,22 +1,24 @@
 #!/usr/bin/env python3
-"""Generates the mesh of the rolling discs of cases/friction, in the format of Gmsh 2.2 with triangles
-of second order.
+"""Generates the meshes of cases/friction, in the format of Gmsh 2.2 with triangles of second order.
 
     python3 scripts/make_friction_meshes.py
 
 disc.msh: a disc of radius 0.5 about the origin with 256 cells along its arc and half as many on each
 ring further inside. Surface `disc`; curve `arc`.
+
+belt.msh: a belt of thickness 0.01 along a quarter of a circle of radius 1 about the origin, from (1, 0)
+to (0, 1), with straight ends of length 0.1. Surface `belt`; curves `inner`, `low` and `far` (the ends).
 """
 
 from math import cos, pi, sin
 from pathlib import Path
 
-FILE = Path(__file__).resolve().parent.parent / "cases" / "friction" / "disc.msh"
+HERE = Path(__file__).resolve().parent.parent / "cases" / "friction"
 RADII = [0.5, 0.488, 0.466, 0.426, 0.351, 0.22]  # each with half the cells of the one before
 EDGES = 256
 
 
-def main():
+def disc():
     nodes = {}
 
     def corner(ring, j):
@@ -50,16 +52,51 @@ def main():
     centre = nodes.setdefault("centre", (len(nodes) + 1, (0.0, 0.0)))
     for j in range(EDGES >> last):
         cell(corner(last, j), corner(last, j + 1), centre)
+    write("disc.msh", nodes, {"disc": cells, "arc": arc})
 
-    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "2", '2 1 "disc"', '1 2 "arc"']
+
+def belt(cells_of_arc=90, cells_of_end=6):
+    count = cells_of_arc + 2 * cells_of_end
+    nodes = {}
+
+    def node(i, j):
+        """Node i of 2 count along the belt and j of 2 through its thickness."""
+        r, s = 1 + 0.005 * j, i / 2 - cells_of_end
+        if s < 0:
+            place = (r, 0.1 * s / cells_of_end)
+        elif s > cells_of_arc:
+            place = (0.1 * (cells_of_arc - s) / cells_of_end, r)
+        else:
+            angle = pi / 2 * s / cells_of_arc
+            place = (r * cos(angle), r * sin(angle))
+        return nodes.setdefault((i, j), (len(nodes) + 1, place))[0]
+
+    cells = []
+    for i in range(0, 2 * count, 2):
+        p = [[node(i + k, j) for j in range(3)] for k in range(3)]
+        cells.append([p[0][0], p[0][2], p[2][2], p[0][1], p[1][2], p[1][1]])
+        cells.append([p[0][0], p[2][2], p[2][0], p[1][1], p[2][1], p[1][0]])
+    inner = [[node(i, 0), node(i + 2, 0), node(i + 1, 0)] for i in range(0, 2 * count, 2)]
+    low = [[node(0, 0), node(0, 2), node(0, 1)]]
+    far = [[node(2 * count, 0), node(2 * count, 2), node(2 * count, 1)]]
+    write("belt.msh", nodes, {"belt": cells, "inner": inner, "low": low, "far": far})
+
+
+def write(name, nodes, groups):
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", str(len(groups))]
+    elements = []
+    for tag, (group, cells) in enumerate(groups.items(), 1):
+        dimension = 2 if tag == 1 else 1
+        lines.append(f'{dimension} {tag} "{group}"')
+        elements += [(9 if dimension == 2 else 8, tag, c) for c in cells]
     lines += ["$EndPhysicalNames", "$Nodes", str(len(nodes))]
     lines += [f"{k} {x:.17g} {y:.17g} 0" for k, (x, y) in nodes.values()]
-    elements = [(9, 1, c) for c in cells] + [(8, 2, e) for e in arc]
     lines += ["$EndNodes", "$Elements", str(len(elements))]
     for k, (kind, tag, e) in enumerate(elements):
         lines.append(f"{k + 1} {kind} 2 {tag} {tag} " + " ".join(map(str, e)))
-    FILE.write_text("\n".join(lines + ["$EndElements", ""]))
+    (HERE / name).write_text("\n".join(lines + ["$EndElements", ""]))
 
 
 if __name__ == "__main__":
-    main()
+    disc()
+    belt()
