@@ -7,8 +7,8 @@
 //! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations it
 //! is the rate of change of the slip rate, which decides for pairs that have none; others slip in
 //! their direction. All rows are equalities, as without friction: a closed gap stays closed
-//! (`persistency.rs`). A pair whose p pulls has no friction, so that the solution depends
-//! continuously on μ.
+//! (`persistency.rs`), and one whose p pulls goes on to stick, or to slip with q = −sμp. So the
+//! solution depends continuously on μ, and tangential impulses that slip are μ times the normal ones.
 
 use carom_contact::{Hold, Law, Rows, Rub, StickSlip, Tangential};
 
@@ -21,8 +21,6 @@ use crate::system::System;
 
 /// Most changes of stick and slip in one solve.
 const CHANGES: usize = 200;
-/// Times that a pair may begin to pull in a solve.
-const PULLS: u32 = 3;
 /// Slip rate, as a fraction of the largest velocity, that is none.
 const AT_REST: f64 = 1e-10;
 /// Rate, as a fraction of the largest one in a solve, that is round-off.
@@ -64,9 +62,6 @@ struct Way {
     slip: [f64; 2],
     /// Whether it may stick.
     is_free: bool,
-    /// Whether it pulls, and how often it began to.
-    pulls: bool,
-    pulled: u32,
 }
 
 impl Closed {
@@ -166,7 +161,7 @@ impl Closed {
     /// The ways of the pairs of a state.
     fn ways(&self, state: &State) -> Vec<Way> {
         let hold = |&(k, p): &(usize, usize)| state.pairs[k][p].tangential.hold;
-        let way = |place| Way { hold: hold(place), slip: [0.0; 2], is_free: true, pulls: false, pulled: 0 };
+        let way = |place| Way { hold: hold(place), slip: [0.0; 2], is_free: true };
         self.places.iter().map(way).collect()
     }
 
@@ -181,8 +176,10 @@ impl Closed {
     ) -> Result<Motion, Rejected> {
         let before = self.slip_rates(&state.v);
         let slip = |i: usize, law: &Law, pressure: f64| {
-            let radius = law.slip(pressure, before[i].abs());
-            if radius.by_pressure > 0.0 { [radius.by_pressure, 0.0] } else { [0.0, radius.value] }
+            let rate = before[i].abs();
+            let radius = law.slip(pressure, rate);
+            let is_limited = law.limit.is_finite() && radius.by_pressure == 0.0;
+            if is_limited { [0.0, radius.value] } else { [law.coefficient(rate).0, 0.0] }
         };
         for (i, law) in laws.iter().enumerate() {
             let pressure = -state.pairs[self.places[i].0][self.places[i].1].lambda;
@@ -195,22 +192,20 @@ impl Closed {
             let all = rates.iter().chain(right.slips).chain(right.gaps);
             let none = ROUND_OFF * all.fold(0.0_f64, |most, rate| most.max(rate.abs()));
             let mut changed = false;
-            let none_pulls = ROUND_OFF * max_abs(&motion.normal);
-            let rubbing = ways.iter_mut().zip(laws).enumerate();
-            for (i, (way, law)) in rubbing.filter_map(|(i, (way, law))| Some((i, (way, law.as_ref()?)))) {
-                // One that begins to pull again and again has no friction.
-                let pulls = motion.normal[i] > none_pulls || way.pulled == PULLS;
-                way.pulled += u32::from(pulls && !way.pulls);
-                changed |= std::mem::replace(&mut way.pulls, pulls) != pulls;
-                let new = slip(i, law, -motion.normal[i]);
-                changed |= !pulls && std::mem::replace(&mut way.slip, new) != new;
+            for (i, law) in laws.iter().enumerate() {
+                let new = law.as_ref().map_or([0.0; 2], |law| slip(i, law, -motion.normal[i]));
+                changed |= std::mem::replace(&mut ways[i].slip, new) != new;
             }
             let rub = |i: usize| {
-                let (way, cone) = (ways[i], laws[i]?.grip(-motion.normal[i]));
+                let (way, law, p) = (ways[i], laws[i]?, motion.normal[i]);
+                if p >= 0.0 && way.hold == Hold::Stick {
+                    return None;
+                }
+                let cone = law.grip(-p);
                 // What is no slip to round-off has no direction.
                 let rate = rates[i] - right.slips[i];
                 let slip = if way.is_free && rate.abs() > none { rate } else { way.hold.sign() };
-                (!way.pulls).then_some(Rub { hold: way.hold, traction: motion.tangential[i], slip, cone })
+                Some(Rub { hold: way.hold, traction: motion.tangential[i], slip, cone })
             };
             let rubs: Vec<Option<Rub>> = (0..ways.len()).map(rub).collect();
             let changes = set.changes(&rubs, true).map_err(|_| Rejected::NoFrictionBalance)?;
@@ -239,8 +234,7 @@ impl Closed {
         let mut rows = self.normals.clone();
         let mut targets = right.gaps.to_vec();
         let mut forces = right.forces.to_vec();
-        let rubs: Vec<usize> =
-            (0..ways.len()).filter(|&i| self.laws[i].is_some() && !ways[i].pulls).collect();
+        let rubs: Vec<usize> = (0..ways.len()).filter(|&i| self.laws[i].is_some()).collect();
         rows.is_skew = !rubs.is_empty();
         for &i in &rubs {
             let [factor, traction] = ways[i].slip.map(|part| ways[i].hold.sign() * part);

@@ -11,7 +11,6 @@ use carom_contact::{Answer, ContactError, Direction, DiscreteGradient, Law, Pair
 use carom_time::{Internal, Stage};
 
 use crate::balance::{Forces, contact_weights, known_into, mean_acceleration, residual_into};
-use crate::friction::Rubbing;
 use crate::model::{LoadsAt, Model, Prescribed};
 use crate::rejected::Rejected;
 use crate::renewal::Point as FactorPoint;
@@ -385,7 +384,8 @@ impl<'a> Equations<'a> {
                     if answer.active {
                         self.slip_into(k, pair, row.gap, middle, &at.increment, slips).map_err(failed)?;
                         let slip = slips.row(p);
-                        let Rubbing { sign, radius, .. } = self.rub(k, pair, slip.gap);
+                        let rubbing = self.rub(k, pair, slip.gap);
+                        let (sign, radius) = (rubbing.sign, rubbing.radius);
                         let turn = sign * radius.by_pressure;
                         let along = discrete_gradients.gradient_mut(p).iter_mut().zip(slip.gradient);
                         along.for_each(|(along, h)| *along -= turn * h);
