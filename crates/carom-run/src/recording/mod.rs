@@ -13,5 +13,5 @@ mod verdicts;
 pub use columns::columns;
 pub use fields::initial_fields;
 pub use outcome::{End, Options, Outcome, Progress, RunError};
-pub use session::{resume, run};
+pub use session::{resume, run, run_in_memory};
 pub(crate) use stopped::explain;

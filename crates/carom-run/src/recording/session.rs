@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 
 use carom_case::Case;
 use carom_mechanics::{Attempt, GridReport, Simulation, State, penetration};
-use carom_record::{ContactRow, Event, Manifest, Run, RunWriter, Source, Status, Stop};
+use carom_record::{
+    ContactRow, Event, Manifest, MemoryRecord, Recorder, Run, RunWriter, Source, Status, Stop,
+};
 use cpu_time::{ProcessTime, ThreadTime};
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +18,7 @@ use super::fields::{consistent_weights, field_set, gap_of, sides};
 use super::log::{entry, relaxed, repairs};
 use super::outcome::{End, Options, Outcome, Progress, RunError};
 use super::stopped::{Record, write_stop};
-use super::verdicts::judge;
+use super::verdicts::judged;
 use crate::setup::Setup;
 use crate::warnings::{warnings, warnings_of_record};
 
@@ -34,7 +36,7 @@ struct Tally {
 struct Session<'a> {
     case: &'a Case,
     simulation: Simulation,
-    writer: RunWriter,
+    writer: &'a mut dyn Recorder,
     manifest: Manifest,
     weights: Vec<f64>,
     field_steps: Vec<u64>,
@@ -67,6 +69,39 @@ pub fn run(
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
+    let (simulation, manifest) = started(case, source, options)?;
+    let mut writer = RunWriter::create(
+        directory,
+        &manifest,
+        &bytes(simulation.state(), Since::default(), &Tally::default())?,
+    )?;
+    writer.field_format(case.output.format);
+    let mut session = Session::new(case, simulation, &mut writer, manifest);
+    session.write_start()?;
+    session.go(options, observe, stop, Vec::new())
+}
+
+/// Runs a case and records it in memory. Such a run cannot be resumed.
+///
+/// # Errors
+/// The case's problems.
+pub fn run_in_memory(
+    case: &Case,
+    source: Source,
+    options: Options,
+    observe: &mut (dyn FnMut(&Progress) + Send),
+    stop: &AtomicBool,
+) -> Result<(Outcome, MemoryRecord), RunError> {
+    let (simulation, manifest) = started(case, source, options)?;
+    let mut record = MemoryRecord::new(manifest.clone());
+    let mut session = Session::new(case, simulation, &mut record, manifest);
+    session.write_start()?;
+    let outcome = session.go(options, observe, stop, Vec::new())?;
+    Ok((outcome, record))
+}
+
+/// The simulation of a case at its start, and the manifest of its run.
+fn started(case: &Case, source: Source, options: Options) -> Result<(Simulation, Manifest), RunError> {
     let simulation = Setup::new(case).threads(options.threads).start().map_err(RunError::Case)?;
     let simulation = if options.audit { simulation.audited() } else { simulation };
     let resolved = serde_json::to_value(case).map_err(|e| RunError::Incompatible { what: e.to_string() })?;
@@ -75,14 +110,7 @@ pub fn run(
         Manifest::new(version, resolved, source, columns(case, simulation.model()), options.threads);
     manifest.sides = sides(simulation.model());
     manifest.warnings = warnings(case, simulation.model());
-    let writer = RunWriter::create(
-        directory,
-        &manifest,
-        &bytes(simulation.state(), Since::default(), &Tally::default())?,
-    )?;
-    let mut session = Session::new(case, simulation, writer, manifest);
-    session.write_start()?;
-    session.go(options, observe, stop, Vec::new())
+    Ok((simulation, manifest))
 }
 
 /// Resumes a run that was stopped or killed; a finished one is returned as it is.
@@ -108,7 +136,9 @@ pub fn resume(
     if manifest.status == Status::Finished {
         // The process may have been killed between the last row and the verdicts.
         if manifest.expectations.is_empty() && !case.expects.is_empty() {
-            judge(Run::open(directory)?, &case.expects)?;
+            if let Some(manifest) = judged(Run::open(directory)?, &case.expects) {
+                manifest.replace(directory)?;
+            }
         }
         let steps = case.time.steps();
         return Ok(Outcome {
@@ -139,7 +169,9 @@ pub fn resume(
     manifest.started = carom_record::now();
     manifest.threads = options.threads;
     let remarks = reopened.fallback.iter().map(ToString::to_string).collect();
-    let mut session = Session::new(case, simulation, reopened.writer, manifest);
+    let mut writer = reopened.writer;
+    writer.field_format(case.output.format);
+    let mut session = Session::new(case, simulation, &mut writer, manifest);
     (session.since, session.earlier) = (since, tally);
     session.writer.manifest(&session.manifest)?;
     if reopened.rows == 0 {
@@ -149,8 +181,7 @@ pub fn resume(
 }
 
 impl<'a> Session<'a> {
-    fn new(case: &'a Case, simulation: Simulation, mut writer: RunWriter, manifest: Manifest) -> Self {
-        writer.field_format(case.output.format);
+    fn new(case: &'a Case, simulation: Simulation, writer: &'a mut dyn Recorder, manifest: Manifest) -> Self {
         let at = |time: &f64| simulation.grid().nearest(*time);
         let field_steps = case.output.at_times.iter().map(at).collect();
         let weights = center_weights(simulation.model());
@@ -329,7 +360,7 @@ impl<'a> Session<'a> {
     fn write_fields(&mut self) -> Result<(), RunError> {
         if self.case.output.fields_every > 0 || !self.field_steps.is_empty() {
             let (model, state) = (self.simulation.model(), self.simulation.state());
-            self.writer.fields(state.step, state.time, &field_set(self.case, model, state))?;
+            self.writer.fields(state.step, state.time, field_set(self.case, model, state))?;
         }
         Ok(())
     }
@@ -392,6 +423,9 @@ impl<'a> Session<'a> {
     /// Writes a checkpoint of the state as it is.
     fn checkpoint(&mut self) -> Result<(), RunError> {
         self.tally();
+        if !self.writer.resumable() {
+            return Ok(());
+        }
         let state = self.simulation.state();
         let tally =
             Tally { counters: self.manifest.counters.clone(), timings: self.manifest.timings.clone() };
@@ -409,8 +443,7 @@ impl<'a> Session<'a> {
         self.checkpoint()?;
         if let End::Stopped(stopped) = &end {
             let record = Record { case: self.case, simulation: &self.simulation, earlier: &self.checkpoints };
-            let directory = self.writer.directory();
-            write_stop(&record, stopped, last, options, directory, &mut self.manifest)?;
+            write_stop(&record, stopped, last, options, self.writer, &mut self.manifest)?;
         }
         // A record that cannot be read does not make a finished run unfinished.
         let asked = match end {
@@ -418,7 +451,7 @@ impl<'a> Session<'a> {
             End::Stopped(_) => !self.case.expects.is_empty(),
             End::Interrupted => false,
         };
-        let read = asked.then(|| Run::open(self.writer.directory()));
+        let read = asked.then(|| self.writer.read());
         if let (End::Finished, Some(Ok(run))) = (&end, &read) {
             self.add_warnings(run)?;
         }
@@ -440,7 +473,9 @@ impl<'a> Session<'a> {
         };
         self.writer.finish(&self.manifest)?;
         if let Some(run) = read.transpose()? {
-            judge(Run { manifest: self.manifest, ..run }, &self.case.expects)?;
+            if let Some(manifest) = judged(Run { manifest: self.manifest, ..run }, &self.case.expects) {
+                self.writer.manifest(&manifest)?;
+            }
         }
         Ok(outcome)
     }
