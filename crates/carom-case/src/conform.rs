@@ -329,6 +329,10 @@ impl Check {
             Value::Integer(_) | Value::Float(_) => self.number(node, &keys::ANY, key, path),
             Value::Text(text) => {
                 let variables = keys::variables(variables, self.dimension.unwrap_or(2));
+                // Whether it is given is checked when the model is built.
+                if super::FormulaSpec::Text(text.clone()).function().is_some() && may_be_given(path) {
+                    return;
+                }
                 if let Err(error) = carom_formula::Formula::parse(text, &variables) {
                     let what = format!("the formula of `{}`: {}", key.name, error.message);
                     let why = format!(
@@ -448,4 +452,9 @@ fn homes(word: &str) -> Vec<&'static str> {
     let mut found = Vec::new();
     visit(&keys::CASE, word, &mut found);
     found
+}
+
+/// Whether the value at this path may be a function of a program: a load or the motion of a support.
+fn may_be_given(path: &str) -> bool {
+    path.starts_with("load[") || (path.starts_with("support[") && path.contains("].move."))
 }

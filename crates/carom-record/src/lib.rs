@@ -42,7 +42,7 @@ pub use files::is_free;
 pub use manifest::{Column, Expectation, Machine, Manifest, PHASES, Source, Status, now};
 pub use pvd::{FieldEntry, FieldFormat};
 pub use recorder::{MemoryRecord, Recorder};
-pub use rows::{ContactRow, Event};
+pub use rows::{ContactRow, Event, contact_axes, contact_columns};
 pub use run::{History, Run};
 pub use stop::{Advice, Stop, StopIteration, StopNode, StopPlace, Trial};
 pub use vtu::{Block, Cell, FieldSet, PointArray};

@@ -5,18 +5,17 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use carom_case::Case;
+use carom_case::{Case, Functions};
 use carom_mechanics::{Attempt, GridReport, Simulation, State, penetration};
-use carom_record::{
-    ContactRow, Event, Manifest, MemoryRecord, Recorder, Run, RunWriter, Source, Status, Stop,
-};
+use carom_record::{Event, Manifest, MemoryRecord, Recorder, Run, RunWriter, Source, Status, Stop};
 use cpu_time::{ProcessTime, ThreadTime};
 use serde::{Deserialize, Serialize};
 
 use super::columns::{Since, center_weights, columns, row};
-use super::fields::{consistent_weights, field_set, gap_of, sides};
+use super::fields::{field_set, sides};
 use super::log::{entry, relaxed, repairs};
 use super::outcome::{End, Options, Outcome, Progress, RunError};
+use super::rows::contact_rows;
 use super::stopped::{Record, write_stop};
 use super::verdicts::judged;
 use crate::setup::Setup;
@@ -123,8 +122,22 @@ pub fn resume(
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
+    resume_with(directory, Functions::default(), options, observe, stop)
+}
+
+/// As [`resume`], of a case with functions of a program, which must be the same.
+///
+/// # Errors
+/// As [`resume`], and if a function is missing.
+pub fn resume_with(
+    directory: &Path,
+    functions: Functions,
+    options: Options,
+    observe: &mut (dyn FnMut(&Progress) + Send),
+    stop: &AtomicBool,
+) -> Result<Outcome, RunError> {
     let manifest = Manifest::read(directory)?;
-    let case: Case =
+    let mut case: Case =
         serde_json::from_value(manifest.case.clone()).map_err(|error| RunError::Incompatible {
             what: format!(
                 "the case in {} was resolved by Carom {} and does not fit this version: {error}",
@@ -132,6 +145,7 @@ pub fn resume(
                 manifest.version
             ),
         })?;
+    case.functions = functions;
     let case = &case;
     if manifest.status == Status::Finished {
         // The process may have been killed between the last row and the verdicts.
@@ -327,33 +341,7 @@ impl<'a> Session<'a> {
         row(model, state, dt, &self.since, &self.weights, &mut self.values);
         self.since = Since::default();
         self.writer.history(&self.values)?;
-        for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
-            if pairs.iter().all(|p| !p.active) {
-                continue;
-            }
-            let weights = consistent_weights(contact, state, self.case.thickness);
-            // In a dent, a node has several pairs.
-            let mut of_node = vec![0.0; weights.len()];
-            pairs.iter().filter(|p| p.active).for_each(|pair| of_node[pair.node] += pair.lambda);
-            for pair in pairs.iter().filter(|p| p.active) {
-                let node = contact.kinematics.secondary()[pair.node];
-                let y = &state.y[node * model.dimension..(node + 1) * model.dimension];
-                let (gap, normal) = gap_of(contact, pair, state);
-                self.writer.contact(&ContactRow {
-                    step: state.step,
-                    time: state.time,
-                    contact: contact.name.as_str().into(),
-                    node: node as u64,
-                    point: std::array::from_fn(|i| y.get(i).copied().unwrap_or(0.0)),
-                    facet: pair.facet as u64,
-                    xi: pair.xi,
-                    gap,
-                    multiplier: pair.lambda,
-                    pressure: -of_node[pair.node] / weights[pair.node],
-                    normal,
-                })?;
-            }
-        }
+        contact_rows(self.case, model, state).iter().try_for_each(|row| self.writer.contact(row))?;
         Ok(())
     }
 

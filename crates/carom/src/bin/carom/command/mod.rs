@@ -3,6 +3,7 @@
 pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod explain;
+pub(crate) mod export;
 pub(crate) mod man;
 pub(crate) mod mesh;
 pub(crate) mod new;
@@ -12,6 +13,7 @@ pub(crate) mod resume;
 pub(crate) mod run;
 pub(crate) mod schema;
 pub(crate) mod study;
+mod study_parts;
 pub(crate) mod verify;
 
 use std::io::IsTerminal;

@@ -19,21 +19,28 @@ use crate::shared::{of_arms, warnings};
 use crate::summary::short;
 use crate::{console, directory, out};
 
+use super::study_parts::Part;
+
 /// Metrics of the table that is printed; all are in study.csv.
 const SHOWN: [&str; 6] =
     ["contact_duration", "impulse_y", "restitution", "energy_lost", "newton_iterations", "wall_time"];
 
 /// Run a case many times with some of its values replaced, and compare the runs
 #[derive(clap::Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 #[command(after_help = "\
 Examples:
   carom study cases/paper/paper.toml
   carom study cases/paper/fair.toml --jobs 4 --out runs/fair
+  carom study plan sweep.toml --out runs/sweep --slurm
 
 A failed arm is a row of the table; the exit code is still 0.")]
 pub(crate) struct Arguments {
+    #[command(subcommand)]
+    part: Option<Part>,
     /// The study file, or - for standard input
-    study: PathBuf,
+    #[arg(required = true)]
+    study: Option<PathBuf>,
     /// Directory of the study; must not exist yet [default: runs/NAME, runs/NAME-2, …]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -50,9 +57,13 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    if let Some(part) = &arguments.part {
+        return part.run();
+    }
+    let path = arguments.study.as_deref().unwrap_or(Path::new(super::STDIN));
     let jobs = super::parallel("--jobs", arguments.jobs)?;
-    let plan = super::plan(&super::document(&arguments.study, &[])?, &arguments.study)?;
-    let directory = directory::of_run(&arguments.study, arguments.out.as_deref())?;
+    let plan = super::plan(&super::document(path, &[])?, path)?;
+    let directory = directory::of_run(path, arguments.out.as_deref())?;
     let mut seen = Seen::new(&plan.manifest, arguments.json);
     let stop = stop_on_signal()?;
     if arguments.json {
@@ -103,6 +114,16 @@ fn conclude(
     let json = seen.json;
     drop(seen);
     let outcome = done?;
+    let interrupted = outcome.interrupted;
+    print(&outcome, directory, page, json)?;
+    if interrupted && !json && !console::is_quiet() {
+        out::line(&format!("stopped by Ctrl-C; continue with: carom resume {}", directory.display()))?;
+    }
+    Ok(if interrupted { Exit::Interrupted } else { Exit::Done })
+}
+
+/// Prints the tables of a study, and makes its page.
+pub(super) fn print(outcome: &Outcome, directory: &Path, page: bool, json: bool) -> Result<(), Failure> {
     let page = if page { Some(report(directory)?) } else { None };
     if json {
         let study = &outcome.study;
@@ -124,12 +145,9 @@ fn conclude(
         for (warning, arms) in study.warnings() {
             console::say(format_args!("warning: {}{warning}", of_arms(&arms, &study.manifest)));
         }
-        if outcome.interrupted {
-            out::line(&format!("stopped by Ctrl-C; continue with: carom resume {}", directory.display()))?;
-        }
         out::line(&page.as_deref().unwrap_or(directory).display().to_string())?;
     }
-    Ok(if outcome.interrupted { Exit::Interrupted } else { Exit::Done })
+    Ok(())
 }
 
 fn text(study: &Study) -> String {
