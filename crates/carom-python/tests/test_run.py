@@ -19,7 +19,7 @@ import carom
 
 def test_a_bar_on_a_wall(bar: carom.Case) -> None:
     """Exact: impulse 2 m v, contact 2 L / c, rebound at the same speed."""
-    run = bar.run(progress=False)
+    run = bar.set({"time.step": 1e-3, "body.bar.mesh.cells": 200}).run(progress=False)
     assert run.status == "finished"
     assert run.history["contact_impulse_x"][-1] == pytest.approx(200.0, rel=2e-3)
     assert run.metrics["contact_duration"] == pytest.approx(2 / 3, abs=4e-3)
@@ -52,7 +52,7 @@ def test_memory_directory_and_command_give_the_same_bits(
         same_fields = disc_run.fields.number(len(other.fields) - 1)
         for name, values in last.arrays.items():
             assert np.array_equal(values, same_fields.arrays[name])
-        work = {"cpu_time", "wall_time"}
+        work = {"cpu_time", "wall_time"}  # measured
         metrics = {k: v for k, v in other.metrics.items() if k not in work}
         assert metrics == pytest.approx({k: disc_run.metrics[k] for k in metrics}, rel=0, abs=0, nan_ok=True)
     assert (tmp_path / "python/report.html").is_file()
@@ -123,10 +123,8 @@ def test_a_run_without_fields_says_what_to_do(bar: carom.Case) -> None:
 
 
 def test_a_stop_is_an_error_with_the_record() -> None:
-    case = bar_dict()
-    case["time"]["energy_guard"] = 1e-9
-    case["time"]["scheme"] = {"kind": "newmark", "beta": 0.25, "gamma": 0.5}
-    with pytest.raises(carom.StoppedError, match="energy was created") as error:
+    case = disc_dict() | {"newton": {"max_iterations": 1}}
+    with pytest.raises(carom.StoppedError, match="is still rejected") as error:
         carom.Case.from_dict(case).run(progress=False)
     run = error.value.run
     assert run is not None and run.status == "failed" and run.history.rows > 1

@@ -142,7 +142,8 @@ def pressure_map(
 
     Notes
     -----
-    s is the arc length along the undeformed side, from its first node.
+    s is the arc length along the undeformed side, from its first node; from a node opposite to the
+    contact if the side is closed.
     """
     contacts = {c["name"]: c for c in run.case["contacts"]}
     if not contacts:
@@ -151,13 +152,13 @@ def pressure_map(
     if name not in contacts:
         raise ValueError(f"no contact is named {name!r}; the contacts are: {', '.join(contacts)}")
     chains = run.manifest["sides"][contacts[name]["secondary"]]
-    nodes = np.concatenate([np.asarray(chain) for chain in chains])
+    rows = run.contact
+    mine = rows["contact"] == name
+    nodes = _unrolled(np.concatenate([np.asarray(chain) for chain in chains]), rows["node"][mine])
     points = run.fields.number(0).points[nodes]
     lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     place = {int(node): k for k, node in enumerate(nodes)}
 
-    rows = run.contact
-    mine = rows["contact"] == name
     times, row = np.unique(rows["time"][mine], return_inverse=True)
     with style():
         ax = axes(ax, size)
@@ -174,6 +175,19 @@ def pressure_map(
         ax.set_ylabel(labelled("arc length", run.history.units["penetration"]))
         ax.set_title(name)
     return ax
+
+
+def _unrolled(nodes: NDArray[np.int64], active: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The nodes of a side; a closed one begins in the middle of its longest part without contact."""
+    if len(nodes) < 3 or nodes[0] != nodes[-1]:
+        return nodes
+    nodes = nodes[:-1]
+    touched = np.flatnonzero(np.isin(nodes, active))
+    if not len(touched):
+        return nodes
+    free = np.diff(np.append(touched, touched[0] + len(nodes)))
+    longest = int(np.argmax(free))
+    return np.roll(nodes, -(int(touched[longest]) + int(free[longest]) // 2))
 
 
 def _colours(quantity: str, values: Floats, limits: tuple[float, float] | None) -> tuple[Normalize, str]:
