@@ -79,8 +79,9 @@ impl Case {
     /// The case as given, with the overrides applied.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let text = self.merged()?;
-        let document: toml_edit::DocumentMut =
-            text.parse().map_err(|e: toml_edit::TomlError| crate::error::CaseError::new_err(e.to_string()))?;
+        let document: toml_edit::DocumentMut = text
+            .parse()
+            .map_err(|e: toml_edit::TomlError| crate::error::CaseError::new_err(e.to_string()))?;
         from_table(py, document.as_table())
     }
 

@@ -1,6 +1,9 @@
 //! The compiled part of the Python package `carom`. It passes cases, records and states to Python as
 //! plain data; the package in `python/carom` gives them their interface.
 
+// Arguments that come from Python are owned.
+#![allow(clippy::needless_pass_by_value)]
+
 mod case;
 mod error;
 mod explain;
@@ -16,6 +19,7 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _carom {
+    use super::*;
     #[pymodule_export]
     use crate::case::{Case, toml, toml_document};
     #[pymodule_export]
@@ -26,7 +30,6 @@ mod _carom {
     use crate::simulation::Simulation;
     #[pymodule_export]
     use crate::study::{study, study_arm, study_collect, study_plan, study_table};
-    use super::*;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

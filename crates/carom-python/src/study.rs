@@ -1,6 +1,6 @@
 //! Studies: in this process, or planned for many.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use carom::case::Document;
 use carom::record::study::{Study, StudyManifest};
@@ -15,7 +15,7 @@ use crate::watched::watched;
 /// A row of the table: arm, status, reason, directory, metrics with values and units.
 type Row = (String, Option<String>, Option<String>, String, Vec<(String, Option<f64>, String)>);
 
-fn planned(text: &str, folder: &PathBuf) -> PyResult<Plan> {
+fn planned(text: &str, folder: &Path) -> PyResult<Plan> {
     let document = Document::parse("study", text, &[]).map_err(|error| of_case(&error))?;
     Plan::of(&document, folder).map_err(|error| of_case(&error))
 }

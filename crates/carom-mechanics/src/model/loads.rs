@@ -42,7 +42,7 @@ impl<On> Load<On> {
     /// The components at many places, times the factor, place after place.
     fn vectors<'a>(
         &self,
-        places: impl Iterator<Item = &'a [f64]> + Clone,
+        places: &(impl Iterator<Item = &'a [f64]> + Clone),
         time: f64,
     ) -> Result<Vec<f64>, NoValue> {
         let (factor, d) = (self.factor(time), self.value.len());
@@ -108,13 +108,13 @@ impl Loads {
         out.dead.clear();
         out.dead.resize(dofs, 0.0);
         for load in &self.tractions {
-            let tractions = load.vectors(load.on.positions(), time)?;
+            let tractions = load.vectors(&load.on.positions(), time)?;
             load.on.add_traction(tractions.chunks_exact(load.value.len()), &mut out.dead);
         }
         for load in &self.body_forces {
             let part = &parts[load.on];
             let (places, d) = (part.volume_points(), load.value.len());
-            let densities = load.vectors(places.chunks_exact(d), time)?;
+            let densities = load.vectors(&places.chunks_exact(d), time)?;
             let mut densities = densities.chunks_exact(d);
             let density = |_: &[f64], out: &mut [f64]| {
                 densities.next().into_iter().for_each(|density| out.copy_from_slice(density));
@@ -127,7 +127,7 @@ impl Loads {
         }
         out.pressures.resize_with(self.pressures.len(), Vec::new);
         for (load, pressures) in self.pressures.iter().zip(&mut out.pressures) {
-            *pressures = load.vectors(load.on.positions(), time)?;
+            *pressures = load.vectors(&load.on.positions(), time)?;
         }
         Ok(())
     }

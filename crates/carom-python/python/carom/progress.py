@@ -44,7 +44,7 @@ def progress_bar(title: str, wanted: bool) -> Iterator[Callable[[int, int, float
     def show(done: int, steps: int, time: float) -> None:
         nonlocal bar
         if bar is None:
-            bar = tqdm(total=steps, desc=title, unit="step", leave=False)
+            bar = tqdm(total=steps, initial=done, desc=title, unit="step", leave=False)
         bar.n = done
         if time:
             bar.set_postfix_str(f"t = {time:.4g}", refresh=False)

@@ -31,6 +31,14 @@ struct Tally {
     timings: BTreeMap<String, f64>,
 }
 
+impl Tally {
+    /// The start may need a factorisation.
+    fn at_start(simulation: &Simulation) -> Self {
+        let counters = [("factorisations".to_owned(), simulation.factorisations())].into();
+        Self { counters, timings: BTreeMap::new() }
+    }
+}
+
 /// Data of a step besides the simulation.
 struct Session<'a> {
     case: &'a Case,
@@ -72,7 +80,7 @@ pub fn run(
     let mut writer = RunWriter::create(
         directory,
         &manifest,
-        &bytes(simulation.state(), Since::default(), &Tally::default())?,
+        &bytes(simulation.state(), Since::default(), &Tally::at_start(&simulation))?,
     )?;
     writer.field_format(case.output.format);
     let mut session = Session::new(case, simulation, &mut writer, manifest);
@@ -149,10 +157,11 @@ pub fn resume_with(
     let case = &case;
     if manifest.status == Status::Finished {
         // The process may have been killed between the last row and the verdicts.
-        if manifest.expectations.is_empty() && !case.expects.is_empty() {
-            if let Some(manifest) = judged(Run::open(directory)?, &case.expects) {
-                manifest.replace(directory)?;
-            }
+        if manifest.expectations.is_empty()
+            && !case.expects.is_empty()
+            && let Some(manifest) = judged(Run::open(directory)?, &case.expects)
+        {
+            manifest.replace(directory)?;
         }
         let steps = case.time.steps();
         return Ok(Outcome {
@@ -460,10 +469,10 @@ impl<'a> Session<'a> {
             end,
         };
         self.writer.finish(&self.manifest)?;
-        if let Some(run) = read.transpose()? {
-            if let Some(manifest) = judged(Run { manifest: self.manifest, ..run }, &self.case.expects) {
-                self.writer.manifest(&manifest)?;
-            }
+        if let Some(run) = read.transpose()?
+            && let Some(manifest) = judged(Run { manifest: self.manifest, ..run }, &self.case.expects)
+        {
+            self.writer.manifest(&manifest)?;
         }
         Ok(outcome)
     }

@@ -143,7 +143,7 @@ def pressure_map(
     Notes
     -----
     s is the arc length along the undeformed side, from its first node; from a node opposite to the
-    contact if the side is closed.
+    contact if the side is closed. Corners of the primary side that are in contact are not shown.
     """
     contacts = {c["name"]: c for c in run.case["contacts"]}
     if not contacts:
@@ -155,6 +155,8 @@ def pressure_map(
     rows = run.contact
     mine = rows["contact"] == name
     nodes = _unrolled(np.concatenate([np.asarray(chain) for chain in chains]), rows["node"][mine])
+    # Corners of the primary are contact nodes, too, but have no place on this side.
+    mine &= np.isin(rows["node"], nodes)
     points = run.fields.number(0).points[nodes]
     lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     place = {int(node): k for k, node in enumerate(nodes)}
@@ -169,6 +171,12 @@ def pressure_map(
             column = np.searchsorted(grid, times)[row]
             pressure[[place[int(node)] for node in rows["node"][mine]], column] = rows["pressure"][mine]
             drawn = ax.pcolormesh(grid, lengths, pressure, cmap="cividis", shading="nearest", rasterized=True)
+            touched = lengths[(pressure != 0).any(axis=1)]
+            margin = 0.15 * (touched.max(initial=0) - touched.min(initial=lengths[-1]))
+            ax.set_ylim(
+                max(touched.min(initial=lengths[-1]) - margin, 0),
+                min(touched.max(initial=0) + margin, lengths[-1]),
+            )
             bar = ax.figure.colorbar(drawn, ax=ax)
             bar.set_label(labelled("contact pressure", rows.units["pressure"]))
         ax.set_xlabel(labelled("time", run.history.units["time"]))

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, TypeAlias
 
+import matplotlib
 import matplotlib.pyplot as plt
 from cycler import cycler
 from matplotlib.axes import Axes
@@ -42,8 +43,13 @@ _SETTINGS: Any = {
 @contextmanager
 def style() -> Iterator[None]:
     """Matplotlib settings of these figures, for own ones: ``with carom.plot.style(): …``."""
-    with plt.rc_context(_SETTINGS):
+    # Only these: `rc_context` would also undo the backend that notebooks choose at the first figure.
+    before = {name: matplotlib.rcParams[name] for name in _SETTINGS}
+    matplotlib.rcParams.update(_SETTINGS)
+    try:
         yield
+    finally:
+        matplotlib.rcParams.update(before)
 
 
 def axes(ax: Axes | None, size: Size) -> Axes:

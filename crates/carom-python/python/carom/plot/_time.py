@@ -103,7 +103,7 @@ def compare(
     with style():
         ax = axes(ax, size)
         for i, (label, run) in enumerate(named.items()):
-            ax.plot(run.history["time"], run.history[column], dashes[i // 7 % 4], label=label)
+            ax.plot(run.history["time"], run.history[column], dashes[i % 4], label=label)
         first = next(iter(named.values()))
         shade_contact(first, ax)
         _finish(first, ax, (column,))
