@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tempfile
+import time
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
@@ -72,7 +73,10 @@ class Study:
         raise KeyError(f"no arm is named {arm!r}; the arms are: {', '.join(self.arms)}")
 
     def page(self) -> Path:
-        """Make figures and page; returns the page."""
+        """Make figures and page, and the pages of the arms; returns the page."""
+        for arm in self.arms:
+            if arm not in self.missing:
+                self[arm].page()
         _carom.study_collect(self.directory, True)
         return self.directory / "study.html"
 
@@ -193,6 +197,9 @@ def _on_workers(client: Any, text: str, folder: str, directory: Path) -> None:
     _carom.study_collect(directory, False)
 
 
-def _arm(directory: str, number: int) -> str | None:
+def _arm(directory: str, number: int) -> str:
     """Computes one run of a planned study, in a worker."""
-    return _carom.study_arm(directory, number)
+    # A worker that the scheduler has given up may still be computing it.
+    while (status := _carom.study_arm(directory, number)) is None:
+        time.sleep(1)
+    return status
