@@ -44,12 +44,12 @@ pub(crate) fn raised(failure: &Failure) -> Option<PyErr> {
 impl Given {
     /// Calls the function once for all points; its values as `parts` lists of numbers.
     fn call(&self, points: &[f64], width: usize, parts: usize) -> Option<Vec<Vec<f64>>> {
-        let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
-        if failure.is_some() {
+        let failure = || self.failure.lock().unwrap_or_else(PoisonError::into_inner);
+        if failure().is_some() {
             return None;
         }
         let called = Python::attach(|py| self.called(py, points, width, parts));
-        called.map_err(|error| *failure = Some(error)).ok()
+        called.map_err(|error| *failure() = Some(error)).ok()
     }
 
     fn called(&self, py: Python<'_>, points: &[f64], width: usize, parts: usize) -> PyResult<Vec<Vec<f64>>> {

@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _carom {
-    use super::*;
+    use super::{Bound, PyModule, PyModuleMethods, PyResult};
     #[pymodule_export]
     use crate::case::{Case, toml, toml_document};
     #[pymodule_export]

@@ -1,12 +1,12 @@
 //! A simulation that is advanced step by step.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use carom::record::contact_axes;
 use carom::recording::Rows;
 use carom::{GridReport, Setup, Simulation as Library, State};
 use numpy::PyArray2;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -33,8 +33,16 @@ pub(crate) struct Simulation {
 }
 
 impl Simulation {
-    fn inner(&self) -> MutexGuard<'_, Inner> {
-        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    /// The state between two steps. Waiting for the end of a step could wait for ever: a function of
+    /// the program, called within the step, may ask for it.
+    fn inner(&self) -> PyResult<MutexGuard<'_, Inner>> {
+        match self.inner.try_lock() {
+            Ok(inner) => Ok(inner),
+            Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(
+                "the simulation is being advanced; its state is read between two steps",
+            )),
+        }
     }
 
     fn vectors<'py>(
@@ -42,7 +50,7 @@ impl Simulation {
         py: Python<'py>,
         of: fn(&State) -> &Vec<f64>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let inner = self.inner();
+        let inner = self.inner()?;
         tables::rows(py, of(inner.library.state()).clone(), inner.library.model().dimension)
     }
 }
@@ -69,8 +77,9 @@ impl Simulation {
     /// Advances to the next grid time: Newton iterations, rejected attempts, activations, releases,
     /// penetration.
     fn advance(&self, py: Python<'_>) -> PyResult<(u32, u32, u32, u32, f64)> {
+        let mut guard = self.inner()?;
+        let inner: &mut Inner = &mut guard;
         let advanced = py.detach(|| {
-            let inner = &mut *self.inner();
             let mut report = GridReport::default();
             let advanced = inner.library.advance(&mut report);
             inner.rows.advanced(&report);
@@ -85,28 +94,28 @@ impl Simulation {
     }
 
     #[getter]
-    fn finished(&self) -> bool {
-        self.inner().library.finished()
+    fn finished(&self) -> PyResult<bool> {
+        Ok(self.inner()?.library.finished())
     }
 
     #[getter]
-    fn step(&self) -> u64 {
-        self.inner().library.state().step
+    fn step(&self) -> PyResult<u64> {
+        Ok(self.inner()?.library.state().step)
     }
 
     #[getter]
-    fn steps(&self) -> u64 {
-        self.inner().library.steps()
+    fn steps(&self) -> PyResult<u64> {
+        Ok(self.inner()?.library.steps())
     }
 
     #[getter]
-    fn time(&self) -> f64 {
-        self.inner().library.state().time
+    fn time(&self) -> PyResult<f64> {
+        Ok(self.inner()?.library.state().time)
     }
 
     #[getter]
-    fn dt(&self) -> f64 {
-        self.inner().library.dt()
+    fn dt(&self) -> PyResult<f64> {
+        Ok(self.inner()?.library.dt())
     }
 
     #[getter]
@@ -127,39 +136,39 @@ impl Simulation {
     /// Reference positions.
     #[getter]
     fn reference<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let inner = self.inner();
+        let inner = self.inner()?;
         let model = inner.library.model();
         tables::rows(py, model.reference.clone(), model.dimension)
     }
 
     /// Name, first node, end node of every body.
-    fn bodies(&self) -> Vec<(String, usize, usize)> {
-        let inner = self.inner();
+    fn bodies(&self) -> PyResult<Vec<(String, usize, usize)>> {
+        let inner = self.inner()?;
         let parts = inner.library.model().parts.iter();
-        parts.map(|part| (part.name.clone(), part.nodes().start, part.nodes().end)).collect()
+        Ok(parts.map(|part| (part.name.clone(), part.nodes().start, part.nodes().end)).collect())
     }
 
     /// Names and units of the columns of a row.
-    fn columns(&self) -> Vec<(String, String)> {
-        self.inner().rows.columns().iter().map(|c| (c.name.clone(), c.unit.clone())).collect()
+    fn columns(&self) -> PyResult<Vec<(String, String)>> {
+        Ok(self.inner()?.rows.columns().iter().map(|c| (c.name.clone(), c.unit.clone())).collect())
     }
 
     /// The row that a run would record now.
-    fn row(&self) -> Vec<f64> {
-        let inner = self.inner();
-        inner.rows.row(&inner.library)
+    fn row(&self) -> PyResult<Vec<f64>> {
+        let inner = self.inner()?;
+        Ok(inner.rows.row(&inner.library))
     }
 
     /// The active contact nodes, by column.
     fn contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let inner = self.inner();
+        let inner = self.inner()?;
         let axes = contact_axes(&serde_json::Value::Null);
         tables::contact(py, &inner.rows.contact(&self.case, &inner.library), axes)
     }
 
     /// The state as bytes, with the names of the functions.
     fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let inner = self.inner();
+        let inner = self.inner()?;
         let bytes = postcard::to_stdvec(&(&self.given, inner.library.state()));
         let bytes = bytes.map_err(|error| PyValueError::new_err(error.to_string()))?;
         Ok(PyBytes::new(py, &bytes))
@@ -177,6 +186,6 @@ impl Simulation {
                  try: give the same functions again, or start from the beginning"
             )));
         }
-        self.inner().library.restore(state).map_err(|other| PyValueError::new_err(other.to_string()))
+        self.inner()?.library.restore(state).map_err(|other| PyValueError::new_err(other.to_string()))
     }
 }

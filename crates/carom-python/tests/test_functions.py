@@ -106,6 +106,13 @@ def test_exceptions_come_through() -> None:
         for _ in simulation:
             pass
 
+    # The state is not there within a step; asking for it must not wait for ever.
+    held: list[carom.Simulation] = []
+    case = block(load=[{"on": ["block.top"], "traction": [0.0, lambda t, x: held[0].y[0, 0] if held else 0.0]}])
+    held.append(carom.Simulation(case))
+    with pytest.raises(RuntimeError, match="is being advanced"):
+        held[0].advance()
+
     wrong = block(load=[{"on": ["block.top"], "traction": [0.0, lambda t, x: [1.0, 2.0]]}])
     with pytest.raises(ValueError, match="must return a number per point"):
         wrong.run(progress=False)

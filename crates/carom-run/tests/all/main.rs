@@ -11,6 +11,7 @@ mod frequencies;
 mod impact;
 mod kernels;
 mod loads;
+mod memory;
 mod momentum;
 mod nonsmooth;
 mod obstacles;

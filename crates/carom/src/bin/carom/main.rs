@@ -9,6 +9,7 @@ mod live;
 mod out;
 mod shared;
 mod simulation;
+mod study_summary;
 mod summary;
 
 use clap::{Parser, Subcommand};

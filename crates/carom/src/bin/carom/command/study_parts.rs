@@ -10,7 +10,7 @@ use serde_json::json;
 use crate::exit::{Exit, Failure};
 use crate::live::{Live, stop_on_signal};
 use crate::simulation::seen;
-use crate::{console, directory, out};
+use crate::{console, directory, out, study_summary};
 
 /// Parts of a study that separate processes, also on other machines, carry out
 #[derive(clap::Subcommand)]
@@ -114,7 +114,7 @@ fn arm(directory: &Path, number: usize) -> Result<Exit, Failure> {
 
 fn collect(directory: &Path, page: bool) -> Result<Exit, Failure> {
     let outcome = carom_study::collect(directory, &AtomicBool::new(false))?;
-    super::study::print(&outcome, directory, page, false)?;
+    study_summary::print(&outcome, directory, page, false)?;
     let rows = outcome.study.rows.iter().chain(&outcome.study.members).enumerate();
     let missing = rows.filter(|(_, row)| !matches!(row.status, Some(Status::Finished | Status::Failed)));
     let missing: Vec<String> = missing.map(|(i, row)| format!("{} ({})", i + 1, row.name)).collect();
