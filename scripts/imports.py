@@ -27,6 +27,7 @@ ORDER = [
     ["carom-run", "carom-report"],
     ["carom-study"],
     ["carom"],
+    ["carom-python"],
 ]
 ROW = {crate: row for row, crates in enumerate(ORDER) for crate in crates}
 

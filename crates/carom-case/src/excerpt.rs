@@ -25,6 +25,29 @@ pub struct Excerpt {
     pub comment: String,
 }
 
+/// The text of a case with its overrides applied.
+///
+/// # Errors
+/// If the text or an override is not valid TOML.
+pub fn merged(text: &str, sets: &[String]) -> Result<String, CaseError> {
+    applied(text, sets).map(|case| case.to_string())
+}
+
+fn applied(text: &str, sets: &[String]) -> Result<DocumentMut, CaseError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let wrong = |name: &str, text: &str, e: &toml_edit::TomlError| {
+        CaseError::Wrong(vec![Diagnostic::of_syntax(name, text, e)])
+    };
+    let mut case: DocumentMut = text.parse().map_err(|e| wrong("case", text, &e))?;
+    for set in sets {
+        apply(&mut case, set).ok_or_else(|| {
+            let (what, why) = ("an override of the run cannot be applied", set.as_str());
+            CaseError::Wrong(vec![Diagnostic::of_file("--set", what, why, "")])
+        })?;
+    }
+    Ok(case)
+}
+
 /// Tables that say what is watched, not what is computed.
 const WATCHED: [&str; 4] = ["probe", "expect", "exact", "initial"];
 
@@ -34,17 +57,7 @@ impl Excerpt {
     /// # Errors
     /// If the text or an override is not valid TOML.
     pub fn of(&self, text: &str, sets: &[String]) -> Result<String, CaseError> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let wrong = |name: &str, text: &str, e: &toml_edit::TomlError| {
-            CaseError::Wrong(vec![Diagnostic::of_syntax(name, text, e)])
-        };
-        let mut case: DocumentMut = text.parse().map_err(|e| wrong("case", text, &e))?;
-        for set in sets {
-            apply(&mut case, set).ok_or_else(|| {
-                let (what, why) = ("an override of the run cannot be applied", set.as_str());
-                CaseError::Wrong(vec![Diagnostic::of_file("--set", what, why, "")])
-            })?;
-        }
+        let mut case = applied(text, sets)?;
         WATCHED.iter().for_each(|key| {
             case.remove(key);
         });

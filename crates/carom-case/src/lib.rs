@@ -33,10 +33,11 @@ mod tables;
 mod tree;
 mod view;
 
+pub use carom_formula::{Function, Functions};
 pub use carom_record::{Bound, Expect as ExpectSpec};
 pub use columns::history_columns;
 pub use document::Document;
-pub use excerpt::Excerpt;
+pub use excerpt::{Excerpt, merged};
 pub use expect::{Asked, read_expects};
 pub use load::load_variables;
 pub use problem::{CaseError, Diagnostic, Problem, Problems};

@@ -220,6 +220,7 @@ impl<'a> Reader<'a> {
             output: output(self.one("output")?)?,
             exact: draft.exact,
             expects: all(draft.expects)?,
+            functions: carom_formula::Functions::default(),
         })
     }
 }

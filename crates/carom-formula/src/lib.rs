@@ -23,22 +23,33 @@
 
 mod error;
 mod function;
+mod given;
 mod jet;
 mod parse;
 mod tree;
 
+use std::sync::Arc;
+
 use serde::{Serialize, Serializer};
 
 pub use error::FormulaError;
+pub use given::{Function, Functions};
 use jet::Jet;
 use tree::Tree;
 
-/// A parsed formula. Two are equal if their texts and variables are.
+/// A parsed formula, or a function of a program in its place. Two are equal if their texts and
+/// variables are.
 #[derive(Clone, Debug)]
 pub struct Formula {
     text: String,
     variables: Vec<String>,
-    tree: Tree,
+    body: Body,
+}
+
+#[derive(Clone, Debug)]
+enum Body {
+    Tree(Tree),
+    Given(Arc<dyn Function>),
 }
 
 impl Formula {
@@ -48,12 +59,29 @@ impl Formula {
     /// Syntax errors, unknown names, wrong numbers of arguments, each with its place in the text.
     pub fn parse(text: &str, variables: &[&str]) -> Result<Self, FormulaError> {
         let tree = parse::tree(text, variables)?;
-        Ok(Self { text: text.to_owned(), variables: variables.iter().map(|&v| v.to_owned()).collect(), tree })
+        Ok(Self::of(text.to_owned(), variables, Body::Tree(tree)))
     }
 
     /// A number as a formula.
     pub fn constant(value: f64) -> Self {
-        Self { text: value.to_string(), variables: Vec::new(), tree: Tree::Number(value) }
+        Self::of(value.to_string(), &[], Body::Tree(Tree::Number(value)))
+    }
+
+    /// A function of these variables, called `name` in messages.
+    pub fn given(name: &str, function: Arc<dyn Function>, variables: &[&str]) -> Self {
+        Self::of(name.to_owned(), variables, Body::Given(function))
+    }
+
+    fn of(text: String, variables: &[&str], body: Body) -> Self {
+        Self { text, variables: variables.iter().map(|&v| v.to_owned()).collect(), body }
+    }
+
+    /// The function of a program, if it is one: it should be called once for many points.
+    pub fn function(&self) -> Option<&dyn Function> {
+        match &self.body {
+            Body::Tree(_) => None,
+            Body::Given(function) => Some(function.as_ref()),
+        }
     }
 
     /// The formula as written.
@@ -61,9 +89,13 @@ impl Formula {
         &self.text
     }
 
-    /// Whether the formula depends on a variable of this name.
+    /// Whether the formula depends on a variable of this name; a function of a program may depend on
+    /// every variable.
     pub fn depends_on(&self, variable: &str) -> bool {
-        self.variables.iter().position(|v| v == variable).is_some_and(|k| self.tree.mentions(k))
+        self.variables.iter().position(|v| v == variable).is_some_and(|k| match &self.body {
+            Body::Tree(tree) => tree.mentions(k),
+            Body::Given(_) => true,
+        })
     }
 
     /// Value where the variables, in the order they were given to [`Self::parse`], have these
@@ -72,7 +104,12 @@ impl Formula {
     /// # Panics
     /// With fewer values than variables.
     pub fn value(&self, values: &[f64]) -> f64 {
-        self.tree.evaluate(&|k| Jet([values[k]])).value()
+        match &self.body {
+            Body::Tree(tree) => tree.evaluate(&|k| Jet([values[k]])).value(),
+            Body::Given(function) => {
+                function.values(values, values.len()).first().copied().unwrap_or(f64::NAN)
+            }
+        }
     }
 
     /// Value, first and second derivative with respect to variable number `variable`. At a kink
@@ -87,8 +124,17 @@ impl Formula {
     /// Value and derivatives along the sum of two variables, or along one given twice.
     fn along(&self, values: &[f64], [i, j]: [usize; 2]) -> [f64; 3] {
         let slope = |k| if k == i || k == j { 1.0 } else { 0.0 };
-        let Jet([value, first, half_second]) = self.tree.evaluate(&|k| Jet([values[k], slope(k), 0.0]));
-        [value, first, 2.0 * half_second]
+        match &self.body {
+            Body::Tree(tree) => {
+                let Jet([value, first, half_second]) = tree.evaluate(&|k| Jet([values[k], slope(k), 0.0]));
+                [value, first, 2.0 * half_second]
+            }
+            // It knows the derivatives in its last variable only.
+            Body::Given(function) if i == j && i + 1 == values.len() => {
+                function.with_derivatives(values, values.len()).first().copied().unwrap_or([f64::NAN; 3])
+            }
+            Body::Given(_) => [f64::NAN; 3],
+        }
     }
 
     /// Value, gradient and second derivatives (row-major) with respect to the first `n` variables,

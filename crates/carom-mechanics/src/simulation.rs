@@ -113,7 +113,8 @@ impl Simulation {
 
     fn at(model: Model, stepper: Box<dyn Stepper>, grid: Grid, state: State, threads: usize) -> Self {
         let model = model.on_threads(threads);
-        let work = Workspace::new(&model);
+        let mut work = Workspace::new(&model);
+        work.system.restored.clone_from(&state.frozen.point);
         Self { model, state, grid, stepper, work, bisections: MOST, audited: false }
     }
 

@@ -40,6 +40,8 @@ pub(crate) struct System {
     pub(crate) factor: TangentFactor,
     /// Factorisations so far.
     pub factorisations: u64,
+    /// The point of the factor of a resumed state, until a factor is made.
+    pub restored: Option<Arc<Point>>,
 }
 
 impl System {
@@ -87,6 +89,7 @@ impl System {
             facet_slots,
             factor: TangentFactor::default(),
             factorisations: 0,
+            restored: None,
         }
     }
 
@@ -196,7 +199,10 @@ impl System {
         point: &Arc<Point>,
         double: bool,
     ) -> Result<bool, LinearError> {
-        self.factorisations += 1;
+        // The factor of a run that is resumed was counted when it was first made.
+        if self.restored.take().is_none_or(|restored| restored != *point) {
+            self.factorisations += 1;
+        }
         self.factor.factor(model, &self.pattern, point, double, [&self.mass, &self.stiffness, &self.follower])
     }
 

@@ -46,7 +46,7 @@ pub struct ContactRow<'a> {
 }
 
 /// Header of `contact.csv` for this number of axes.
-pub(crate) fn contact_columns(axes: usize) -> Vec<&'static str> {
+pub fn contact_columns(axes: usize) -> Vec<&'static str> {
     let (places, normals) = (&["x", "y", "z"][..axes], &["normal_x", "normal_y", "normal_z"][..axes]);
     [
         &["step", "time", "contact", "node"][..],
@@ -59,7 +59,7 @@ pub(crate) fn contact_columns(axes: usize) -> Vec<&'static str> {
 }
 
 /// Number of axes in the rows of `contact.csv`: 3 in dimension 3, otherwise 2.
-pub(crate) fn contact_axes(case: &serde_json::Value) -> usize {
+pub fn contact_axes(case: &serde_json::Value) -> usize {
     if case["dimension"] == 3 { 3 } else { 2 }
 }
 

@@ -262,7 +262,7 @@ impl RunWriter {
     }
 
     /// Flushes everything to the disk; last the manifest, which says how the run ended.
-    pub fn finish(mut self, manifest: &Manifest) -> Result<(), RecordError> {
+    pub fn finish(&mut self, manifest: &Manifest) -> Result<(), RecordError> {
         self.sync()?;
         vtkhdf::finish(&self.directory)?;
         manifest.write(&self.directory)

@@ -153,7 +153,7 @@ fn killed_anywhere(format: FieldFormat) {
             assert_eq!(reopened.payload, reopened.step.to_le_bytes());
             assert!(reopened.step <= kill && (generation.is_some() || reopened.step + 6 > kill));
             reopened.writer.field_format(format);
-            let writer = advance(reopened.writer, reopened.step, reopened.rows, STEPS);
+            let mut writer = advance(reopened.writer, reopened.step, reopened.rows, STEPS);
             writer.finish(&manifest()).unwrap();
             let mut got = all_bytes(&directory);
             let mut expected = expected.clone();

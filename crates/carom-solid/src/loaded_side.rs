@@ -71,7 +71,7 @@ impl LoadedSide {
     }
 
     /// Reference positions of the quadrature points.
-    pub fn positions(&self) -> impl ExactSizeIterator<Item = &[f64]> {
+    pub fn positions(&self) -> impl ExactSizeIterator<Item = &[f64]> + Clone {
         self.points.iter().map(|p| &p.position[..self.dimension])
     }
 

@@ -27,6 +27,25 @@ pub enum StudyError {
         /// What is not compatible.
         what: String,
     },
+    /// The steps of some arms depend on measured times, which differ between machines.
+    #[error(
+        "arm \"{arm}\" has a step of matched cost, which is found from times measured on one machine; \
+         `carom study` computes such a study in one process, on one machine"
+    )]
+    Timed {
+        /// The arm.
+        arm: String,
+    },
+    /// There is no such run.
+    #[error("the study in {} has no run {number}: its runs are 1 to {count}", directory.display())]
+    NoRun {
+        /// The study.
+        directory: PathBuf,
+        /// The number asked for, from 1.
+        number: usize,
+        /// How many it has.
+        count: usize,
+    },
     /// The directory exists.
     #[error("{} exists already; a study never overwrites a directory", path.display())]
     Exists {

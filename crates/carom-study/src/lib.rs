@@ -9,6 +9,7 @@
 mod arms;
 mod checks;
 mod compute;
+mod distributed;
 mod error;
 mod expects;
 mod file;
@@ -21,6 +22,7 @@ mod suite;
 mod theory;
 mod verify;
 
+pub use distributed::{arm, collect, plan};
 pub use error::StudyError;
 pub use jobs::{Ended, Event};
 pub use plan::{Plan, PlannedArm};

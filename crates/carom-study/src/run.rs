@@ -3,7 +3,7 @@
 //! arm can be resumed.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use carom_record::study::{Study, StudyManifest};
@@ -36,19 +36,26 @@ pub fn start(
     observe: &mut dyn FnMut(&Event),
     stop: &AtomicBool,
 ) -> Result<Outcome, StudyError> {
+    create(plan, directory)?;
+    resume(directory, jobs, observe, stop)
+}
+
+/// Creates the directory of a study, which must not exist.
+pub(crate) fn create(plan: &Plan, directory: &Path) -> Result<(), StudyError> {
     if !carom_record::is_free(directory) {
         return Err(StudyError::Exists { path: directory.to_owned() });
     }
-    let make = |path: PathBuf| {
-        let failed = |source| RecordError::Io { action: "create", path: path.clone(), source };
-        std::fs::create_dir_all(&path).map_err(failed)
-    };
-    make(directory.join("arms"))?;
+    let arms = directory.join("arms");
+    std::fs::create_dir_all(&arms).map_err(|source| RecordError::Io {
+        action: "create",
+        path: arms,
+        source,
+    })?;
     plan.manifest.write(directory)?;
     if plan.manifest.goal.is_some() {
         theory::write(plan, directory)?;
     }
-    resume(directory, jobs, observe, stop)
+    Ok(())
 }
 
 /// Runs the arms that have not ended, `jobs` of them concurrently, and writes the tables.
@@ -85,6 +92,15 @@ pub fn resume(
         compute(&manifest, directory, i, begun.get(&i) == Some(&true), progress, stop)
     };
     side_by_side(order, jobs, &one, observe, stop)?;
+    conclude(manifest, directory, stop)
+}
+
+/// The checks and tables of a study whose arms have been computed, as far as they have.
+pub(crate) fn conclude(
+    mut manifest: StudyManifest,
+    directory: &Path,
+    stop: &AtomicBool,
+) -> Result<Outcome, StudyError> {
     if manifest.goal.is_some() && !stop.load(Ordering::Relaxed) {
         checks::make(&manifest, directory, stop);
     }

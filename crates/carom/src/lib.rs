@@ -11,6 +11,9 @@
 //! [`solid::material::Material`] and any [`time::Kernel`]. The crates behind this one are
 //! re-exported as modules.
 
+#[cfg(feature = "diagnostics")]
+pub mod diagnostics;
+
 pub use carom_algebra as algebra;
 pub use carom_contact as contact;
 pub use carom_record as record;

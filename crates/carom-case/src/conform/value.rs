@@ -1,6 +1,7 @@
 //! Checks a value against what its key may have: type, range, choice, formula.
 
 use super::Check;
+use crate::FormulaSpec;
 use crate::document::joined;
 use crate::keys::{self, Default, Key, Kind, Range};
 use crate::problem::Problem;
@@ -167,6 +168,10 @@ impl Check {
             Value::Integer(_) | Value::Float(_) => self.number(node, &keys::ANY, key, path),
             Value::Text(text) => {
                 let variables = keys::variables(variables, self.dimension.unwrap_or(2));
+                // Whether it is given is checked when the model is built.
+                if FormulaSpec::Text(text.clone()).function().is_some() && may_be_given(path) {
+                    return;
+                }
                 if let Err(error) = carom_formula::Formula::parse(text, &variables) {
                     let what = format!("the formula of `{}`: {}", key.name, error.message);
                     let why = format!(
@@ -225,4 +230,9 @@ impl Check {
 fn number_with_unit(node: &Node) -> Option<&str> {
     let number = node.text()?.trim_end_matches(|c: char| !c.is_ascii_digit()).trim();
     number.parse::<f64>().is_ok().then_some(number)
+}
+
+/// Whether the value at this path may be a function of a program: a load or the motion of a support.
+fn may_be_given(path: &str) -> bool {
+    path.starts_with("load[") || (path.starts_with("support[") && path.contains("].move."))
 }

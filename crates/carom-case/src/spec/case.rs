@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use carom_formula::Functions;
 use carom_record::Expect as ExpectSpec;
 use serde::{Deserialize, Serialize};
 
@@ -66,6 +67,10 @@ pub struct Case {
     pub exact: BTreeMap<String, String>,
     /// Expected values.
     pub expects: Vec<ExpectSpec>,
+    /// Functions of a program that loads and motions name (`@push`). They are not stored: whoever
+    /// resumes a run gives them again.
+    #[serde(skip)]
+    pub functions: Functions,
 }
 
 impl Case {

@@ -3,6 +3,9 @@
 use carom_formula::{Formula, FormulaError};
 use serde::{Deserialize, Serialize};
 
+/// Begins the name of a function of a program, in place of a formula.
+const FUNCTION: char = '@';
+
 /// A number, or a formula as written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
@@ -22,6 +25,14 @@ impl FormulaSpec {
         match self {
             Self::Number(value) => Ok(Formula::constant(*value)),
             Self::Text(text) => Formula::parse(text, variables),
+        }
+    }
+
+    /// The name of the function of a program that it stands for, `push` of `@push`.
+    pub fn function(&self) -> Option<&str> {
+        match self {
+            Self::Number(_) => None,
+            Self::Text(text) => text.strip_prefix(FUNCTION),
         }
     }
 

@@ -70,13 +70,22 @@ impl BodyInstance {
         &self.dofs[cell * n..(cell + 1) * n]
     }
 
+    /// The points at which a force per reference volume is evaluated, flat.
+    pub(super) fn volume_points(&self) -> Vec<f64> {
+        let mut points = Vec::new();
+        for cell in 0..self.body.mesh().cell_count() {
+            self.body.each_volume_point(cell, &mut |_, place, _| points.extend_from_slice(place));
+        }
+        points
+    }
+
     /// fᵃ += ∫φᵃ b dΩ₀ with b per reference volume, flat over all nodes.
     ///
     /// # Errors
     /// The first point where b has no value.
     pub(super) fn add_body_force(
         &self,
-        density: impl Fn(&[f64], &mut [f64]) -> Result<(), NoValue>,
+        mut density: impl FnMut(&[f64], &mut [f64]) -> Result<(), NoValue>,
         force: &mut [f64],
     ) -> Result<(), NoValue> {
         let mesh = self.body.mesh();

@@ -46,6 +46,31 @@ pub fn value(formula: &Formula, what: &str, place: &[f64], time: f64) -> Result<
     finite(value, formula, what, place, time)
 }
 
+/// Values of a formula at many places; a function of a program is called once.
+///
+/// # Errors
+/// The first one that is not finite.
+pub(super) fn values<'a>(
+    formula: &Formula,
+    what: &str,
+    places: impl Iterator<Item = &'a [f64]>,
+    time: f64,
+) -> Result<Vec<f64>, NoValue> {
+    let Some(function) = formula.function() else {
+        return places.map(|place| value(formula, what, place, time)).collect();
+    };
+    let places: Vec<&[f64]> = places.collect();
+    let Some(width) = places.first().map(|place| place.len() + 1) else { return Ok(Vec::new()) };
+    let values =
+        function.values(&points(&places, time), width).into_iter().chain(std::iter::repeat(f64::NAN));
+    places.iter().zip(values).map(|(place, value)| finite(value, formula, what, place, time)).collect()
+}
+
+/// The variables of all places at a time, place after place.
+pub(super) fn points(places: &[&[f64]], time: f64) -> Vec<f64> {
+    places.iter().flat_map(|place| place.iter().copied().chain([time])).collect()
+}
+
 /// The value, if it is finite.
 pub(super) fn finite(
     value: f64,

@@ -6,7 +6,7 @@ use carom_formula::Formula;
 use carom_solid::LoadedSide;
 
 use super::body_instance::BodyInstance;
-use super::formulas::{NoValue, value};
+use super::formulas::{NoValue, values};
 use super::manufactured::Manufactured;
 
 /// A factor over time.
@@ -39,12 +39,20 @@ impl<On> Load<On> {
         self.amplitude.as_ref().map_or(1.0, |amplitude| amplitude(time))
     }
 
-    /// The components at a point, times the factor.
-    fn vector_into(&self, place: &[f64], time: f64, factor: f64, out: &mut [f64]) -> Result<(), NoValue> {
-        for (out, formula) in out.iter_mut().zip(&self.value) {
-            *out = factor * value(formula, &self.label, place, time)?;
+    /// The components at many places, times the factor, place after place.
+    fn vectors<'a>(
+        &self,
+        places: &(impl Iterator<Item = &'a [f64]> + Clone),
+        time: f64,
+    ) -> Result<Vec<f64>, NoValue> {
+        let (factor, d) = (self.factor(time), self.value.len());
+        let mut vectors = Vec::new();
+        for (i, formula) in self.value.iter().enumerate() {
+            let values = values(formula, &self.label, places.clone(), time)?;
+            vectors.resize(values.len() * d, 0.0);
+            vectors.chunks_exact_mut(d).zip(values).for_each(|(vector, value)| vector[i] = factor * value);
         }
-        Ok(())
+        Ok(vectors)
     }
 }
 
@@ -100,28 +108,26 @@ impl Loads {
         out.dead.clear();
         out.dead.resize(dofs, 0.0);
         for load in &self.tractions {
-            let (factor, d) = (load.factor(time), load.value.len());
-            let mut tractions = vec![0.0; load.on.positions().len() * d];
-            for (place, traction) in load.on.positions().zip(tractions.chunks_exact_mut(d)) {
-                load.vector_into(place, time, factor, traction)?;
-            }
-            load.on.add_traction(tractions.chunks_exact(d), &mut out.dead);
+            let tractions = load.vectors(&load.on.positions(), time)?;
+            load.on.add_traction(tractions.chunks_exact(load.value.len()), &mut out.dead);
         }
         for load in &self.body_forces {
-            let factor = load.factor(time);
-            let density = |place: &[f64], out: &mut [f64]| load.vector_into(place, time, factor, out);
-            parts[load.on].add_body_force(density, &mut out.dead)?;
+            let part = &parts[load.on];
+            let (places, d) = (part.volume_points(), load.value.len());
+            let densities = load.vectors(&places.chunks_exact(d), time)?;
+            let mut densities = densities.chunks_exact(d);
+            let density = |_: &[f64], out: &mut [f64]| {
+                densities.next().into_iter().for_each(|density| out.copy_from_slice(density));
+                Ok(())
+            };
+            part.add_body_force(density, &mut out.dead)?;
         }
         if let Some(motion) = &self.manufactured {
             motion.add_load(parts, time, &mut out.dead)?;
         }
         out.pressures.resize_with(self.pressures.len(), Vec::new);
         for (load, pressures) in self.pressures.iter().zip(&mut out.pressures) {
-            let factor = load.factor(time);
-            pressures.clear();
-            for x in load.on.positions() {
-                pressures.push(factor * value(&load.value[0], &load.label, x, time)?);
-            }
+            *pressures = load.vectors(&load.on.positions(), time)?;
         }
         Ok(())
     }

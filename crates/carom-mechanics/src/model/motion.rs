@@ -4,7 +4,7 @@
 
 use carom_formula::Formula;
 
-use super::formulas::{Arguments, NoValue, finite};
+use super::formulas::{Arguments, NoValue, finite, points};
 
 /// A prescribed dof.
 #[derive(Clone, Debug)]
@@ -59,15 +59,30 @@ impl Motions {
     /// The first formula without a finite value or derivative.
     pub fn at(&self, time: f64, out: &mut Vec<Prescribed>) -> Result<(), NoValue> {
         out.clear();
+        let mut given: Vec<_> = (0..self.formulas.len()).map(|k| self.given(k, time).into_iter()).collect();
         for moved in &self.moved {
             let (label, formula) = &self.formulas[moved.formula];
-            let motion =
-                formula.with_derivatives(Arguments::new(&moved.place, time).as_slice(), moved.place.len());
+            let motion = match formula.function() {
+                Some(_) => given[moved.formula].next().unwrap_or([f64::NAN; 3]),
+                None => {
+                    formula.with_derivatives(Arguments::new(&moved.place, time).as_slice(), moved.place.len())
+                }
+            };
             for value in motion {
                 finite(value, formula, label, &moved.place, time)?;
             }
             out.push(Prescribed { dof: moved.dof, motion });
         }
         Ok(())
+    }
+
+    /// Displacements of the dofs of formula `k` with their derivatives, if it is a function of a
+    /// program, which is called once.
+    fn given(&self, k: usize, time: f64) -> Vec<[f64; 3]> {
+        let Some(function) = self.formulas[k].1.function() else { return Vec::new() };
+        let moved = self.moved.iter().filter(|moved| moved.formula == k);
+        let places: Vec<&[f64]> = moved.map(|moved| moved.place.as_slice()).collect();
+        let Some(width) = places.first().map(|place| place.len() + 1) else { return Vec::new() };
+        function.with_derivatives(&points(&places, time), width)
     }
 }

@@ -1,23 +1,23 @@
 //! The loads of a model; names and formulas were checked when the case was read.
 
-use carom_case::{Case, FormulaSpec, LoadKind, LoadSpec, Problem, load_variables};
+use carom_case::{Case, LoadKind, LoadSpec, Problem, load_variables};
 use carom_formula::Formula;
 use carom_mechanics::model::{Amplitude, BodyInstance, Load, Loads, Manufactured};
 use carom_solid::LoadedSide;
 
+use super::given::in_space_and_time;
 use super::side::side;
 
 /// The loads of a case.
 pub(super) fn loads(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Problem>) -> Loads {
     let mut loads = Loads::default();
-    let parsed = |specs: &[FormulaSpec]| -> Result<Vec<Formula>, String> {
-        let read = |f: &FormulaSpec| f.formula(&load_variables(case.dimension));
-        specs.iter().map(read).collect::<Result<_, _>>().map_err(|error| error.to_string())
-    };
     if let Some(y) = &case.manufactured {
-        match parsed(y) {
+        match y.iter().map(|f| f.formula(&load_variables(case.dimension))).collect() {
             Ok(y) => loads.manufactured = Some(Manufactured::new(y)),
-            Err(error) => problems.push(Problem::new("manufactured.y", error, "", "")),
+            Err(error) => {
+                let error: carom_formula::FormulaError = error;
+                problems.push(Problem::new("manufactured.y", error.to_string(), "", ""));
+            }
         }
     }
     for (k, spec) in case.loads.iter().enumerate() {
@@ -25,10 +25,11 @@ pub(super) fn loads(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Prob
             LoadKind::Traction { value, .. } | LoadKind::BodyForce { value, .. } => value.as_slice(),
             LoadKind::Pressure { value, .. } => std::slice::from_ref(value),
         };
-        let value = match parsed(specs) {
+        let read = |f| in_space_and_time(case, f, &format!("load[{k}]"));
+        let value: Vec<Formula> = match specs.iter().map(read).collect() {
             Ok(value) => value,
-            Err(error) => {
-                problems.push(Problem::new(format!("load[{k}]"), error, "", ""));
+            Err(problem) => {
+                problems.push(problem);
                 continue;
             }
         };

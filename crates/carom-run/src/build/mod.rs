@@ -2,6 +2,7 @@
 //! with their key.
 
 mod contacts;
+mod given;
 mod loads;
 mod motions;
 mod obstacles;

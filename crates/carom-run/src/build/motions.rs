@@ -6,6 +6,7 @@ use carom_case::{Case, FormulaSpec, Problem, load_variables};
 use carom_formula::Formula;
 use carom_mechanics::model::{BodyInstance, Motions};
 
+use super::given::in_space_and_time;
 use super::obstacles::Moving;
 use super::side::{coordinates, side};
 
@@ -31,10 +32,10 @@ pub(super) fn motions(
     for (k, spec) in case.supports.iter().enumerate() {
         for (axis, formula) in &spec.moves {
             let path = format!("support[{k}].move.{}", AXES[*axis]);
-            let read = match formula.formula(&load_variables(d)) {
+            let read = match in_space_and_time(case, formula, &path) {
                 Ok(formula) => formula,
-                Err(error) => {
-                    problems.push(Problem::new(path, error.to_string(), "", ""));
+                Err(problem) => {
+                    problems.push(problem);
                     continue;
                 }
             };

@@ -4,17 +4,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use carom_case::Case;
-use carom_contact::Hold;
 use carom_mechanics::{Attempt, GridReport, Simulation, State, penetration};
-use carom_record::{ContactRow, Event, Manifest, Run, RunWriter, Status};
+use carom_record::{Event, Manifest, Recorder, Run, Status};
 
 use super::columns::{Since, center_weights, row};
-use super::fields::{field_set, gap_of, weights};
+use super::fields::field_set;
 use super::log::{entry, relaxed, repairs};
 use super::outcome::{End, Options, Outcome, Progress, RunError};
+use super::rows::contact_rows;
 use super::stopped::{Record, write_stop};
 use super::tally::{Busy, Tally, checkpoint};
-use super::verdicts::judge;
+use super::verdicts::judged;
 use crate::warnings::warnings_of_record;
 
 /// Time between signs of life while a step is bisected.
@@ -24,7 +24,7 @@ const HEARTBEAT: Duration = Duration::from_secs(1);
 pub(super) struct Session<'a> {
     case: &'a Case,
     pub(super) simulation: Simulation,
-    pub(super) writer: RunWriter,
+    pub(super) writer: &'a mut dyn Recorder,
     pub(super) manifest: Manifest,
     weights: Vec<f64>,
     field_steps: Vec<u64>,
@@ -49,10 +49,9 @@ impl<'a> Session<'a> {
     pub(super) fn new(
         case: &'a Case,
         simulation: Simulation,
-        mut writer: RunWriter,
+        writer: &'a mut dyn Recorder,
         manifest: Manifest,
     ) -> Self {
-        writer.field_format(case.output.format);
         let at = |time: &f64| simulation.grid().nearest(*time);
         let field_steps = case.output.at_times.iter().map(at).collect();
         let weights = center_weights(simulation.model());
@@ -198,48 +197,14 @@ impl<'a> Session<'a> {
         row(model, state, dt, &self.since, &self.weights, &mut self.values);
         self.since = Since::default();
         self.writer.history(&self.values)?;
-        for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
-            if pairs.iter().all(|p| !p.active) {
-                continue;
-            }
-            let weights = weights(contact, state, self.case.thickness);
-            // In a dent, a node has several pairs.
-            let mut of_node = vec![0.0; weights.len()];
-            pairs.iter().filter(|p| p.active).for_each(|pair| of_node[pair.node] += pair.lambda);
-            for pair in pairs.iter().filter(|p| p.active) {
-                let node = contact.kinematics.secondary()[pair.node];
-                let y = &state.y[node * model.dimension..(node + 1) * model.dimension];
-                let (gap, normal) = gap_of(contact, pair, state);
-                self.writer.contact(&ContactRow {
-                    step: state.step,
-                    time: state.time,
-                    contact: contact.name.as_str().into(),
-                    node: node as u64,
-                    point: std::array::from_fn(|i| y.get(i).copied().unwrap_or(0.0)),
-                    facet: pair.facet as u64,
-                    xi: pair.xi,
-                    gap,
-                    multiplier: pair.lambda,
-                    pressure: -of_node[pair.node] / weights[pair.node],
-                    normal,
-                    friction: match (&contact.friction, pair.tangential.hold) {
-                        (None, _) => "none",
-                        (_, Hold::Stick) => "stick",
-                        (_, Hold::Forward | Hold::Backward) => "slip",
-                    }
-                    .into(),
-                    traction: pair.tangential.traction,
-                    slip: pair.tangential.slip,
-                })?;
-            }
-        }
+        contact_rows(self.case, model, state).iter().try_for_each(|row| self.writer.contact(row))?;
         Ok(())
     }
 
     fn write_fields(&mut self) -> Result<(), RunError> {
         if self.case.output.fields_every > 0 || !self.field_steps.is_empty() {
             let (model, state) = (self.simulation.model(), self.simulation.state());
-            self.writer.fields(state.step, state.time, &field_set(self.case, model, state))?;
+            self.writer.fields(state.step, state.time, field_set(self.case, model, state))?;
         }
         Ok(())
     }
@@ -302,6 +267,9 @@ impl<'a> Session<'a> {
     /// Writes a checkpoint of the state as it is.
     fn checkpoint(&mut self) -> Result<(), RunError> {
         self.tally();
+        if !self.writer.resumable() {
+            return Ok(());
+        }
         let state = self.simulation.state();
         let tally =
             Tally { counters: self.manifest.counters.clone(), timings: self.manifest.timings.clone() };
@@ -319,8 +287,7 @@ impl<'a> Session<'a> {
         self.checkpoint()?;
         if let End::Stopped(stopped) = &end {
             let record = Record { case: self.case, simulation: &self.simulation, earlier: &self.checkpoints };
-            let directory = self.writer.directory();
-            write_stop(&record, stopped, last, options, directory, &mut self.manifest)?;
+            write_stop(&record, stopped, last, options, self.writer, &mut self.manifest)?;
         }
         // A record that cannot be read does not make a finished run unfinished.
         let asked = match end {
@@ -328,7 +295,7 @@ impl<'a> Session<'a> {
             End::Stopped(_) => !self.case.expects.is_empty(),
             End::Interrupted => false,
         };
-        let read = asked.then(|| Run::open(self.writer.directory()));
+        let read = asked.then(|| self.writer.read());
         if let (End::Finished, Some(Ok(run))) = (&end, &read) {
             self.add_warnings(run)?;
         }
@@ -349,8 +316,10 @@ impl<'a> Session<'a> {
             end,
         };
         self.writer.finish(&self.manifest)?;
-        if let Some(run) = read.transpose()? {
-            judge(Run { manifest: self.manifest, ..run }, &self.case.expects)?;
+        if let Some(run) = read.transpose()?
+            && let Some(manifest) = judged(Run { manifest: self.manifest, ..run }, &self.case.expects)
+        {
+            self.writer.manifest(&manifest)?;
         }
         Ok(outcome)
     }

@@ -3,15 +3,16 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use carom_case::Case;
-use carom_record::{Manifest, Run, RunWriter, Source, Status, Stop};
+use carom_case::{Case, Functions};
+use carom_mechanics::Simulation;
+use carom_record::{Manifest, MemoryRecord, Run, RunWriter, Source, Status, Stop};
 
 use super::columns::{Since, columns};
 use super::fields::sides;
 use super::outcome::{End, Options, Outcome, Progress, RunError};
 use super::session::Session;
 use super::tally::{Tally, checkpoint, from_checkpoint};
-use super::verdicts::judge;
+use super::verdicts::judged;
 use crate::setup::Setup;
 use crate::warnings::warnings;
 
@@ -27,6 +28,41 @@ pub fn run(
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
+    let (simulation, manifest) = started(case, source, options)?;
+    let mut writer = RunWriter::create(
+        directory,
+        &manifest,
+        &checkpoint(simulation.state(), Since::default(), &Tally::at_start(&simulation))?,
+    )?;
+    writer.field_format(case.output.format);
+    let mut session = Session::new(case, simulation, &mut writer, manifest);
+    session.write_start()?;
+    let remarks = audit_remarks(options, &session);
+    session.go(options, observe, stop, remarks)
+}
+
+/// Runs a case and records it in memory. Such a run cannot be resumed.
+///
+/// # Errors
+/// The case's problems.
+pub fn run_in_memory(
+    case: &Case,
+    source: Source,
+    options: Options,
+    observe: &mut (dyn FnMut(&Progress) + Send),
+    stop: &AtomicBool,
+) -> Result<(Outcome, MemoryRecord), RunError> {
+    let (simulation, manifest) = started(case, source, options)?;
+    let mut record = MemoryRecord::new(manifest.clone());
+    let mut session = Session::new(case, simulation, &mut record, manifest);
+    session.write_start()?;
+    let remarks = audit_remarks(options, &session);
+    let outcome = session.go(options, observe, stop, remarks)?;
+    Ok((outcome, record))
+}
+
+/// The simulation of a case at its start, and the manifest of its run.
+fn started(case: &Case, source: Source, options: Options) -> Result<(Simulation, Manifest), RunError> {
     let simulation = Setup::new(case).threads(options.threads).start().map_err(RunError::Case)?;
     let simulation = if options.audit { simulation.audited() } else { simulation };
     let resolved = serde_json::to_value(case).map_err(|e| RunError::Incompatible { what: e.to_string() })?;
@@ -35,15 +71,7 @@ pub fn run(
         Manifest::new(version, resolved, source, columns(case, simulation.model()), options.threads);
     manifest.sides = sides(simulation.model());
     manifest.warnings = warnings(case, simulation.model());
-    let writer = RunWriter::create(
-        directory,
-        &manifest,
-        &checkpoint(simulation.state(), Since::default(), &Tally::default())?,
-    )?;
-    let mut session = Session::new(case, simulation, writer, manifest);
-    session.write_start()?;
-    let remarks = audit_remarks(options, &session);
-    session.go(options, observe, stop, remarks)
+    Ok((simulation, manifest))
 }
 
 /// What an audit leaves out.
@@ -65,8 +93,22 @@ pub fn resume(
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
+    resume_with(directory, Functions::default(), options, observe, stop)
+}
+
+/// As [`resume`], of a case with functions of a program, which must be the same.
+///
+/// # Errors
+/// As [`resume`], and if a function is missing.
+pub fn resume_with(
+    directory: &Path,
+    functions: Functions,
+    options: Options,
+    observe: &mut (dyn FnMut(&Progress) + Send),
+    stop: &AtomicBool,
+) -> Result<Outcome, RunError> {
     let manifest = Manifest::read(directory)?;
-    let case: Case =
+    let mut case: Case =
         serde_json::from_value(manifest.case.clone()).map_err(|error| RunError::Incompatible {
             what: format!(
                 "the case in {} was resolved by Carom {} and does not fit this version: {error}",
@@ -74,11 +116,15 @@ pub fn resume(
                 manifest.version
             ),
         })?;
+    case.functions = functions;
     let case = &case;
     if manifest.status == Status::Finished {
         // The process may have been killed between the last row and the verdicts.
-        if manifest.expectations.is_empty() && !case.expects.is_empty() {
-            judge(Run::open(directory)?, &case.expects)?;
+        if manifest.expectations.is_empty()
+            && !case.expects.is_empty()
+            && let Some(manifest) = judged(Run::open(directory)?, &case.expects)
+        {
+            manifest.replace(directory)?;
         }
         let steps = case.time.steps();
         return Ok(Outcome {
@@ -109,7 +155,9 @@ pub fn resume(
     manifest.started = carom_record::now();
     manifest.threads = options.threads;
     let remarks = reopened.fallback.iter().map(ToString::to_string).collect();
-    let mut session = Session::new(case, simulation, reopened.writer, manifest);
+    let mut writer = reopened.writer;
+    writer.field_format(case.output.format);
+    let mut session = Session::new(case, simulation, &mut writer, manifest);
     (session.since, session.earlier) = (since, tally);
     session.writer.manifest(&session.manifest)?;
     if reopened.rows == 0 {

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_mechanics::State;
+use carom_mechanics::{Simulation, State};
 use cpu_time::{ProcessTime, ThreadTime};
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +15,14 @@ use super::outcome::RunError;
 pub(super) struct Tally {
     pub(super) counters: BTreeMap<String, u64>,
     pub(super) timings: BTreeMap<String, f64>,
+}
+
+impl Tally {
+    /// The start may need a factorisation.
+    pub(super) fn at_start(simulation: &Simulation) -> Self {
+        let counters = [("factorisations".to_owned(), simulation.factorisations())].into();
+        Self { counters, timings: BTreeMap::new() }
+    }
 }
 
 /// A checkpoint: the state, what the next row will count, and what the run has counted.

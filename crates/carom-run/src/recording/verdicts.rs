@@ -1,18 +1,16 @@
 //! Comparison of a record with the expectations of its case.
 
 use carom_case::ExpectSpec;
-use carom_record::{Run, Status};
+use carom_record::{Manifest, Run, Status};
 
-use super::outcome::RunError;
-
-/// Compares the record with the case's expectations and writes the verdicts into the manifest. A
-/// stopped run is judged only if one of them concerns stopping.
-pub(super) fn judge(mut run: Run, expects: &[ExpectSpec]) -> Result<(), RunError> {
+/// The manifest with the verdicts on the record, if there are any. A stopped run is judged only if
+/// one of its expectations concerns stopping.
+pub(super) fn judged(mut run: Run, expects: &[ExpectSpec]) -> Option<Manifest> {
     let judged =
         run.manifest.status == Status::Finished || expects.iter().any(ExpectSpec::asks_whether_stopped);
     if expects.is_empty() || !judged {
-        return Ok(());
+        return None;
     }
     run.manifest.expectations = carom_record::judge(&run, expects);
-    Ok(run.manifest.replace(&run.directory)?)
+    Some(run.manifest)
 }

@@ -12,6 +12,7 @@ mod friction;
 mod impact;
 mod kernels;
 mod loads;
+mod memory;
 mod momentum;
 mod nonsmooth;
 mod obstacles;

@@ -11,7 +11,7 @@ use carom_study::{Event, Plan, resume, start};
 
 use crate::common;
 
-const CASE: &str = r#"
+pub(crate) const CASE: &str = r#"
 [[body]]
 name = "bar"
 material = "steel"

@@ -5,11 +5,9 @@ mod change;
 mod place;
 mod trials;
 
-use std::path::Path;
-
 use carom_case::Case;
 use carom_mechanics::{GridReport, Simulation, State, Stopped};
-use carom_record::{Advice, FieldSet, Manifest, PointArray, RecordError, Stop, StopIteration};
+use carom_record::{Advice, FieldSet, Manifest, PointArray, RecordError, Recorder, Stop, StopIteration};
 
 use super::fields::field_set;
 use super::outcome::Options;
@@ -33,12 +31,12 @@ pub(super) fn write_stop(
     stopped: &Stopped,
     last: &GridReport,
     options: Options,
-    directory: &Path,
+    writer: &mut dyn Recorder,
     manifest: &mut Manifest,
 ) -> Result<(), RecordError> {
     let Record { case, simulation, earlier: [latest, before] } = record;
     let (mut stop, fields) = explain(case, simulation, stopped, last);
-    stop.write(directory, &fields, manifest)?;
+    writer.stop(&stop, &fields, manifest)?;
     if options.trials {
         // Not the counters: those of a run that was resumed count the attempts of the last step twice.
         let effort = Effort {
@@ -47,7 +45,7 @@ pub(super) fn write_stop(
         };
         let earlier = if latest.step + FEW <= simulation.state().step { latest } else { before };
         try_out(&mut stop, case, earlier, effort, options.threads);
-        stop.write(directory, &fields, manifest)?;
+        writer.stop(&stop, &fields, manifest)?;
     }
     Ok(())
 }

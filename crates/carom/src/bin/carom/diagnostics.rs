@@ -1,8 +1,7 @@
 //! Failures on standard error, with the line of the case file, in colour on a terminal.
 
-use annotate_snippets::renderer::DecorStyle;
-use annotate_snippets::{AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
 use carom::case::{CaseError, Diagnostic};
+use carom::diagnostics::{plain, text};
 use serde_json::json;
 
 use crate::exit::{Exit, Failure};
@@ -10,9 +9,10 @@ use crate::{console, out};
 
 /// Prints a failure, with `json` also as an event on standard output; returns its exit code.
 pub(crate) fn print(failure: &Failure, json: bool) -> Exit {
+    let coloured = console::in_colour();
     let text = match failure {
-        Failure::Case(CaseError::Wrong(found)) => found.iter().map(rendered).collect::<Vec<_>>().join("\n\n"),
-        Failure::Argument { help, .. } => plain(&failure.to_string(), &[("try", help)]),
+        Failure::Case(error) => text(error, coloured),
+        Failure::Argument { help, .. } => plain(&failure.to_string(), &[("try", help)], coloured),
         Failure::Stopped { help, directory, page, .. } => {
             let place = directory.display();
             let note = if *page {
@@ -22,9 +22,9 @@ pub(crate) fn print(failure: &Failure, json: bool) -> Exit {
             } else {
                 format!("the last valid state is saved in {place}")
             };
-            plain(&failure.to_string(), &[("note", &note), ("try", help)])
+            plain(&failure.to_string(), &[("note", &note), ("try", help)], coloured)
         }
-        Failure::Case(CaseError::Refused { .. }) | Failure::System { .. } => plain(&failure.to_string(), &[]),
+        Failure::System { .. } => plain(&failure.to_string(), &[], coloured),
     };
     console::say(text);
     // The event of a run that stopped has been printed already.
@@ -50,41 +50,4 @@ fn placed(found: &Diagnostic) -> serde_json::Value {
         "what": found.what, "why": found.why, "try": found.help,
         "file": found.file, "line": found.line, "column": found.column, "length": found.length,
     })
-}
-
-fn renderer() -> Renderer {
-    if console::in_colour() { Renderer::styled().decor_style(DecorStyle::Unicode) } else { Renderer::plain() }
-}
-
-fn rendered(found: &Diagnostic) -> String {
-    let place: Element = if found.line == 0 {
-        Origin::path(found.file.as_str()).into()
-    } else {
-        let byte =
-            |column: usize| found.quoted.char_indices().nth(column).map_or(found.quoted.len(), |(i, _)| i);
-        let span = byte(found.column - 1)..byte(found.column - 1 + found.length);
-        let here = AnnotationKind::Primary.span(span);
-        Snippet::source(found.quoted.as_str())
-            .path(found.file.as_str())
-            .line_start(found.line)
-            .annotation(here)
-            .into()
-    };
-    let mut group = Group::with_title(Level::ERROR.primary_title(found.what.as_str())).element(place);
-    for (level, text) in
-        [(Level::NOTE.with_name(Some("why")), &found.why), (Level::HELP.with_name(Some("try")), &found.help)]
-    {
-        if !text.is_empty() {
-            group = group.element(level.message(text.as_str()));
-        }
-    }
-    renderer().render(&[group])
-}
-
-fn plain(what: &str, more: &[(&str, &str)]) -> String {
-    let mut group = Group::with_title(Level::ERROR.primary_title(what));
-    for (name, text) in more.iter().filter(|(_, text)| !text.is_empty()) {
-        group = group.element(Level::NOTE.with_name(Some(*name)).message(*text));
-    }
-    renderer().render(&[group])
 }

@@ -111,6 +111,13 @@ impl From<StudyError> for Failure {
                 }
                 other => other,
             },
+            error @ StudyError::Timed { .. } => Self::Argument {
+                what: error.to_string(),
+                help: "run it with `carom study` on one machine, or give the arms their steps".to_owned(),
+            },
+            error @ StudyError::NoRun { .. } => {
+                Self::Argument { what: error.to_string(), help: "give one of these numbers".to_owned() }
+            }
             error @ (StudyError::Incompatible { .. } | StudyError::Exists { .. }) => Self::Argument {
                 what: error.to_string(),
                 help: "run the study again, into another directory".to_owned(),

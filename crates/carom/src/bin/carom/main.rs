@@ -9,11 +9,12 @@ mod live;
 mod out;
 mod shared;
 mod simulation;
+mod study_summary;
 mod summary;
 
 use clap::{Parser, Subcommand};
 use command::{
-    check, completions, explain, man, mesh, new, reduce, report, resume, run, schema, study, verify,
+    check, completions, explain, export, man, mesh, new, reduce, report, resume, run, schema, study, verify,
 };
 
 /// Simulate impact and contact of deformable solids, and compare time integrators.
@@ -53,6 +54,7 @@ enum Command {
     Mesh(mesh::Arguments),
     New(new::Arguments),
     Report(report::Arguments),
+    Export(export::Arguments),
     Reduce(reduce::Arguments),
     Schema(schema::Arguments),
     Completions(completions::Arguments),
@@ -87,6 +89,7 @@ fn main() -> std::process::ExitCode {
         Command::Mesh(arguments) => mesh::run(arguments),
         Command::New(arguments) => new::run(arguments),
         Command::Report(arguments) => report::run(arguments),
+        Command::Export(arguments) => export::run(arguments),
         Command::Reduce(arguments) => reduce::run(arguments),
         Command::Schema(arguments) => schema::run(arguments),
         Command::Completions(arguments) => completions::run(arguments),

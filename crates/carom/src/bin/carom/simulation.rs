@@ -164,7 +164,7 @@ pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
     Ok(carom_report::report(directory)?.page)
 }
 
-fn seen(progress: &recording::Progress) -> Progress {
+pub(crate) fn seen(progress: &recording::Progress) -> Progress {
     Progress {
         step: progress.step as usize,
         steps: progress.steps as usize,

@@ -3,6 +3,7 @@
 pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod explain;
+pub(crate) mod export;
 mod flags;
 pub(crate) mod man;
 pub(crate) mod mesh;
@@ -13,6 +14,7 @@ pub(crate) mod resume;
 pub(crate) mod run;
 pub(crate) mod schema;
 pub(crate) mod study;
+mod study_parts;
 pub(crate) mod verify;
 
 use std::io::IsTerminal;

@@ -17,7 +17,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let page = if StudyManifest::is_in(&arguments.directory) {
-        super::study::report(&arguments.directory)?
+        crate::study_summary::report(&arguments.directory)?
     } else {
         run_directory(&arguments.directory)?;
         simulation::report(&arguments.directory)?

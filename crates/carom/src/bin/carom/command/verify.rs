@@ -12,9 +12,9 @@ use include_dir::{Dir, include_dir};
 use indicatif::ProgressBar;
 use serde_json::json;
 
-use super::study::report as study_report;
 use crate::exit::{Exit, Failure};
 use crate::live::{duration, stop_on_signal};
+use crate::study_summary::report as study_report;
 use crate::summary::short;
 use crate::{console, directory, out};
 

@@ -1,0 +1,55 @@
+"""Impact and contact of deformable solids by the positional finite element method.
+
+>>> import carom
+>>> case = carom.Case.from_file("cases/impact/impact.toml")
+>>> run = case.set("time.scheme.rho_inf", 0.6).run()
+>>> run.metrics["restitution"]
+
+Units are those of the case, whose labels every table carries. Arrays are read-only.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from ._carom import __version__
+from .case import Case
+from .errors import CaseError, Error, RecordError, StoppedError
+from .explained import explain, schemes
+from .run import Expectation, Metrics, Run, open, resume
+from .simulation import Simulation, Step
+from .study import Study, study
+from .table import Table
+
+if TYPE_CHECKING:
+    from . import plot
+
+__all__ = [
+    "Case",
+    "CaseError",
+    "Error",
+    "Expectation",
+    "Metrics",
+    "RecordError",
+    "Run",
+    "Simulation",
+    "Step",
+    "StoppedError",
+    "Study",
+    "Table",
+    "__version__",
+    "explain",
+    "open",
+    "plot",
+    "resume",
+    "schemes",
+    "study",
+]
+
+
+def __getattr__(name: str) -> Any:
+    # Matplotlib is imported only by those who plot.
+    if name == "plot":
+        return importlib.import_module(".plot", __name__)
+    raise AttributeError(f"module 'carom' has no attribute {name!r}")

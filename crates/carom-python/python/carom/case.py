@@ -1,0 +1,184 @@
+"""Cases: what is simulated."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping
+from os import PathLike
+from typing import Any
+
+from . import _carom
+from .errors import StoppedError
+from .functions import plain
+from .progress import progress_bar, threads_or_cores
+from .run import Run
+
+
+class Case:
+    """A case, with the keys of a case file.
+
+    Make one with `from_file`, `from_dict` or `from_text`. It is checked at once: everything wrong
+    with it is a `CaseError` with place, reason and what to try, as on the command line.
+    """
+
+    def __init__(self, core: _carom.Case, functions: Mapping[str, Callable[..., Any]]) -> None:
+        self._core = core
+        self._functions = dict(functions)
+        self._sets: dict[str, str] = {}
+
+    @classmethod
+    def from_file(cls, path: str | PathLike[str]) -> Case:
+        """Read a case file.
+
+        Parameters
+        ----------
+        path
+            The TOML file. Meshes and tables that it names are looked for beside it.
+        """
+        return cls(_carom.Case.open(path, []), {})
+
+    @classmethod
+    def from_text(cls, text: str) -> Case:
+        """Read a case from TOML text. Files that it names are looked for in the working directory."""
+        return cls(_carom.Case.parse("case", text, []), {})
+
+    @classmethod
+    def from_dict(cls, case: Mapping[str, Any]) -> Case:
+        """Read a case from a dictionary with the keys of a case file.
+
+        Values may be NumPy numbers and arrays. Components of a load and the motion of a support may
+        be Python functions; see `set`.
+        """
+        functions: dict[str, Callable[..., Any]] = {}
+        text = _carom.toml_document(plain(case, functions))
+        return cls(_carom.Case.parse("case", text, []), functions)
+
+    def set(self, key: str | Mapping[str, Any], value: Any = None) -> Case:
+        """Replace values, as ``--set key=value`` does; the case is checked again.
+
+        Parameters
+        ----------
+        key
+            Path of the key; a table of a list is addressed by its name: ``body.cylinder.element``.
+            A dictionary replaces several values at once.
+        value
+            The new value. A component of a load may be a function ``f(t, X)`` of the time and the
+            reference positions, shape (points, dimension), that returns a number or one per point.
+            The motion of a support may be a function that returns displacement, velocity and
+            acceleration, ``(u, v, a)``, each a number or one per point. It is called once per
+            evaluation, with all points: a few microseconds, about once per step and stage.
+
+        Returns
+        -------
+        Case
+            The same case, changed. After an error it is unchanged.
+        """
+        functions = dict(self._functions)
+        values = key if isinstance(key, Mapping) else {key: value}
+        sets = dict(self._sets)
+        for path, new in values.items():
+            # The last override of a key counts.
+            sets.pop(path, None)
+            sets[path] = _carom.toml(plain(new, functions))
+        self._core = self._core.with_sets([f"{path}={text}" for path, text in sets.items()])
+        self._sets, self._functions = sets, functions
+        return self
+
+    def copy(self) -> Case:
+        """An independent case with the same values."""
+        case = Case(self._core, self._functions)
+        case._sets = dict(self._sets)
+        return case
+
+    @property
+    def title(self) -> str:
+        """Title for figures."""
+        return self._core.title
+
+    def to_dict(self) -> dict[str, Any]:
+        """The case as given, with the values that `set` replaced."""
+        return self._core.to_dict()
+
+    def to_toml(self) -> str:
+        """The text of a case file."""
+        return self._core.merged()
+
+    def resolved(self) -> dict[str, Any]:
+        """The case with all defaults, as `carom check --json` prints it."""
+        return self._core.resolved()
+
+    def check(self) -> list[str]:
+        """Build the model, which finds what only meshes show.
+
+        Returns
+        -------
+        list of str
+            Warnings: reasons to distrust some results.
+        """
+        return self._core.check(self._functions)
+
+    def run(
+        self,
+        out: str | PathLike[str] | None = None,
+        *,
+        threads: int | None = None,
+        progress: bool = True,
+        page: bool = True,
+        trials: bool = False,
+        audit: bool = False,
+    ) -> Run:
+        """Compute the case.
+
+        Parameters
+        ----------
+        out
+            Directory of the run, which must not exist yet. Without it the run is recorded in memory,
+            and cannot be resumed.
+        threads
+            Number of threads, by default one per core; the result does not depend on it.
+        progress
+            Whether a bar is shown, in a terminal or a notebook, if tqdm is installed.
+        page
+            Whether figures and report page are made in `out`.
+        trials
+            Where the simulation cannot continue: whether changes that may help are tried.
+        audit
+            Whether the contact of every step is checked by a second, slow method.
+
+        Returns
+        -------
+        Run
+            The record. After Ctrl-C it is what there is, with ``status == "stopped"`` and a warning.
+
+        Raises
+        ------
+        CaseError
+            If only the meshes show that the case is wrong.
+        StoppedError
+            If the simulation cannot continue; its ``run`` is the record up to there.
+        """
+        with progress_bar(self.title, progress) as report:
+            core, raised = self._core.run(
+                out, threads_or_cores(threads), trials, audit, page, self._functions, report
+            )
+        return ended(Run(core), raised)
+
+    def __repr__(self) -> str:
+        return f"<Case {self.title!r}>"
+
+
+def ended(run: Run, raised: BaseException | None) -> Run:
+    """The run, or the exception that ended it."""
+    if isinstance(raised, KeyboardInterrupt):
+        reached = run.history["time"][-1] if run.history.rows else 0.0
+        where = f'continue it with carom.resume("{run.directory}")' if run.directory else "it is in memory"
+        warnings.warn(f"stopped by Ctrl-C at t = {reached:g}; {where}", stacklevel=3)
+        return run
+    if raised is not None:
+        raise raised
+    if run.status == "failed":
+        advice = [f"try: {a['what']}" for a in (run.stop or {}).get("advice", [])][:3]
+        error = StoppedError("\n".join([run.reason or "the simulation stopped", *advice]))
+        error.run = run
+        raise error
+    return run

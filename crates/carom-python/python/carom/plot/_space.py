@@ -1,0 +1,252 @@
+"""Figures in space: the deformed bodies, and the contact pressure along a side."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize, TwoSlopeNorm
+from matplotlib.tri import Triangulation
+from numpy.typing import NDArray
+
+from ..fields import Block, FieldSet
+from ..run import Run
+from ._style import Size, axes, labelled, style
+
+Floats = NDArray[np.float64]
+
+#: Triangles between the nodes of a Lagrange triangle of degree 1 to 3 (corners, edges, interior).
+_LATTICE = {
+    1: [(0, 1, 2)],
+    2: [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)],
+    3: [
+        (0, 3, 8),
+        (3, 9, 8),
+        (3, 4, 9),
+        (4, 5, 9),
+        (4, 1, 5),
+        (8, 9, 7),
+        (9, 6, 7),
+        (9, 5, 6),
+        (7, 6, 2),
+    ],
+}
+
+
+def snapshot(
+    run: Run,
+    time: float,
+    quantity: str = "sigma_yy",
+    *,
+    mesh: bool = True,
+    limits: tuple[float, float] | None = None,
+    ax: Axes | None = None,
+    size: Size = "single",
+) -> Axes:
+    """A quantity on the deformed bodies at the recorded instant nearest to a time.
+
+    Cells are divided at their nodes, so that curved sides are shown as they are.
+
+    Parameters
+    ----------
+    run
+        A run in the plane with recorded fields.
+    time
+        The instant.
+    quantity
+        ``sigma_xx``, ``sigma_yy``, ``sigma_xy``, ``von_mises``, ``contact_pressure``, ``ux``, …
+    mesh
+        Whether the edges of cells are drawn.
+    limits
+        Range of the colours; by default that of the instant, symmetric for signed quantities.
+    """
+    fields = run.fields.at(time)
+    values, unit = fields.quantity(quantity)
+    norm, colours = _colours(quantity, values, limits)
+    with style():
+        ax = axes(ax, size)
+        drawn = _draw(ax, fields, values, norm, colours, mesh)
+        bar = ax.figure.colorbar(drawn, ax=ax, shrink=0.9, pad=0.02)
+        bar.set_label(labelled(quantity, unit))
+        ax.set_title(f"t = {fields.time:.4g} {run.history.units['time']}".rstrip())
+        ax.set_aspect("equal")
+        ax.autoscale_view()
+        ax.axis("off")
+    return ax
+
+
+def animate(
+    run: Run,
+    quantity: str = "sigma_yy",
+    *,
+    frames: int = 60,
+    mesh: bool = False,
+    size: Size = "single",
+) -> Any:
+    """An animation of a quantity on the deformed bodies.
+
+    Parameters
+    ----------
+    frames
+        Largest number of recorded instants that are shown.
+
+    Returns
+    -------
+    matplotlib.animation.FuncAnimation
+        ``.save("impact.gif")``; notebooks show ``.to_jshtml()``.
+    """
+    from matplotlib.animation import FuncAnimation
+
+    count = len(run.fields)
+    chosen = np.unique(np.linspace(0, count - 1, min(frames, count)).round().astype(int))
+    sets = [run.fields.number(int(i)) for i in chosen]
+    found = [fields.quantity(quantity) for fields in sets]
+    norm, colours = _colours(quantity, np.concatenate([values for values, _ in found]), None)
+    corners = np.concatenate([fields.positions[:, :2] for fields in sets])
+    low, high = corners.min(0), corners.max(0)
+    margin = 0.03 * (high - low).max()
+    with style():
+        ax = axes(None, size)
+        mappable = plt.cm.ScalarMappable(norm, colours)
+        ax.figure.colorbar(mappable, ax=ax, shrink=0.9, pad=0.02).set_label(labelled(quantity, found[0][1]))
+
+    def frame(i: int) -> list[Any]:
+        ax.clear()
+        drawn = _draw(ax, sets[i], found[i][0], norm, colours, mesh)
+        ax.set_xlim(low[0] - margin, high[0] + margin)
+        ax.set_ylim(low[1] - margin, high[1] + margin)
+        ax.set_aspect("equal")
+        ax.axis("off")
+        ax.set_title(f"t = {sets[i].time:.4g} {run.history.units['time']}".rstrip(), fontsize=8)
+        return [drawn]
+
+    animation = FuncAnimation(ax.figure, frame, frames=len(sets), interval=50)  # type: ignore[arg-type]
+    plt.close(ax.figure)  # type: ignore[arg-type]
+    return animation
+
+
+def pressure_map(
+    run: Run, contact: str | None = None, *, ax: Axes | None = None, size: Size = "single"
+) -> Axes:
+    """The contact pressure p(s, t) along the secondary side.
+
+    Parameters
+    ----------
+    run
+        A run with recorded fields, which contain the side.
+    contact
+        Name of the contact; by default the first one.
+
+    Notes
+    -----
+    s is the arc length along the undeformed side, from its first node; from a node opposite to the
+    contact if the side is closed. Corners of the primary side that are in contact are not shown.
+    """
+    contacts = {c["name"]: c for c in run.case["contacts"]}
+    if not contacts:
+        raise ValueError("the case has no contact")
+    name = contact or next(iter(contacts))
+    if name not in contacts:
+        raise ValueError(f"no contact is named {name!r}; the contacts are: {', '.join(contacts)}")
+    chains = run.manifest["sides"][contacts[name]["secondary"]]
+    rows = run.contact
+    mine = rows["contact"] == name
+    nodes = _unrolled(np.concatenate([np.asarray(chain) for chain in chains]), rows["node"][mine])
+    # Corners of the primary are contact nodes, too, but have no place on this side.
+    mine &= np.isin(rows["node"], nodes)
+    points = run.fields.number(0).points[nodes]
+    lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    place = {int(node): k for k, node in enumerate(nodes)}
+
+    times, row = np.unique(rows["time"][mine], return_inverse=True)
+    with style():
+        ax = axes(ax, size)
+        if len(times):
+            grid = run.history["time"]
+            grid = grid[(grid >= times[0]) & (grid <= times[-1])]
+            pressure = np.zeros((len(nodes), len(grid)))
+            column = np.searchsorted(grid, times)[row]
+            pressure[[place[int(node)] for node in rows["node"][mine]], column] = rows["pressure"][mine]
+            drawn = ax.pcolormesh(grid, lengths, pressure, cmap="cividis", shading="nearest", rasterized=True)
+            touched = lengths[(pressure != 0).any(axis=1)]
+            margin = 0.15 * (touched.max(initial=0) - touched.min(initial=lengths[-1]))
+            ax.set_ylim(
+                max(touched.min(initial=lengths[-1]) - margin, 0),
+                min(touched.max(initial=0) + margin, lengths[-1]),
+            )
+            bar = ax.figure.colorbar(drawn, ax=ax)
+            bar.set_label(labelled("contact pressure", rows.units["pressure"]))
+        ax.set_xlabel(labelled("time", run.history.units["time"]))
+        ax.set_ylabel(labelled("arc length", run.history.units["penetration"]))
+        ax.set_title(name)
+    return ax
+
+
+def _unrolled(nodes: NDArray[np.int64], active: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The nodes of a side; a closed one begins in the middle of its longest part without contact."""
+    if len(nodes) < 3 or nodes[0] != nodes[-1]:
+        return nodes
+    nodes = nodes[:-1]
+    touched = np.flatnonzero(np.isin(nodes, active))
+    if not len(touched):
+        return nodes
+    free = np.diff(np.append(touched, touched[0] + len(nodes)))
+    longest = int(np.argmax(free))
+    return np.roll(nodes, -(int(touched[longest]) + int(free[longest]) // 2))
+
+
+def _colours(quantity: str, values: Floats, limits: tuple[float, float] | None) -> tuple[Normalize, str]:
+    """Blue is compression, red is tension; quantities without sign are in one hue."""
+    finite = values[np.isfinite(values)]
+    signed = quantity not in ("von_mises", "contact_pressure")
+    if limits is None:
+        most = float(np.abs(finite).max(initial=0.0)) or 1.0
+        limits = (-most, most) if signed else (0.0, most)
+    if signed and limits[0] < 0 < limits[1]:
+        return TwoSlopeNorm(0.0, *limits), "RdBu_r"
+    return Normalize(*limits), "RdBu_r" if signed else "cividis"
+
+
+def _draw(
+    ax: Axes, fields: FieldSet, values: Floats, norm: Normalize, colours: str, mesh: bool
+) -> Any:
+    """The bodies; edges of cells along their nodes."""
+    y = fields.positions
+    triangles = np.concatenate([_triangles(block) for block in fields.blocks])
+    if not len(triangles):
+        raise ValueError("these bodies are bars; a snapshot shows bodies in the plane")
+    # Where J ≤ 0 there is no stress.
+    masked = np.isnan(values[triangles]).any(axis=1)
+    shape = Triangulation(y[:, 0], y[:, 1], triangles, mask=masked)
+    drawn = ax.tripcolor(
+        shape, np.nan_to_num(values), shading="gouraud", cmap=colours, norm=norm, rasterized=True
+    )
+    for block in fields.blocks:
+        edges = _edges(block)
+        count = np.unique(np.sort(edges[:, [0, -1]], axis=1), axis=0, return_inverse=True, return_counts=True)
+        outline = edges[count[2][count[1].ravel()] == 1]
+        ax.add_collection(LineCollection(list(y[outline][:, :, :2]), colors="k", linewidths=0.6))
+        if mesh:
+            ax.add_collection(
+                LineCollection(list(y[edges][:, :, :2]), colors="k", linewidths=0.15, alpha=0.5)
+            )
+    return drawn
+
+
+def _triangles(block: Block) -> NDArray[np.int64]:
+    if block.vtk_type != 69:
+        return np.empty((0, 3), dtype=np.int64)
+    return np.concatenate([block.cells[:, list(corners)] for corners in _LATTICE[block.degree]])
+
+
+def _edges(block: Block) -> NDArray[np.int64]:
+    """Nodes along every edge of every cell, from corner to corner."""
+    inner, cells = block.degree - 1, block.cells
+    edges = []
+    for k in range(3):
+        between = [3 + k * inner + i for i in range(inner)]
+        edges.append(cells[:, [k, *between, (k + 1) % 3]])
+    return np.concatenate(edges)

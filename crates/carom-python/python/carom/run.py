@@ -1,0 +1,247 @@
+"""Records of runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _carom
+from .fields import Fields
+from .functions import name_of
+from .progress import progress_bar, threads_or_cores
+from .table import Table
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class Metrics(Mapping[str, float]):
+    """Metrics of a run by name; NaN where the record has none.
+
+    Attributes
+    ----------
+    units, meanings : dict of str to str
+        Unit label and meaning of every metric.
+    """
+
+    def __init__(self, found: Sequence[tuple[str, float | None, str, str]]) -> None:
+        self._values = {name: math.nan if value is None else value for name, value, _, _ in found}
+        self.units = {name: unit for name, _, unit, _ in found}
+        self.meanings = {name: meaning for name, _, _, meaning in found}
+
+    def __getitem__(self, name: str) -> float:
+        if name not in self._values:
+            raise KeyError(f"no metric is named {name!r}; the metrics are: {', '.join(self._values)}")
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __repr__(self) -> str:
+        lines = [f"{name} = {value:.6g} {self.units[name]}".rstrip() for name, value in self.items()]
+        return "\n".join(lines)
+
+
+@dataclass(frozen=True)
+class Expectation:
+    """Outcome of an ``[[expect]]``.
+
+    Attributes
+    ----------
+    what
+        What was asked: ``min A.uy``.
+    expected
+        The bound: ``-0.7827 ± 0.004``.
+    got
+        The value of the record; ``None`` if there is none.
+    met
+        Whether the bound is satisfied.
+    source
+        Where the expected value comes from.
+    """
+
+    what: str
+    expected: str
+    got: float | None
+    met: bool
+    source: str | None
+
+
+class Run:
+    """The record of a run, in memory or read from its directory.
+
+    Attributes
+    ----------
+    history : Table
+        One row per recorded step: energies, contact force, probes, …
+    """
+
+    def __init__(self, core: _carom.Record) -> None:
+        self._core = core
+        columns = core.columns
+        self.history = Table(
+            {name: values for (name, *_), values in zip(columns, core.values)},
+            {name: unit for name, unit, _, _ in columns},
+            {name: meaning for name, _, meaning, _ in columns},
+        )
+
+    @property
+    def directory(self) -> Path | None:
+        """The run directory; ``None`` in memory."""
+        return self._core.directory
+
+    @cached_property
+    def manifest(self) -> dict[str, Any]:
+        """What was run, on which machine, and how it ended."""
+        return self._core.manifest()
+
+    @property
+    def case(self) -> dict[str, Any]:
+        """The case with all defaults."""
+        found: dict[str, Any] = self.manifest["case"]
+        return found
+
+    @property
+    def title(self) -> str:
+        """Title of the case."""
+        return str(self.case["title"])
+
+    @property
+    def status(self) -> str:
+        """``finished``, ``stopped`` (by Ctrl-C), ``failed`` (cannot continue) or ``running``."""
+        return str(self.manifest["status"])
+
+    @property
+    def reason(self) -> str | None:
+        """Why it did not finish."""
+        reason: str | None = self.manifest["reason"]
+        return reason
+
+    @cached_property
+    def stop(self) -> dict[str, Any] | None:
+        """Where and why the simulation could not continue, and what to try."""
+        return self._core.stop()
+
+    @property
+    def warnings(self) -> list[str]:
+        """Reasons to distrust some of the results."""
+        return self._core.warnings()
+
+    @cached_property
+    def contact(self) -> Table:
+        """One row per active contact node of a recorded step.
+
+        Position (``x``, ``y``), ``gap``, ``multiplier`` (force, negative for compression),
+        ``pressure``, unit normal of the primary side.
+        """
+        columns = {name: np.asarray(values) for name, values in self._core.contact().items()}
+        return Table(columns, self._core.contact_units())
+
+    @cached_property
+    def metrics(self) -> Metrics:
+        """All metrics that a study tabulates."""
+        return Metrics(self._core.metrics())
+
+    @property
+    def expectations(self) -> list[Expectation]:
+        """Outcomes of the case's expectations."""
+        return [
+            Expectation(e["what"], e["expected"], e["got"], e["pass"], e.get("source"))
+            for e in self.manifest["expectations"]
+        ]
+
+    @cached_property
+    def log(self) -> list[dict[str, Any]]:
+        """Events: ``step``, ``time``, ``kind``, ``message`` and data of the kind."""
+        return self._core.log()
+
+    @cached_property
+    def episodes(self) -> list[tuple[float, float]]:
+        """Contact episodes: first time in contact, first time after it (or the end of the record)."""
+        last = float(self.history["time"][-1]) if self.history.rows else 0.0
+        return [(start, last if end is None else end) for start, end in self._core.episodes()]
+
+    @cached_property
+    def fields(self) -> Fields:
+        """Fields at the recorded instants (``output.fields_every`` of the case)."""
+        return Fields(self._core)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The history as pandas DataFrame on the same memory."""
+        return self.history.to_pandas()
+
+    def to_polars(self) -> Any:
+        """The history as polars DataFrame, through Arrow's C interface."""
+        return self.history.to_polars()
+
+    def to_arrow(self) -> Any:
+        """The history as ``pyarrow.Table`` on the same memory."""
+        return self.history.to_arrow()
+
+    def to_xarray(self) -> Any:
+        """The history as ``xarray.Dataset`` over time."""
+        return self.history.to_xarray()
+
+    def page(self) -> Path:
+        """Make figures and report page of a run directory; returns the page."""
+        if self.directory is None:
+            raise ValueError("a run in memory has no page; give case.run a directory: out=…")
+        return self._core.page()
+
+    def animate(self, quantity: str = "sigma_yy", **options: Any) -> Any:
+        """An animation of the deformed bodies (Matplotlib), shown by notebooks; see `plot.animate`."""
+        from . import plot
+
+        return plot.animate(self, quantity, **options)
+
+    def __repr__(self) -> str:
+        place = f" in {self.directory}" if self.directory else ""
+        return f"<Run {self.title!r}: {self.status}, {self.history.rows} rows{place}>"
+
+
+def open(directory: str | PathLike[str]) -> Run:
+    """Read a run directory, also one that the command line wrote or is still writing.
+
+    Parameters
+    ----------
+    directory
+        The run directory.
+    """
+    return Run(_carom.open(directory))
+
+
+def resume(
+    directory: str | PathLike[str],
+    *functions: Callable[..., Any],
+    threads: int | None = None,
+    progress: bool = True,
+    page: bool = True,
+) -> Run:
+    """Continue a run that was stopped or killed; the result is bitwise that of one run.
+
+    Parameters
+    ----------
+    directory
+        The run directory.
+    *functions
+        The Python functions of the case, which must be the same: their code, defaults and the values
+        they enclose are compared.
+    threads, progress, page
+        As in `Case.run`.
+    """
+    from .case import ended
+
+    given = {name_of(function): function for function in functions}
+    with progress_bar(str(directory), progress) as report:
+        core, raised = _carom.resume(directory, threads_or_cores(threads), page, given, report)
+    return ended(Run(core), raised)

@@ -1,0 +1,189 @@
+"""A simulation that is advanced step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _carom
+from .case import Case
+from .progress import threads_or_cores
+from .table import Table
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step on the grid of times.
+
+    Attributes
+    ----------
+    number
+        From 1.
+    time
+        At its end.
+    newton
+        Newton iterations.
+    rejected
+        Attempts that were rejected and repeated with a smaller step.
+    activations, releases
+        Nodes that came into contact, and that left it.
+    penetration
+        Depth of the deepest node of either side.
+    """
+
+    number: int
+    time: float
+    newton: int
+    rejected: int
+    activations: int
+    releases: int
+    penetration: float
+
+
+class Simulation:
+    """A case from its start, advanced step by step.
+
+    Parameters
+    ----------
+    case
+        The case; later changes of it have no effect.
+    threads
+        Number of threads, by default one per core; the result does not depend on it.
+
+    Examples
+    --------
+    >>> simulation = carom.Simulation(case)
+    >>> for step in simulation:
+    ...     if simulation.time > 0.3:
+    ...         break
+    """
+
+    def __init__(self, case: Case, threads: int | None = None) -> None:
+        self._core = _carom.Simulation(case._core, threads_or_cores(threads), case._functions)
+        self._columns = self._core.columns()
+
+    def advance(self) -> Step:
+        """Advance to the next grid time.
+
+        Raises
+        ------
+        StoppedError
+            If no step is accepted; the state is still that of the last grid time.
+        StopIteration
+            At the end time.
+        """
+        if self._core.finished:
+            raise StopIteration("the simulation is at its end time")
+        counts = self._core.advance()
+        return Step(self._core.step, self._core.time, *counts)
+
+    def __iter__(self) -> Iterator[Step]:
+        while not self._core.finished:
+            yield self.advance()
+
+    def __len__(self) -> int:
+        """Steps that are left."""
+        return self.steps - self.step
+
+    @property
+    def finished(self) -> bool:
+        """Whether the end time is reached."""
+        return self._core.finished
+
+    @property
+    def step(self) -> int:
+        """Steps done."""
+        return self._core.step
+
+    @property
+    def steps(self) -> int:
+        """Steps to the end time, from the start."""
+        return self._core.steps
+
+    @property
+    def time(self) -> float:
+        """Time of the state."""
+        return self._core.time
+
+    @property
+    def dt(self) -> float:
+        """Step of the grid of times."""
+        return self._core.dt
+
+    @property
+    def y(self) -> Floats:
+        """Positions, shape (nodes, dimension). The array keeps its values after the next step."""
+        return self._core.y
+
+    @property
+    def v(self) -> Floats:
+        """Velocities, shape (nodes, dimension), as `y`."""
+        return self._core.v
+
+    @property
+    def a(self) -> Floats:
+        """Algorithmic accelerations, shape (nodes, dimension), as `y`."""
+        return self._core.a
+
+    @property
+    def reference(self) -> Floats:
+        """Reference positions, shape (nodes, dimension)."""
+        return self._core.reference
+
+    @property
+    def bodies(self) -> dict[str, slice]:
+        """The nodes of every body: ``simulation.y[simulation.bodies["disc"]]``."""
+        return {name: slice(first, end) for name, first, end in self._core.bodies()}
+
+    @property
+    def row(self) -> dict[str, float]:
+        """The row of the history that a run would record now, by column.
+
+        Counts are those of the last step.
+        """
+        return dict(zip((name for name, _ in self._columns), self._core.row()))
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of the columns of `row`."""
+        return dict(self._columns)
+
+    @property
+    def energies(self) -> dict[str, float]:
+        """Kinetic, strain, potential and total energy, works, dissipation: columns of `row`."""
+        row, units = self.row, self.units
+        energy = units["kinetic"]
+        # Other columns, such as moments, may have the unit of an energy.
+        names = list(units)
+        first, last = names.index("kinetic"), names.index("energy_scale")
+        return {name: row[name] for name in names[first : last + 1] if units[name] == energy}
+
+    @property
+    def contacts(self) -> Table:
+        """The active contact nodes, with the columns of `Run.contact`."""
+        return Table({name: np.asarray(values) for name, values in self._core.contact().items()})
+
+    def checkpoint(self) -> bytes:
+        """The state, to be restored in this or another simulation of the same case."""
+        return self._core.checkpoint()
+
+    def restore(self, checkpoint: bytes) -> None:
+        """Continue from a checkpoint; what follows is bitwise what followed it then.
+
+        Raises
+        ------
+        CaseError
+            If it was made with other Python functions.
+        ValueError
+            If it belongs to another case.
+        """
+        self._core.restore(checkpoint)
+
+    def __repr__(self) -> str:
+        return f"<Simulation at t = {self.time:g}, step {self.step} of {self.steps}>"
+

@@ -1,0 +1,205 @@
+"""Studies: many runs of one case, and the table of their metrics."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import _carom
+from .case import Case
+from .errors import CaseError, RecordError
+from .progress import progress_bar, threads_or_cores
+from .run import Run
+from .run import open as open_run
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class Study:
+    """A study that has been computed: a directory with one run directory per arm.
+
+    Parameters
+    ----------
+    directory
+        Its directory, also one that ``carom study`` wrote.
+    """
+
+    def __init__(self, directory: str | PathLike[str]) -> None:
+        self.directory = Path(directory)
+        self._rows = _carom.study_table(self.directory)
+        self._temporary: tempfile.TemporaryDirectory[str] | None = None
+
+    @property
+    def arms(self) -> list[str]:
+        """Names of the arms."""
+        return [name for name, *_ in self._rows]
+
+    @property
+    def missing(self) -> list[str]:
+        """Arms that have not ended."""
+        return [name for name, status, *_ in self._rows if status not in ("finished", "failed")]
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of the metrics."""
+        return {metric: unit for *_, metrics in self._rows for metric, _, unit in metrics}
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row per arm, one column per metric; ``status`` and ``reason`` first."""
+        import pandas as pd
+
+        rows = [
+            {"arm": name, "status": status, "reason": reason}
+            | {metric: math.nan if value is None else value for metric, value, _ in metrics}
+            for name, status, reason, _, metrics in self._rows
+        ]
+        frame = pd.DataFrame(rows).set_index("arm")
+        frame.attrs["units"] = self.units
+        return frame
+
+    def __getitem__(self, arm: str) -> Run:
+        """The record of an arm."""
+        for name, status, _, directory, _ in self._rows:
+            if name == arm:
+                if status is None:
+                    raise RecordError(f"arm {arm!r} has not been computed")
+                return open_run(self.directory / directory)
+        raise KeyError(f"no arm is named {arm!r}; the arms are: {', '.join(self.arms)}")
+
+    def page(self) -> Path:
+        """Make figures and page, and the pages of the arms; returns the page."""
+        for arm in self.arms:
+            if arm not in self.missing:
+                self[arm].page()
+        _carom.study_collect(self.directory, True)
+        return self.directory / "study.html"
+
+    def _repr_html_(self) -> str:
+        return str(self.to_pandas().to_html())
+
+    def __repr__(self) -> str:
+        return f"<Study of {len(self._rows)} arms in {self.directory}>"
+
+
+def study(
+    case: Case,
+    arms: Sequence[Mapping[str, Any]] | Mapping[str, Mapping[str, Any]] | None = None,
+    grid: Mapping[str, Sequence[Any]] | None = None,
+    *,
+    jobs: int | None = None,
+    out: str | PathLike[str] | None = None,
+    client: Any = None,
+    progress: bool = True,
+    page: bool = False,
+    **keys: Any,
+) -> Study:
+    """Run a case many times with some of its values replaced.
+
+    Parameters
+    ----------
+    case
+        The case.
+    arms
+        Changes of the case by the name of the arm: ``{"Hu": {"time.scheme": {"kind": "hu"}}}``; or a
+        list of ``[[arm]]`` tables.
+    grid
+        Lists of values by key: all combinations are arms.
+    jobs
+        Number of concurrent runs, by default one per core.
+    out
+        Directory of the study, which must not exist yet. Without it the records are kept in a
+        temporary directory as long as the study is in use.
+    client
+        A ``distributed.Client``: arms are computed by its workers, which must share the file system
+        with this process. An arm whose worker is killed is continued by another.
+    progress
+        Whether a bar is shown, if tqdm is installed.
+    page
+        Whether figures and page are made.
+    **keys
+        Further keys of a study file: ``reference``, ``goal``, ``claim``, …
+
+    Returns
+    -------
+    Study
+        Its ``to_pandas()`` is the table of metrics, with the values of ``study.csv``.
+    """
+    if case._functions:
+        raise CaseError(
+            "a study cannot have Python functions: its arms are resumed from files, which have none\n"
+            "try: write formulas, or loop over case.run()"
+        )
+    temporary = tempfile.TemporaryDirectory(prefix="carom-") if out is None else None
+    directory = Path(out) if out is not None else Path(temporary.name if temporary else "") / "study"
+    with tempfile.TemporaryDirectory(prefix="carom-") as folder:
+        text = _study_text(case, arms, grid, keys, Path(folder))
+        if client is not None:
+            _on_workers(client, text, folder, directory)
+        else:
+            with progress_bar(case.title, progress) as report:
+                raised = _carom.study(text, folder, directory, threads_or_cores(jobs), report)
+            if raised is not None:
+                raise raised
+    found = Study(directory)
+    found._temporary = temporary
+    if page:
+        found.page()
+    return found
+
+
+def _study_text(
+    case: Case,
+    arms: Sequence[Mapping[str, Any]] | Mapping[str, Mapping[str, Any]] | None,
+    grid: Mapping[str, Sequence[Any]] | None,
+    keys: Mapping[str, Any],
+    folder: Path,
+) -> str:
+    """The text of a study file in `folder`, where the case is written if it has no file."""
+    from .functions import plain
+
+    file = Path(case._core.name)
+    study: dict[str, Any] = {"title": case.title}
+    if file.is_file():
+        # Meshes and tables are beside it.
+        study["case"] = str(file.resolve())
+        sets = case._sets
+    else:
+        (folder / "case.toml").write_text(case.to_toml(), encoding="utf-8")
+        study["case"], sets = "case.toml", {}
+    study |= plain(dict(keys), {})
+    if isinstance(arms, Mapping):
+        arms = [{"name": name, "set": dict(changes)} for name, changes in arms.items()]
+    if arms is not None:
+        study["arm"] = plain(list(arms), {})
+    if grid is not None:
+        study["grid"] = plain(dict(grid), {})
+    text = _carom.toml_document(study)
+    if sets:
+        common = "".join(f'{_carom.toml(key)} = {value}\n' for key, value in sets.items())
+        text += f"\n[set]\n{common}"
+    return text
+
+
+def _on_workers(client: Any, text: str, folder: str, directory: Path) -> None:
+    """Computes a study by the workers of a Dask client."""
+    count = _carom.study_plan(text, folder, directory)
+    place = str(directory.resolve())
+    futures = client.map(
+        _arm, [place] * count, range(1, count + 1), pure=False, retries=3, key=f"carom-{place}"
+    )
+    client.gather(futures)
+    _carom.study_collect(directory, False)
+
+
+def _arm(directory: str, number: int) -> str:
+    """Computes one run of a planned study, in a worker."""
+    # A worker that the scheduler has given up may still be computing it.
+    while (status := _carom.study_arm(directory, number)) is None:
+        time.sleep(1)
+    return status

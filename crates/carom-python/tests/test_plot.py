@@ -1,0 +1,101 @@
+"""Figures contain what the record says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+
+import carom
+
+
+def test_history_shows_the_columns_and_the_contact(disc_run: carom.Run) -> None:
+    ax = carom.plot.history(disc_run, "top.uy")
+    assert isinstance(ax, Axes)
+    (line,) = ax.lines
+    assert np.array_equal(line.get_ydata(), disc_run.history["top.uy"])
+    assert ax.get_ylabel() == "top.uy (m)" and ax.get_xlabel() == "time (s)"
+    assert len(ax.patches) == len(disc_run.episodes) == 1
+    with pytest.raises(ValueError, match="different units"):
+        carom.plot.history(disc_run, "top.uy", "kinetic")
+    assert carom.plot.history(disc_run).get_ylabel() == "contact_force_y (N)"
+
+
+def test_energy_and_comparison(disc_run: carom.Run) -> None:
+    labels = [line.get_label() for line in carom.plot.energy(disc_run).lines]
+    assert {"kinetic", "strain", "total"} <= set(labels) and "potential" not in labels
+    ax = carom.plot.compare({"a": disc_run, "b": disc_run}, "top.uy")
+    assert [line.get_label() for line in ax.lines] == ["a", "b"]
+    with pytest.raises(ValueError, match="one title"):
+        carom.plot.compare([disc_run, disc_run], "top.uy")
+
+
+def test_a_snapshot_covers_the_bodies(disc_run: carom.Run, tmp_path: Path) -> None:
+    ax = carom.plot.snapshot(disc_run, 0.0, "ux", mesh=True)
+    # Sub-triangles at t = 0 fill disc and block: their area is that of the polygon through all nodes.
+    from carom.plot._space import _triangles
+
+    fields = disc_run.fields.at(0.0)
+    area = 0.0
+    for block in fields.blocks:
+        a, b, c = (fields.points[_triangles(block)[:, k], :2] for k in range(3))
+        signed = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+        assert (signed > 0).all()
+        area += float(signed.sum())
+    assert area == pytest.approx(1.0 + np.pi / 4, rel=0.02)
+    ax.figure.savefig(tmp_path / "a.png")
+
+
+def test_the_lattice_of_cubic_triangles_is_complete() -> None:
+    """Nine triangles of one ninth each: nodes of a T10 on the unit triangle."""
+    from carom.plot._space import _LATTICE
+
+    third = 1 / 3
+    nodes = np.array(
+        [
+            (0, 0), (1, 0), (0, 1),
+            (third, 0), (2 * third, 0),
+            (2 * third, third), (third, 2 * third),
+            (0, 2 * third), (0, third),
+            (third, third),
+        ]
+    )  # fmt: skip
+    a, b, c = (nodes[[t[k] for t in _LATTICE[3]]] for k in range(3))
+    areas = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    assert np.allclose(areas, 0.5 / 9)
+
+
+def test_the_pressure_map_shows_every_contact_node(disc_run: carom.Run) -> None:
+    ax = carom.plot.pressure_map(disc_run, "strike")
+    values = np.asarray(ax.collections[0].get_array())
+    assert values.max() == disc_run.contact["pressure"].max()
+    # A node between two facets has a row for each.
+    contact = disc_run.contact
+    active = {(t, n) for t, n, p in zip(contact["time"], contact["node"], contact["pressure"]) if p}
+    assert (values != 0).sum() == len(active)
+    # The side is closed: contact is in the middle of the map.
+    touched = np.flatnonzero((values != 0).any(axis=1))
+    assert touched.min() > 0 and touched.max() < len(values) - 1
+    assert abs((touched.min() + touched.max()) / 2 - len(values) / 2) < 2
+    with pytest.raises(ValueError, match="strike"):
+        carom.plot.pressure_map(disc_run, "nothing")
+
+
+def test_measured_data(disc_run: carom.Run, tmp_path: Path) -> None:
+    """Against numbers by hand: an offset of 0.01 is an error of 0.01."""
+    times, values = disc_run.history["time"][::6], disc_run.history["top.uy"][::6] + 0.01
+    path = tmp_path / "measured.csv"
+    path.write_text("t,uy\n" + "".join(f"{t},{x}\n" for t, x in zip(times, values)))
+    error = carom.plot.measured_error(disc_run, "top.uy", times, values)
+    assert error.rms == pytest.approx(0.01, rel=1e-9)
+    assert error.nrms == pytest.approx(0.01 / np.ptp(values), rel=1e-9) and error.samples == len(times)
+    ax = carom.plot.overlay(disc_run, "top.uy", path)
+    assert "NRMS" in ax.get_legend_handles_labels()[1][-1]
+
+
+def test_an_animation_shows_recorded_instants(disc_run: carom.Run, tmp_path: Path) -> None:
+    animation = disc_run.animate("von_mises", frames=3)
+    animation.save(tmp_path / "disc.gif", writer="pillow")
+    assert (tmp_path / "disc.gif").stat().st_size > 1000

@@ -1,0 +1,155 @@
+"""Studies, in this process and by workers of which one is killed."""
+
+from __future__ import annotations
+
+import csv
+import os
+import signal
+import subprocess
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import bar_dict, disc_dict
+
+import carom
+
+#: Measured times differ from run to run. All other columns are bitwise reproducible.
+WORK = {"cpu_time", "wall_time"}
+
+
+def rows(path: Path) -> list[list[str]]:
+    """The table without the columns of measured times."""
+    with path.open(newline="") as file:
+        table = list(csv.reader(file))
+    kept = [i for i, name in enumerate(table[0]) if name not in WORK]
+    return [[row[i] for i in kept] for row in table]
+
+
+def test_arms_and_grid(bar: carom.Case) -> None:
+    """Chung-Hulbert conserves energy with rho_inf = 1, and Hu's scheme dissipates."""
+    found = carom.study(
+        bar,
+        {"conserving": {"time.scheme.rho_inf": 1.0}, "Hu": {"time.scheme": {"kind": "hu"}}},
+        progress=False,
+    )
+    table = found.to_pandas()
+    assert list(table.index) == ["conserving", "Hu"] and (table["status"] == "finished").all()
+    assert abs(table.loc["conserving", "energy_lost"]) < 0.02 < table.loc["Hu", "energy_lost"]
+    assert found["Hu"].case["time"]["scheme"]["kind"] == "hu" and found.missing == []
+    assert table.attrs["units"]["contact_duration"] == "s"
+    swept = carom.study(bar.copy().set("time.end", 0.8), grid={"time.step": [0.002, 0.004]}, jobs=2, progress=False)
+    assert len(swept.arms) == 2
+
+
+def test_a_study_starts_from_the_changed_case(tmp_path: Path) -> None:
+    path = tmp_path / "bar.toml"
+    path.write_text(carom.Case.from_dict(bar_dict()).to_toml())
+    case = carom.Case.from_file(path).set({"time.end": 0.4, "time.scheme.rho_inf": 0.9})
+    found = carom.study(case, {"as it is": {}}, out=tmp_path / "study", progress=False)
+    time_spec = found["as it is"].case["time"]
+    assert time_spec["end"] == 0.4 and time_spec["scheme"]["rho_inf"] == 0.9
+    assert (tmp_path / "study/study.csv").is_file()
+    with pytest.raises(carom.RecordError, match="exists already"):
+        carom.study(case, {"again": {}}, out=tmp_path / "study", progress=False)
+    with pytest.raises(carom.CaseError, match="rho_inf"):
+        carom.study(case, {"wrong": {"time.scheme.rho_inf": 3}}, progress=False)
+
+
+STUDY = """
+case = "disc.toml"
+[grid]
+"time.scheme.rho_inf" = [0.2, 0.5, 0.8]
+"time.step" = [5e-3, 2.5e-3]
+"""
+
+
+def test_the_parts_of_a_study(command: str, tmp_path: Path) -> None:
+    """Planned, computed arm by arm, some twice and concurrently, and collected."""
+    (tmp_path / "disc.toml").write_text(carom.Case.from_dict(disc_dict()).to_toml())
+    (tmp_path / "sweep.toml").write_text(STUDY)
+
+    def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([command, "study", *arguments], cwd=tmp_path, capture_output=True, text=True)
+
+    assert run("sweep.toml", "--jobs", "1", "--out", "one", "--no-report").returncode == 0
+    planned = run("plan", "sweep.toml", "--out", "many", "--slurm")
+    assert planned.returncode == 0 and "6 runs in many" in planned.stdout
+    script = (tmp_path / "many/slurm.sh").read_text()
+    assert "#SBATCH --array=1-6" in script
+    assert subprocess.run(["sh", "-n", str(tmp_path / "many/slurm.sh")]).returncode == 0
+    for number in ("2", "2", "1"):
+        assert run("arm", "many", number).returncode == 0
+    early = run("collect", "many", "--no-report")
+    assert early.returncode == 1 and "missing: 3 (" in early.stderr
+    twice = [
+        subprocess.Popen([command, "study", "arm", "many", "3"], cwd=tmp_path, stderr=subprocess.DEVNULL)
+        for _ in range(2)
+    ]
+    codes = {process.wait() for process in twice}
+    assert codes <= {0, 2} and 0 in codes
+    environment = os.environ | {"SLURM_ARRAY_TASK_ID": "4", "PATH": f"{Path(command).parent}:{os.environ['PATH']}"}
+    assert subprocess.run(["sh", str(tmp_path / "many/slurm.sh")], env=environment).returncode == 0
+    for number in ("5", "6"):
+        assert run("arm", "many", number).returncode == 0
+    assert run("arm", "many", "7").returncode == 2
+    assert run("collect", "many").returncode == 0
+    assert (tmp_path / "many/study.html").is_file()
+    assert rows(tmp_path / "many/study.csv") == rows(tmp_path / "one/study.csv")
+
+
+def test_matched_costs_need_one_machine(command: str, tmp_path: Path) -> None:
+    (tmp_path / "disc.toml").write_text(carom.Case.from_dict(disc_dict()).to_toml())
+    study = 'case = "disc.toml"\ndesign = "matched-cost"\n[[arm]]\nname = "a"\n[[arm]]\nname = "b"\n'
+    (tmp_path / "s.toml").write_text(study + 'set = { "time.scheme" = { kind = "hu" } }\n')
+    told = subprocess.run(
+        [command, "study", "plan", "s.toml", "--out", "d"], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert told.returncode == 2 and "measured on one machine" in told.stderr
+    assert not (tmp_path / "d/study.json").exists()
+
+
+def test_dask_with_a_killed_worker(tmp_path: Path) -> None:
+    """Two worker processes, one of which is killed with signal 9: the study ends complete, with the
+    table of one process."""
+    distributed = pytest.importorskip("distributed")
+    case = carom.Case.from_dict(disc_dict()).set({"time.step": 5e-4, "output.checkpoint_every": 20})
+    grid = {"time.scheme.rho_inf": [0.2, 0.5, 0.8], "body.disc.velocity": [[0.0, -2.0], [0.0, -1.5]]}
+    carom.study(case, grid=grid, jobs=1, out=tmp_path / "one", progress=False)
+    killed: list[int] = []
+
+    def kill(pids: dict[str, int]) -> None:
+        """Kills a worker that is in the middle of a run."""
+        for _ in range(2000):
+            time.sleep(0.01)
+            begun = list((tmp_path / "dask").glob("arms/*/checkpoint"))
+            if begun and any(len(list(place.iterdir())) > 1 for place in begun):
+                killed.append(next(iter(pids.values())))
+                os.kill(killed[0], signal.SIGKILL)
+                return
+
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        pids: dict[str, Any] = client.run(os.getpid)
+        killer = threading.Thread(target=kill, args=(pids,))
+        killer.start()
+        found = carom.study(case, grid=grid, client=client, out=tmp_path / "dask")
+        killer.join()
+    assert killed and found.missing == []
+    assert (found.to_pandas()["status"] == "finished").all()
+    assert rows(tmp_path / "dask/study.csv") == rows(tmp_path / "one/study.csv")
+
+
+def test_functions_cannot_be_studied() -> None:
+    case = carom.Case.from_dict(
+        disc_dict() | {"load": [{"on": ["block.top"], "pressure": lambda t, x: 0.0}]}
+    )
+    with pytest.raises(carom.CaseError, match="cannot have Python functions"):
+        carom.study(case, {"a": {}}, progress=False)
+

@@ -1,0 +1,98 @@
+//! The rows of a state, as a run records them.
+
+use carom_case::Case;
+use carom_contact::Hold;
+use carom_mechanics::model::Model;
+use carom_mechanics::{GridReport, Simulation, State, penetration};
+use carom_record::{Column, ContactRow};
+
+use super::columns::{Since, center_weights, columns, row};
+use super::fields::{gap_of, weights};
+
+/// Rows of a simulation that is advanced step by step.
+pub struct Rows {
+    columns: Vec<Column>,
+    weights: Vec<f64>,
+    since: Since,
+}
+
+/// The active contact nodes of a state.
+pub type ContactStates<'a> = Vec<ContactRow<'a>>;
+
+impl Rows {
+    /// Of a case and its simulation.
+    pub fn new(case: &Case, simulation: &Simulation) -> Self {
+        let model = simulation.model();
+        let mut rows =
+            Self { columns: columns(case, model), weights: center_weights(model), since: Since::default() };
+        let penetration = penetration(model, simulation.state());
+        rows.advanced(&GridReport { penetration, ..GridReport::default() });
+        rows
+    }
+
+    /// Names and units of the values of a row.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// Counts of a row are those of the last step.
+    pub fn advanced(&mut self, report: &GridReport) {
+        self.since = Since::default();
+        self.since.add(report);
+    }
+
+    /// The row of the current state.
+    pub fn row(&self, simulation: &Simulation) -> Vec<f64> {
+        let state = simulation.state();
+        let mut values = Vec::new();
+        let dt = simulation.grid().length(state.step);
+        row(simulation.model(), state, dt, &self.since, &self.weights, &mut values);
+        values
+    }
+
+    /// The active contact nodes of the current state.
+    pub fn contact<'a>(&self, case: &Case, simulation: &'a Simulation) -> ContactStates<'a> {
+        contact_rows(case, simulation.model(), simulation.state())
+    }
+}
+
+/// The active contact nodes of a state.
+pub(super) fn contact_rows<'a>(case: &Case, model: &'a Model, state: &State) -> ContactStates<'a> {
+    let mut rows = Vec::new();
+    for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
+        if pairs.iter().all(|p| !p.active) {
+            continue;
+        }
+        let weights = weights(contact, state, case.thickness);
+        // In a dent, a node has several pairs.
+        let mut of_node = vec![0.0; weights.len()];
+        pairs.iter().filter(|p| p.active).for_each(|pair| of_node[pair.node] += pair.lambda);
+        for pair in pairs.iter().filter(|p| p.active) {
+            let node = contact.kinematics.secondary()[pair.node];
+            let y = &state.y[node * model.dimension..(node + 1) * model.dimension];
+            let (gap, normal) = gap_of(contact, pair, state);
+            rows.push(ContactRow {
+                step: state.step,
+                time: state.time,
+                contact: contact.name.as_str().into(),
+                node: node as u64,
+                point: std::array::from_fn(|i| y.get(i).copied().unwrap_or(0.0)),
+                facet: pair.facet as u64,
+                xi: pair.xi,
+                gap,
+                multiplier: pair.lambda,
+                pressure: -of_node[pair.node] / weights[pair.node],
+                normal,
+                friction: match (&contact.friction, pair.tangential.hold) {
+                    (None, _) => "none",
+                    (_, Hold::Stick) => "stick",
+                    (_, Hold::Forward | Hold::Backward) => "slip",
+                }
+                .into(),
+                traction: pair.tangential.traction,
+                slip: pair.tangential.slip,
+            });
+        }
+    }
+    rows
+}

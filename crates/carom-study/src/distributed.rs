@@ -1,0 +1,75 @@
+//! A study in separate processes, on one machine or many: it is planned, each of its runs is computed
+//! by a process of its own, and the tables are made from the records. The run directory is all that
+//! the processes share: a run is created by one rename, locked while it is written, and resumed from
+//! its last checkpoint, so that a process can be killed, and its run started again, at any time.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use carom_record::study::StudyManifest;
+use carom_record::{Manifest, RecordError, Status};
+use carom_run::recording::{Progress, RunError};
+
+use crate::compute::compute;
+use crate::error::StudyError;
+use crate::jobs::Ended;
+use crate::plan::Plan;
+use crate::run::{Outcome, conclude, create};
+
+/// Creates the directory of a study, which must not exist, and computes nothing.
+///
+/// # Errors
+/// Input/output or system error, and a study with steps of matched cost.
+pub fn plan(plan: &Plan, directory: &Path) -> Result<(), StudyError> {
+    let manifest = &plan.manifest;
+    if let Some(arm) = manifest.arms.iter().find(|arm| manifest.by_cost(arm)) {
+        return Err(StudyError::Timed { arm: arm.name.clone() });
+    }
+    create(plan, directory)
+}
+
+/// Computes run number `number`, from 1, of a planned study: from the start, or from its last
+/// checkpoint. One that has ended is returned as it is.
+///
+/// # Errors
+/// Input/output or system error, no such run, and a run that another process is computing.
+pub fn arm(
+    directory: &Path,
+    number: usize,
+    observe: &mut (dyn FnMut(&Progress) + Send),
+    stop: &AtomicBool,
+) -> Result<Ended, StudyError> {
+    let manifest = StudyManifest::read(directory)?;
+    let count = manifest.runs().count();
+    if number == 0 || number > count {
+        return Err(StudyError::NoRun { directory: directory.to_owned(), number, count });
+    }
+    let i = number - 1;
+    let arm = manifest.run(i);
+    if let (Some(status @ (Status::Finished | Status::Failed)), reason) = manifest.state(directory, arm)? {
+        return Ok(Ended { status, reason, wall: 0.0 });
+    }
+    let begun = manifest.state(directory, arm)?.0.is_some();
+    match compute(&manifest, directory, i, begun, observe, stop) {
+        // Another process created it since.
+        Err(StudyError::Arm { source: RunError::Record(RecordError::Exists { path }), .. }) => {
+            let run = Manifest::read(&path)?;
+            match run.status {
+                Status::Finished | Status::Failed => {
+                    Ok(Ended { status: run.status, reason: run.reason, wall: 0.0 })
+                }
+                Status::Running | Status::Stopped => compute(&manifest, directory, i, true, observe, stop),
+            }
+        }
+        other => other,
+    }
+}
+
+/// Writes the tables of a study from what has been computed. An arm that is missing is a row without
+/// values.
+///
+/// # Errors
+/// Input/output or system error.
+pub fn collect(directory: &Path, stop: &AtomicBool) -> Result<Outcome, StudyError> {
+    conclude(StudyManifest::read(directory)?, directory, stop)
+}

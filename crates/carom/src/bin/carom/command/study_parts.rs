@@ -1,0 +1,127 @@
+//! `carom study plan`, `arm` and `collect`: a study in separate processes.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use carom_record::Status;
+use carom_record::study::StudyManifest;
+use serde_json::json;
+
+use crate::exit::{Exit, Failure};
+use crate::live::{Live, stop_on_signal};
+use crate::simulation::seen;
+use crate::{console, directory, out, study_summary};
+
+/// Parts of a study that separate processes, also on other machines, carry out
+#[derive(clap::Subcommand)]
+pub(super) enum Part {
+    /// Write the directory of a study and compute nothing
+    #[command(after_help = "\
+Then compute every run, in any order and on any machine that shares the directory:
+  sbatch DIR/slurm.sh                           with --slurm
+  seq N | parallel carom study arm DIR          with GNU parallel
+and make tables and page with:
+  carom study collect DIR")]
+    Plan {
+        /// The study file, or - for standard input
+        study: PathBuf,
+        /// Directory of the study; must not exist yet
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        /// Also write DIR/slurm.sh, a job array for Slurm
+        #[arg(long)]
+        slurm: bool,
+    },
+    /// Compute one run of a planned study, or continue it; nothing is done if it has ended
+    Arm {
+        /// Directory of the study
+        directory: PathBuf,
+        /// Number of the run, from 1
+        number: usize,
+    },
+    /// Make tables and page of what has been computed, and list what is missing
+    Collect {
+        /// Directory of the study
+        directory: PathBuf,
+        /// Do not write figures and report page
+        #[arg(long)]
+        no_report: bool,
+    },
+}
+
+impl Part {
+    pub(super) fn run(&self) -> Result<Exit, Failure> {
+        match self {
+            Self::Plan { study, out, slurm } => plan(study, out, *slurm),
+            Self::Arm { directory, number } => arm(directory, *number),
+            Self::Collect { directory, no_report } => collect(directory, !no_report),
+        }
+    }
+}
+
+fn plan(study: &Path, directory: &Path, slurm: bool) -> Result<Exit, Failure> {
+    let plan = super::plan(&super::document(study, &[])?, study)?;
+    let directory = directory::of_run(study, Some(directory))?;
+    carom_study::plan(&plan, &directory)?;
+    let count = plan.manifest.runs().count();
+    if slurm {
+        let path = directory.join("slurm.sh");
+        let failed = |e| Failure::System { what: format!("cannot write {}: {e}", path.display()) };
+        let whole = std::path::absolute(&*directory).map_err(failed)?;
+        std::fs::write(&path, script(&plan.manifest.title, &whole, count)).map_err(failed)?;
+    }
+    if !console::is_quiet() {
+        out::line(&format!("{count} runs in {}; each is computed by:", directory.display()))?;
+        out::line(&format!("  carom study arm {} N        with N from 1 to {count}", directory.display()))?;
+        if slurm {
+            out::line(&format!("  sbatch {}/slurm.sh          computes all", directory.display()))?;
+        }
+    }
+    Ok(Exit::Done)
+}
+
+/// A job array. A run that was killed continues when its task is started again.
+fn script(title: &str, directory: &Path, count: usize) -> String {
+    let place = directory.display().to_string().replace('\'', "'\\''");
+    let title = title.replace(|c: char| !c.is_alphanumeric(), "-");
+    format!(
+        "#!/bin/sh\n\
+         #SBATCH --job-name={title}\n\
+         #SBATCH --array=1-{count}\n\
+         #SBATCH --cpus-per-task=1\n\
+         #SBATCH --requeue\n\
+         # Afterwards: carom study collect '{place}'\n\
+         exec carom study arm '{place}' \"$SLURM_ARRAY_TASK_ID\"\n"
+    )
+}
+
+fn arm(directory: &Path, number: usize) -> Result<Exit, Failure> {
+    let manifest = StudyManifest::read(directory)?;
+    let arm = manifest.runs().nth(number.saturating_sub(1));
+    let (name, place) = arm.map(|arm| (arm.name.clone(), arm.directory.clone())).unwrap_or_default();
+    let stop = stop_on_signal()?;
+    let mut live = Live::new(false, &directory.join(place));
+    let ended = carom_study::arm(directory, number, &mut |p| live.show(&seen(p)), &stop);
+    drop(live);
+    let ended = ended?;
+    if !console::is_quiet() {
+        let reason = ended.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
+        out::line(&format!("{name}: {}{reason}", json!(ended.status).as_str().unwrap_or_default()))?;
+    }
+    // A failed arm is a row of the table.
+    Ok(if ended.status == Status::Stopped { Exit::Interrupted } else { Exit::Done })
+}
+
+fn collect(directory: &Path, page: bool) -> Result<Exit, Failure> {
+    let outcome = carom_study::collect(directory, &AtomicBool::new(false))?;
+    study_summary::print(&outcome, directory, page, false)?;
+    let rows = outcome.study.rows.iter().chain(&outcome.study.members).enumerate();
+    let missing = rows.filter(|(_, row)| !matches!(row.status, Some(Status::Finished | Status::Failed)));
+    let missing: Vec<String> = missing.map(|(i, row)| format!("{} ({})", i + 1, row.name)).collect();
+    if missing.is_empty() {
+        return Ok(Exit::Done);
+    }
+    console::say(format_args!("missing: {}", missing.join(", ")));
+    console::say(format_args!("compute them with: carom study arm {} N", directory.display()));
+    Ok(Exit::Missed)
+}

@@ -1,0 +1,128 @@
+//! The tables of a study on standard output, and its page.
+
+use std::path::{Path, PathBuf};
+
+use carom_record::Status;
+use carom_record::study::ranking::Ranking;
+use carom_record::study::{Study, StudyManifest};
+use carom_study::Outcome;
+use serde_json::json;
+
+use crate::exit::Failure;
+use crate::shared::{of_arms, warnings};
+use crate::summary::short;
+use crate::{console, out};
+
+/// Metrics of the table that is printed; all are in study.csv.
+const SHOWN: [&str; 6] =
+    ["contact_duration", "impulse_y", "restitution", "energy_lost", "newton_iterations", "wall_time"];
+
+/// Rebuilds tables, figures and page of a study, and the pages of its arms.
+pub(crate) fn report(directory: &Path) -> Result<PathBuf, Failure> {
+    let manifest = StudyManifest::read(directory)?;
+    for arm in &manifest.arms {
+        let arm = directory.join(&arm.directory);
+        if arm.join("manifest.json").is_file() {
+            carom_report::report(&arm)?;
+        }
+    }
+    Ok(carom_report::study(directory)?.page)
+}
+
+/// Prints the tables of a study, and makes its page.
+pub(crate) fn print(outcome: &Outcome, directory: &Path, page: bool, json: bool) -> Result<(), Failure> {
+    let page = if page { Some(report(directory)?) } else { None };
+    if json {
+        let study = &outcome.study;
+        let claims = study
+            .verdicts
+            .iter()
+            .map(|v| {
+                let held = v.held.as_ref().map(|held| json!({ "held": held.held, "of": held.of }));
+                json!({ "claim": v.claim.text, "left": v.left, "right": v.right, "verdict": v.word(), "ensemble": held })
+            });
+        let claims: Vec<_> = claims.collect();
+        let event = if outcome.interrupted { "interrupted" } else { "done" };
+        out::event(
+            &json!({ "event": event, "directory": directory, "report": page, "claims": claims, "warnings": warnings(&study.warnings(), &study.manifest) }),
+        )?;
+    } else if !console::is_quiet() {
+        let study = &outcome.study;
+        out::line(&text(study))?;
+        for (warning, arms) in study.warnings() {
+            console::say(format_args!("warning: {}{warning}", of_arms(&arms, &study.manifest)));
+        }
+        out::line(&page.as_deref().unwrap_or(directory).display().to_string())?;
+    }
+    Ok(())
+}
+
+fn text(study: &Study) -> String {
+    let width = study.rows.iter().map(|r| r.name.chars().count()).max().unwrap_or(0);
+    let heads = SHOWN.iter().fold(String::new(), |row, name| row + &format!("  {name:>17}"));
+    let mut lines = vec![format!("{:width$}{heads}", "")];
+    for (arm, row) in study.rows.iter().enumerate() {
+        let cells: String = match row.status {
+            Some(Status::Finished) => SHOWN.iter().fold(String::new(), |line, name| {
+                line + &format!("  {:>17}", row.value(name).map_or("–".into(), short))
+            }),
+            Some(Status::Failed) => {
+                let alike =
+                    study.finished_alike(arm).map_or_else(String::new, |others| format!(" ({others})"));
+                format!("  failed: {}{alike}", row.reason.as_deref().unwrap_or("?"))
+            }
+            Some(_) => "  not finished".to_owned(),
+            None => "  not started".to_owned(),
+        };
+        lines.push(format!("{:width$}{cells}", row.name));
+    }
+    for v in &study.verdicts {
+        let value = |x: Option<f64>| x.map_or("–".into(), short);
+        let word = v.held.as_ref().map_or_else(
+            || format!("{:9}", v.word()),
+            |held| format!("held in {} of {}", held.held, held.of),
+        );
+        let ratio = v.held.as_ref().and_then(|held| held.ratio.as_ref()).map_or_else(String::new, |ratio| {
+            let (low, high) = ratio.range();
+            format!("; ratio {}, {} to {}", short(ratio.median()), short(low), short(high))
+        });
+        lines.push(format!(
+            "{word}  {}  ({} against {}{ratio})",
+            v.claim.text,
+            value(v.left),
+            value(v.right)
+        ));
+    }
+    let arms = study.rows.iter().flat_map(|row| row.expectations.iter().map(move |e| (Some(&row.name), e)));
+    for (arm, e) in arms.chain(study.expectations.iter().map(|e| (None, e))) {
+        let word = if e.pass { "met" } else { "MISSED" };
+        let of = arm.map_or_else(String::new, |arm| format!(" of \"{arm}\""));
+        let got = e.got.map_or_else(|| e.why.clone().unwrap_or_default(), short);
+        lines.push(format!("{word:9}  {}{of}: {got}  ({})", e.what, e.expected));
+    }
+    lines.extend(study.ranking.iter().flat_map(|ranking| recommendation(study, ranking)));
+    lines.join("\n")
+}
+
+/// The recommendation of a study with a goal, as on its page.
+fn recommendation(study: &Study, ranking: &Ranking) -> Vec<String> {
+    let goal = ranking.goal.word();
+    let verdict = match &ranking.verdict {
+        Ok(verdict) => verdict,
+        Err(reasons) => {
+            let mut lines = vec![String::new(), format!("no recommendation for the goal \"{goal}\":")];
+            let why = ranking.measure.as_ref().err();
+            lines.extend(reasons.iter().chain(why).map(|reason| format!("  {reason}")));
+            return lines;
+        }
+    };
+    let name = &study.manifest.arms[verdict.arm].name;
+    let mut lines = vec![String::new(), format!("recommended for the goal \"{goal}\": {name}")];
+    lines.extend(verdict.reasons.iter().map(|reason| format!("  {reason}")));
+    if !verdict.alike.is_empty() {
+        lines.push(format!("  not distinguished from it: {}", verdict.alike.join(" · ")));
+    }
+    lines.push(format!("confidence: {}", verdict.confidence.word()));
+    lines.extend(verdict.confidence_reasons.iter().map(|reason| format!("  {reason}")));
+    lines
+}
