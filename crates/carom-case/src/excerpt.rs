@@ -9,10 +9,11 @@ use super::problem::{CaseError, Diagnostic};
 /// What remains of a case.
 #[derive(Clone, Debug, Default)]
 pub struct Excerpt {
-    /// Names of the bodies and contacts that remain.
+    /// Names of the bodies that remain.
     pub bodies: Vec<String>,
-    /// Contacts.
-    pub contacts: Vec<String>,
+    /// Numbers of the tables of the contacts that remain, with another name if it needs one: that of the
+    /// only contact that is left of those between bodies.
+    pub contacts: BTreeMap<usize, Option<String>>,
     /// End time.
     pub end: f64,
     /// File of the state from which it continues, beside the case.
@@ -58,12 +59,22 @@ impl Excerpt {
         let named = |table: &dyn TableLike, names: &[String]| {
             table.get("name").and_then(Item::as_str).is_some_and(|name| names.iter().any(|n| n == name))
         };
-        retain(&mut case, "body", &|body| named(body, &self.bodies));
-        retain(&mut case, "contact", &|contact| named(contact, &self.contacts));
+        let kept = |side: &str| self.bodies.iter().any(|body| side.split('.').next() == Some(body));
+        retain(&mut case, "body", &mut |body| named(body, &self.bodies));
+        let mut entry = 0..;
+        retain(&mut case, "contact", &mut |_| entry.next().is_some_and(|k| self.contacts.contains_key(&k)));
+        let mut names = self.contacts.values();
+        each(&mut case, "contact", &mut |contact| {
+            if let Some(Some(name)) = names.next() {
+                contact.insert("name", value(name.as_str()));
+            }
+            if let Some(sides) = contact.get_mut("between").and_then(Item::as_array_mut) {
+                sides.retain(|side| side.as_str().is_some_and(kept));
+            }
+        });
         each(&mut case, "body", &mut |body| {
-            // The state has them.
+            // The state has it. The initial position says which depths a contact keeps.
             body.remove("velocity");
-            body.remove("position");
             let name = body.get("name").and_then(Item::as_str).unwrap_or_default().to_owned();
             if let (Some(file), Some(mesh)) =
                 (self.meshes.get(&name), body.get_mut("mesh").and_then(Item::as_table_like_mut))
@@ -71,14 +82,13 @@ impl Excerpt {
                 mesh.insert("file", value(file.as_str()));
             }
         });
-        let kept = |side: &str| self.bodies.iter().any(|body| side.split('.').next() == Some(body));
         for list in ["support", "load"] {
             each(&mut case, list, &mut |table| {
                 if let Some(on) = table.get_mut("on").and_then(Item::as_array_mut) {
                     on.retain(|side| side.as_str().is_some_and(kept));
                 }
             });
-            retain(&mut case, list, &|table| {
+            retain(&mut case, list, &mut |table| {
                 let on = table.get("on").and_then(Item::as_array);
                 on.is_none_or(|on| !on.is_empty())
                     && table.get("body").and_then(Item::as_str).is_none_or(kept)
@@ -88,7 +98,7 @@ impl Excerpt {
         each(&mut case, "body", &mut |body| {
             used.extend(body.get("material").and_then(Item::as_str).map(ToOwned::to_owned));
         });
-        retain(&mut case, "material", &|material| named(material, &used));
+        retain(&mut case, "material", &mut |material| named(material, &used));
         case["time"]["end"] = value(self.end);
         case["output"]["fields_every"] = value(1);
         case["output"]["history_every"] = value(1);
@@ -115,7 +125,7 @@ fn each(case: &mut DocumentMut, list: &str, of: &mut dyn FnMut(&mut dyn TableLik
 }
 
 /// Keeps some tables of a list.
-fn retain(case: &mut DocumentMut, list: &str, keep: &dyn Fn(&dyn TableLike) -> bool) {
+fn retain(case: &mut DocumentMut, list: &str, keep: &mut dyn FnMut(&dyn TableLike) -> bool) {
     let empty = match case.get_mut(list) {
         Some(Item::ArrayOfTables(tables)) => {
             tables.retain(|table| keep(table));
@@ -139,21 +149,21 @@ fn apply(case: &mut DocumentMut, set: &str) -> Option<()> {
     let parsed = format!("v={text}\n").parse::<DocumentMut>();
     let new = parsed.ok().and_then(|mut v| v.remove("v")).unwrap_or_else(|| value(text.trim()));
     let mut item = case.as_item_mut();
-    for key in &keys {
-        let key = key.get();
+    for (depth, key) in keys.iter().enumerate() {
+        let (key, rest) = (key.get(), &keys[depth + 1..]);
         item = match item {
             Item::ArrayOfTables(tables) => {
                 let is = |table: &toml_edit::Table| table.get("name").and_then(Item::as_str) == Some(key);
                 let place = tables.iter().position(is)?;
                 // A table of an array is no item: its last key is set here.
-                return table_in(tables.get_mut(place)?, &keys, key, new);
+                return table_in(tables.get_mut(place)?, rest, new);
             }
             Item::Value(Value::Array(values)) => {
                 let is = |v: &Value| {
                     v.as_inline_table().and_then(|t| t.get("name")).and_then(Value::as_str) == Some(key)
                 };
                 let place = values.iter().position(is)?;
-                return table_in(values.get_mut(place)?.as_inline_table_mut()?, &keys, key, new);
+                return table_in(values.get_mut(place)?.as_inline_table_mut()?, rest, new);
             }
             item => item.as_table_like_mut()?.entry(key).or_insert(Item::Table(toml_edit::Table::new())),
         };
@@ -162,10 +172,9 @@ fn apply(case: &mut DocumentMut, set: &str) -> Option<()> {
     Some(())
 }
 
-/// Sets what remains of a key path after `from` in a table.
-fn table_in(table: &mut dyn TableLike, keys: &[toml_edit::Key], from: &str, new: Item) -> Option<()> {
-    let start = keys.iter().position(|key| key.get() == from)? + 1;
-    let (last, path) = keys[start..].split_last()?;
+/// Sets a key path in a table.
+fn table_in(table: &mut dyn TableLike, keys: &[toml_edit::Key], new: Item) -> Option<()> {
+    let (last, path) = keys.split_last()?;
     let mut table = table;
     for key in path {
         table = table
@@ -189,6 +198,7 @@ material = [{ name = "m", density = 1 }, { name = "unused", density = 2 }]
 name = "a"
 material = "m"
 velocity = [1.0, 0.0]
+position = ["X", "Y - 0.01"] # says which depths are kept
 mesh = { file = "far/a.msh", surface = "a" }
 
 [[body]] # goes
@@ -216,6 +226,27 @@ step = 0.5 # kept
 what = "max a.uy"
 "#;
 
+    /// Names of tables may be names of keys.
+    #[test]
+    fn an_override_of_a_body_named_body() {
+        let text =
+            "[[body]]\nname = \"body\"\n[[contact]]\nname = \"contact\"\nbetween = [\"body\", \"gone\"]\n";
+        let text = text.to_owned() + "[[contact]]\nname = \"other\"\n[time]\n[output]\n";
+        let excerpt = Excerpt {
+            bodies: vec!["body".into()],
+            contacts: [(0, Some("one".into()))].into(),
+            ..Excerpt::default()
+        };
+        let sets = ["body.body.mesh.size=2".to_owned(), "contact.contact.self=true".to_owned()];
+        let case: DocumentMut = excerpt.of(&text, &sets).unwrap().parse().unwrap();
+        assert_eq!(case["body"][0]["mesh"]["size"].as_integer(), Some(2));
+        let contacts = case["contact"].as_array_of_tables().unwrap();
+        let contact = contacts.get(0).unwrap();
+        assert_eq!((contacts.len(), contact["self"].as_bool()), (1, Some(true)));
+        assert_eq!(contact["name"].as_str(), Some("one"));
+        assert_eq!(contact["between"].as_array().map(toml_edit::Array::len), Some(1));
+    }
+
     #[test]
     fn what_remains_is_complete() {
         let excerpt = Excerpt {
@@ -232,6 +263,7 @@ what = "max a.uy"
         let body = &case["body"][0];
         assert_eq!(body["element"].as_str(), Some("T6"));
         assert_eq!((body["mesh"]["file"].as_str(), body.get("velocity").is_none()), (Some("a.msh"), true));
+        assert!(body.get("position").is_some());
         assert_eq!(case["support"].as_array_of_tables().map(toml_edit::ArrayOfTables::len), Some(1));
         assert_eq!(case["support"][0]["on"].as_array().map(toml_edit::Array::len), Some(1));
         assert_eq!(case["material"].as_array().map(toml_edit::Array::len), Some(1));
