@@ -82,7 +82,9 @@ fn advice(stop: &Stop, unit: &str) -> Markup {
                 }
                 Some(trial) => {
                     td {
-                        "stops at t = " (number(trial.reached)) " " (Label(unit))
+                        // What fails before the place says nothing about it.
+                        @if trial.reached < stop.last { "stops before the place, at t = " } @else { "stops at t = " }
+                        (number(trial.reached)) " " (Label(unit))
                         @if let Some(why) = &trial.why { details { summary { "why" } (why) } }
                     }
                 }

@@ -95,7 +95,7 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
     };
     let statics = text(&time(1.0, 0.25, r#"{ kind = "static" }"#), "", "-0.1*t");
     let case = case_of(&statics, &[""; 0]);
-    let source = carom_record::Source { text: statics.clone(), sets: Vec::new() };
+    let source = carom_record::Source { text: statics.clone(), sets: Vec::new(), folder: None };
     let options = carom_run::recording::Options { threads: 1, trials: false, audit: false };
     let stop = std::sync::atomic::AtomicBool::new(false);
     let preload = folder.path().join("preload");
@@ -169,7 +169,7 @@ fn states_of_other_models() {
 fn a_run_is_finished_even_if_its_record_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let directory = folder.path().join("run");
-    let source = carom_record::Source { text: DISCS.to_owned(), sets: Vec::new() };
+    let source = carom_record::Source { text: DISCS.to_owned(), sets: Vec::new(), folder: None };
     let options = carom_run::recording::Options { threads: 1, trials: false, audit: false };
     let stop = std::sync::atomic::AtomicBool::new(false);
     let damage = &mut |progress: &carom_run::recording::Progress| {
