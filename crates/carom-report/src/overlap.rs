@@ -35,7 +35,16 @@ pub fn overlap(fields: &FieldSet, nodes: &[(usize, f64)]) -> Option<String> {
     };
     let (x, y) = (extent(0), extent(1));
     let room = (0.25 * (x[1] - x[0]).max(y[1] - y[0])).max(8.0 * depth);
-    let frame = [x[0] - room, x[1] + room, y[0] - room, y[1] + room];
+    // No further than the bodies reach.
+    let reach = |i: usize, low: f64, high: f64| {
+        let of = points.iter().map(|p| p[i]);
+        let (first, last) = (of.clone().fold(f64::INFINITY, f64::min), of.fold(f64::NEG_INFINITY, f64::max));
+        let margin = 0.04 * (last - first);
+        [low.max(first - margin), high.min(last + margin)]
+    };
+    let ([left_end, right_end], [bottom, top]) =
+        (reach(0, x[0] - room, x[1] + room), reach(1, y[0] - room, y[1] + room));
+    let frame = [left_end, right_end, bottom, top];
     let scale = (WIDTH / (frame[1] - frame[0])).min(600.0 / (frame[3] - frame[2]));
     let height = (frame[3] - frame[2]) * scale;
     let left = 0.5 * (WIDTH - (frame[1] - frame[0]) * scale);
@@ -50,7 +59,8 @@ pub fn overlap(fields: &FieldSet, nodes: &[(usize, f64)]) -> Option<String> {
         let instant = Instant { points: points.clone(), ..Instant::of_block(fields, block) };
         mesh(&mut out, &instant, FILLS[k % FILLS.len()], &to);
     }
-    let large = (0.4 * WIDTH / nodes.len() as f64).clamp(3.5, LARGE);
+    // Not larger than the depth of the deepest node is drawn, so that it can be seen.
+    let large = (0.4 * WIDTH / nodes.len() as f64).min(depth * scale).clamp(3.5, LARGE);
     for (node, d) in &nodes {
         let [x, y] = to(points[*node]);
         let radius = SMALL + (large - SMALL) * (d / depth).sqrt();
@@ -60,7 +70,21 @@ pub fn overlap(fields: &FieldSet, nodes: &[(usize, f64)]) -> Option<String> {
             "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius:.1}\" fill=\"{color}\" fill-opacity=\"0.35\" stroke=\"{color}\"/>"
         );
     }
-    out.push_str("</g>\n");
+    let _ = writeln!(
+        out,
+        "</g>\n<rect x=\"{left:.1}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{height:.1}\" fill=\"none\" stroke=\"#888\"/>",
+        WIDTH - 2.0 * left
+    );
+    let mut along = WIDTH - 8.0;
+    for (k, block) in fields.blocks.iter().enumerate().rev() {
+        along -= 7.6 * block.body.chars().count() as f64 + 34.0;
+        let (fill, y) = (FILLS[k % FILLS.len()], TOP + height + 10.0);
+        let _ = writeln!(
+            out,
+            "<rect x=\"{along:.1}\" y=\"{y:.1}\" width=\"14\" height=\"12\" fill=\"{fill}\" stroke=\"#888\"/>"
+        );
+        write_text(&mut out, along + 20.0, y + 10.0, "", &block.body);
+    }
     let unit = fields.array("displacement").map_or("", |u| &u.unit);
     let label = format!(
         "{} nodes inside the other body; deepest: node {deepest}, {} {unit}",
