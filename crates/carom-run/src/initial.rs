@@ -4,7 +4,7 @@
 //! The meshes are rebuilt from the resolved case of that run and compared node by node: names alone
 //! would not detect a changed mesh.
 
-use carom_case::{Case, InitialSpec, Problem, Velocities};
+use carom_case::{Case, ContactSpec, InitialSpec, Problem, Velocities};
 use carom_mechanics::model::{Manufactured, Model};
 use carom_mechanics::{Before, Grid, State};
 use carom_record::{Manifest, Status, last_checkpoint};
@@ -128,9 +128,9 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<B
         }
     }
     for contact in &case.contacts {
-        let same = old.contacts.iter().position(|c| {
-            (&c.name, &c.secondary, &c.primary) == (&contact.name, &contact.secondary, &contact.primary)
-        });
+        // Pairs of springs are nearly always dependent as constraints; those that touch are found anew.
+        let key = |c: &ContactSpec| (c.name.clone(), c.secondary.clone(), c.primary.clone(), c.enforcement);
+        let same = old.contacts.iter().position(|c| key(c) == key(contact));
         before.pairs.push(same.and_then(|k| state.pairs.get(k).cloned()).unwrap_or_default());
     }
     Ok(before)
