@@ -285,9 +285,17 @@ fn write(
             meshes.insert(body.name.clone(), name);
         }
     }
+    let body_of = |side: &str| side.split('.').next().unwrap_or_default().to_owned();
+    let remains = |body: &str| best.case.bodies.iter().any(|b| b.name == body);
+    let acts = |kind: &LoadKind| match kind {
+        LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. } => {
+            on.iter().any(|s| remains(&body_of(s)))
+        }
+        LoadKind::BodyForce { body, .. } => remains(body),
+    };
     let mut tables = Vec::new();
     for (k, load) in whole.loads.iter().enumerate() {
-        let Some(table) = &load.table else {
+        let Some(table) = load.table.as_ref().filter(|_| acts(&load.kind)) else {
             tables.push(String::new());
             continue;
         };
