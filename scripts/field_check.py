@@ -1,6 +1,11 @@
 """Independent check of a record: do bodies penetrate each other, themselves or rigid planes, do they
 pass through, is energy created?  Used by ladder.py; reads only the run directory (Python 3, numpy).
 
+It sees the written fields. Between two of them, only the passage of a body through another is sought,
+by straight paths of centres. Planes are taken as they are at t = 0; circles, polylines and obstacles
+that move are refused (ValueError). A finished run with fewer than two fields, a field file that is
+missing, and numbers that are not finite are wrong.
+
 Geometry. The outline of a body is the set of cell edges that belong to one cell, chained into loops
 with the body on their left. An edge of degree p with nodes x_0 … x_p at equal parameters is
 
@@ -33,6 +38,8 @@ divided by 2π, the interior angle at x itself over 2π where nothing overlaps, 
 another part. Depth: distance to the facets that are neither the own one nor its neighbours.
 Limit 0.1 h.
 
+Inverted: the triangle of the corners of a cell has no positive area.
+
 Passing through: from one field to the next, the path of the centre of the smaller body, relative to
 the centre of the larger one, crosses the outline of the larger one, in the shape of either instant, an
 even number > 0 of times; or the smaller centre is inside both bodies.
@@ -43,7 +50,8 @@ Energy, from history.csv with E = total − external_work:
 
 Momentum: without supports, loads and gravity, and with contacts on planes only, the change of
 momentum from first to last row must be contact_impulse (to 1e-6 of the largest momentum), if the
-last row is without contact.
+last row is without contact. Contacts of a body with itself do not count if contact.csv has no row of
+them; otherwise contact_impulse contains forces within the body.
 """
 
 import csv
@@ -118,7 +126,7 @@ class Outline:
     """Outline of one body: topology and, after `at`, the samples of one instant."""
 
     def __init__(self, cells, reference):
-        self.nodes_of_body = np.unique(cells)
+        self.nodes_of_body, self.corners = np.unique(cells), cells[:, :3]
         self.facets, self.loops = boundary(cells)
         self.p = self.facets.shape[1] - 1
         self.matrix = shape_matrix(self.p, np.linspace(0, 1, PARTS + 1))
@@ -139,6 +147,12 @@ class Outline:
         self.low, self.high = points.min(0), points.max(0)
         self.center = position[self.nodes_of_body].mean(0)
         self.extent = float(np.linalg.norm(self.high - self.low))
+
+    def inverted(self):
+        """Whether the corners of a cell are clockwise, or in a line."""
+        a, b, c = (self.position[self.corners[:, i]] for i in range(3))
+        u, v = b - a, c - a
+        return bool((u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] <= 0).any())
 
     def neighbour(self):
         """Index of the next facet in the loop of each facet."""
@@ -239,11 +253,10 @@ class Worst:
 
 
 def frames(run):
-    """(time, arrays) of every written field."""
+    """(time, arrays) of every written field; no arrays where the file is missing."""
     for entry in xml.parse(run / "fields.pvd").iter("DataSet"):
         path = run / entry.get("file")
-        if path.exists():
-            yield float(entry.get("timestep")), read_vtu(path)
+        yield float(entry.get("timestep")), read_vtu(path) if path.exists() else None
 
 
 def outlines(arrays):
@@ -302,16 +315,29 @@ def energy(run):
     if not rows:
         return 0.0, 0.0
     e, work = column("total") - column("external_work"), column("external_work")
+    if not np.isfinite(e).all():
+        return float("nan"), float("nan")
     rise = (e - np.minimum.accumulate(e)).max()
     scale = max((column("kinetic") + column("strain")).max(), np.abs(np.diff(work)).sum(), 1e-300)
     last = rows[-1]
     return float(rise / scale), float(last["energy_created"]) / max(float(last["energy_scale"]), 1e-300)
 
 
+def touched(run):
+    """Names of the contacts that contact.csv has rows of."""
+    path = run / "contact.csv"
+    if not path.exists():
+        return set()
+    with path.open() as file:
+        return {row["contact"] for row in csv.DictReader(file)}
+
+
 def momentum(run, case):
     """|change of momentum − contact impulse| over the largest momentum; None if it does not apply."""
     free = not case["supports"] and not case["loads"] and not any(any(b["gravity"]) for b in case["bodies"])
-    planes = case["contacts"] and all("plane" in c["primary"] for c in case["contacts"])
+    of_itself = lambda c: c["primary"].get("side") == c["secondary"]
+    contacts = [c for c in case["contacts"] if not of_itself(c) or c["name"] in touched(run)]
+    planes = contacts and all("plane" in c["primary"] for c in contacts)
     rows, column = history(run)
     if not (free and planes and rows and float(rows[-1]["active"]) == 0):
         return None
@@ -325,6 +351,8 @@ def declared(manifest):
     for contact in manifest["case"]["contacts"]:
         body = contact["secondary"].split(".")[0]
         nodes = {n for path in manifest["sides"][contact["secondary"]] for n in path}
+        if not {"plane", "side"} & set(contact["primary"]) or contact.get("motion", "fixed") != "fixed":
+            raise ValueError(f"contact {contact['name']}: only sides and fixed planes are checked")
         if "plane" in contact["primary"]:
             spec = contact["primary"]["plane"]
             normal = np.array(spec["normal"]) / np.linalg.norm(spec["normal"])
@@ -349,15 +377,21 @@ def check(run):
     manifest = json.loads((run / "manifest.json").read_text())
     pairs, planes = declared(manifest)
     nodes, edges, own, passed, bodies, before, count = {}, {}, {}, {}, None, None, 0
+    missing = []
     for time, arrays in frames(run):
+        if arrays is None:
+            missing.append(f"record: the field of t = {time:.6g} is missing")
+            continue
         bodies = bodies or outlines(arrays)
         position = arrays["points"][:, :2] + arrays["displacement"][:, :2]
         count += 1
         if not np.isfinite(position).all():
-            passed.setdefault("positions that are not finite", time)
+            passed.setdefault("record: positions that are not finite", time)
             break
-        for body in bodies.values():
+        for name, body in bodies.items():
             body.at(position)
+            if body.inverted():
+                passed.setdefault(f"inverted: a cell of {name}", time)
         for a, one in bodies.items():
             for b, two in bodies.items():
                 if a == b:
@@ -372,7 +406,7 @@ def check(run):
                 if one.extent < two.extent or one.extent == two.extent and a < b:
                     # The centre of a comb or a ring is not in the body itself.
                     if two.inside(one.center[None])[0] and depths[1] > 0 and one.inside(one.center[None])[0]:
-                        passed.setdefault(f"the centre of {a} is in {b}", time)
+                        passed.setdefault(f"through: the centre of {a} is in {b}", time)
                     if before:
                         # Relative to the centre of the larger body, in its shape of both instants.
                         start, end = before[a] - before[b], one.center - two.center
@@ -381,7 +415,7 @@ def check(run):
                         then = two.crossings(start + before[b], end + before[b])
                         two.at(position)
                         if now and then and now % 2 == 0 and then % 2 == 0:
-                            passed.setdefault(f"{a} passes through {b}", time)
+                            passed.setdefault(f"through: {a} passes through {b}", time)
             for i, (_, point, normal) in enumerate(planes):
                 secondary, kind = pairs.get((a, i), (set(), "exact"))
                 depths = plane_depths(one, point, normal, sorted(secondary))
@@ -405,12 +439,16 @@ def check(run):
         for w in sorted(all_of, key=lambda w: w.limit - w.depth):
             if w.depth > w.limit:
                 result["wrong"].append(f"{name}: {w.what}: {w.depth:.3g} h at t = {w.time:.6g} (limit {w.limit:.3g})")
-    result["wrong"] += [f"through: {what} at t = {t:.6g}" for what, t in passed.items()]
+    result["wrong"] += [f"{what} at t = {t:.6g}" for what, t in passed.items()] + missing
+    if count < 2 and manifest["status"] == "finished":
+        result["wrong"].append(f"record: {count} fields, and at least 2 are needed")
     result["warnings"] = sorted({w["id"] for w in manifest.get("warnings") or []})
     contact = run / "contact.csv"
     result["contacts"] = max(0, len(contact.read_text().splitlines()) - 1) if contact.exists() else 0
     marked = "energy-created" in result["warnings"]
     result["marked"] = marked or manifest["status"] == "failed" and "energy was created" in (manifest.get("reason") or "")
+    if not np.isfinite(created):
+        result["wrong"].append("energy: not finite")
     if created > CREATED_LIMIT and not result["marked"]:
         result["wrong"].append(f"energy: {100 * created:.3g} % created (the record says {100 * recorded:.3g} %)")
     if unbalanced is not None and unbalanced > 1e-6:

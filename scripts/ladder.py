@@ -86,7 +86,8 @@ def judge(carom, meta, case, out, timeout, keep):
     row = {**meta, "case": case.stem, "outcome": outcome, "message": message, "wall": f"{wall:.2f}", "kind": ""}
     if outcome in ("stopped", "refused", "crash"):
         row["kind"] = kind_of(message)
-    if (out / "manifest.json").exists() and (out / "fields.pvd").exists() and outcome != "timeout":
+    written = (out / "manifest.json").exists() and (out / "fields.pvd").exists()
+    if outcome == "right" or written and outcome != "timeout":
         try:
             found = field_check.check(out)
         except Exception as error:  # a record that cannot be read is a result, too

@@ -94,8 +94,9 @@ def write_vtu(path, bodies, displacement):
     path.write_bytes(b"<VTKFile>" + head.encode() + fc.MARK + data + b"\n</AppendedData>")
 
 
-def record(folder, bodies, motion, contacts, energies=(1.0, 1.0), sides=None):
-    """A run directory; motion: displacement of every body at each instant."""
+def record(folder, bodies, motion, contacts, energies=(1.0, 1.0), sides=None, supports=(1,), momenta=None, touched=()):
+    """A run directory; motion: displacement of every body at each instant; momenta: (momentum, impulse of
+    contact) in x of each row; touched: contacts with a row in contact.csv."""
     (folder / "fields").mkdir()
     entries = ""
     for k, moves in enumerate(motion):
@@ -103,10 +104,13 @@ def record(folder, bodies, motion, contacts, energies=(1.0, 1.0), sides=None):
         write_vtu(folder / f"fields/{k}.vtu", bodies, displacement)
         entries += f'<DataSet timestep="{k}" file="fields/{k}.vtu"/>'
     (folder / "fields.pvd").write_text(f"<VTKFile><Collection>{entries}</Collection></VTKFile>")
-    columns = "total external_work kinetic strain energy_created energy_scale active"
-    rows = [f"{e},0,{e},0,0,1,1" for e in energies]
+    columns = "total external_work kinetic strain energy_created energy_scale active momentum_x momentum_y contact_impulse_x contact_impulse_y"
+    momenta = momenta or [(0.0, 0.0)] * len(energies)
+    rows = [f"{e},0,{e},0,0,1,{0 if supports == [] else 1},{p},0,{f},0" for e, (p, f) in zip(energies, momenta)]
+    (folder / "contact.csv").write_text("\n".join(["step,contact", *(f"1,{name}" for name in touched)]) + "\n")
     (folder / "history.csv").write_text("\n".join([columns.replace(" ", ","), *rows]) + "\n")
-    case = {"contacts": contacts, "supports": [1], "loads": [], "bodies": []}
+    contacts = [{"name": f"c{i}", **contact} for i, contact in enumerate(contacts)]
+    case = {"contacts": contacts, "supports": list(supports), "loads": [], "bodies": []}
     (folder / "manifest.json").write_text(json.dumps({"status": "finished", "case": case, "sides": sides or {}, "warnings": []}))
 
 
@@ -196,14 +200,17 @@ class Geometry(unittest.TestCase):
 
 
 class Records(unittest.TestCase):
-    def judged(self, motion, energies=(1.0, 1.0), size=0.1, secondary="shot.all"):
+    def judged(self, motion, energies=(1.0, 1.0), size=0.1, secondary="shot.all", damage=None, **more):
         bodies = {"shot": square((0, 1), 2, size, 2), "plate": square((-1, -2), 4, 0.5, 1)}
         n = len(bodies["shot"][0])
         sides = {"shot.all": [list(range(n))], "plate.all": [list(range(n, n + len(bodies["plate"][0])))]}
         primary = "plate.all" if secondary == "shot.all" else "shot.all"
         contacts = [{"secondary": secondary, "primary": {"side": primary}, "enforcement": "multiplier"}]
+        contacts = more.pop("contacts", contacts)
         with tempfile.TemporaryDirectory() as folder:
-            record(Path(folder), bodies, motion, contacts, energies, sides)
+            record(Path(folder), bodies, motion, contacts, energies, sides, **more)
+            if damage:
+                damage(Path(folder))
             return fc.check(folder)
 
     def test_touching_is_right(self):
@@ -234,11 +241,45 @@ class Records(unittest.TestCase):
         self.assertEqual(self.judged([[(0, 0), (0, 0)], [(0, -4), (0, -4)]])["wrong"], [])
 
     def test_energy_created_after_a_loss(self):
-        still = [[(0, 0), (0, 0)]]
+        still = [[(0, 0), (0, 0)]] * 2
         self.assertEqual(self.judged(still, energies=(1.0, 0.5, 0.51))["wrong"], [])
         found = self.judged(still, energies=(1.0, 0.5, 0.53))
         self.assertAlmostEqual(found["created"], 0.03)
         self.assertIn("energy: 3 % created", found["wrong"][0])
+
+
+    def test_what_is_missing_is_wrong(self):
+        moves = [[(0, 0), (0, 0)], [(0, -0.5), (0, 0)]]
+        self.assertEqual(self.judged(moves)["wrong"], [])
+        self.assertIn("1 fields", self.judged(moves[:1])["wrong"][0])
+        self.assertIn("0 fields", self.judged([])["wrong"][0])
+        gone = lambda folder: (folder / "fields/1.vtu").unlink()
+        self.assertIn("the field of t = 1 is missing", self.judged(moves, damage=gone)["wrong"][0])
+        self.assertEqual(self.judged(moves, energies=(1.0, float("nan")))["wrong"], ["energy: not finite"])
+
+    def test_a_body_turned_inside_out_is_wrong(self):
+        points = square((0, 1), 2, 0.1, 2)[0]
+        mirrored = np.column_stack([0.2 - 2 * points[:, 0], 0 * points[:, 0]])
+        found = self.judged([[(0, 0), (0, 0)], [mirrored, (0, 0)]])
+        self.assertEqual(found["wrong"], ["inverted: a cell of shot at t = 1"])
+
+    def test_momentum_on_a_plane_whatever_contacts_with_itself_a_body_has(self):
+        plane = {"secondary": "shot.all", "primary": {"plane": {"point": [0, -9], "normal": [0, 1]}}, "enforcement": "multiplier"}
+        of_itself = {"secondary": "shot.all", "primary": {"side": "shot.all"}, "enforcement": "multiplier"}
+        still = [[(0, 0), (0, 0)]] * 2
+        judged = lambda momenta, touched=("c0",): self.judged(
+            still, contacts=[plane, of_itself], supports=[], momenta=momenta, touched=touched
+        )
+        self.assertEqual(judged([(1.0, 0.0), (-0.8, -1.8)])["wrong"], [])
+        self.assertAlmostEqual(judged([(1.0, 0.0), (-0.8, -1.8)])["momentum"], 0.0)
+        self.assertIn("momentum: change and contact impulse differ by 0.1", judged([(1.0, 0.0), (-0.8, -1.7)])["wrong"][0])
+        # Once it touches itself, the impulses are not of the plane alone.
+        self.assertIsNone(judged([(1.0, 0.0), (-0.8, -1.7)], ("c0", "c1"))["momentum"])
+
+    def test_obstacles_that_it_cannot_check_are_refused(self):
+        circle = {"secondary": "shot.all", "primary": {"circle": {}}, "enforcement": "multiplier"}
+        with self.assertRaises(ValueError):
+            self.judged([[(0, 0), (0, 0)]] * 2, contacts=[circle])
 
 
 class Generator(unittest.TestCase):
@@ -251,7 +292,7 @@ class Generator(unittest.TestCase):
             steps = case["time"]["end"] / case["time"]["step"]
             self.assertAlmostEqual(steps, round(steps), places=5)
             self.assertLessEqual(steps, 3020)
-            pairs = [(c["secondary"], str(c["primary"])) for c in case["contact"]]
+            pairs = [str(c.get("between") or (c["secondary"], c["primary"])) for c in case["contact"]]
             self.assertEqual(len(pairs), len(set(pairs)))
             self.assertTrue(text.startswith("# "))
             seen.add((meta["category"], meta["family"]))

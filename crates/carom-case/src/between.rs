@@ -67,6 +67,8 @@ impl Bodies<'_> {
             }
         }
         match &mut contacts[..] {
+            // An empty list is an error of its own.
+            [] if problems.iter().any(|p| p.path == format!("{path}.between")) => return None,
             [] => {
                 let what = format!("contact `{}` has no pair of sides", one.name);
                 let why = "it is between bodies that have no other body to meet, or whose contacts are all declared in tables of their own";

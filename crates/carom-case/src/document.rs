@@ -115,6 +115,15 @@ impl Document {
         &self.sources[0].1
     }
 
+    /// The names of the tables of a list, in their order; empty where there is none.
+    pub fn names(&self, list: &str) -> Vec<String> {
+        let Some(Value::List(tables)) = self.root().get(list).map(|node| &node.value) else {
+            return Vec::new();
+        };
+        let name = |node: &Node| Some(node.table()?.get("name")?.text()?.to_owned());
+        tables.iter().map(|node| name(node).unwrap_or_default()).collect()
+    }
+
     pub(super) fn root(&self) -> &Table {
         const EMPTY: &Table = &Table(Vec::new());
         self.root.table().unwrap_or(EMPTY)

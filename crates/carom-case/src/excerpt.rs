@@ -9,10 +9,11 @@ use super::problem::{CaseError, Diagnostic};
 /// What remains of a case.
 #[derive(Clone, Debug, Default)]
 pub struct Excerpt {
-    /// Names of the bodies and contacts that remain.
+    /// Names of the bodies that remain.
     pub bodies: Vec<String>,
-    /// Contacts.
-    pub contacts: Vec<String>,
+    /// Numbers of the tables of the contacts that remain, with another name if it needs one: that of the
+    /// only contact that is left of those between bodies.
+    pub contacts: BTreeMap<usize, Option<String>>,
     /// End time.
     pub end: f64,
     /// File of the state from which it continues, beside the case.
@@ -71,12 +72,22 @@ impl Excerpt {
         let named = |table: &dyn TableLike, names: &[String]| {
             table.get("name").and_then(Item::as_str).is_some_and(|name| names.iter().any(|n| n == name))
         };
-        retain(&mut case, "body", &|body| named(body, &self.bodies));
-        retain(&mut case, "contact", &|contact| named(contact, &self.contacts));
+        let kept = |side: &str| self.bodies.iter().any(|body| side.split('.').next() == Some(body));
+        retain(&mut case, "body", &mut |body| named(body, &self.bodies));
+        let mut entry = 0..;
+        retain(&mut case, "contact", &mut |_| entry.next().is_some_and(|k| self.contacts.contains_key(&k)));
+        let mut names = self.contacts.values();
+        each(&mut case, "contact", &mut |contact| {
+            if let Some(Some(name)) = names.next() {
+                contact.insert("name", value(name.as_str()));
+            }
+            if let Some(sides) = contact.get_mut("between").and_then(Item::as_array_mut) {
+                sides.retain(|side| side.as_str().is_some_and(kept));
+            }
+        });
         each(&mut case, "body", &mut |body| {
-            // The state has them.
+            // The state has it. The initial position says which depths a contact keeps.
             body.remove("velocity");
-            body.remove("position");
             let name = body.get("name").and_then(Item::as_str).unwrap_or_default().to_owned();
             if let (Some(file), Some(mesh)) =
                 (self.meshes.get(&name), body.get_mut("mesh").and_then(Item::as_table_like_mut))
@@ -84,14 +95,13 @@ impl Excerpt {
                 mesh.insert("file", value(file.as_str()));
             }
         });
-        let kept = |side: &str| self.bodies.iter().any(|body| side.split('.').next() == Some(body));
         for list in ["support", "load"] {
             each(&mut case, list, &mut |table| {
                 if let Some(on) = table.get_mut("on").and_then(Item::as_array_mut) {
                     on.retain(|side| side.as_str().is_some_and(kept));
                 }
             });
-            retain(&mut case, list, &|table| {
+            retain(&mut case, list, &mut |table| {
                 let on = table.get("on").and_then(Item::as_array);
                 on.is_none_or(|on| !on.is_empty())
                     && table.get("body").and_then(Item::as_str).is_none_or(kept)
@@ -101,7 +111,7 @@ impl Excerpt {
         each(&mut case, "body", &mut |body| {
             used.extend(body.get("material").and_then(Item::as_str).map(ToOwned::to_owned));
         });
-        retain(&mut case, "material", &|material| named(material, &used));
+        retain(&mut case, "material", &mut |material| named(material, &used));
         case["time"]["end"] = value(self.end);
         case["output"]["fields_every"] = value(1);
         case["output"]["history_every"] = value(1);
@@ -128,7 +138,7 @@ fn each(case: &mut DocumentMut, list: &str, of: &mut dyn FnMut(&mut dyn TableLik
 }
 
 /// Keeps some tables of a list.
-fn retain(case: &mut DocumentMut, list: &str, keep: &dyn Fn(&dyn TableLike) -> bool) {
+fn retain(case: &mut DocumentMut, list: &str, keep: &mut dyn FnMut(&dyn TableLike) -> bool) {
     let empty = match case.get_mut(list) {
         Some(Item::ArrayOfTables(tables)) => {
             tables.retain(|table| keep(table));
@@ -152,21 +162,21 @@ fn apply(case: &mut DocumentMut, set: &str) -> Option<()> {
     let parsed = format!("v={text}\n").parse::<DocumentMut>();
     let new = parsed.ok().and_then(|mut v| v.remove("v")).unwrap_or_else(|| value(text.trim()));
     let mut item = case.as_item_mut();
-    for key in &keys {
-        let key = key.get();
+    for (depth, key) in keys.iter().enumerate() {
+        let (key, rest) = (key.get(), &keys[depth + 1..]);
         item = match item {
             Item::ArrayOfTables(tables) => {
                 let is = |table: &toml_edit::Table| table.get("name").and_then(Item::as_str) == Some(key);
                 let place = tables.iter().position(is)?;
                 // A table of an array is no item: its last key is set here.
-                return table_in(tables.get_mut(place)?, &keys, key, new);
+                return table_in(tables.get_mut(place)?, rest, new);
             }
             Item::Value(Value::Array(values)) => {
                 let is = |v: &Value| {
                     v.as_inline_table().and_then(|t| t.get("name")).and_then(Value::as_str) == Some(key)
                 };
                 let place = values.iter().position(is)?;
-                return table_in(values.get_mut(place)?.as_inline_table_mut()?, &keys, key, new);
+                return table_in(values.get_mut(place)?.as_inline_table_mut()?, rest, new);
             }
             item => item.as_table_like_mut()?.entry(key).or_insert(Item::Table(toml_edit::Table::new())),
         };
@@ -175,10 +185,9 @@ fn apply(case: &mut DocumentMut, set: &str) -> Option<()> {
     Some(())
 }
 
-/// Sets what remains of a key path after `from` in a table.
-fn table_in(table: &mut dyn TableLike, keys: &[toml_edit::Key], from: &str, new: Item) -> Option<()> {
-    let start = keys.iter().position(|key| key.get() == from)? + 1;
-    let (last, path) = keys[start..].split_last()?;
+/// Sets a key path in a table.
+fn table_in(table: &mut dyn TableLike, keys: &[toml_edit::Key], new: Item) -> Option<()> {
+    let (last, path) = keys.split_last()?;
     let mut table = table;
     for key in path {
         table = table

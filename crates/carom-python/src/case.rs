@@ -34,7 +34,7 @@ impl Case {
     }
 
     fn source(&self) -> Source {
-        Source { text: self.document.text().to_owned(), sets: self.document.sets() }
+        Source { text: self.document.text().to_owned(), sets: self.document.sets(), folder: None }
     }
 }
 

@@ -1,7 +1,7 @@
 //! `manifest.json`: what was run, on which machine, and how it ended.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
@@ -43,6 +43,9 @@ pub struct Source {
     pub text: String,
     /// The `--set key=value` options, in order.
     pub sets: Vec<String>,
+    /// Folder to which its paths are relative; the working directory if there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub folder: Option<PathBuf>,
 }
 
 impl Source {
@@ -276,6 +279,7 @@ mod tests {
         let source = |text: &str, sets: &[&str]| Source {
             text: text.into(),
             sets: sets.iter().map(ToString::to_string).collect(),
+            folder: None,
         };
         assert_ne!(source("a", &["bc"]).hash(), source("ab", &["c"]).hash());
         assert_ne!(source("a", &[]).hash(), source("a", &[""]).hash());

@@ -13,7 +13,7 @@ pub(crate) const FILES: [&str; 2] = ["stopped.json", "stopped.vtu"];
 /// Why a simulation stopped, and what was tried.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
-    /// Keyword of the reason: `penetration`, `energy`, …
+    /// Keyword of the reason: `penetration`, `energy-guard`, …
     pub kind: String,
     /// The reason in words.
     pub reason: String,

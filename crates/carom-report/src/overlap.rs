@@ -41,7 +41,14 @@ pub fn overlap(case: &Value, fields: &FieldSet, nodes: &[(usize, f64)]) -> Optio
     let bodies = extent(&mut points.iter().copied());
     let (x, y) = ([around[0], around[1]], [around[2], around[3]]);
     let room = (0.25 * size(around)).max((8.0 * depth).min(size(bodies)));
-    let frame = [x[0] - room, x[1] + room, y[0] - room, y[1] + room];
+    // No further than the bodies reach.
+    let margin = 0.04 * size(bodies);
+    let frame = [
+        (x[0] - room).max(bodies[0] - margin),
+        (x[1] + room).min(bodies[1] + margin),
+        (y[0] - room).max(bodies[2] - margin),
+        (y[1] + room).min(bodies[3] + margin),
+    ];
     let scale = (WIDTH / (frame[1] - frame[0])).min(600.0 / (frame[3] - frame[2]));
     let height = (frame[3] - frame[2]) * scale;
     let left = 0.5 * (WIDTH - (frame[1] - frame[0]) * scale);
@@ -62,7 +69,8 @@ pub fn overlap(case: &Value, fields: &FieldSet, nodes: &[(usize, f64)]) -> Optio
             wall(&mut out, &line, 0.0);
         }
     }
-    let large = (0.4 * WIDTH / nodes.len() as f64).clamp(3.5, LARGE);
+    // Not larger than the depth of the deepest node is drawn, so that it can be seen.
+    let large = (0.4 * WIDTH / nodes.len() as f64).min(depth * scale).clamp(3.5, LARGE);
     for (node, d) in &nodes {
         let [x, y] = to(points[*node]);
         let radius = SMALL + (large - SMALL) * (d / depth).sqrt();
@@ -72,7 +80,21 @@ pub fn overlap(case: &Value, fields: &FieldSet, nodes: &[(usize, f64)]) -> Optio
             "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius:.1}\" fill=\"{color}\" fill-opacity=\"0.35\" stroke=\"{color}\"/>"
         );
     }
-    out.push_str("</g>\n");
+    let _ = writeln!(
+        out,
+        "</g>\n<rect x=\"{left:.1}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{height:.1}\" fill=\"none\" stroke=\"#888\"/>",
+        WIDTH - 2.0 * left
+    );
+    let mut along = WIDTH - 8.0;
+    for (k, block) in fields.blocks.iter().enumerate().rev() {
+        along -= 7.6 * block.body.chars().count() as f64 + 34.0;
+        let (fill, y) = (FILLS[k % FILLS.len()], TOP + height + 10.0);
+        let _ = writeln!(
+            out,
+            "<rect x=\"{along:.1}\" y=\"{y:.1}\" width=\"14\" height=\"12\" fill=\"{fill}\" stroke=\"#888\"/>"
+        );
+        write_text(&mut out, along + 20.0, y + 10.0, "", &block.body);
+    }
     let unit = fields.array("displacement").map_or("", |u| &u.unit);
     let label = format!(
         "{} nodes inside another body or an obstacle; deepest: node {deepest}, {} {unit}",

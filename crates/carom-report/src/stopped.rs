@@ -7,7 +7,7 @@ use maud::{Markup, html};
 
 use crate::document::{figure, file, joined, or_dash};
 use crate::labels::number;
-use crate::text::{Label, Prose};
+use crate::text::{Label, Prose, typeset};
 
 const ITERATIONS: &str = "Newton's iterations of the last attempt, each before its correction. Residual: as a \
     fraction of the sum of the forces. Gap and correction: as fractions of the length of the model. Part: the \
@@ -24,7 +24,7 @@ pub(crate) fn section(run: &Run, picture: Option<(usize, &str, &str)>) -> Markup
     let unit = run.history.unit("time");
     html! {
         h2 { "Why it stopped" }
-        p.reason { (stop.reason) "." }
+        p.reason { (typeset(&stop.reason)) "." }
         @if let Some(place) = &stop.place { (where_table(place)) }
         @if let Some((i, caption, svg)) = picture { (figure(i, "stopped", &["svg"], caption, svg)) }
         (advice(stop, unit))
@@ -82,8 +82,10 @@ fn advice(stop: &Stop, unit: &str) -> Markup {
                 }
                 Some(trial) => {
                     td {
-                        "stops at t = " (number(trial.reached)) " " (Label(unit))
-                        @if let Some(why) = &trial.why { details { summary { "why" } (why) } }
+                        // What fails before the place says nothing about it.
+                        @if trial.reached < stop.last { "stops before the place, at t = " } @else { "stops at t = " }
+                        (number(trial.reached)) " " (Label(unit))
+                        @if let Some(why) = &trial.why { details { summary { "why" } (typeset(why)) } }
                     }
                 }
                 None => { td { "not tried" } }

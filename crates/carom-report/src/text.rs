@@ -104,6 +104,26 @@ impl Render for Prose<'_> {
     }
 }
 
+/// A message of the program as prose: a minus sign before digits, and quotation marks.
+pub(crate) fn typeset(message: &str) -> String {
+    let mut out = String::with_capacity(message.len());
+    let (mut before, mut open) = (' ', false);
+    let mut characters = message.chars().peekable();
+    while let Some(c) = characters.next() {
+        let digit = characters.peek().is_some_and(char::is_ascii_digit);
+        out.push(match c {
+            '"' => {
+                open = !open;
+                if open { '“' } else { '”' }
+            }
+            '-' if digit && matches!(before, ' ' | 'e' | '(' | '[') => '−',
+            c => c,
+        });
+        before = c;
+    }
+    out
+}
+
 /// Approximate width of a label in units of the font size, for the layout of legends.
 pub(crate) fn width(label: &str) -> f64 {
     let piece = |(level, text): (Level, String)| {
@@ -119,6 +139,12 @@ pub(crate) fn width(label: &str) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn messages_are_typeset() {
+        let text = typeset("body \"block\": cell 0: J = -1.029e-3 in step-2 [-1, 2]");
+        assert_eq!(text, "body “block”: cell 0: J = −1.029e−3 in step-2 [−1, 2]");
+    }
 
     #[test]
     fn labels() {

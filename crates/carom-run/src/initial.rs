@@ -4,9 +4,9 @@
 //! The meshes are rebuilt from the resolved case of that run and compared node by node: names alone
 //! would not detect a changed mesh.
 
-use carom_case::{Case, InitialSpec, Problem, Velocities};
+use carom_case::{Case, ContactSpec, InitialSpec, Problem, Velocities};
 use carom_mechanics::model::{Manufactured, Model};
-use carom_mechanics::{Before, State};
+use carom_mechanics::{Before, Grid, State};
 use carom_record::{Manifest, Status, last_checkpoint};
 
 use crate::saved_state;
@@ -128,9 +128,9 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<B
         }
     }
     for contact in &case.contacts {
-        let same = old.contacts.iter().position(|c| {
-            (&c.name, &c.secondary, &c.primary) == (&contact.name, &contact.secondary, &contact.primary)
-        });
+        // Pairs of springs are nearly always dependent as constraints; those that touch are found anew.
+        let key = |c: &ContactSpec| (c.name.clone(), c.secondary.clone(), c.primary.clone(), c.enforcement);
+        let same = old.contacts.iter().position(|c| key(c) == key(contact));
         before.pairs.push(same.and_then(|k| state.pairs.get(k).cloned()).unwrap_or_default());
     }
     Ok(before)
@@ -166,4 +166,35 @@ pub(crate) fn saved(initial: Option<&InitialSpec>) -> Result<Option<State>, Vec<
             "give a state.bin that `carom reduce` wrote, or the directory of a finished run",
         ),
     }
+}
+
+/// Whether a case continues from a saved state: then its step and phase are those of the state.
+pub(crate) fn continues(case: &Case) -> bool {
+    case.initial.as_ref().is_some_and(|initial| initial.from.is_file())
+}
+
+/// That the clock of a case is that of the run which the state continues.
+///
+/// # Errors
+/// The step, phase or end of the case is another one.
+pub(crate) fn on_the_grid(state: &State, grid: &Grid) -> Result<(), Vec<Problem>> {
+    let (step, time) = (state.step, state.time);
+    let refused = |key: &str, what: String, why: String, help: String| {
+        Err(vec![Problem::new(format!("time.{key}"), what, why, help)])
+    };
+    if step >= grid.steps {
+        let what = format!("the run ends before the state from which it continues, that of t = {time:?}");
+        let why = format!("the state is that of step {step}, and the run has {} steps", grid.steps);
+        return refused("end", what, why, "give a later end".to_owned());
+    }
+    let here = grid.time(step);
+    if (here - time).abs() > 1e-9 * grid.dt {
+        let what = "the step is not that of the run which the state continues".to_owned();
+        let why =
+            format!("the state is that of step {step} at t = {time:?}; here step {step} is at {here:?}");
+        let help = "give the step and phase of that run; to change them, start from t = 0, or from the \
+                    directory of a finished run";
+        return refused("step", what, why, help.to_owned());
+    }
+    Ok(())
 }

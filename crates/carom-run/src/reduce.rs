@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use carom_case::{Case, ContactSpec, Excerpt, LoadKind, MeshSpec};
+use carom_case::{Case, ContactSpec, Excerpt, LoadKind, MeshSpec, Problems};
 use carom_mechanics::{GridReport, Simulation, State};
 use carom_record::{Manifest, RecordError, Stop, StopPlace, checkpoints};
 
@@ -45,6 +45,9 @@ pub enum ReduceError {
     /// The record cannot be read, or a file cannot be written.
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// The model of the run cannot be built any more.
+    #[error("the run cannot be continued from its checkpoint: {0}")]
+    Case(Problems),
     /// The run cannot be reduced.
     #[error("{what}")]
     Unusable {
@@ -95,7 +98,9 @@ pub fn reduce(directory: &Path, out: &Path) -> Result<Reduced, ReduceError> {
     let mut best = None;
     for state in states {
         let candidate = Candidate { case: trimmed(&case, stop.step), state };
-        if reproduces(&candidate, &stop).is_some() {
+        // What is wrong with the whole case, a missing mesh for example, is an error.
+        let simulation = Setup::new(&candidate.case).resume(candidate.state.clone());
+        if stops(simulation.map_err(ReduceError::Case)?, &candidate.case, &stop).is_some() {
             best = Some(candidate);
             break;
         }
@@ -105,10 +110,11 @@ pub fn reduce(directory: &Path, out: &Path) -> Result<Reduced, ReduceError> {
         return Err(unusable(what, "run its case again; if that stops, report it as a defect of Carom"));
     };
     let mut removed = Vec::new();
-    for name in removable(&best.case, stop.place.as_ref()) {
-        let Some(smaller) = without(&best, &name) else { continue };
+    for what in removable(&best.case, stop.place.as_ref()) {
+        let words = what.words(&best.case);
+        let Some(smaller) = without(&best, &what).filter(|_| !words.is_empty()) else { continue };
         if reproduces(&smaller, &stop).is_some() {
-            removed.push(name.words());
+            removed.push(words);
             best = smaller;
         }
     }
@@ -160,14 +166,19 @@ fn same_place(a: Option<&StopPlace>, b: Option<&StopPlace>) -> bool {
 /// Something that may be removed.
 enum Removable {
     Body(String),
-    Contact(String),
+    /// The contacts of a table, by its number.
+    Contacts(usize),
 }
 
 impl Removable {
-    fn words(&self) -> String {
+    /// Empty if it went with a body.
+    fn words(&self, case: &Case) -> String {
         match self {
             Self::Body(name) => format!("body \"{name}\""),
-            Self::Contact(name) => format!("contact \"{name}\""),
+            Self::Contacts(entry) => {
+                let contacts = case.contacts.iter().filter(|contact| contact.entry == *entry);
+                contacts.map(|c| format!("contact \"{}\"", c.name)).collect::<Vec<_>>().join(", ")
+            }
         }
     }
 }
@@ -184,10 +195,16 @@ fn removable(case: &Case, place: Option<&StopPlace>) -> Vec<Removable> {
         case.contacts.iter().filter(|c| Some(c.name.as_str()) == contact).flat_map(ContactSpec::bodies),
     );
     let bodies = case.bodies.iter().filter(|body| !needed.contains(body.name.as_str()));
-    let contacts = case.contacts.iter().filter(|c| Some(c.name.as_str()) != contact);
+    // Without a contact that has a table of its own, `between` would stand for it, too.
+    let between = case.contacts.iter().any(|c| c.between);
+    let needed = |c: &&ContactSpec| {
+        Some(c.name.as_str()) == contact || between && !c.between && c.primary.side().is_some()
+    };
+    let kept: BTreeSet<usize> = case.contacts.iter().filter(needed).map(|c| c.entry).collect();
+    let entries: BTreeSet<usize> = case.contacts.iter().map(|c| c.entry).collect();
     bodies
         .map(|body| Removable::Body(body.name.clone()))
-        .chain(contacts.map(|c| Removable::Contact(c.name.clone())))
+        .chain(entries.difference(&kept).map(|&entry| Removable::Contacts(entry)))
         .collect()
 }
 
@@ -214,7 +231,7 @@ fn without(candidate: &Candidate, what: &Removable) -> Option<Candidate> {
                 LoadKind::BodyForce { body, .. } => body != name,
             });
         }
-        Removable::Contact(name) => case.contacts.retain(|contact| contact.name != *name),
+        Removable::Contacts(entry) => case.contacts.retain(|contact| contact.entry != *entry),
     }
     let kept = |c: &ContactSpec| case.contacts.iter().any(|k| k.name == c.name);
     // Contacts that share a side number facets and nodes together.
@@ -268,9 +285,17 @@ fn write(
             meshes.insert(body.name.clone(), name);
         }
     }
+    let body_of = |side: &str| side.split('.').next().unwrap_or_default().to_owned();
+    let remains = |body: &str| best.case.bodies.iter().any(|b| b.name == body);
+    let acts = |kind: &LoadKind| match kind {
+        LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. } => {
+            on.iter().any(|s| remains(&body_of(s)))
+        }
+        LoadKind::BodyForce { body, .. } => remains(body),
+    };
     let mut tables = Vec::new();
     for (k, load) in whole.loads.iter().enumerate() {
-        let Some(table) = &load.table else {
+        let Some(table) = load.table.as_ref().filter(|_| acts(&load.kind)) else {
             tables.push(String::new());
             continue;
         };
@@ -287,7 +312,7 @@ fn write(
     );
     let excerpt = Excerpt {
         bodies: best.case.bodies.iter().map(|body| body.name.clone()).collect(),
-        contacts: best.case.contacts.iter().map(|contact| contact.name.clone()).collect(),
+        contacts: tables_of(&best.case),
         end: best.case.time.end,
         state: STATE.into(),
         meshes,
@@ -308,11 +333,21 @@ fn write(
             .bodies
             .iter()
             .map(|b| format!("body \"{b}\""))
-            .chain(excerpt.contacts.iter().map(|c| format!("contact \"{c}\"")))
+            .chain(best.case.contacts.iter().map(|c| format!("contact \"{}\"", c.name)))
             .collect(),
         reason: written(&path, stop),
         case: path,
     })
+}
+
+/// The tables of contacts, with a name where one contact remains of those that `between` stood for.
+fn tables_of(case: &Case) -> BTreeMap<usize, Option<String>> {
+    let mut tables = BTreeMap::new();
+    for contact in &case.contacts {
+        let alone = contact.between.then(|| contact.name.clone());
+        tables.entry(contact.entry).and_modify(|name| *name = None).or_insert(alone);
+    }
+    tables
 }
 
 /// The reason with which the written case stops, if it stops in the same way.

@@ -11,7 +11,7 @@ use carom_solid::Constitutive;
 use carom_time::{Integrator, Kernel, Nonsmooth};
 
 use crate::build::{Materials, build, overlaps};
-use crate::initial::{before, given, saved};
+use crate::initial::{before, given, on_the_grid, saved};
 use crate::overlap;
 
 /// A case on its way to a simulation: with how many threads, and with laws and a time integrator of
@@ -107,6 +107,7 @@ impl<'a> Setup<'a> {
     /// the start has no forces or accelerations.
     pub fn start(self) -> Result<Simulation, Problems> {
         if let Some(state) = saved(self.case.initial.as_ref())? {
+            on_the_grid(&state, &grid(self.case))?;
             return self.resume(state);
         }
         let (case, model) = (self.case, self.build()?);

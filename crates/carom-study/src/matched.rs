@@ -380,7 +380,7 @@ mod tests {
     /// 1.5/8 s and 0.5/4 s. Without iterations, seconds per step.
     #[test]
     fn weights_by_hand() {
-        let source = carom_record::Source { text: String::new(), sets: Vec::new() };
+        let source = carom_record::Source { text: String::new(), sets: Vec::new(), folder: None };
         let mut run = Manifest::new("0", serde_json::Value::Null, source, Vec::new(), 1);
         run.counters =
             [("newton", 8), ("factorisations", 4), ("steps", 5)].map(|(n, c)| (n.to_owned(), c)).into();

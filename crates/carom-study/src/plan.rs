@@ -78,7 +78,7 @@ impl Plan {
         let manifest = manifest(study, file, &bases, &planned, members);
         let arm = |p: Planned| PlannedArm {
             case: p.case,
-            source: Source { text: p.base.text.clone(), sets: p.sets },
+            source: Source { text: p.base.text.clone(), sets: p.sets, folder: None },
             warnings: p.warnings,
         };
         Ok(Self { manifest, arms: planned.into_iter().map(arm).collect() })
@@ -235,7 +235,7 @@ fn manifest(
         case_path: main,
     };
     let texts = std::iter::once(source.case.clone()).chain(source.others.values().cloned());
-    let input_hash = Source { text: source.study.clone(), sets: texts.collect() }.hash();
+    let input_hash = Source { text: source.study.clone(), sets: texts.collect(), folder: None }.hash();
     let arm = |(i, p): (usize, &Planned)| {
         let directory = format!("arms/{:02}-{}", i + 1, arms::slug(&p.draft.name));
         stored(&p.draft, directory, p.sets.clone(), &p.case)

@@ -5,7 +5,7 @@ use super::super::spec::SKIN;
 use super::super::{
     ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ObstacleMotion, Persistency, PrimarySpec,
 };
-use super::Check;
+use super::{Check, Node};
 
 impl Check<'_> {
     /// Laws and enforcements that cannot be combined with each other or with the scheme.
@@ -118,6 +118,15 @@ impl Check<'_> {
         }
     }
 
+    /// `self` is a key of `between`.
+    fn of_between(&mut self, contact: &ContactSpec) {
+        let table = self.tables("contact").get(contact.entry).and_then(Node::table);
+        if !contact.between && table.is_some_and(|table| table.get("self").is_some()) {
+            let why = "it says whether the bodies of `between` are in contact with themselves";
+            self.add(contact.path("self"), "`self` needs `between`", why, "leave it out");
+        }
+    }
+
     /// What an obstacle that moves needs: inertia if it is free, and a name for its columns.
     fn obstacle(&mut self, contact: &ContactSpec) {
         let is_static = self.draft.time.as_ref().is_some_and(|time| time.scheme.is_static());
@@ -143,11 +152,29 @@ impl Check<'_> {
         }
     }
 
+    /// Path of the entry of `between` that is a side; none if there is no such list.
+    fn entry_of_between(&self, contact: &ContactSpec, side: &str) -> Option<String> {
+        let table = self.tables("contact").get(contact.entry).and_then(Node::table)?;
+        let list = table.get("between").and_then(Node::list)?;
+        let is = |node: &Node| {
+            let name = node.text().unwrap_or_default();
+            name == side || side.strip_suffix(SKIN).and_then(|body| body.strip_suffix('.')) == Some(name)
+        };
+        Some(format!("contact[{}].between[{}]", contact.entry, list.iter().position(is)?))
+    }
+
     pub(super) fn contacts(&mut self) {
         let contacts = &self.draft.contacts;
         for (i, contact) in contacts.iter().enumerate() {
             let Some(contact) = contact else { continue };
-            let path = |key: &str| contact.path(key);
+            let entry = |side: &str| self.entry_of_between(contact, side);
+            let of_secondary = entry(&contact.secondary);
+            let of_primary = contact.primary.side().and_then(entry);
+            let path = |key: &str| {
+                let entry = if key == "primary" { &of_primary } else { &of_secondary };
+                let of_side = key == "secondary" || key == "primary";
+                entry.as_ref().filter(|_| of_side).map_or_else(|| contact.path(key), ToOwned::to_owned)
+            };
             let earlier = || contacts[..i].iter().flatten();
             if contact.between && self.draft.dimension == Some(1) {
                 let why = "a body of dimension 1 has no boundary but its two ends";
@@ -167,6 +194,7 @@ impl Check<'_> {
                 self.law(contact);
                 self.frozen_point(contact);
                 self.friction(contact);
+                self.of_between(contact);
             }
             let secondary = self.side(&contact.secondary, path("secondary"));
             let primary = match &contact.primary {

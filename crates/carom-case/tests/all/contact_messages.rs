@@ -28,6 +28,12 @@ const CONTACTS: &[(&[&str], &[&str])] = &[
         ],
         &["xi = \"frozen\" cannot be used with a rigid obstacle", "leave xi out"],
     ),
+    // contacts between bodies
+    (&["contact.strike.self=false"], &["`self` needs `between`"]),
+    (
+        &["contact=[{ name = \"strike\", between = [\"cylinder\", \"prsm\"] }]"],
+        &["there is no body `prsm`", "did you mean `prism.skin`?"],
+    ),
     // contact without mass
     (&["material.rubber.density=0"], &["no node in contact `strike` has mass", "persistency = \"none\""]),
     // invalid combinations

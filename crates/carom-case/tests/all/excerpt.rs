@@ -11,6 +11,7 @@ material = [{ name = "m", density = 1 }, { name = "unused", density = 2 }]
 name = "a"
 material = "m"
 velocity = [1.0, 0.0]
+position = ["X", "Y - 0.01"] # says which depths are kept
 mesh = { file = "far/a.msh", surface = "a" }
 
 [[body]] # goes
@@ -54,6 +55,7 @@ fn what_remains_is_complete() {
     let body = &case["body"][0];
     assert_eq!(body["element"].as_str(), Some("T6"));
     assert_eq!((body["mesh"]["file"].as_str(), body.get("velocity").is_none()), (Some("a.msh"), true));
+    assert!(body.get("position").is_some());
     assert_eq!(case["support"].as_array_of_tables().map(toml_edit::ArrayOfTables::len), Some(1));
     assert_eq!(case["support"][0]["on"].as_array().map(toml_edit::Array::len), Some(1));
     assert_eq!(case["material"].as_array().map(toml_edit::Array::len), Some(1));
@@ -63,4 +65,24 @@ fn what_remains_is_complete() {
         (Some(1.5), Some("state.bin"))
     );
     assert!(text.starts_with("# reduced\n") && text.contains("# kept") && text.contains("\"hu\""), "{text}");
+}
+
+/// Names of tables may be names of keys.
+#[test]
+fn an_override_of_a_body_named_body() {
+    let text = "[[body]]\nname = \"body\"\n[[contact]]\nname = \"contact\"\nbetween = [\"body\", \"gone\"]\n";
+    let text = text.to_owned() + "[[contact]]\nname = \"other\"\n[time]\n[output]\n";
+    let excerpt = Excerpt {
+        bodies: vec!["body".into()],
+        contacts: [(0, Some("one".into()))].into(),
+        ..Excerpt::default()
+    };
+    let sets = ["body.body.mesh.size=2".to_owned(), "contact.contact.self=true".to_owned()];
+    let case: DocumentMut = excerpt.of(&text, &sets).unwrap().parse().unwrap();
+    assert_eq!(case["body"][0]["mesh"]["size"].as_integer(), Some(2));
+    let contacts = case["contact"].as_array_of_tables().unwrap();
+    let contact = contacts.get(0).unwrap();
+    assert_eq!((contacts.len(), contact["self"].as_bool()), (1, Some(true)));
+    assert_eq!(contact["name"].as_str(), Some("one"));
+    assert_eq!(contact["between"].as_array().map(toml_edit::Array::len), Some(1));
 }

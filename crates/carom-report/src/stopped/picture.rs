@@ -52,8 +52,9 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet) -> Option<
     let at = *points.get(node)?;
     let size = size(place, fields, &points, node);
     let half = [ZOOM * size * (WIDTH / (HEIGHT - KEY)), ZOOM * size];
-    let frame = [at[0] - half[0], at[0] + half[0], at[1] - half[1], at[1] + half[1]];
-    let scale = WIDTH / (2.0 * half[0]);
+    let around = [at[0] - half[0], at[0] + half[0], at[1] - half[1], at[1] + half[1]];
+    let (frame, scale) = filled(around, &of_place(place, fields, &points), 0.5 * size);
+    let height = KEY + (frame[3] - frame[2]) * scale;
     let to = |p: Point| [(p[0] - frame[0]) * scale, KEY + (frame[3] - p[1]) * scale];
     let near = |points: &[Point], nodes: &[usize]| {
         let inside = |i: usize| {
@@ -64,12 +65,12 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet) -> Option<
         };
         inside(0) && inside(1)
     };
-    let mut out = open("Where the simulation stopped", WIDTH, HEIGHT);
+    let mut out = open("Where the simulation stopped", WIDTH, height);
     let _ = writeln!(
         out,
         "<clipPath id=\"stopped-frame\"><rect x=\"0\" y=\"{KEY}\" width=\"{WIDTH}\" height=\"{}\"/></clipPath>\n\
          <g clip-path=\"url(#stopped-frame)\">",
-        HEIGHT - KEY
+        height - KEY
     );
     let mut drawn = HashSet::new();
     for (k, block) in fields.blocks.iter().enumerate() {
@@ -141,12 +142,12 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet) -> Option<
         out,
         "<rect x=\"0.5\" y=\"{KEY}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#888\"/>",
         WIDTH - 1.0,
-        HEIGHT - KEY - 0.5
+        height - KEY - 0.5
     );
     key(&mut out, place, moved);
-    let length = round_step(2.0 * half[0], 6.0);
+    let length = round_step(frame[1] - frame[0], 6.0);
     let unit = fields.array("displacement").map_or("", |u| &u.unit);
-    let (y, pixels) = (HEIGHT - 14.0, length * scale);
+    let (y, pixels) = (height - 14.0, length * scale);
     let _ = writeln!(
         out,
         "<rect x=\"8\" y=\"{:.1}\" width=\"{:.1}\" height=\"22\" fill=\"#fff\" fill-opacity=\"0.8\"/>\n\
@@ -158,6 +159,30 @@ fn draw(run: &Run, stop: &Stop, place: &StopPlace, fields: &FieldSet) -> Option<
     write_text(&mut out, 14.0 + pixels + 8.0, y + 2.0, "", format!("{length} {unit}").trim());
     out.push_str("</svg>\n");
     Some((out, moved))
+}
+
+/// The points of the bodies of a place.
+fn of_place(place: &StopPlace, fields: &FieldSet, points: &[Point]) -> Vec<Point> {
+    let named = place.node.iter().chain(&place.facet_nodes).map(|node| &node.body);
+    let bodies: HashSet<&String> = named.chain(&place.body).collect();
+    let blocks = fields.blocks.iter().filter(|block| bodies.contains(&block.body));
+    blocks.flat_map(carom_record::Block::cells).flatten().map(|&node| points[node]).collect()
+}
+
+/// The part of a frame in which these points are, with a margin, and the scale with which it fills the
+/// picture: its whole width, and at most its height.
+fn filled(around: [f64; 4], points: &[Point], margin: f64) -> ([f64; 4], f64) {
+    let mut frame = around;
+    for i in 0..2 {
+        let low = points.iter().map(|p| p[i]).fold(f64::INFINITY, f64::min) - margin;
+        let high = points.iter().map(|p| p[i]).fold(f64::NEG_INFINITY, f64::max) + margin;
+        frame[2 * i] = around[2 * i].max(low);
+        frame[2 * i + 1] = around[2 * i + 1].min(high);
+    }
+    let (width, height) = (frame[1] - frame[0], frame[3] - frame[2]);
+    let scale = (WIDTH / width).min((HEIGHT - KEY) / height);
+    let beside = 0.5 * (WIDTH / scale - width);
+    ([frame[0] - beside, frame[1] + beside, frame[2], frame[3]], scale)
 }
 
 /// Rejected positions.

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use carom_case::Case;
-use carom_mechanics::{Attempt, GridReport, Simulation, State, penetration};
+use carom_mechanics::{Attempt, GridReport, Simulation, State, Stopped, penetration};
 use carom_record::{Event, Manifest, Recorder, Run, Status};
 
 use super::columns::{Since, center_weights, row};
@@ -12,7 +12,7 @@ use super::fields::field_set;
 use super::log::{entry, relaxed, repairs};
 use super::outcome::{End, Options, Outcome, Progress, RunError};
 use super::rows::contact_rows;
-use super::stopped::{Record, write_stop};
+use super::stopped::{FEW, Found, Record};
 use super::tally::{Busy, Tally, checkpoint};
 use super::verdicts::judged;
 use crate::warnings::warnings_of_record;
@@ -41,8 +41,8 @@ pub(super) struct Session<'a> {
     /// Processor seconds in steps.
     cpu: f64,
     values: Vec<f64>,
-    /// The states of the last two checkpoints, for trials.
-    checkpoints: [State; 2],
+    /// States for trials, the latest first; none of a run that was resumed.
+    pub(super) trials_from: Option<[State; 2]>,
 }
 
 impl<'a> Session<'a> {
@@ -58,7 +58,6 @@ impl<'a> Session<'a> {
         let first_step = simulation.state().step;
         let stressed = stressed(&simulation);
         let began = Instant::now();
-        let checkpoints = [simulation.state().clone(), simulation.state().clone()];
         Self {
             case,
             simulation,
@@ -74,7 +73,7 @@ impl<'a> Session<'a> {
             output: 0.0,
             cpu: 0.0,
             values: Vec::new(),
-            checkpoints,
+            trials_from: None,
         }
     }
 
@@ -150,7 +149,7 @@ impl<'a> Session<'a> {
             self.output += began.elapsed().as_secs_f64();
             observe(&self.progress(&report));
         }
-        self.close(end, &last, options, remarks)
+        self.close(end, &last, options, stop, remarks)
     }
 
     /// Logs where a probe's stress ceases to exist. This depends on the states before and after the
@@ -185,8 +184,12 @@ impl<'a> Session<'a> {
         }
         if step % output.checkpoint_every as u64 == 0 && !last {
             self.checkpoint()?;
-            self.checkpoints.rotate_right(1);
-            self.checkpoints[0].clone_from(self.simulation.state());
+        }
+        if let Some(states) = &mut self.trials_from
+            && step % FEW.max(output.checkpoint_every as u64) == 0
+        {
+            states.rotate_right(1);
+            states[0].clone_from(self.simulation.state());
         }
         Ok(())
     }
@@ -276,18 +279,47 @@ impl<'a> Session<'a> {
         Ok(self.writer.checkpoint(state.step, &checkpoint(state, self.since, &tally)?)?)
     }
 
+    /// Writes why the simulation stopped, before and after the trials: a process that is killed in them
+    /// leaves a run that stopped.
+    fn explain(
+        &mut self,
+        stopped: &Stopped,
+        last: &GridReport,
+        options: Options,
+        interrupted: &AtomicBool,
+    ) -> Result<(), RunError> {
+        let source = self.manifest.source.clone();
+        let (case, simulation, earlier) = (self.case, &self.simulation, self.trials_from.as_ref());
+        let record = Record { case, source: &source, simulation, earlier };
+        let mut found = Found::new(&record, stopped, last);
+        found.write(self.writer, &mut self.manifest)?;
+        if options.trials {
+            self.writer.manifest(&self.manifest)?;
+            found.try_out(&record, options.threads, interrupted);
+            found.write(self.writer, &mut self.manifest)?;
+            self.writer.manifest(&self.manifest)?;
+        }
+        Ok(())
+    }
+
     /// Writes the last checkpoint and manifest, with the warnings and verdicts on the record.
     fn close(
         mut self,
         end: End,
         last: &GridReport,
         options: Options,
+        interrupted: &AtomicBool,
         remarks: Vec<String>,
     ) -> Result<Outcome, RunError> {
         self.checkpoint()?;
+        let manifest = &mut self.manifest;
+        (manifest.status, manifest.reason) = match &end {
+            End::Finished => (Status::Finished, None),
+            End::Interrupted => (Status::Stopped, Some("stopped by the user".into())),
+            End::Stopped(stopped) => (Status::Failed, Some(stopped.to_string())),
+        };
         if let End::Stopped(stopped) = &end {
-            let record = Record { case: self.case, simulation: &self.simulation, earlier: &self.checkpoints };
-            write_stop(&record, stopped, last, options, self.writer, &mut self.manifest)?;
+            self.explain(stopped, last, options, interrupted)?;
         }
         // A record that cannot be read does not make a finished run unfinished.
         let asked = match end {
@@ -301,12 +333,6 @@ impl<'a> Session<'a> {
         }
         let state = self.simulation.state();
         let wall = self.began.elapsed().as_secs_f64();
-        let manifest = &mut self.manifest;
-        (manifest.status, manifest.reason) = match &end {
-            End::Finished => (Status::Finished, None),
-            End::Interrupted => (Status::Stopped, Some("stopped by the user".into())),
-            End::Stopped(stopped) => (Status::Failed, Some(stopped.to_string())),
-        };
         let outcome = Outcome {
             directory: self.writer.directory().to_path_buf(),
             steps: state.step,

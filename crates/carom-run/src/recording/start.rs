@@ -36,6 +36,7 @@ pub fn run(
     )?;
     writer.field_format(case.output.format);
     let mut session = Session::new(case, simulation, &mut writer, manifest);
+    session.trials_from = options.trials.then(|| [(); 2].map(|()| session.simulation.state().clone()));
     session.write_start()?;
     let remarks = audit_remarks(options, &session);
     session.go(options, observe, stop, remarks)
@@ -55,6 +56,7 @@ pub fn run_in_memory(
     let (simulation, manifest) = started(case, source, options)?;
     let mut record = MemoryRecord::new(manifest.clone());
     let mut session = Session::new(case, simulation, &mut record, manifest);
+    session.trials_from = options.trials.then(|| [(); 2].map(|()| session.simulation.state().clone()));
     session.write_start()?;
     let remarks = audit_remarks(options, &session);
     let outcome = session.go(options, observe, stop, remarks)?;

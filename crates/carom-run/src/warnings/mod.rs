@@ -42,8 +42,8 @@ pub struct Entry {
 pub const WARNINGS: [Entry; 9] = [
     Entry {
         id: "coarse-secondary",
-        why: "only nodes of the secondary side are constrained, and nodes of the primary may penetrate between them",
-        advice: "swapping secondary and primary, or a finer secondary side",
+        why: "nodes of the primary side follow those of the secondary one and may enter between them, by a fiftieth of a facet",
+        advice: "a finer secondary side, or the finer side as the secondary one",
         rule: Rule::Model(meshes::coarse_secondary),
     },
     Entry {

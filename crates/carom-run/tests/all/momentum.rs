@@ -89,13 +89,23 @@ impl Balance {
     }
 }
 
+/// Steps after which a body has met itself for long enough, and those in which it may not.
+const FOLDED: u64 = 20;
+const UNFOLDED: u64 = 420;
+
 /// Largest error of the balance over so many steps, relative to the largest momentum of any body;
-/// none where no body can be balanced or nothing touches. A run that stops is judged up to there.
+/// none where no body can be balanced or nothing touches. A body that can meet itself goes on until it
+/// has. A run that stops is judged up to there.
 fn worst(case: &Case, steps: u64) -> Option<f64> {
     let mut sim = Setup::new(case).start().ok()?;
     let balances = Balance::all(case, &sim);
+    let folds: Vec<usize> = (0..case.contacts.len()).filter(|&k| case.contacts[k].is_of_itself()).collect();
+    let mut until = if folds.is_empty() { steps } else { steps.max(UNFOLDED) };
     let (mut worst, mut contact_began) = (0.0_f64, false);
-    while !balances.is_empty() && !sim.finished() && sim.state().step < steps {
+    while !balances.is_empty() && !sim.finished() && sim.state().step < until {
+        if folds.iter().any(|&k| sim.state().pairs[k].iter().any(|pair| pair.active)) {
+            until = until.min(steps.max(sim.state().step + FOLDED));
+        }
         if sim.step().is_err() {
             break;
         }

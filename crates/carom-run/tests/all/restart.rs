@@ -95,7 +95,7 @@ primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
     };
     let statics = text(&time(1.0, 0.25, r#"{ kind = "static" }"#), "", "-0.1*t");
     let case = case_of(&statics, &[""; 0]);
-    let source = carom_record::Source { text: statics.clone(), sets: Vec::new() };
+    let source = carom_record::Source { text: statics.clone(), sets: Vec::new(), folder: None };
     let options = carom_run::recording::Options { threads: 1, trials: false, audit: false };
     let stop = std::sync::atomic::AtomicBool::new(false);
     let preload = folder.path().join("preload");
@@ -169,7 +169,7 @@ fn states_of_other_models() {
 fn a_run_is_finished_even_if_its_record_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let directory = folder.path().join("run");
-    let source = carom_record::Source { text: DISCS.to_owned(), sets: Vec::new() };
+    let source = carom_record::Source { text: DISCS.to_owned(), sets: Vec::new(), folder: None };
     let options = carom_run::recording::Options { threads: 1, trials: false, audit: false };
     let stop = std::sync::atomic::AtomicBool::new(false);
     let damage = &mut |progress: &carom_run::recording::Progress| {
@@ -233,4 +233,41 @@ enforcement = "penalty"
     assert!((large.state().ledger.springs - whole).abs() < 1e-12 * whole);
     assert!((part.ledger.springs - own).abs() < 1e-12 * own, "{} {own}", part.ledger.springs);
     assert!((part.ledger.total() - part.ledger.total_at_start).abs() < 1e-15);
+}
+
+/// Both sides of strips pressed together by springs are active; as constraints they would be dependent.
+#[test]
+fn multipliers_start_from_a_run_with_springs() {
+    let folder = tempfile::tempdir().unwrap();
+    let strips = |law: &str, initial: &str| {
+        let strip = |name: &str, y: [f64; 2], cells: u32| {
+            format!(
+                "[[body]]\nname = \"{name}\"\nmaterial = \"soft\"\nelement = \"T6\"\nmesh = {{ shape = \"rectangle\", \
+                 min = [0.0, {:?}], max = [1.0, {:?}], cells = [{cells}, 4] }}\n",
+                y[0], y[1]
+            )
+        };
+        format!(
+            "title = \"strips\"\ndimension = 2\n[[material]]\nname = \"soft\"\nlaw = \"linear-elastic\"\ndensity = 1.0\n\
+             young = 100.0\npoisson = 0.0\n{}{}[[support]]\non = [\"lower.bottom\"]\nfix = [\"y\"]\n[[support]]\n\
+             on = [\"lower.left\", \"upper.left\"]\nfix = [\"x\"]\n[[load]]\non = [\"upper.top\"]\n\
+             traction = [\"0\", \"-1\"]\n[[contact]]\nname = \"joint\"\nsecondary = \"lower.top\"\n\
+             primary = \"upper.bottom\"\n{law}\n[time]\nend = 0.1\nstep = 0.01\n\
+             scheme = {{ kind = \"chung-hulbert\", rho_inf = 0.0 }}\n{initial}\n",
+            strip("lower", [0.0, 1.0], 4),
+            strip("upper", [1.0, 2.5], 3)
+        )
+    };
+    let springs = strips("enforcement = \"penalty\"\nstiffness = 10.0", "");
+    let source = carom_record::Source { text: springs.clone(), sets: Vec::new(), folder: None };
+    let options = carom_run::recording::Options { threads: 1, trials: false, audit: false };
+    let stop = std::sync::atomic::AtomicBool::new(false);
+    let pressed = folder.path().join("pressed");
+    carom_run::recording::run(&case_of(&springs, &[""; 0]), source, &pressed, options, &mut |_| {}, &stop)
+        .unwrap();
+    let initial = format!("[initial]\nfrom = {:?}\n", pressed.display().to_string());
+    let case = case_of(&strips("", &initial), &[""; 0]);
+    let mut run = carom_run::Setup::new(&case).start().unwrap();
+    run.step().unwrap();
+    assert!(run.state().pairs[0].iter().any(|pair| pair.active));
 }

@@ -83,7 +83,7 @@ fn ids(text: &str, sets: &[&str]) -> Vec<String> {
 fn recorded(text: &str, sets: &[&str]) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     let directory = folder.path().join("run");
-    let source = Source { text: text.to_owned(), sets: Vec::new() };
+    let source = Source { text: text.to_owned(), sets: Vec::new(), folder: None };
     let options = Options { threads: 1, trials: false, audit: false };
     run(&case(text, sets), source, &directory, options, &mut |_| {}, &AtomicBool::new(false)).unwrap();
     let warnings = Manifest::read(&directory).unwrap().warnings;

@@ -99,6 +99,13 @@ fn a_stop_is_explained_and_reduced() {
     assert_eq!((second.step, &second.place), (first.step, &first.place));
     assert!(second.trials.is_none() && second.advice.iter().all(|a| a.trial.is_none()));
 
+    // The state has its clock.
+    for (set, key) in [("time.step=0.01", "step 40 is at 0.4"), ("time.end=0.5", "ends before the state")] {
+        let other = place.carom(&["run", "run-reduced/case.toml", "--out", "other", "--set", set]);
+        let said = text(&other.stderr);
+        assert!(other.status.code() == Some(2) && said.contains(key), "{said}");
+    }
+
     // Resumed, it stops again, and says the same.
     assert_eq!(place.carom(&["resume", "run"]).status.code(), Some(3));
     assert_eq!(stop(&place, "run"), first);
@@ -126,6 +133,47 @@ fn what_gets_past_in_a_trial_gets_past_in_a_run() {
         let rows = std::fs::read_to_string(place.0.join(&out).join("history.csv")).unwrap();
         let time: f64 = rows.lines().last().unwrap().split(',').nth(1).unwrap().parse().unwrap();
         assert!(time >= advice.trial.as_ref().unwrap().reached, "{advice:?}: {time}");
+    }
+}
+
+/// A contact of `between` has no keys of its own, and the skin of a body has all its nodes.
+#[test]
+fn a_stop_among_contacts_between_bodies() {
+    let place = Place::new("between");
+    place.file("all.toml", include_str!("../../../../cases/self/all.toml"));
+    let run = ["run", "all.toml", "--out", "run", "--set", "newton.max_iterations=4"];
+    assert_eq!(place.carom(&run).status.code(), Some(3));
+    let stop = stop(&place, "run");
+    assert_eq!(stop.place.unwrap().contact.as_deref(), Some("all-ring-ball"));
+    let optional: Vec<_> = stop.advice.iter().filter(|advice| !advice.sets.is_empty()).collect();
+    assert!(optional.iter().any(|advice| advice.sets[0] == "contact.all.enforcement=penalty"));
+    for advice in optional {
+        let mut check = vec!["check", "all.toml", "--set", "newton.max_iterations=4"];
+        advice.sets.iter().for_each(|set| check.extend(["--set", set]));
+        let checked = place.carom(&check);
+        assert_eq!(checked.status.code(), Some(0), "{advice:?}: {}", text(&checked.stderr));
+    }
+    let reduced = place.carom(&["reduce", "run"]);
+    assert_eq!(reduced.status.code(), Some(0), "{}", text(&reduced.stderr));
+    assert!(std::fs::read_to_string(place.0.join("run-reduced/case.toml")).unwrap().contains("between"));
+}
+
+/// A key that is given contradicts what a remedy would set: it has no option then.
+#[test]
+fn options_fit_the_keys_that_are_given() {
+    let place = Place::new("given");
+    place.file("all.toml", include_str!("../../../../cases/self/all.toml"));
+    let sets = ["newton.max_iterations=1", "contact.all.enforcement=penalty", "contact.all.stiffness=1.0"];
+    let given: Vec<&str> = sets.iter().flat_map(|set| ["--set", *set]).collect();
+    let run = [&["run", "all.toml", "--out", "run", "--no-trials"][..], &given].concat();
+    assert_eq!(place.carom(&run).status.code(), Some(3));
+    let stop = stop(&place, "run");
+    let multipliers = stop.advice.iter().find(|advice| advice.what.starts_with("multipliers")).unwrap();
+    assert!(multipliers.sets.is_empty() && stop.advice.len() > 3, "{multipliers:?}");
+    for advice in stop.advice {
+        let more: Vec<&str> = advice.sets.iter().flat_map(|set| ["--set", set]).collect();
+        let checked = place.carom(&[&["check", "all.toml"], &given[..], &more].concat());
+        assert_eq!(checked.status.code(), Some(0), "{advice:?}: {}", text(&checked.stderr));
     }
 }
 

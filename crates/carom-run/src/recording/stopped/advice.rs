@@ -1,9 +1,9 @@
 //! What to try, by the keyword of the reason: one line per remedy, the most promising first.
 
 use carom_case::Case;
-use carom_record::Advice;
+use carom_record::{Advice, Source, StopPlace};
 
-use super::change::{Change, Kind};
+use super::change::{Change, Kind, Original};
 
 /// Keyword of the energy guard, beside those of rejected steps.
 pub(super) const GUARD: &str = "energy-guard";
@@ -74,16 +74,35 @@ const TABLE: &[(&str, &[Remedy])] = &[
 /// The remedies of any other reason.
 const OTHERWISE: &[Remedy] = &[SHORTER, BATHE, DAMPED, PENALTY, FINER];
 
-/// What to try after a stop at a contact, or anywhere.
-pub(super) fn of(kind: &str, case: &Case, contact: Option<&str>) -> Vec<Advice> {
+/// What to try after a stop at a contact or in a body, or anywhere, with the changes of the case.
+pub(super) fn of(
+    kind: &str,
+    case: &Case,
+    source: &Source,
+    place: Option<&StopPlace>,
+) -> Vec<(Advice, Option<Change>)> {
     let remedies = TABLE.iter().find(|(of, _)| *of == kind).map_or(OTHERWISE, |(_, remedies)| remedies);
+    let original = Original::new(case, source);
+    let contact = place.and_then(|place| place.contact.as_deref());
+    let body = place.and_then(|place| place.body.as_deref().or(place.node.as_ref().map(|n| n.body.as_str())));
+    let lowest = || {
+        let mut there = case.bodies.iter().filter(|b| body.is_none_or(|body| body == b.name));
+        there.all(|body| body.element.degree() == 1)
+    };
     let advice = |&(change, what): &Remedy| {
-        let sets = match change {
-            Some(kind) => Change::new(kind, case, contact)?.sets,
-            None if what == DEGREE.1 && case.bodies.iter().all(|b| b.element.degree() == 1) => return None,
-            None => Vec::new(),
+        let of_contact = [LONGER.1, PROJECT.1, ROUNDED.1].contains(&what);
+        if what == DEGREE.1 && lowest() || of_contact && case.contacts.is_empty() {
+            return None;
+        }
+        let change = match change {
+            Some(kind) => {
+                original.sets(kind, contact)?;
+                original.changed(kind, contact)
+            }
+            None => None,
         };
-        Some(Advice { what: what.into(), sets, trial: None })
+        let sets = change.as_ref().map_or_else(Vec::new, |change| change.sets.clone());
+        Some((Advice { what: what.into(), sets, trial: None }, change))
     };
     remedies.iter().filter_map(advice).collect()
 }

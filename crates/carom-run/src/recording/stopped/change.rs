@@ -1,10 +1,14 @@
 //! Changes of a case that may get a run past the place where it stopped, as the options of the
-//! command that make them.
+//! command that make them. A changed case is read again with them, so that a run with these options
+//! is a run of this case.
 
 use carom_case::{
-    Case, ContactLaw, ContactPoint, Detection, Enforcement, Persistency, SchemeSpec, TangentRule,
+    Case, ContactLaw, ContactPoint, ContactSpec, Detection, Document, Enforcement, Persistency, TangentRule,
+    read,
 };
-use carom_time::ForceRule;
+use carom_record::Source;
+
+use crate::initial::continues;
 
 /// A kind of change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,23 +34,7 @@ pub(super) enum Kind {
     Project,
 }
 
-impl Kind {
-    const ALL: [Self; 10] = [
-        Self::Shorter,
-        Self::Longer,
-        Self::Damped,
-        Self::Bathe,
-        Self::Penalty,
-        Self::Stiffer,
-        Self::Softer,
-        Self::Multiplier,
-        Self::Full,
-        Self::Project,
-    ];
-}
-
 /// A changed case.
-#[derive(Clone, Debug)]
 pub(super) struct Change {
     pub kind: Kind,
     pub case: Case,
@@ -54,27 +42,44 @@ pub(super) struct Change {
     pub sets: Vec<String>,
 }
 
-/// Default of `stiffness`.
-const STIFFNESS: f64 = 10.0;
+/// A case with the text from which it was read.
+pub(super) struct Original<'a> {
+    case: &'a Case,
+    /// None if the text, or a file that it names, is not there any more, or gives another case.
+    source: Option<&'a Source>,
+    /// Names of the tables of its contacts.
+    tables: Vec<String>,
+}
 
-impl Change {
-    /// The change that these options make.
-    pub(super) fn of(sets: &[String], case: &Case, contact: Option<&str>) -> Option<Self> {
-        if sets.is_empty() {
-            return None;
-        }
-        Kind::ALL.into_iter().filter_map(|kind| Self::new(kind, case, contact)).find(|c| c.sets == sets)
+impl<'a> Original<'a> {
+    pub(super) fn new(case: &'a Case, source: &'a Source) -> Self {
+        let document = document(source, &[]);
+        let same = document.as_ref().and_then(|document| read(document).ok()).as_ref() == Some(case);
+        let tables = document.map_or_else(Vec::new, |document| document.names("contact"));
+        Self { case, source: same.then_some(source), tables }
     }
 
-    /// A change of a case, at one contact or at all; none if it changes nothing or cannot be used.
-    pub(super) fn new(kind: Kind, case: &Case, contact: Option<&str>) -> Option<Self> {
-        let mut change = Self { kind, case: case.clone(), sets: Vec::new() };
-        let scheme = &case.time.scheme;
+    /// A change of the case, at one contact or at all; none if it has no options, or these give no case:
+    /// a key that is given may contradict them.
+    pub(super) fn changed(&self, kind: Kind, contact: Option<&str>) -> Option<Change> {
+        let sets = self.sets(kind, contact)?;
+        let case = read(&document(self.source?, &sets)?).ok()?;
+        (case != *self.case).then_some(Change { kind, case, sets })
+    }
+
+    /// The options of a change; none if the case has nothing that it changes.
+    pub(super) fn sets(&self, kind: Kind, contact: Option<&str>) -> Option<Vec<String>> {
+        let case = self.case;
+        let (scheme, step) = (&case.time.scheme, case.time.step);
         let implicit = !scheme.is_static() && scheme.nonsmooth().is_none();
-        match kind {
-            Kind::Shorter => change.step(0.25),
-            Kind::Longer if implicit && case.time.phase == 0.0 && case.time.steps().is_multiple_of(2) => {
-                change.step(2.0);
+        // A saved state keeps its clock.
+        let free = !continues(case);
+        let sets = match kind {
+            Kind::Shorter if free => vec![format!("time.step={:?}", 0.25 * step)],
+            Kind::Longer
+                if free && implicit && case.time.phase == 0.0 && case.time.steps().is_multiple_of(2) =>
+            {
+                vec![format!("time.step={:?}", 2.0 * step)]
             }
             Kind::Damped if implicit => {
                 let rho = *scheme.parameters.get("rho_inf")?;
@@ -82,89 +87,91 @@ impl Change {
                 if rho <= lower {
                     return None;
                 }
-                change.case.time.scheme.parameters.insert("rho_inf".into(), lower);
-                change.sets.push(format!("time.scheme.rho_inf={lower:?}"));
+                vec![format!("time.scheme.rho_inf={lower:?}")]
             }
-            Kind::Bathe if !scheme.is_static() && scheme.kind != "bathe" => change.bathe()?,
-            Kind::Penalty if implicit => change.enforcement(contact, Enforcement::Penalty),
-            Kind::Multiplier if implicit => change.enforcement(contact, Enforcement::Multiplier),
-            Kind::Stiffer => change.stiffness(contact, 10.0),
-            Kind::Softer => change.stiffness(contact, 0.1),
+            Kind::Bathe if !scheme.is_static() && scheme.kind != "bathe" => {
+                let predictor = |c: &ContactSpec| c.law == Some(ContactLaw::Predictor);
+                let bathe = "time.scheme={ kind = \"bathe\", rho_inf = 0.0 }".to_owned();
+                let laws = self.each(None, predictor, |_| vec!["law=position".to_owned()]);
+                std::iter::once(bathe).chain(laws).collect()
+            }
+            Kind::Penalty if implicit => self.each(
+                contact,
+                |c| plain(c) && c.enforcement == Enforcement::Multiplier,
+                |c| {
+                    let given = c.persistency != Persistency::None;
+                    let none = given.then(|| "persistency=none".to_owned());
+                    std::iter::once("enforcement=penalty".to_owned()).chain(none).collect()
+                },
+            ),
+            Kind::Multiplier if implicit => self.each(
+                contact,
+                |c| plain(c) && c.enforcement == Enforcement::Penalty,
+                |_| ["enforcement=multiplier", "persistency=project"].map(ToOwned::to_owned).into(),
+            ),
+            Kind::Stiffer => self.stiffness(contact, 10.0),
+            Kind::Softer => self.stiffness(contact, 0.1),
             Kind::Full if implicit && case.newton.tangent != TangentRule::Full => {
-                change.case.newton.tangent = TangentRule::Full;
-                change.sets.push("newton.tangent=full".into());
+                vec!["newton.tangent=full".to_owned()]
             }
-            Kind::Project if implicit => change.project(contact),
-            _ => {}
-        }
-        (!change.sets.is_empty()).then_some(change)
-    }
-
-    fn step(&mut self, factor: f64) {
-        self.case.time.step *= factor;
-        self.sets.push(format!("time.step={:?}", self.case.time.step));
-    }
-
-    /// The scheme of Bathe with contact on positions.
-    fn bathe(&mut self) -> Option<()> {
-        if self.case.contacts.iter().any(|c| c.restitution != 0.0 || c.xi == ContactPoint::Frozen) {
-            return None;
-        }
-        self.case.time.scheme = SchemeSpec {
-            kind: "bathe".into(),
-            parameters: [("rho_inf".to_owned(), 0.0)].into(),
-            forces: ForceRule::default(),
+            Kind::Project if implicit => {
+                let unprojected = |c: &ContactSpec| {
+                    c.enforcement == Enforcement::Multiplier
+                        && c.law == Some(ContactLaw::Position)
+                        && c.persistency == Persistency::None
+                };
+                self.each(contact, unprojected, |_| vec!["persistency=project".to_owned()])
+            }
+            _ => Vec::new(),
         };
-        self.sets.push("time.scheme={ kind = \"bathe\", rho_inf = 0.0 }".into());
-        for contact in &mut self.case.contacts {
-            if contact.law == Some(ContactLaw::Predictor) {
-                self.sets.push(format!("contact.{}.law=position", contact.name));
-            }
-            contact.law = Some(ContactLaw::Position);
-        }
-        Some(())
+        (!sets.is_empty()).then_some(sets)
     }
 
-    fn enforcement(&mut self, at: Option<&str>, to: Enforcement) {
-        for contact in &mut self.case.contacts {
-            let usable = contact.law == Some(ContactLaw::Position)
-                && contact.xi == ContactPoint::Closest
-                && contact.detection == Detection::ClosestPoint
-                && contact.restitution == 0.0;
-            if contact.enforcement == to || !usable || at.is_some_and(|at| at != contact.name) {
-                continue;
+    /// The keys of the tables of some contacts; several contacts have one table in the case if it says
+    /// `between`.
+    fn each(
+        &self,
+        at: Option<&str>,
+        of: impl Fn(&ContactSpec) -> bool,
+        keys: impl Fn(&ContactSpec) -> Vec<String>,
+    ) -> Vec<String> {
+        let chosen = self.case.contacts.iter().filter(|c| of(c) && at.is_none_or(|at| at == c.name));
+        let mut sets = Vec::new();
+        for contact in chosen {
+            let Some(table) = self.tables.get(contact.entry) else { continue };
+            for key in keys(contact) {
+                let set = format!("contact.{}.{key}", quoted(table));
+                if !sets.contains(&set) {
+                    sets.push(set);
+                }
             }
-            contact.enforcement = to;
-            let word = if to == Enforcement::Penalty {
-                contact.stiffness = STIFFNESS;
-                contact.persistency = Persistency::None;
-                "penalty"
-            } else {
-                contact.persistency = Persistency::Project;
-                "multiplier"
-            };
-            self.sets.push(format!("contact.{}.enforcement={word}", contact.name));
         }
+        sets
     }
 
-    fn project(&mut self, at: Option<&str>) {
-        for contact in &mut self.case.contacts {
-            let usable = contact.enforcement == Enforcement::Multiplier
-                && contact.law == Some(ContactLaw::Position)
-                && contact.persistency == Persistency::None;
-            if usable && at.is_none_or(|at| at == contact.name) {
-                contact.persistency = Persistency::Project;
-                self.sets.push(format!("contact.{}.persistency=project", contact.name));
-            }
-        }
+    fn stiffness(&self, at: Option<&str>, factor: f64) -> Vec<String> {
+        let springs = |c: &ContactSpec| c.enforcement == Enforcement::Penalty;
+        self.each(at, springs, |c| vec![format!("stiffness={:?}", factor * c.stiffness)])
     }
+}
 
-    fn stiffness(&mut self, at: Option<&str>, factor: f64) {
-        for contact in &mut self.case.contacts {
-            if contact.enforcement == Enforcement::Penalty && at.is_none_or(|at| at == contact.name) {
-                contact.stiffness *= factor;
-                self.sets.push(format!("contact.{}.stiffness={:?}", contact.name, contact.stiffness));
-            }
-        }
-    }
+/// Whether a contact may be enforced by springs and by multipliers.
+fn plain(contact: &ContactSpec) -> bool {
+    contact.law == Some(ContactLaw::Position)
+        && contact.xi == ContactPoint::Closest
+        && contact.detection == Detection::ClosestPoint
+        && contact.restitution == 0.0
+}
+
+/// A name as a part of a key.
+fn quoted(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if name.chars().all(bare) { name.to_owned() } else { format!("{name:?}") }
+}
+
+/// The text of a case with further options, as read from a file of its folder.
+fn document(source: &Source, more: &[String]) -> Option<Document> {
+    let sets = [&source.sets, more].concat();
+    let name = source.folder.as_deref().unwrap_or("".as_ref()).join("case.toml");
+    Document::parse(&name.display().to_string(), &source.text, &sets).ok()
 }

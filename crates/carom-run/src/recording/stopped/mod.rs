@@ -5,49 +5,90 @@ mod change;
 mod place;
 mod trials;
 
+use std::sync::atomic::AtomicBool;
+
 use carom_case::Case;
 use carom_mechanics::{GridReport, Simulation, State, Stopped};
-use carom_record::{Advice, FieldSet, Manifest, PointArray, RecordError, Recorder, Stop, StopIteration};
+use carom_record::{
+    Advice, FieldSet, Manifest, PointArray, RecordError, Recorder, Source, Stop, StopIteration,
+};
 
 use super::fields::field_set;
-use super::outcome::Options;
+use change::Change;
 use place::place;
-use trials::Effort;
+use trials::{Effort, Trials, Tried};
 
-/// Steps before a stop at which trials may begin.
-const FEW: u64 = 5;
+/// Steps between a stop and the state of the run from which trials may begin, and fewest steps
+/// between such states.
+pub(super) const FEW: u64 = 5;
 
 /// A run that stopped.
 pub(super) struct Record<'a> {
     pub case: &'a Case,
+    pub source: &'a Source,
     pub simulation: &'a Simulation,
-    /// The states of its last two checkpoints, the latest first.
-    pub earlier: &'a [State; 2],
+    /// States of this run at fixed steps, the latest first; none if it was resumed, since the same run
+    /// must try the same.
+    pub earlier: Option<&'a [State; 2]>,
 }
 
-/// Writes why a simulation stopped, before and after the trials: a killed process leaves the first.
-pub(super) fn write_stop(
-    record: &Record,
-    stopped: &Stopped,
-    last: &GridReport,
-    options: Options,
-    writer: &mut dyn Recorder,
-    manifest: &mut Manifest,
-) -> Result<(), RecordError> {
-    let Record { case, simulation, earlier: [latest, before] } = record;
-    let (mut stop, fields) = explain(case, simulation, stopped, last);
-    writer.stop(&stop, &fields, manifest)?;
-    if options.trials {
+/// Why a simulation stopped, with what may get past.
+pub(super) struct Found {
+    stop: Stop,
+    fields: FieldSet,
+    changes: Vec<Option<Change>>,
+}
+
+impl Found {
+    pub(super) fn new(record: &Record, stopped: &Stopped, last: &GridReport) -> Self {
+        let (mut stop, fields) = explain(record.case, record.simulation, stopped, last);
+        let advice = advice::of(&stop.kind, record.case, record.source, stop.place.as_ref());
+        let changes;
+        (stop.advice, changes) = advice.into_iter().unzip();
+        Self { stop, fields, changes }
+    }
+
+    /// Writes both files; the manifest takes their hashes.
+    pub(super) fn write(
+        &self,
+        writer: &mut dyn Recorder,
+        manifest: &mut Manifest,
+    ) -> Result<(), RecordError> {
+        writer.stop(&self.stop, &self.fields, manifest)
+    }
+
+    /// Tries the changes and puts what got past first. Ctrl-C leaves the rest untried.
+    pub(super) fn try_out(&mut self, record: &Record, threads: usize, interrupted: &AtomicBool) {
+        let simulation = record.simulation;
         // Not the counters: those of a run that was resumed count the attempts of the last step twice.
         let effort = Effort {
             iterations: trials::TYPICAL * simulation.state().step,
             unknowns: simulation.model().free.len() as u64,
         };
-        let earlier = if latest.step + FEW <= simulation.state().step { latest } else { before };
-        try_out(&mut stop, case, earlier, effort, options.threads);
-        writer.stop(&stop, &fields, manifest)?;
+        let far = |state: &&State| state.step + FEW <= simulation.state().step;
+        let earlier = record.earlier.and_then(|states| states.iter().find(far).or(states.last()));
+        let trials = Trials {
+            case: record.case,
+            stop: self.stop.time,
+            last: self.stop.last,
+            earlier,
+            effort,
+            threads,
+        };
+        self.stop.trials = Some(trials.words());
+        for (advice, change) in self.stop.advice.iter_mut().zip(&self.changes) {
+            let Some(change) = change else { continue };
+            match trials.trial(change, interrupted) {
+                Tried::Ended(trial) => advice.trial = Some(trial),
+                // The model refuses it, so it is no advice.
+                Tried::Refused => advice.sets.clear(),
+                Tried::NotAffordable => {}
+                Tried::Interrupted => break,
+            }
+        }
+        let passed = |advice: &Advice| advice.trial.as_ref().is_some_and(|trial| trial.passed);
+        self.stop.advice.sort_by_key(|advice| !passed(advice));
     }
-    Ok(())
 }
 
 /// Explains a stop; `fields`: the last accepted state and the rejected positions.
@@ -92,25 +133,9 @@ pub(crate) fn explain(
         dt,
         last: state.time,
         iterations: iterations.collect(),
-        advice: advice::of(kind, case, place.as_ref().and_then(|place| place.contact.as_deref())),
+        advice: Vec::new(),
         place,
         trials: None,
     };
     (stop, fields)
-}
-
-/// Tries what to try, from the start or from an earlier state, and puts what got past first.
-fn try_out(stop: &mut Stop, case: &Case, earlier: &State, effort: Effort, threads: usize) {
-    stop.trials = Some(trials::words(effort));
-    let contact = stop.place.as_ref().and_then(|place| place.contact.clone());
-    for advice in &mut stop.advice {
-        let Some(change) = change::Change::of(&advice.sets, case, contact.as_deref()) else { continue };
-        match trials::trial(&change, case, earlier, stop.time, effort, threads) {
-            Some(trial) => advice.trial = Some(trial),
-            // The model refuses it, so it is no advice.
-            None => advice.sets.clear(),
-        }
-    }
-    let passed = |advice: &Advice| advice.trial.as_ref().is_some_and(|trial| trial.passed);
-    stop.advice.sort_by_key(|advice| !passed(advice));
 }

@@ -57,14 +57,16 @@ fn elsewhere(
     let contact = |k: usize| Some(model.contacts[k].name.clone());
     if let Some(dof) = trace.worst() {
         let node = dof / model.dimension;
-        let of = |(_, pairs): &(usize, &Vec<carom_contact::Pair>)| pairs.iter().any(|p| p.active);
-        let touched = state.pairs.iter().enumerate().filter(of);
-        let mut touched = touched.filter(|(k, _)| model.contacts[*k].surface.contains(&node));
-        return Some((
-            node,
-            "the node with the largest residual",
-            touched.next().and_then(|(k, _)| contact(k)),
-        ));
+        // The contact in which it, or a facet that has it, is active; a skin has all nodes of a body.
+        let mut rows = Rows::new(model.dimension);
+        let mut touched = (0..model.contacts.len()).filter(|&k| {
+            state.pairs[k].iter().filter(|pair| pair.active).any(|pair| {
+                rows.clear();
+                let found = model.contacts[k].kinematics.measure(&mut pair.clone(), &state.y, &mut rows);
+                found.is_ok() && rows.row(0).nodes.contains(&node)
+            })
+        });
+        return Some((node, "the node with the largest residual", touched.next().and_then(contact)));
     }
     let changed = report.events.iter().rev().find_map(|event| match event {
         LogEvent::ActiveSet { contact, node, .. }

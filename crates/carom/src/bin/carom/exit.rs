@@ -65,8 +65,10 @@ impl From<std::io::Error> for Failure {
 impl From<RecordError> for Failure {
     fn from(error: RecordError) -> Self {
         let what = error.to_string();
-        match error.exit_code() {
-            4 => Self::System { what },
+        match error {
+            error if error.exit_code() == 4 => Self::System { what },
+            // It says what to try.
+            RecordError::Corrupt { .. } => Self::Argument { what, help: String::new() },
             _ => Self::Argument { what, help: AGAIN.to_owned() },
         }
     }

@@ -130,7 +130,9 @@ pub(crate) fn run(
     progress: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, Failure> {
-    let source = carom_record::Source { text: document.text().to_owned(), sets: document.sets() };
+    let folder = Path::new(document.name()).parent().unwrap_or(Path::new(""));
+    let folder = std::path::absolute(Path::new(".").join(folder)).ok();
+    let source = carom_record::Source { text: document.text().to_owned(), sets: document.sets(), folder };
     let library =
         recording::Options { threads: options.threads, trials: options.trials, audit: options.audit };
     let done = recording::run(case, source, out, library, &mut |p| progress(&seen(p)), stop);
@@ -256,7 +258,16 @@ fn help_after(directory: &Path) -> Result<String, Failure> {
     if lines.is_empty() {
         let tried = stop.advice.iter().filter(|advice| advice.trial.is_some()).count();
         if tried > 0 {
-            lines.push(format!("{tried} changes were tried, and none gets past t = {}", short(stop.time)));
+            lines.push(match tried {
+                1 => format!(
+                    "1 change was tried, and it does not get five steps past t = {}",
+                    short(stop.time)
+                ),
+                _ => format!(
+                    "{tried} changes were tried, and none gets five steps past t = {}",
+                    short(stop.time)
+                ),
+            });
         }
         let untried = stop.advice.iter().filter(|advice| advice.trial.is_none());
         lines.extend(untried.take(3).map(|advice| match option(advice) {

@@ -58,6 +58,11 @@ impl From<ReduceError> for Failure {
     fn from(error: ReduceError) -> Self {
         match error {
             ReduceError::Record(error) => error.into(),
+            ReduceError::Case(problems) => {
+                let what = ReduceError::Case(problems).to_string();
+                let help = "restore the files that the case names as they were when the run was made";
+                Self::Argument { what, help: help.to_owned() }
+            }
             ReduceError::Unusable { what, help } => Self::Argument { what, help: help.to_owned() },
         }
     }
