@@ -130,15 +130,24 @@ pub(super) fn contact(
         xi: v.choice("xi")?,
         law: v.choice("law"),
         overlap: v.choice("overlap")?,
-        friction: FrictionSpec {
-            mu: v.formula("mu").filter(|mu| !mu.is_zero()),
-            mu_dynamic: v.number("mu_dynamic"),
-            decay: v.number("decay"),
-            shear: v.number("shear"),
-            stick_stiffness: v.number("stick_stiffness"),
-        },
+        friction: friction(&v),
         restitution: v.number("restitution")?,
     })
+}
+
+/// What depends on a misspelt key is not judged.
+fn friction(v: &View) -> FrictionSpec {
+    let mu = v.formula("mu").filter(|mu| !mu.is_zero());
+    if v.table.0.iter().any(|entry| !v.keys.iter().any(|key| key.name == entry.key)) {
+        return FrictionSpec { mu, ..FrictionSpec::default() };
+    }
+    FrictionSpec {
+        mu,
+        mu_dynamic: v.number("mu_dynamic"),
+        decay: v.number("decay"),
+        shear: v.number("shear"),
+        stick_stiffness: v.number("stick_stiffness"),
+    }
 }
 
 /// The pair of elastic constants that was probably meant.

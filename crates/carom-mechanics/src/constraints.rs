@@ -149,6 +149,16 @@ impl Constraints {
         self.curvatures.push(curvature);
     }
 
+    /// Largest gap that a constraint has to close. The slip of a stick that depends on other rows, as
+    /// of a node on a symmetry axis, is theirs.
+    pub(crate) fn gap(equations: &Equations, evaluation: &Evaluation) -> f64 {
+        let of_pair = |(k, p): (usize, usize)| evaluation.answers[k][p].open.abs();
+        let gaps = evaluation.pressing().map(of_pair).fold(0.0, f64::max);
+        let rows = Self::of(equations, evaluation);
+        let slips = rows.slips.iter().zip(&rows.open).filter(|(is_slip, _)| **is_slip);
+        slips.map(|(_, open)| open.abs()).fold(gaps, f64::max)
+    }
+
     /// Number of rows.
     pub(crate) fn len(&self) -> usize {
         self.places.len()

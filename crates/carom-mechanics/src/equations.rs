@@ -93,6 +93,8 @@ pub(crate) struct Measure {
     pub forces: f64,
     /// Largest |g| of the active constraints, and |S| of those that stick.
     pub gap: f64,
+    /// Whether any sticks.
+    pub friction: bool,
 }
 
 /// Unused evaluations, whose memory is reused.
@@ -324,7 +326,7 @@ impl<'a> Equations<'a> {
             middle.extend(self.state.y.iter().zip(&at.increment).map(|(y, d)| y + 0.5 * d));
         }
         answers.resize_with(contacts, Vec::new);
-        (*springs, *stick_springs, measure.gap) = (0.0, 0.0, 0.0);
+        (*springs, *stick_springs, measure.gap, measure.friction) = (0.0, 0.0, 0.0, false);
         for (k, (contact, pairing)) in self.model.contacts.iter().zip(&mut at.pairings).enumerate() {
             let weight = contact_weights(&self.stage, contact.at_the_end).0;
             let (rows, discrete_gradients, answers) =
@@ -397,7 +399,9 @@ impl<'a> Equations<'a> {
                             Some(stiffness) => {
                                 *stick_springs += 0.5 * pair.tangential.traction.powi(2) / stiffness;
                             }
-                            None if sign == 0.0 => measure.gap = measure.gap.max(slip.gap.abs()),
+                            None if sign == 0.0 => {
+                                (measure.gap, measure.friction) = (measure.gap.max(slip.gap.abs()), true);
+                            }
                             None => {}
                         }
                     } else {

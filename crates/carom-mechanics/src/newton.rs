@@ -94,7 +94,8 @@ pub(crate) fn solve_stage(
         let enough = DIGITS * tolerance * now.measure.forces + work.system.round_off(equations);
         let settled = step * if is_static { 1.0 } else { ratio.min(1.0) } <= tolerance * model.scale
             && now.measure.residual <= enough
-            && now.measure.gap <= GAP_TOLERANCE * model.scale;
+            && (now.measure.gap <= GAP_TOLERANCE * model.scale
+                || now.measure.friction && Constraints::gap(equations, &now) <= GAP_TOLERANCE * model.scale);
         let changed = contact.update(equations, before, &mut now, &mut effort.events, settled, step, work)?;
         work.trace.push(iterate(equations, &now, iteration, step, changed), &now.y);
         if settled && !changed {
@@ -166,7 +167,7 @@ fn iterate(
     correction: f64,
     changed: bool,
 ) -> Iteration {
-    let Measure { residual, forces, gap } = now.measure;
+    let Measure { residual, forces, gap, .. } = now.measure;
     Iteration {
         number: number as u32,
         residual: residual / forces.max(f64::MIN_POSITIVE),

@@ -184,8 +184,16 @@ fn is_balanced(path: &Path) -> bool {
     // A node of the ring meets one of the block head on: the multipliers of two nearly dependent
     // rows cancel.
     let head_on = path.ends_with("self/all.toml");
+    // The residual of a body of 10⁹ and more is known to fewer digits, also where nothing but friction
+    // accelerates it.
+    let is_stiff = case.materials.iter().any(|material| material.lambda + 2.0 * material.mu > 1e7);
+    let rubs = case.contacts.iter().any(|contact| contact.friction.exists());
     let bound = if head_on {
         1e-10
+    } else if rubs && is_stiff {
+        1e-8
+    } else if rubs {
+        4e-12
     } else if spring {
         4e-12
     } else {
