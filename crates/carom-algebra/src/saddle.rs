@@ -209,16 +209,13 @@ impl Saddle {
             multipliers[(i, 0)] = -multipliers[(i, 0)];
         }
         matmul(multipliers.rb_mut(), Accum::Add, t.transpose(), x.rb(), 1.0, Par::Seq);
-        let directions = match &self.skew {
-            Some(skew) => {
-                skew.solve_in_place(multipliers.rb_mut());
-                MatRef::from_column_major_slice(&self.directions, n, m)
-            }
-            None => {
-                solve_lower_triangular_in_place(small, multipliers.rb_mut(), Par::Seq);
-                solve_upper_triangular_in_place(small.transpose(), multipliers.rb_mut(), Par::Seq);
-                t
-            }
+        let directions = if let Some(skew) = &self.skew {
+            skew.solve_in_place(multipliers.rb_mut());
+            MatRef::from_column_major_slice(&self.directions, n, m)
+        } else {
+            solve_lower_triangular_in_place(small, multipliers.rb_mut(), Par::Seq);
+            solve_upper_triangular_in_place(small.transpose(), multipliers.rb_mut(), Par::Seq);
+            t
         };
         matmul(x.rb_mut(), Accum::Add, directions, multipliers.rb(), -1.0, Par::Seq);
         solve_upper_triangular_in_place(lower.transpose(), x.rb_mut(), Par::Seq);

@@ -234,6 +234,7 @@ impl StickSlip {
 mod tests {
     use super::*;
 
+    #[allow(clippy::unnecessary_wraps)]
     fn rub(hold: Hold, traction: f64, slip: f64) -> Option<Rub> {
         Some(Rub { hold, traction, slip, cone: 1.0 })
     }

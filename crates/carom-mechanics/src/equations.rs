@@ -378,9 +378,9 @@ impl<'a> Equations<'a> {
                 if contact.friction.is_some() {
                     if direction == Direction::End {
                         if answer.active {
-                            discrete_gradients.push_row(row)
+                            discrete_gradients.push_row(row);
                         } else {
-                            discrete_gradients.push_open()
+                            discrete_gradients.push_open();
                         }
                     }
                     if answer.active {

@@ -160,10 +160,10 @@ fn bands(run: &Run, name: &str, rows: &[&ContactRow]) -> BTreeMap<u64, [f64; 2]>
     }
     // Corners of the primary side, in the order in which they touch.
     for row in rows {
-        if !bands.contains_key(&row.node) {
-            bands.insert(row.node, [end, end + 1.0]);
+        bands.entry(row.node).or_insert_with(|| {
             end += 1.0;
-        }
+            [end - 1.0, end]
+        });
     }
     bands
 }

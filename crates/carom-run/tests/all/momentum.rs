@@ -192,9 +192,7 @@ fn is_balanced(path: &Path) -> bool {
         1e-10
     } else if rubs && is_stiff {
         1e-8
-    } else if rubs {
-        4e-12
-    } else if spring {
+    } else if rubs || spring {
         4e-12
     } else {
         1e-12
